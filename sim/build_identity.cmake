@@ -16,9 +16,9 @@ string(SHA256 sum "${all}")
 string(SUBSTRING ${sum} 0 12 sum)
 file(WRITE ${OUT} "#include \"sim/run/build_identity.h\"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 std::string_view build_identity() { return \"${VERSION}+${sum}\"; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run
 ")

@@ -10,7 +10,7 @@
 #include "sim/config/parse_toml.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 // One step of a path: a name, or an item in brackets. A bare number may be either.
@@ -200,7 +200,7 @@ void merge_table(Value& base, const Value& overriding) {
 Document::Document(std::string name, Value root) : name_(std::move(name)), root_(std::move(root)) {}
 
 Document Document::from_file(const std::string& path) {
-  return from_text(read_file(path, {}, "scenario", kMostBytesOfDocument), path);
+  return from_text(system::read_file(path, {}, "scenario", kMostBytesOfDocument), path);
 }
 
 Document Document::from_text(std::string_view text, const std::string& name) {
@@ -237,6 +237,6 @@ void Document::set(std::string_view assignment) {
 
 void Document::merge(const Value& overriding) { merge_table(root_, overriding); }
 
-std::string Document::to_toml() const { return sim::to_toml(root_); }
+std::string Document::to_toml() const { return config::to_toml(root_); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

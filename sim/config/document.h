@@ -7,7 +7,7 @@
 
 #include "sim/config/value.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 class KeyLog;
 
@@ -50,4 +50,4 @@ class Document {
   std::shared_ptr<KeyLog> key_log_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

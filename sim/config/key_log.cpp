@@ -7,7 +7,7 @@
 
 #include "sim/config/rule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 void KeyLog::add(KeyUse use) {
   if (std::find(uses_.begin(), uses_.end(), use) == uses_.end()) uses_.push_back(std::move(use));
@@ -76,4 +76,4 @@ std::string without_items(std::string_view path) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

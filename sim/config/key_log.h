@@ -11,7 +11,7 @@
 
 #include "sim/config/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 struct Rule;
 
@@ -70,4 +70,4 @@ std::string range_text(std::span<const Rule> rules, double factor);
 /// A path without the numbers of list items: "case[2].strategy[0]" is "case.strategy".
 std::string without_items(std::string_view path);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

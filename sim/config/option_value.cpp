@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 std::optional<double> plain_number(std::string_view text) {
   double value = 0.0;
@@ -23,4 +23,4 @@ ScaledText scale_option(std::string_view text, Quantity quantity, std::string_vi
   return scaled;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -7,7 +7,7 @@
 
 #include "sim/config/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 /// The finite number that a whole text is, or nullopt.
 std::optional<double> plain_number(std::string_view text);
@@ -16,4 +16,4 @@ std::optional<double> plain_number(std::string_view text);
 /// @param bare_unit  of a number without a unit
 ScaledText scale_option(std::string_view text, Quantity quantity, std::string_view bare_unit);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 constexpr bool continues_a_character(char c) {
@@ -124,4 +124,4 @@ Value parse_toml(std::string_view text, const std::string& name) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

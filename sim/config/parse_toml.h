@@ -6,11 +6,11 @@
 
 #include "sim/config/value.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 /// The root table of a TOML text.
 /// @param name  of the file, for places
 /// @throws InputError at the first fault of syntax
 Value parse_toml(std::string_view text, const std::string& name);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

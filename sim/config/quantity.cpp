@@ -13,7 +13,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 struct Symbol {
@@ -349,4 +349,4 @@ std::string in_unit(double si, std::string_view symbol) {
   return fmt::format("{:.6g} {}", si / parsed.unit->factor, symbol);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 /// Exponents of the base units. The radian counts as a base unit, so that an angle is no number and
 /// a torque per angle no torque.
@@ -95,4 +95,4 @@ std::string example_unit(Quantity quantity);
 /// @pre parse_unit(symbol) succeeds
 std::string in_unit(double si, std::string_view symbol);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -12,7 +12,7 @@
 #include "sim/config/key_log.h"
 #include "sim/config/reading_record.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();  // a default that is none
@@ -335,4 +335,4 @@ Place Reader::own_place() const {
 
 void Reader::finish() { record_->finish(); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

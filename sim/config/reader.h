@@ -25,7 +25,7 @@
 #include "sim/config/quantity.h"
 #include "sim/config/rule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 struct KeyUse;
 class ReadingRecord;
@@ -141,4 +141,4 @@ class Reader {
   bool silent_;  // stands for a table that was faulty already
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

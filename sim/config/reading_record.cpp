@@ -8,7 +8,7 @@
 #include <iterator>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 constexpr std::size_t kLongestShown = 60;  // characters of a value in a message
@@ -94,4 +94,4 @@ void ReadingRecord::finish() {
   if (!faults_.empty()) throw InputError(faults_by_file());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -11,7 +11,7 @@
 
 #include "sim/config/document.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 class ReadingRecord {
  public:
@@ -63,4 +63,4 @@ class ReadingRecord {
   bool finished_ = false;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

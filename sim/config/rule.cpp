@@ -7,7 +7,7 @@
 
 #include "sim/config/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 bool holds(const Rule& rule, double value) {
@@ -57,4 +57,4 @@ std::string requirement(Rules rules, double value, const Unit& unit, bool name_u
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

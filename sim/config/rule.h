@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 struct Unit;
 
@@ -37,4 +37,4 @@ bool all_hold(Rules rules, double value);
 /// @param name_unit  false: the key names it already
 std::string requirement(Rules rules, double value, const Unit& unit, bool name_unit);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

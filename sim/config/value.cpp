@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 namespace {
 
 bool same_entries(const Value& a, const Value& b) {
@@ -176,4 +176,4 @@ std::string joined_key(std::string_view path, std::string_view key) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::config {
 
 struct Value {
   enum class Type : std::uint8_t { text, integer, real, boolean, date_time, list, table };
@@ -51,4 +51,4 @@ std::string quoted_text(std::string_view text);
 /// `path` and `key` joined by a dot; the path of the root is empty.
 std::string joined_key(std::string_view path, std::string_view key);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::config

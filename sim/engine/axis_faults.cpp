@@ -6,7 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/servo_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 namespace {
 
 std::string_view name_of(controllers::AxisFaultKind fault) {
@@ -43,7 +43,7 @@ std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
 }
 
 std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
-  const MachineSettings& machine = machine_of(l);
+  const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);
   const bool linear = axes_[l].joint < kLinearJoints;
   const double unit = linear ? mm : deg;
@@ -79,4 +79,4 @@ std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
   return std::nullopt;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

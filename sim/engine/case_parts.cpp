@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 double model_period_of(const CaseInputs& in) {
   return in.machine.nc.periods.seconds(in.hardware.model_period);
@@ -20,7 +20,7 @@ Outcome failed(std::string_view why, double time, int line) {
 }
 
 std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity,
-                            const MachineSettings& machine) {
+                            const model::MachineSettings& machine) {
   constexpr double kMostFactor = 10.0;
   const JointLayout& layout = machine.chain.layout;
   for (int j = 0; j < kJoints; ++j) {
@@ -39,4 +39,4 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
 
 Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-', 0.0}; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

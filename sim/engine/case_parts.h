@@ -10,7 +10,7 @@
 #include "sim/engine/recorder.h"
 #include "sim/engine/simulate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Period of the error model of the feedback hardware (s).
 double model_period_of(const CaseInputs& in);
@@ -24,7 +24,7 @@ Outcome failed(std::string_view why, double time, int line);
 /// Why a strategy cannot add these velocities (5; m/s, rad/s): one is not finite, or beyond ten
 /// times the v_max of its axis; empty if it can.
 std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity,
-                            const MachineSettings& machine);
+                            const model::MachineSettings& machine);
 
 /// Outcome of a case whose strategy has failed before it began.
 Outcome stopped_at_begin(const std::string& why);
@@ -56,7 +56,7 @@ class CutAlongPath {
 
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
   void advance(const controllers::Trajectory::Sample& reference) {
-    const NcSettings& nc = in_.machine.nc;
+    const model::NcSettings& nc = in_.machine.nc;
     const int tool = in_.path.tool_offset(in_.pieces[reference.move]);
     if (tool != tool_) p_ST_ = in_.tips.at(tool);
     tool_ = tool;
@@ -94,4 +94,4 @@ Standstill at_standstill(const Joints& Q_cmd, Displacement displacement) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

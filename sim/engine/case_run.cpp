@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
                  References& references)
@@ -137,4 +137,4 @@ void CaseRun::initialise_at_rest() {
   travel_ = {in_.machine_errors, axes_.Q_true(run_)};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -11,7 +11,7 @@
 #include "sim/engine/servo_axes.h"
 #include "sim/engine/setpoint.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// One case among those that run in lockstep: setpoint, feedback hardware, recorder.
 class CaseRun {
@@ -49,7 +49,7 @@ class CaseRun {
   bool stop_with(std::string_view why, double t);
 
   CaseInputs& in_;
-  const NcSettings& nc_;
+  const model::NcSettings& nc_;
   ServoAxes& axes_;
   FeedbackLanes& feedback_;
   std::size_t run_;
@@ -64,4 +64,4 @@ class CaseRun {
   CaseResult result_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -6,7 +6,7 @@
 
 #include "plant/cutting/cutting_force.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 CuttingTable::CuttingTable(std::vector<Row> rows) : rows_(std::move(rows)) {
   assert(std::is_sorted(rows_.begin(), rows_.end(),
@@ -31,7 +31,7 @@ Eigen::Vector3d CuttingTable::force(double s, double speed, double wear, double 
   return c * between(a.shear, b.shear) + plant::bearing_share(c) * edges * between(a.edge, b.edge);
 }
 
-CuttingLoad::CuttingLoad(const CuttingTable& table, const CuttingWear& wear,
+CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance)
     : table_(table), wear_(wear), chain_(chain), compliance_(compliance) {}
 
@@ -48,4 +48,4 @@ void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vec
   deflection_ = compliance_.cwiseProduct(load_.head<kLinearJoints>());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

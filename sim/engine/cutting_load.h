@@ -9,7 +9,7 @@
 #include "plant/kinematics/chain.h"
 #include "sim/model/run_settings.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Average force of the work on the cutter over the arc length s of the original program. Linear
 /// between rows; rows of equal s are a jump.
@@ -49,8 +49,8 @@ class CuttingLoad {
  public:
   /// All arguments must outlive this.
   /// @param compliance  m/N, of the structure in each linear axis
-  CuttingLoad(const CuttingTable& table, const CuttingWear& wear, const plant::MachineChain& chain,
-              const Eigen::Vector3d& compliance);
+  CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
+              const plant::MachineChain& chain, const Eigen::Vector3d& compliance);
 
   /// Stands at s.
   void start(double s) { s_ = s; }
@@ -67,7 +67,7 @@ class CuttingLoad {
 
  private:
   const CuttingTable& table_;
-  const CuttingWear& wear_;
+  const model::CuttingWear& wear_;
   const plant::MachineChain& chain_;
   const Eigen::Vector3d& compliance_;
   CuttingTable::Cursor cursor_;
@@ -76,4 +76,4 @@ class CuttingLoad {
   Joints load_ = Joints::Zero();
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

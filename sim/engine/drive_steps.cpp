@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
-std::vector<Rate> loop_rates(const LoopPeriods& p, Tick reading_delay) {
+std::vector<model::Rate> loop_rates(const model::LoopPeriods& p, Tick reading_delay) {
   const Tick phase = (p.position - reading_delay % p.position) % p.position;
-  return {{kFeedbackSample, p.position, phase},
-          {kPositionLoop, p.position, 0},
-          {kVelocityLoop, p.velocity, 0},
-          {kCurrentLoop, p.current, 0}};
+  return {{model::kFeedbackSample, p.position, phase},
+          {model::kPositionLoop, p.position, 0},
+          {model::kVelocityLoop, p.velocity, 0},
+          {model::kCurrentLoop, p.current, 0}};
 }
 
 namespace {
@@ -31,13 +31,13 @@ int number_of(const plant::Stretch& stretch, DriveSteps& way) {
 
 }  // namespace
 
-DriveSteps drive_steps(const std::vector<Instant>& schedule, std::size_t most_stops) {
+DriveSteps drive_steps(const std::vector<model::Instant>& schedule, std::size_t most_stops) {
   DriveSteps way;
   const auto add_step = [&](Tick step) {
     way.legs.push_back({step});
     way.steps.push_back(step);
   };
-  for (const Instant& instant : schedule) {
+  for (const model::Instant& instant : schedule) {
     std::vector<Tick> places = instant.stops;
     places.push_back(instant.step);
     Tick begin = 0;
@@ -60,4 +60,4 @@ DriveSteps drive_steps(const std::vector<Instant>& schedule, std::size_t most_st
   return way;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

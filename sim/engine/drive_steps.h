@@ -8,12 +8,12 @@
 #include "sim/model/machine.h"
 #include "sim/model/schedule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// When the loops of a machine are due.
 /// @param reading_delay  ticks from the scale to what the position loop reads: kFeedbackSample is
 ///                       due so much before the position loop
-std::vector<Rate> loop_rates(const LoopPeriods& periods, Tick reading_delay);
+std::vector<model::Rate> loop_rates(const model::LoopPeriods& periods, Tick reading_delay);
 
 /// Sequence of drive steps over one schedule. A step may pass instants at which only the error
 /// model is due; each of several ends at such an instant or at the next one.
@@ -28,6 +28,6 @@ struct DriveSteps {
   std::size_t most_stops = 0;  // of a stretch
 };
 /// @param most_stops  on a stretch; 0: each stop ends a leg
-DriveSteps drive_steps(const std::vector<Instant>& schedule, std::size_t most_stops = 8);
+DriveSteps drive_steps(const std::vector<model::Instant>& schedule, std::size_t most_stops = 8);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

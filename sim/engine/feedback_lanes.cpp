@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 void FeedbackLanes::add(std::size_t run, const strategies::Strategy& strategy,
                         double model_period) {
@@ -114,4 +114,4 @@ void FeedbackLanes::apply_virtual_displacements(Together& together) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

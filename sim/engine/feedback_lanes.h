@@ -10,7 +10,7 @@
 #include "sim/engine/servo_axes.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// The feedback hardware of eight runs that lie side by side in ServoAxes. Runs with one strategy
 /// advance together, in the lanes in which they lie; what other lanes hold is left aside. Of a run
@@ -63,4 +63,4 @@ class FeedbackLanes {
   std::size_t periods_ = 0;    // that have begun
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

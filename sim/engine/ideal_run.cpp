@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 IdealRun::IdealRun(CaseInputs& in)
     : in_(in),
@@ -108,4 +108,4 @@ Joints IdealRun::Q_true_of(const AxisSetpoint& set) {
       .Q;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

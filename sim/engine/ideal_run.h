@@ -13,7 +13,7 @@
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 class IdealRun {
  public:
@@ -30,7 +30,7 @@ class IdealRun {
   Joints Q_true_of(const AxisSetpoint& set);
 
   CaseInputs& in_;
-  const LoopPeriods& periods_;
+  const model::LoopPeriods& periods_;
   Setpoint setpoint_;
   std::unique_ptr<strategies::FeedbackPart> feedback_;
   strategies::Reading now_;
@@ -41,4 +41,4 @@ class IdealRun {
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 void LastTicks::keep(double time, const Joints& Q_cmd, const Joints& Q_fb, const Joints& Q_true,
                      const Joints& current) {
@@ -14,14 +14,14 @@ void LastTicks::keep(double time, const Joints& Q_cmd, const Joints& Q_fb, const
   }
 }
 
-Series LastTicks::series(const JointLayout& layout) const {
+records::Series LastTicks::series(const JointLayout& layout) const {
   std::string letters;
   for (const int j : present_) letters += layout.letter_of(j);
-  Series out({{"time", "s", "time since the start of the program", "", ""},
-              {"cmd", "m or rad", "setpoint", letters, "axis"},
-              {"fb", "m or rad", "position feedback", letters, "axis"},
-              {"true", "m or rad", "position of the slide or table", letters, "axis"},
-              {"current", "A", "torque-forming current", letters, "axis"}});
+  records::Series out({{"time", "s", "time since the start of the program", "", ""},
+                       {"cmd", "m or rad", "setpoint", letters, "axis"},
+                       {"fb", "m or rad", "position feedback", letters, "axis"},
+                       {"true", "m or rad", "position of the slide or table", letters, "axis"},
+                       {"current", "A", "torque-forming current", letters, "axis"}});
   const std::size_t rows = std::min(count_, kLastTicks);
   for (std::size_t n = count_ - rows; n < count_; ++n) {
     const double* from = ring_.data() + (n % kLastTicks) * kPerRow;
@@ -34,4 +34,4 @@ Series LastTicks::series(const JointLayout& layout) const {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/axes.h"
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Kept in a ring, so that a case that stops can be looked into.
 class LastTicks {
@@ -20,7 +20,7 @@ class LastTicks {
   /// One position period (s; m, rad; A).
   void keep(double time, const Joints& Q_cmd, const Joints& Q_fb, const Joints& Q_true,
             const Joints& current);
-  Series series(const JointLayout& layout) const;
+  records::Series series(const JointLayout& layout) const;
 
  private:
   static constexpr std::size_t kLastTicks = 2000;  // position periods
@@ -30,4 +30,4 @@ class LastTicks {
   std::size_t count_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

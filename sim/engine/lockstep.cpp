@@ -1,27 +1,27 @@
 #include "sim/engine/lockstep.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 namespace {
 
-std::vector<const MachineSettings*> machines_of(std::span<CaseInputs* const> together) {
-  std::vector<const MachineSettings*> machines;
+std::vector<const model::MachineSettings*> machines_of(std::span<CaseInputs* const> together) {
+  std::vector<const model::MachineSettings*> machines;
   for (const CaseInputs* in : together) machines.push_back(&in->machine);
   return machines;
 }
 
 }  // namespace
 
-std::vector<Rate> rates_of(const CaseInputs& in) {
+std::vector<model::Rate> rates_of(const CaseInputs& in) {
   const Tick delay =
       in.machine.scale_delay + (in.hardware.connected ? in.hardware.signal_delay : 0);
-  std::vector<Rate> rates = loop_rates(in.machine.nc.periods, delay);
-  rates.push_back({kRecord, in.record_period, 0});
-  if (in.feedback) rates.push_back({kErrorModel, in.hardware.model_period, 0});
+  std::vector<model::Rate> rates = loop_rates(in.machine.nc.periods, delay);
+  rates.push_back({model::kRecord, in.record_period, 0});
+  if (in.feedback) rates.push_back({model::kErrorModel, in.hardware.model_period, 0});
   return rates;
 }
 
 Lockstep::Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives* kept)
-    : schedule_(make_schedule(rates_of(*together.front()))),
+    : schedule_(model::make_schedule(rates_of(*together.front()))),
       axes_(machines_of(together), together.front()->machine.joints(), schedule_, kept) {
   for (std::size_t first = 0; first < together.size(); first += kLaneWidth) {
     feedbacks_.emplace_back(axes_, first);
@@ -44,7 +44,7 @@ std::vector<CaseResult> Lockstep::run(const StopFlag& stop, std::atomic<float>& 
       each([&](CaseRun& run) { run.interrupt(n); });
       next_end_ = n;
     }
-    for (const Instant& instant : schedule_) {
+    for (const model::Instant& instant : schedule_) {
       if (take_out_those_done(n, results)) return results;
       tick(instant.due, n);
       axes_.advance(instant.step, [&] { evaluate_error_models(); });
@@ -56,25 +56,25 @@ std::vector<CaseResult> Lockstep::run(const StopFlag& stop, std::atomic<float>& 
 // One instant: encoders, virtual encoder, NC loops (each sees the one before), recorder; then the
 // drives move on.
 void Lockstep::tick(std::uint8_t due, Tick n) {
-  if (due & (kErrorModel | kRecord)) axes_.read_scales();
-  if (due & kErrorModel) evaluate_error_models();  // acts one model period later
-  if (due & kFeedbackSample) {                     // scale + virtual displacement
+  if (due & (model::kErrorModel | model::kRecord)) axes_.read_scales();
+  if (due & model::kErrorModel) evaluate_error_models();  // acts one model period later
+  if (due & model::kFeedbackSample) {                     // scale + virtual displacement
     apply_virtual_displacements();
     axes_.sample_position_feedback();
   }
-  if (due & kPositionLoop) {  // interpolator, setpoint corrections, position loop
+  if (due & model::kPositionLoop) {  // interpolator, setpoint corrections, position loop
     command_axes(n);
     axes_.compensate_backlash();
     add_velocities(n);  // of strategies, to the velocity commands
     axes_.close_position_loops();
     if (!axes_.within_limits()) stop_faulty_axes(n);
   }
-  if (due & kCurrentLoop) axes_.latch_current_commands();  // of the velocity period before
-  if (due & kVelocityLoop) {
+  if (due & model::kCurrentLoop) axes_.latch_current_commands();  // of the velocity period before
+  if (due & model::kVelocityLoop) {
     axes_.close_velocity_loops();
     track_axis_reversals();
   }
-  if (due & kRecord) record(n);
+  if (due & model::kRecord) record(n);
 }
 
 void Lockstep::evaluate_error_models() {
@@ -130,4 +130,4 @@ bool Lockstep::take_out_those_done(Tick n, std::vector<CaseResult>& results) {
   return none_left;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

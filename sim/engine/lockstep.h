@@ -15,10 +15,10 @@
 #include "sim/engine/simulate.h"
 #include "sim/model/schedule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Rates of all that is due in a case.
-std::vector<Rate> rates_of(const CaseInputs& in);
+std::vector<model::Rate> rates_of(const CaseInputs& in);
 
 class Lockstep {
  public:
@@ -47,7 +47,7 @@ class Lockstep {
     }
   }
 
-  std::vector<Instant> schedule_;
+  std::vector<model::Instant> schedule_;
   ServoAxes axes_;
   References references_;
   std::vector<std::unique_ptr<CaseRun>> runs_;
@@ -58,4 +58,4 @@ class Lockstep {
   Tick next_end_ = 0;  // no run ends before it
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

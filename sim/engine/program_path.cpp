@@ -12,7 +12,7 @@
 
 #include "plant/vocabulary/tool_axis.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 namespace {
 
 // How far along the path the closest point is looked for, beyond the distance of the point itself.
@@ -229,4 +229,4 @@ double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) co
   return best;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -14,7 +14,7 @@
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/move_list.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// The motion of the original program in machine coordinates, by arc length s (m). Where the
 /// program controls the tip, that is the tip in the workpiece, and s the length of its way. A
@@ -124,4 +124,4 @@ class ProgramPath {
   std::vector<std::string> sections_ = {""};
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

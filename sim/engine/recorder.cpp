@@ -8,88 +8,16 @@
 
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
+#include "sim/engine/recorded_signals.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 namespace {
+
+using records::Signal;
 
 constexpr std::size_t kBlockRows = 1024;
 
-constexpr const char* kLinear = "axis_linear";
-constexpr const char* kRotary = "axis_rotary";
-constexpr const char* kXyz = "xyz";
-constexpr const char* kIjk = "ijk";
-
-std::string letters(const MachineSettings& machine, const std::vector<int>& joints) {
-  std::string out;
-  for (const int joint : joints) out += machine.chain.layout.letter_of(joint);
-  return out;
-}
-
-const Signal kToolSignals[] = {
-    {"tool_position_nominal", "mm",
-     "tool centre point of the ideal machine on the programmed path, in the workpiece", "XYZ",
-     kXyz},
-    {"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz},
-    {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz},
-    {"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk},
-    {"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk},
-    {"contour_error", "um", "distance of the true tool centre point to the nominal path", "", ""},
-};
-
-std::vector<Signal> signals(const std::string& linear, const std::string& rotary, bool with_imposed,
-                            bool with_uncorrectable, bool with_cut, bool with_programmed) {
-  std::vector<Signal> all = {
-      {"time", "s", "time since the start of the program", "", ""},
-      {"s", "mm", "arc length on the path of the original program", "", ""},
-      {"line", "1", "line of the original program", "", ""},
-      {"section", "1", "section of the original program, index into attribute sections", "", ""},
-      {"rapid", "1", "1 while a rapid move is interpolated", "", ""},
-  };
-  const auto per_axis = [&](const std::string& name, const char* unit_linear,
-                            const char* unit_rotary, const std::string& what) {
-    if (!linear.empty())
-      all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
-    if (!rotary.empty())
-      all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
-  };
-  per_axis("ref", "mm", "deg", "interpolated position");
-  per_axis("cmd", "mm", "deg", "setpoint after corrections");
-  per_axis("fb", "mm", "deg", "position feedback, virtual displacement included");
-  per_axis("meas", "mm", "deg", "reading of the scale");
-  per_axis("true", "mm", "deg", "position of the slide or table");
-  per_axis("following_error", "um", "deg", "setpoint minus position feedback");
-  per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
-  per_axis("current", "A", "A", "torque-forming current");
-  per_axis("torque", "N m", "N m", "motor torque");
-  if (with_imposed) {
-    all.push_back({"imposed_linear", "um",
-                   "displacement that the imposed errors ask for at the programmed position",
-                   linear, kLinear});
-  }
-  all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
-  if (with_uncorrectable) {
-    all.push_back({"uncorrectable_tip", "um",
-                   "TCP deviation that the axes cannot compensate, identified", "", ""});
-    all.push_back({"uncorrectable_axis", "urad",
-                   "tool axis deviation that the axes cannot compensate, identified", "", ""});
-  }
-  if (with_cut) {
-    all.push_back({"cutting_force", "N",
-                   "average force of the work on the cutter, in the workpiece", "XYZ", kXyz});
-    all.push_back({"structural_deflection", "um",
-                   "by which the cut bends the structure behind the scales, part of "
-                   "tool_position_true",
-                   linear, kLinear});
-  }
-  if (with_programmed && !linear.empty()) {
-    all.push_back({"programmed_linear", "mm",
-                   "position of the ideal machine on the programmed path, linear axes", linear,
-                   kLinear});
-  }
-  return all;
-}
-
-// Writes values one after the other, in the order of signals().
+// Writes values one after the other, in the order of recorded_signals().
 class RowWriter {
  public:
   explicit RowWriter(double* row) : next_(row) {}
@@ -105,42 +33,17 @@ class RowWriter {
   double* next_;
 };
 
-// A resolution of one metre in the unit of a signal; 0: the signal is never rounded.
-double per_metre(const Signal& signal) {
-  const std::string& unit = signal.units;
-  constexpr double kArm = 1.0;  // m
-  constexpr double kTime = 10 * ms;
-  constexpr double kStrength = 0.1 / (1 * um);   // A/m and N
-  constexpr double kStiffness = 1.0 / (1 * um);  // N/m
-  if (unit == "mm") return 1.0 / mm;
-  if (unit == "um") return 1.0 / um;
-  if (unit == "deg") return 1.0 / (kArm * deg);
-  if (unit == "mm/s") return 1.0 / (mm * kTime);
-  if (unit == "deg/s") return 1.0 / (kArm * deg * kTime);
-  if (unit == "A" || unit == "N m") return kStrength;
-  if (unit == "N") return kStiffness;
-  return signal.scale == kIjk ? 1.0 / kArm : 0.0;
-}
-
-void apply(const RecordFormat& format, std::vector<Signal>& signals) {
-  for (Signal& signal : signals) {
-    const double most = format.resolution * per_metre(signal);
-    if (most > 0.0) signal.quantum = std::exp2(std::floor(std::log2(most)));
-    if (per_metre(signal) > 0.0 && signal.name != "s") signal.storage = format.storage;
-  }
-}
-
 // Rounds rows to what is kept of them.
 class Rounding {
  public:
-  explicit Rounding(const Series& series) {
+  explicit Rounding(const records::Series& series) {
     for (const Signal& signal : series.signals()) {
       for (std::size_t c = 0; c < signal.columns(); ++c) {
         // in the binade of the shift, the last bit of a double is one quantum
         shift_.push_back(1.5 * 0x1p52 * signal.quantum);
         largest_.push_back(signal.quantum > 0.0 ? 0x1p51 * signal.quantum : -1.0);
-        any_single_ |= signal.storage == Storage::float32;
-        single_.push_back(signal.storage == Storage::float32);
+        any_single_ |= signal.storage == records::Storage::float32;
+        single_.push_back(signal.storage == records::Storage::float32);
       }
     }
   }
@@ -164,11 +67,11 @@ class Rounding {
 
 class Recorder::Rows {
  public:
-  Rows(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
+  Rows(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
        const plant::VolumetricModel* imposed, const ProgramPath& path,
-       const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+       const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
-       RowKeeping keeping)
+       records::RowKeeping keeping)
       : machine_(machine),
         machine_errors_(machine_errors),
         imposed_(imposed),
@@ -183,10 +86,12 @@ class Recorder::Rows {
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
     }
     std::vector<Signal> all =
-        signals(letters(machine, linear_), letters(machine, rotary_), imposed != nullptr,
-                !correcting_.empty(), cuts_, keeping_.thinning.has_value());
-    apply(format, all);
-    const Series columns(std::move(all));
+        recorded_signals(machine, {.imposed = imposed != nullptr,
+                                   .uncorrectable = !correcting_.empty(),
+                                   .cut = cuts_,
+                                   .programmed = keeping_.thinning.has_value()});
+    round_to(format, all);
+    const records::Series columns(std::move(all));
     signals_ = columns.signals();
     width_ = columns.width();
     rounding_ = Rounding(columns);
@@ -194,7 +99,7 @@ class Recorder::Rows {
 
   void expect(std::size_t rows) { keeper_.emplace(signals_, keeping_, rows); }
 
-  Series take() {
+  records::Series take() {
     if (!keeper_) expect(0);
     return keeper_->take();
   }
@@ -224,7 +129,7 @@ class Recorder::Rows {
   void make_row(const Snapshot& now, std::size_t place, double* to);
   void put_residual(std::size_t place, RowWriter& row) const;
 
-  const MachineSettings& machine_;
+  const model::MachineSettings& machine_;
   const plant::VolumetricModel& machine_errors_;
   const plant::VolumetricModel* imposed_;
   const ProgramPath& path_;
@@ -241,12 +146,12 @@ class Recorder::Rows {
   std::vector<Joints> Q_prog_, Q_true_;
   std::vector<ToolPose> nominal_, actual_;
   std::vector<Eigen::Vector3d> displacement_;
-  const RowKeeping keeping_;
+  const records::RowKeeping keeping_;
   std::vector<Signal> signals_;
   std::size_t width_ = 0;
-  Rounding rounding_{Series()};
+  Rounding rounding_{records::Series()};
   std::vector<double> rows_;  // of a block
-  std::optional<RowKeeper> keeper_;
+  std::optional<records::RowKeeper> keeper_;
 };
 
 // Finds the places in the original program, from row `first` to the next change of the tool;
@@ -358,11 +263,12 @@ void Recorder::Rows::put_residual(std::size_t place, RowWriter& row) const {
   row.put(sum.axis / urad);
 }
 
-Recorder::Recorder(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
+Recorder::Recorder(const model::MachineSettings& machine,
+                   const plant::VolumetricModel& machine_errors,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
-                   const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format,
+                   const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
-                   bool cuts, RowKeeping keeping)
+                   bool cuts, records::RowKeeping keeping)
     : rows_(std::make_unique<Rows>(machine, machine_errors, imposed, path, tips, format,
                                    rotary_displaced, std::move(correcting), cuts,
                                    std::move(keeping))) {
@@ -390,11 +296,11 @@ void Recorder::hand_over() {
   background_.post([this] { rows_->add(working_.snapshots, working_.directions); });
 }
 
-Series Recorder::take() {
+records::Series Recorder::take() {
   background_.wait();
   rows_->add(filling_.snapshots, filling_.directions);
   filling_ = {};
   return rows_->take();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

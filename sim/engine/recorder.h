@@ -16,7 +16,7 @@
 #include "sim/system/worker_thread.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Everything that is recorded of one instant, SI.
 struct Snapshot {
@@ -46,11 +46,11 @@ class Recorder {
   /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
   /// @param keeping  where rows are kept
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
-  Recorder(const MachineSettings& machine, const plant::VolumetricModel& machine_errors,
+  Recorder(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
-           const std::map<int, Eigen::Vector3d>& tips, const RecordFormat& format = {},
+           const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
-           bool cuts = false, RowKeeping keeping = {});
+           bool cuts = false, records::RowKeeping keeping = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -60,7 +60,7 @@ class Recorder {
   /// @param directions  in which axes have travelled: of each of machine_errors.plays()
   void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.
-  Series take();
+  records::Series take();
 
  private:
   class Rows;
@@ -72,8 +72,8 @@ class Recorder {
     std::vector<double> directions;  // of each snapshot, one behind the other
   };
   Block filling_;
-  Block working_;            // what the thread turns into rows
-  WorkerThread background_;  // last: its thread uses the others
+  Block working_;                    // what the thread turns into rows
+  system::WorkerThread background_;  // last: its thread uses the others
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

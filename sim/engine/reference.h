@@ -7,7 +7,7 @@
 
 #include "controllers/path/trajectory.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Reference of one trajectory some time ago, evaluated once at each instant however many runs
 /// follow and record it.
@@ -46,4 +46,4 @@ class References {
   std::vector<std::unique_ptr<Reference>> all_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

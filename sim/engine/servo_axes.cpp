@@ -6,14 +6,14 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 namespace {
 
-std::vector<plant::FeedDriveParams> params_of(const std::vector<const MachineSettings*>& machines,
-                                              const std::vector<int>& joints) {
+std::vector<plant::FeedDriveParams> params_of(
+    const std::vector<const model::MachineSettings*>& machines, const std::vector<int>& joints) {
   std::vector<plant::FeedDriveParams> params;
   for (const int j : joints) {
-    for (const MachineSettings* machine : machines) {
+    for (const model::MachineSettings* machine : machines) {
       params.push_back(machine->drives[static_cast<std::size_t>(j)]);
     }
   }
@@ -28,22 +28,22 @@ const ServoKernel& servo_kernel() {
   return kKernel;
 }
 
-ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
-                     const std::vector<Instant>& schedule, plant::PreparedDrives* kept)
+ServoAxes::ServoAxes(std::vector<const model::MachineSettings*> machines, std::vector<int> joints,
+                     const std::vector<model::Instant>& schedule, plant::PreparedDrives* kept)
     : machines_(std::move(machines)),
       joints_(std::move(joints)),
       places_(machines_.size()),
       in_a_row_(machines_.size() == 1 && joints_.size() == kJoints),
       blocks_of_joint_(fills_blocks() && joints_.size() == kJoints ? runs() / kLaneWidth : 0),
       params_(params_of(machines_, joints_)),
-      drive_steps_(machines_[0]->integrator == Integrator::exact ? drive_steps(schedule)
-                                                                 : drive_steps(schedule, 0)),
+      drive_steps_(machines_[0]->integrator == model::Integrator::exact ? drive_steps(schedule)
+                                                                        : drive_steps(schedule, 0)),
       last_leg_(drive_steps_.legs.empty() ? 0 : drive_steps_.legs.size() - 1),
       positions_(drive_steps_.most_stops * blocks_of(params_.size())),
-      drives_(
-          params_, machines_[0]->nc.periods.base,
-          machines_[0]->integrator == Integrator::exact ? drive_steps_.steps : std::vector<Tick>(),
-          kept, simd_level(), drive_steps_.stretches),
+      drives_(params_, machines_[0]->nc.periods.base,
+              machines_[0]->integrator == model::Integrator::exact ? drive_steps_.steps
+                                                                   : std::vector<Tick>(),
+              kept, simd_level(), drive_steps_.stretches),
       blocks_(blocks_of(params_.size())),
       state_(params_.size()),
       input_(params_.size()),
@@ -61,16 +61,16 @@ ServoAxes::ServoAxes(std::vector<const MachineSettings*> machines, std::vector<i
   assert(std::is_sorted(joints_.begin(), joints_.end()));
   linear_joints_ = static_cast<std::size_t>(std::count_if(
       joints_.begin(), joints_.end(), [](int joint) { return joint < kLinearJoints; }));
-  if (machines_[0]->integrator == Integrator::cvode) {
+  if (machines_[0]->integrator == model::Integrator::cvode) {
     cvode_.emplace(params_, machines_[0]->nc.periods.base);
   }
   for (std::size_t l = 0; l < axes_.size(); ++l) describe(l);
 }
 
 void ServoAxes::describe(std::size_t l) {
-  const MachineSettings& machine = machine_of(l);
+  const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);
-  const AxisFunctions& functions = machine.nc.functions[j];
+  const model::AxisFunctions& functions = machine.nc.functions[j];
   const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
   const auto encoder = [](double step) { return step > 0.0 ? 1.0 / step : 0.0; };
   set(&ServoBlock::r, params_[l].r);
@@ -116,10 +116,10 @@ void ServoAxes::settle(const Joints& Q, const Joints& displacement, std::size_t 
 }
 
 void ServoAxes::settle(std::size_t l, double Q, double d) {
-  const MachineSettings& machine = machine_of(l);
+  const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);
   const plant::FeedDriveParams& drive = params_[l];
-  const AxisFunctions& functions = machine.nc.functions[j];
+  const model::AxisFunctions& functions = machine.nc.functions[j];
   const controllers::CascadeParams& cascade = machine.nc.cascade[j];
   plant::LaneState state = plant::at_rest(drive, Q);
   const auto current = drive.has_winding() ? controllers::standing_at(functions.current_loop,
@@ -253,7 +253,7 @@ void ServoAxes::end(std::size_t run) {
 }
 
 double ServoAxes::motor_reading(std::size_t l) const {
-  const MachineSettings& machine = machine_of(l);
+  const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);
   const plant::ScrewError& screw = machine.screw[j];
   const plant::LaneState s = state_.lane(l);
@@ -300,7 +300,7 @@ void ServoAxes::sample_position_feedback() {
 
 void ServoAxes::compensate_backlash() {
   for (const std::size_t l : with_backlash_) {
-    const AxisFunctions& functions =
+    const model::AxisFunctions& functions =
         machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
     const auto ramp = controllers::backlash_compensation(functions.backlash, functions_[l].backlash,
                                                          at(&ServoBlock::Q_cmd, l));
@@ -331,7 +331,7 @@ void ServoAxes::latch_current_commands() {
 
 void ServoAxes::close_velocity_loops() {
   for (const std::size_t l : with_friction_) {
-    const NcSettings& nc = machine_of(l).nc;
+    const model::NcSettings& nc = machine_of(l).nc;
     const auto j = static_cast<std::size_t>(axes_[l].joint);
     // in lag mode the axis reverses with its speed command
     const double v = nc.cascade[j].kvf > 0.0 ? at(&ServoBlock::dQ_ff, l)
@@ -366,4 +366,4 @@ Joints ServoAxes::speed_error(std::size_t run) const {
   return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.e[p.place]; });
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -18,7 +18,7 @@
 #include "sim/model/machine.h"
 #include "sim/model/schedule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Setpoints of the position loops, for all joints.
 struct AxisSetpoint {
@@ -49,10 +49,10 @@ class ServoAxes {
   /// @param joints    those that take part, in rising order; the others stand at zero
   /// @param schedule  its steps are what `advance` will be asked for
   /// @param kept      drives prepared for other axes, and where those of these are kept
-  ServoAxes(std::vector<const MachineSettings*> machines, std::vector<int> joints,
-            const std::vector<Instant>& schedule, plant::PreparedDrives* kept = nullptr);
-  ServoAxes(const MachineSettings& machine, std::vector<int> joints,
-            const std::vector<Instant>& schedule)
+  ServoAxes(std::vector<const model::MachineSettings*> machines, std::vector<int> joints,
+            const std::vector<model::Instant>& schedule, plant::PreparedDrives* kept = nullptr);
+  ServoAxes(const model::MachineSettings& machine, std::vector<int> joints,
+            const std::vector<model::Instant>& schedule)
       : ServoAxes(std::vector{&machine}, std::move(joints), schedule) {}
 
   std::size_t runs() const { return machines_.size(); }
@@ -227,7 +227,9 @@ class ServoAxes {
     return (servos_[block(lane)].*member)[place(lane)];
   }
 
-  const MachineSettings& machine_of(std::size_t lane) const { return *machines_[axes_[lane].run]; }
+  const model::MachineSettings& machine_of(std::size_t lane) const {
+    return *machines_[axes_[lane].run];
+  }
   void move(Tick step) {
     if (cvode_) {
       cvode_->advance(state_, input_, step);
@@ -255,7 +257,7 @@ class ServoAxes {
   double scale_reading(std::size_t lane, double x, Tick now) const;
   std::optional<std::string> fault_of(std::size_t lane);
 
-  std::vector<const MachineSettings*> machines_;
+  std::vector<const model::MachineSettings*> machines_;
   std::vector<int> joints_;        // in rising order
   std::size_t linear_joints_ = 0;  // of them
   std::vector<Axis> axes_;         // by lane: joint by joint
@@ -290,7 +292,7 @@ void ServoAxes::each_state(int joint, Visit visit) {
   const plant::FeedDriveParams& drive = params_[l];
   const auto j = static_cast<std::size_t>(joint);
   const controllers::CascadeParams& cascade = machines_[0]->nc.cascade[j];
-  const AxisFunctions& functions = machines_[0]->nc.functions[j];
+  const model::AxisFunctions& functions = machines_[0]->nc.functions[j];
   plant::DriveBlock& state = state_.blocks[block(l)];
   ServoBlock& servo = servos_[block(l)];
   // the drive
@@ -317,4 +319,4 @@ void ServoAxes::each_state(int joint, Visit visit) {
   visit(servo.Q_fb[k]);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -4,7 +4,7 @@
 #include "plant/sensing/quantise.h"
 #include "plant/vocabulary/pack.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 namespace {
 
@@ -115,4 +115,4 @@ ServoKernel make_servo_kernel<SERVOMILL_LEVEL>() {
           &displace};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

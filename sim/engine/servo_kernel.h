@@ -9,7 +9,7 @@
 #include "plant/vocabulary/lanes.h"
 #include "plant/vocabulary/simd.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Eight axes (m, rad as for their drives). Lanes without an axis hold zeros.
 struct ServoBlock {
@@ -76,4 +76,4 @@ const ServoKernel& servo_kernel();
 template <SimdLevel level>
 ServoKernel make_servo_kernel();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
-Setpoint::Setpoint(const NcSettings& nc, const controllers::Trajectory& reference,
+Setpoint::Setpoint(const model::NcSettings& nc, const controllers::Trajectory& reference,
                    std::vector<std::unique_ptr<strategies::SetpointPart>> parts)
     : reference_(reference), Tp_(nc.periods.seconds(nc.periods.position)) {
   for (auto& part : parts) {
@@ -107,4 +107,4 @@ void Setpoint::feed_forward(const Joints& offset) {
   fed_forward_rate_ = rate;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -14,11 +14,11 @@
 #include "sim/model/machine.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 class Setpoint {
  public:
-  Setpoint(const NcSettings& nc, const controllers::Trajectory& reference,
+  Setpoint(const model::NcSettings& nc, const controllers::Trajectory& reference,
            std::vector<std::unique_ptr<strategies::SetpointPart>> parts);
 
   /// Standing at the start of the trajectory for long; corrections settled.
@@ -60,4 +60,4 @@ class Setpoint {
   Joints fed_forward_rate_ = Joints::Zero();
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

@@ -7,14 +7,14 @@
 #include "sim/engine/ideal_run.h"
 #include "sim/engine/lockstep.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 bool share_lanes(const CaseInputs& a, const CaseInputs& b) {
-  const auto same_rate = [](const Rate& one, const Rate& other) {
+  const auto same_rate = [](const model::Rate& one, const model::Rate& other) {
     return one.due == other.due && one.period == other.period && one.phase == other.phase;
   };
-  const std::vector<Rate> of_a = rates_of(a), of_b = rates_of(b);
-  return a.servo == ServoModel::cascade && b.servo == ServoModel::cascade &&
+  const std::vector<model::Rate> of_a = rates_of(a), of_b = rates_of(b);
+  return a.servo == model::ServoModel::cascade && b.servo == model::ServoModel::cascade &&
          a.machine.integrator == b.machine.integrator &&
          a.machine.nc.periods.base == b.machine.nc.periods.base &&
          a.machine.joints() == b.machine.joints() &&
@@ -25,7 +25,7 @@ std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const St
                                  std::atomic<float>& progress, plant::PreparedDrives* kept) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<CaseResult> results;
-  if (together.front()->servo == ServoModel::ideal) {
+  if (together.front()->servo == model::ServoModel::ideal) {
     results.push_back(IdealRun(*together.front()).run(stop, progress));
   } else {
     results = Lockstep(together, kept).run(stop, progress);
@@ -41,4 +41,4 @@ CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>
   return std::move(simulate(alone, stop, progress).front());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

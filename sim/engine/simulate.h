@@ -20,7 +20,7 @@
 #include "sim/records/series.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::engine {
 
 /// Part of a strategy in the position loops of one run.
 struct PositionLoopTerm {
@@ -30,27 +30,27 @@ struct PositionLoopTerm {
 
 /// Inputs of one case. References are shared with other cases; parts belong to this run.
 struct CaseInputs {
-  const MachineSettings& machine;
+  const model::MachineSettings& machine;
   const plant::VolumetricModel& machine_errors;  // the machine as it is
   const plant::VolumetricModel* imposed;         // displacement to be recorded, or nullptr
   const controllers::Trajectory& reference;      // of the program that the NC runs
   const ProgramPath& path;                       // of the original program
   const std::map<int, Eigen::Vector3d>& tips;    // p_ST (m) by tool offset number
-  ServoModel servo = ServoModel::cascade;
-  FeedbackHardware hardware;
+  model::ServoModel servo = model::ServoModel::cascade;
+  model::FeedbackHardware hardware;
   std::vector<std::unique_ptr<strategies::SetpointPart>> setpoints;
   const strategies::Strategy* feedback = nullptr;  // the one that displaces it, if any
   std::vector<PositionLoopTerm> position_loop_terms = {};
   Tick record_period = 100;
   double settle_time = 0.1;  // s, recorded after the program's end
-  RecordFormat format = {};
-  RowKeeping keeping = {};
+  model::RecordFormat format = {};
+  records::RowKeeping keeping = {};
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
   // of which is recorded what they cannot correct
   std::vector<const strategies::Strategy*> recorded_corrections = {};
   std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
-  CuttingWear wear = {};
+  model::CuttingWear wear = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not
 };
 
@@ -68,8 +68,8 @@ using StopFlag = std::atomic<bool>;
 
 struct CaseResult {
   Outcome outcome;
-  Series servo;       // one row a record period
-  Series last_ticks;  // when stopped: what happened in the last position periods
+  records::Series servo;       // one row a record period
+  records::Series last_ticks;  // when stopped: what happened in the last position periods
   std::vector<strategies::Saturation> saturations;  // of the feedback
   double simulated_time = 0.0;                      // s
   double wall_time = 0.0;                           // s, of all that ran in lockstep
@@ -91,4 +91,4 @@ std::vector<CaseResult> simulate(std::span<CaseInputs* const> together, const St
                                  plant::PreparedDrives* kept = nullptr);
 CaseResult simulate(CaseInputs& inputs, const StopFlag& stop, std::atomic<float>& progress);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::engine

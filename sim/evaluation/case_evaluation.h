@@ -5,7 +5,7 @@
 #include "sim/evaluation/circular_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 struct CaseEvaluation {
   /// @param of  must outlive this
@@ -20,4 +20,4 @@ struct CaseEvaluation {
   BallQuantities ball;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

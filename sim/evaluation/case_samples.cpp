@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 const RowRanges& CaseSamples::rows(const std::vector<std::string>& sections) {
   const auto known = rows_.find(sections);
@@ -15,7 +15,7 @@ const RowRanges& CaseSamples::rows(const std::vector<std::string>& sections) {
 }
 
 RowRanges CaseSamples::find_rows(const std::vector<std::string>& sections) const {
-  const Series& series = *data_.servo;
+  const records::Series& series = *data_.servo;
   const std::size_t rapid = *series.column("rapid"), section = *series.column("section");
   std::vector<bool> wanted(data_.sections.size(), sections.empty());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -51,4 +51,4 @@ AtRow column_of(const CaseData& one, std::string_view name, char label) {
   return [&servo = *one.servo, c = *column](std::size_t row) { return servo.at(row, c); };
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

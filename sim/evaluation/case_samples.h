@@ -12,7 +12,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/evaluation/row_ranges.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Finds the rows of sections, once for all quantities.
 class CaseSamples {
@@ -40,4 +40,4 @@ class CaseSamples {
 /// @param label  axis; '\0' for a signal of one column
 AtRow column_of(const CaseData& one, std::string_view name, char label);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

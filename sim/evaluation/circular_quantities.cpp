@@ -7,30 +7,31 @@
 #include "sim/evaluation/case_evaluation.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
-template <double CircularTurn::*kValue>
-QuantityValue of_turn(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+template <double metrology::CircularTurn::*kValue>
+QuantityValue of_turn(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
   const auto* turn = one.circles.evaluated(spec.sections[0]);
   if (turn == nullptr) return {};
   return {*turn->evaluated.*kValue / um};
 }
 
-template <double BidirectionalCircle::*kValue>
-QuantityValue of_both(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
-  const BidirectionalCircle* pair = one.circles.both(spec.sections);
+template <double metrology::BidirectionalCircle::*kValue>
+QuantityValue of_both(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  const metrology::BidirectionalCircle* pair = one.circles.both(spec.sections);
   if (pair == nullptr) return {};
   return {pair->*kValue / um};  // and urad
 }
 
 // The value that is larger by magnitude at the two reversals of an axis.
-template <double Reversal::*kValue>
-QuantityValue larger_at_reversal(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+template <double metrology::Reversal::*kValue>
+QuantityValue larger_at_reversal(const model::QuantitySpec& spec, CaseEvaluation& one,
+                                 const CaseData*) {
   const auto* turn = one.circles.evaluated(spec.sections[0]);
   if (turn == nullptr) return {};
   double larger = std::numeric_limits<double>::quiet_NaN();
-  for (const Reversal& reversal : turn->evaluated->reversals) {
+  for (const metrology::Reversal& reversal : turn->evaluated->reversals) {
     const int letter = reversal.axis == 0 ? turn->circle.first : turn->circle.second;
     if ("XYZ"[letter] != spec.axis) continue;
     if (!(std::abs(reversal.*kValue) <= std::abs(larger))) larger = reversal.*kValue;
@@ -44,65 +45,66 @@ constexpr QuantityEntry kQuantities[] = {
      .help = "ISO 230-4 G: smallest radial separation of two concentric circles around the true "
              "path",
      .circles = 1,
-     .evaluate = of_turn<&CircularTurn::G>},
+     .evaluate = of_turn<&metrology::CircularTurn::G>},
     {.name = "circular_error_least_squares",
      .unit = "um",
      .help = "G about the least-squares centre: range of the radial deviation",
      .circles = 1,
-     .evaluate = of_turn<&CircularTurn::G_least_squares>},
+     .evaluate = of_turn<&metrology::CircularTurn::G_least_squares>},
     {.name = "bidirectional_circular_error",
      .unit = "um",
      .help = "ISO 230-4 G(b): the same as G around the paths of both directions",
      .circles = 2,
-     .evaluate = of_both<&BidirectionalCircle::G_b>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::G_b>},
     {.name = "radial_error_max",
      .unit = "um",
      .help = "ISO 230-4 F max: largest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_turn<&CircularTurn::F_max>},
+     .evaluate = of_turn<&metrology::CircularTurn::F_max>},
     {.name = "radial_error_min",
      .unit = "um",
      .help = "ISO 230-4 F min: smallest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_turn<&CircularTurn::F_min>},
+     .evaluate = of_turn<&metrology::CircularTurn::F_min>},
     {.name = "mean_bidirectional_radial_error",
      .unit = "um",
      .help = "ISO 230-4 D: nominal radius minus that of the least-squares circle of both "
              "directions",
      .circles = 2,
-     .evaluate = of_both<&BidirectionalCircle::D>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::D>},
     {.name = "reversal_spike",
      .unit = "um",
      .help = "larger one of the two excursions where the axis reverses on a circle; outward "
              "positive",
      .axes = "XYZ",
      .circles = 1,
-     .evaluate = larger_at_reversal<&Reversal::spike>},
+     .evaluate = larger_at_reversal<&metrology::Reversal::spike>},
     {.name = "reversal_step",
      .unit = "um",
      .help = "larger one of the two steps of the radius where the axis reverses on a circle",
      .axes = "XYZ",
      .circles = 1,
-     .evaluate = larger_at_reversal<&Reversal::step>},
+     .evaluate = larger_at_reversal<&metrology::Reversal::step>},
     {.name = "circle_squareness",
      .unit = "urad",
      .help = "(D45 - D135) / (2 R) of a circle, mean of both directions; positive: less than 90 "
              "deg",
      .circles = 2,
-     .evaluate = of_both<&BidirectionalCircle::squareness>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::squareness>},
 };
 
 }  // namespace
 
 std::optional<CircularQuantities::Turn> CircularQuantities::find_turn(const std::string& section) {
   const RowRanges& rows = samples_.rows({section});
-  const auto nominal = circle_of_section(samples_.positions("tool_position_nominal", rows));
-  const auto* circle = std::get_if<SectionCircle>(&nominal);
+  const auto nominal =
+      metrology::circle_of_section(samples_.positions("tool_position_nominal", rows));
+  const auto* circle = std::get_if<metrology::SectionCircle>(&nominal);
   if (circle == nullptr) return std::nullopt;
   Turn turn{*circle, circle->in_plane(samples_.positions("tool_position_true", rows))};
-  if (why_no_turn(turn.path, circle->nominal)) return std::nullopt;
+  if (metrology::why_no_turn(turn.path, circle->nominal)) return std::nullopt;
   return turn;
 }
 
@@ -115,19 +117,22 @@ std::optional<CircularQuantities::Turn>& CircularQuantities::turn(const std::str
 const CircularQuantities::Turn* CircularQuantities::evaluated(const std::string& section) {
   std::optional<Turn>& one = turn(section);
   if (!one) return nullptr;
-  if (!one->evaluated) one->evaluated = evaluate_turn(one->path, one->circle.nominal);
+  if (!one->evaluated) one->evaluated = metrology::evaluate_turn(one->path, one->circle.nominal);
   return &*one;
 }
 
-const BidirectionalCircle* CircularQuantities::both(const std::vector<std::string>& sections) {
+const metrology::BidirectionalCircle* CircularQuantities::both(
+    const std::vector<std::string>& sections) {
   const auto known = pairs_.find(sections);
   if (known != pairs_.end()) return &known->second;
   const auto &one = turn(sections[0]), &other = turn(sections[1]);
   if (!one || !other) return nullptr;
-  return &pairs_.emplace(sections, evaluate_both(one->path, other->path, one->circle.nominal))
+  return &pairs_
+              .emplace(sections,
+                       metrology::evaluate_both(one->path, other->path, one->circle.nominal))
               .first->second;
 }
 
 std::span<const QuantityEntry> circular_quantities() { return kQuantities; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

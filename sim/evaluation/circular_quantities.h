@@ -14,7 +14,7 @@
 #include "sim/metrology/circular_test.h"
 #include "sim/metrology/section_circle.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Entries of this family, in QuantityEntry::circles 1 or 2.
 std::span<const QuantityEntry> circular_quantities();
@@ -27,9 +27,9 @@ class CircularQuantities {
 
   /// A section as a circle and the true path there.
   struct Turn {
-    SectionCircle circle;
+    metrology::SectionCircle circle;
     std::vector<Eigen::Vector2d> path;  // m
-    std::optional<CircularTurn> evaluated = {};
+    std::optional<metrology::CircularTurn> evaluated = {};
   };
 
   /// One turn, evaluated; nullptr where the section is no turn of a circle.
@@ -37,7 +37,7 @@ class CircularQuantities {
   const Turn* evaluated(const std::string& section);
   /// Two turns together; nullptr where one of the two sections is no turn of a circle.
   /// @pre the case has a recording
-  const BidirectionalCircle* both(const std::vector<std::string>& sections);
+  const metrology::BidirectionalCircle* both(const std::vector<std::string>& sections);
 
  private:
   std::optional<Turn> find_turn(const std::string& section);
@@ -45,7 +45,7 @@ class CircularQuantities {
 
   CaseSamples& samples_;
   std::map<std::string, std::optional<Turn>> turns_;
-  std::map<std::vector<std::string>, BidirectionalCircle> pairs_;
+  std::map<std::vector<std::string>, metrology::BidirectionalCircle> pairs_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

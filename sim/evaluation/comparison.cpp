@@ -16,7 +16,7 @@
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 // Difference of a case and its base that is not what they are compared for: readings that are late
@@ -29,7 +29,7 @@ std::string unlike(const CaseData& one, const CaseData& base) {
 }
 
 // Value of a quantity of one case, with a note on it.
-QuantityValue answer(const QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
+QuantityValue answer(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const QuantityEntry& entry = quantity_entry(spec.name);
   if (entry.needs_baseline && one.data.name == spec.baseline)
     return {.note = "is compared with itself"};
@@ -56,12 +56,12 @@ std::string number(double value) {
 
 }  // namespace
 
-std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
+std::vector<ComparisonRow> compare(std::span<const model::QuantitySpec> specs,
                                    std::span<const CaseData> cases) {
   std::deque<CaseEvaluation> compared;
   for (const CaseData& one : cases) compared.emplace_back(one);
   std::vector<ComparisonRow> rows;
-  for (const QuantitySpec& spec : specs) {
+  for (const model::QuantitySpec& spec : specs) {
     throw_if_interrupted();
     const CaseEvaluation* base = spec.baseline.empty() ? nullptr : find(compared, spec.baseline);
     for (const std::string& name : spec.cases) {
@@ -102,11 +102,11 @@ std::string format_table(std::span<const ComparisonRow> rows) {
                      number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
                      row.basis, row.note});
   }
-  return text_table(std::move(lines), 4, {5});
+  return system::text_table(std::move(lines), 4, {5});
 }
 
 std::string to_json(const ComparisonRow& row) {
-  JsonObject out;
+  system::JsonObject out;
   out.text_or_null("case", row.case_name)
       .text_or_null("quantity", row.quantity)
       .text_or_null("axis", row.axis)
@@ -120,4 +120,4 @@ std::string to_json(const ComparisonRow& row) {
   return out.line();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

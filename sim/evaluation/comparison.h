@@ -10,15 +10,18 @@
 #include "plant/kinematics/chain.h"
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
+struct QuantitySpec;
+}  // namespace servomill::sim::model
+
+namespace servomill::sim::evaluation {
 
 struct ProbedFeature;
-struct QuantitySpec;
 
 /// Data of one case that ran.
 struct CaseData {
   std::string name;
-  const Series* servo = nullptr;
+  const records::Series* servo = nullptr;
   std::vector<std::string> sections;  // of the original program
   double duration = 0.0;              // s, of the program that the NC ran
   double blocks = 0.0;                // motion blocks of that program
@@ -39,7 +42,7 @@ struct ComparisonRow {
 
 /// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length
 /// on the original path, samples of rapid moves left out.
-std::vector<ComparisonRow> compare(std::span<const QuantitySpec> specs,
+std::vector<ComparisonRow> compare(std::span<const model::QuantitySpec> specs,
                                    std::span<const CaseData> cases);
 
 /// The table as text, aligned.
@@ -52,4 +55,4 @@ std::string json_escaped(std::string_view text);
 /// basis, null where there is none; and note where there is one.
 std::string to_json(const ComparisonRow& row);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/vector_at.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -19,10 +19,10 @@ constexpr double kBoxMargin = 1.0 * um;  // more than the rounding of boxes
 // The piece of the program that a recorded row belongs to; rows are asked for in order.
 class PieceOfRow {
  public:
-  PieceOfRow(const Series& series, const ProgramPath& path)
+  PieceOfRow(const records::Series& series, const engine::ProgramPath& path)
       : series_(series), path_(path), s_(*series.column("s")), line_(*series.column("line")) {}
 
-  ProgramPath::Piece at(std::size_t row) {
+  engine::ProgramPath::Piece at(std::size_t row) {
     const double s = series_.at(row, s_) * mm;
     const int line = static_cast<int>(series_.at(row, line_));
     while (piece_ + 1 < path_.size() && is_behind(s, line)) ++piece_;
@@ -35,20 +35,20 @@ class PieceOfRow {
     return s > s_end + kSameS || (line != path_.line(piece_) && s >= s_end - kSameS);
   }
 
-  const Series& series_;
-  const ProgramPath& path_;
+  const records::Series& series_;
+  const engine::ProgramPath& path_;
   std::size_t s_, line_;
   std::size_t piece_ = 0;
 };
 
 }  // namespace
 
-const plant::Cutter* cutter_of(const PartSource& source, const ProgramPath::Piece& piece) {
+const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPath::Piece& piece) {
   const auto found = source.cutters.find(piece.tool);
   return found == source.cutters.end() ? nullptr : &found->second;
 }
 
-const ProgramPath::Piece* CutterPasses::feed_at(std::size_t position) const {
+const engine::ProgramPath::Piece* CutterPasses::feed_at(std::size_t position) const {
   for (std::size_t i = 0; i < passes.size(); ++i) {
     if (position < passes[i].positions.size()) return feeds[i];
     position -= passes[i].positions.size();
@@ -58,13 +58,13 @@ const ProgramPath::Piece* CutterPasses::feed_at(std::size_t position) const {
 
 CutterPath::CutterPath(const PartSource& source)
     : servo_(source.servo),
-      frame_(work_frame(source.chain, source.work_offset)),
+      frame_(model::work_frame(source.chain, source.work_offset)),
       position_column_(*source.servo.column("tool_position_true", 'X')),
       axis_column_(*source.servo.column("tool_axis_true", 'I')) {
   PieceOfRow pieces(servo_, source.path);
   const plant::Cutter* cutting = nullptr;
   for (std::size_t row = 0; row < servo_.rows(); ++row) {
-    const ProgramPath::Piece piece = pieces.at(row);
+    const engine::ProgramPath::Piece piece = pieces.at(row);
     const plant::Cutter* cutter = cutter_of(source, piece);
     if (cutter != nullptr && cutter != cutting) passes_.push_back({cutter, {}, row, row});
     cutting = cutter;
@@ -151,4 +151,4 @@ std::size_t CutterPath::positions_near(const Box& box) const {
   return count;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -18,13 +18,13 @@
 #include "sim/model/work_frame.h"
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Inputs from a case: moves and cutters of its part.
 struct PartSource {
   const std::string& case_name;
-  const Series& servo;
-  const ProgramPath& path;
+  const records::Series& servo;
+  const engine::ProgramPath& path;
   const std::map<int, plant::Cutter>& cutters;      // by number of the tool
   const std::map<int, Eigen::Vector3d>& tips;       // p_ST (m), by number of the tool offset
   const plant::MachineChain& chain;                 // the ideal machine
@@ -33,16 +33,16 @@ struct PartSource {
   const plant::Stock* stock = nullptr;              // the raw part; none: it is everywhere
 };
 
-const plant::Cutter* cutter_of(const PartSource& source, const ProgramPath::Piece& piece);
+const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPath::Piece& piece);
 
 /// Passes of cutters in the work frame, and the first feed of each, which says what turned in the
 /// spindle.
 struct CutterPasses {
   std::vector<plant::CutterPass> passes;
-  std::vector<const ProgramPath::Piece*> feeds;  // of each pass; nullptr: only rapid
+  std::vector<const engine::ProgramPath::Piece*> feeds;  // of each pass; nullptr: only rapid
 
   /// That of the pass which a position (counted through all of them) belongs to.
-  const ProgramPath::Piece* feed_at(std::size_t position) const;
+  const engine::ProgramPath::Piece* feed_at(std::size_t position) const;
 };
 
 /// One pass from each change of the tool to the next: every recorded row, rapid moves included.
@@ -70,7 +70,7 @@ class CutterPath {
 
   struct Pass {
     const plant::Cutter* cutter = nullptr;
-    std::optional<ProgramPath::Piece> feed;
+    std::optional<engine::ProgramPath::Piece> feed;
     std::size_t first = 0, end = 0;  // rows
   };
   // Consecutive rows of a pass, and what the cutter sweeps from the row before them to the last.
@@ -85,12 +85,12 @@ class CutterPath {
   Eigen::AlignedBox3f swept_box(const Pass& pass, std::size_t first, std::size_t end) const;
   void add(std::size_t pass, std::size_t first, std::size_t end, CutterPasses& out) const;
 
-  const Series& servo_;
-  PartFrame frame_;
+  const records::Series& servo_;
+  model::PartFrame frame_;
   std::size_t position_column_, axis_column_;
   std::size_t positions_ = 0;
   std::vector<Pass> passes_;
   std::vector<Block> blocks_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/model/work_frame.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 constexpr double kStep = 10e-6;  // m, along a normal
@@ -16,7 +16,8 @@ constexpr double kShare = 0.9;  // of it, by which the distance grows: facets ma
 
 // True if the distance from the part grows along the normal: outside of it, or, as at the foot of a
 // wall, inside.
-bool faces_out(const TriangleMesh& mesh, const plant::ProbeTarget& target, double distance) {
+bool faces_out(const metrology::TriangleMesh& mesh, const plant::ProbeTarget& target,
+               double distance) {
   const auto at = [&](double s) { return mesh.closest(target.point + s * target.normal).distance; };
   return at(kStep) - distance >= kShare * kStep || distance - at(-kStep) >= kShare * kStep;
 }
@@ -25,9 +26,9 @@ bool faces_out(const TriangleMesh& mesh, const plant::ProbeTarget& target, doubl
 struct Wrong {
   std::size_t count = 0;
   const plant::ProbeTarget* first = nullptr;
-  SurfacePoint nearest = {};
+  metrology::SurfacePoint nearest = {};
 
-  void add(const plant::ProbeTarget& target, const SurfacePoint& surface) {
+  void add(const plant::ProbeTarget& target, const metrology::SurfacePoint& surface) {
     if (count++ > 0) return;
     first = &target;
     nearest = surface;
@@ -36,12 +37,13 @@ struct Wrong {
 
 }  // namespace
 
-std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const NominalPart& part) {
+std::vector<Fault> faults_of_plan(std::span<const metrology::ProbeSpec> plan,
+                                  const NominalPart& part) {
   std::vector<Fault> faults;
-  for (const ProbeSpec& probe : plan) {
+  for (const metrology::ProbeSpec& probe : plan) {
     Wrong off, astray;
     for (const plant::ProbeTarget& target : probe.feature.targets) {
-      const SurfacePoint surface = part.mesh->closest(target.point);
+      const metrology::SurfacePoint surface = part.mesh->closest(target.point);
       if (std::abs(surface.distance) > kOffThePart) {
         off.add(target, surface);
       } else if (!faces_out(*part.mesh, target, surface.distance)) {
@@ -56,7 +58,7 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
       faults.push_back(
           {probe.place, fmt::format("{} are not on the part '{}', the first, {}, is "
                                     "{:.3g} mm off; must be <= {:g} mm",
-                                    begin(off), part.file, program_words(off.first->point),
+                                    begin(off), part.file, model::program_words(off.first->point),
                                     std::abs(off.nearest.distance) / mm, kOffThePart / mm)});
     }
     if (astray.count > 0) {
@@ -65,16 +67,17 @@ std::vector<Fault> faults_of_plan(std::span<const ProbeSpec> plan, const Nominal
           {probe.place,
            fmt::format("{} do not face as the part '{}' does, the first at {}, where it faces "
                        "({:.3g}, {:.3g}, {:.3g}); normals must point out of it",
-                       begin(astray), part.file, program_words(astray.first->point), n.x() + 0.0,
-                       n.y() + 0.0, n.z() + 0.0)});
+                       begin(astray), part.file, model::program_words(astray.first->point),
+                       n.x() + 0.0, n.y() + 0.0, n.z() + 0.0)});
     }
   }
   return faults;
 }
 
-double largest_distance(std::span<const ProbeSpec> plan, const TriangleMesh& mesh) {
+double largest_distance(std::span<const metrology::ProbeSpec> plan,
+                        const metrology::TriangleMesh& mesh) {
   double largest = 0.0;
-  for (const ProbeSpec& probe : plan) {
+  for (const metrology::ProbeSpec& probe : plan) {
     for (const plant::ProbeTarget& target : probe.feature.targets) {
       largest = std::max(largest, std::abs(mesh.closest(target.point).distance));
     }
@@ -82,4 +85,4 @@ double largest_distance(std::span<const ProbeSpec> plan, const TriangleMesh& mes
   return largest;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -5,7 +5,7 @@
 
 #include "sim/evaluation/probed_part.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -22,8 +22,8 @@ std::vector<Vector3d> measured_points(const ProbedFeature& feature) {
 
 }  // namespace
 
-std::variant<PartFit, NoFit> fit_part(std::span<const ProbedFeature> features,
-                                      const TriangleMesh& nominal) {
+std::variant<PartFit, metrology::NoFit> fit_part(std::span<const ProbedFeature> features,
+                                                 const metrology::TriangleMesh& nominal) {
   PartFit out;
   std::vector<std::vector<Vector3d>> measured;
   std::vector<Vector3d> met;
@@ -32,18 +32,18 @@ std::variant<PartFit, NoFit> fit_part(std::span<const ProbedFeature> features,
     std::copy_if(measured.back().begin(), measured.back().end(), std::back_inserter(met),
                  [](const Vector3d& p) { return p.allFinite(); });
   }
-  auto fit = best_fit(met, nominal);
-  if (NoFit* none = std::get_if<NoFit>(&fit)) return std::move(*none);
-  out.fit = std::get<BestFit>(std::move(fit));
+  auto fit = metrology::best_fit(met, nominal);
+  if (metrology::NoFit* none = std::get_if<metrology::NoFit>(&fit)) return std::move(*none);
+  out.fit = std::get<metrology::BestFit>(std::move(fit));
   const Vector3d nothing = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   for (const std::vector<Vector3d>& points : measured) {
-    std::vector<Arrow>& arrows = out.arrows.emplace_back();
+    std::vector<metrology::Arrow>& arrows = out.arrows.emplace_back();
     for (const Vector3d& p : points) {
-      arrows.push_back(p.allFinite() ? quiver({&p, 1}, out.fit.motion, nominal).front()
-                                     : Arrow{nothing, nothing});
+      arrows.push_back(p.allFinite() ? metrology::quiver({&p, 1}, out.fit.motion, nominal).front()
+                                     : metrology::Arrow{nothing, nothing});
     }
   }
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -9,18 +9,18 @@
 #include "sim/metrology/best_fit.h"
 #include "sim/metrology/triangle_mesh.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 struct ProbedFeature;
 
 /// Best fit of all probed points of a case.
 struct PartFit {
-  BestFit fit;                             // of all points that were met, feature by feature
-  std::vector<std::vector<Arrow>> arrows;  // feature, point; NaN: nothing was met
+  metrology::BestFit fit;  // of all points that were met, feature by feature
+  std::vector<std::vector<metrology::Arrow>> arrows;  // feature, point; NaN: nothing was met
 };
 
 /// Lays the means of the repetitions on a mesh in the frame of the nominal points.
-std::variant<PartFit, NoFit> fit_part(std::span<const ProbedFeature> features,
-                                      const TriangleMesh& nominal);
+std::variant<PartFit, metrology::NoFit> fit_part(std::span<const ProbedFeature> features,
+                                                 const metrology::TriangleMesh& nominal);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -17,7 +17,7 @@
 #include "sim/model/scenario.h"
 #include "sim/records/row_thinning.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -25,12 +25,12 @@ constexpr double kUmPerMm = 1000.0;
 constexpr double kMsPerS = 1000.0;
 constexpr double kSamePlace = 1e-6;  // mm; recorded places are rounded
 
-bool is_thinned(const CaseData& one) { return one.servo->column(kSamples).has_value(); }
+bool is_thinned(const CaseData& one) { return one.servo->column(records::kSamples).has_value(); }
 
 // Reads values of another case at a given arc length, which is asked for in rising order.
 class AlongPath {
  public:
-  AlongPath(const Series& series, AtRow value)
+  AlongPath(const records::Series& series, AtRow value)
       : series_(series), value_(std::move(value)), s_(*series.column("s")) {}
 
   double at(double s) {
@@ -43,7 +43,7 @@ class AlongPath {
   }
 
  private:
-  const Series& series_;
+  const records::Series& series_;
   AtRow value_;
   std::size_t s_;
   std::size_t row_ = 0;
@@ -102,30 +102,32 @@ AtRow length_difference(const CaseData& one, const CaseData& base, std::string_v
   };
 }
 
-AtRow following_error(const QuantitySpec& spec, const CaseData& one, const CaseData*) {
+AtRow following_error(const model::QuantitySpec& spec, const CaseData& one, const CaseData*) {
   return column_of(one, "following_error_linear", spec.axis);
 }
 
-AtRow tool_deviation(const QuantitySpec& spec, const CaseData& one, const CaseData*) {
+AtRow tool_deviation(const model::QuantitySpec& spec, const CaseData& one, const CaseData*) {
   return column_of(one, "tool_deviation", spec.axis);
 }
 
-AtRow contour_error(const QuantitySpec&, const CaseData& one, const CaseData*) {
+AtRow contour_error(const model::QuantitySpec&, const CaseData& one, const CaseData*) {
   return column_of(one, "contour_error", '\0');
 }
 
 // meas(case) - meas(base) at equal s, um
-AtRow trajectory_difference(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+AtRow trajectory_difference(const model::QuantitySpec& spec, const CaseData& one,
+                            const CaseData* base) {
   assert(base != nullptr);
   return length_difference(one, *base, "meas_linear", "programmed_linear", spec.axis);
 }
 
-AtRow imposed_error_residual(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+AtRow imposed_error_residual(const model::QuantitySpec& spec, const CaseData& one,
+                             const CaseData* base) {
   return minus(trajectory_difference(spec, one, base), column_of(one, "imposed_linear", spec.axis));
 }
 
 // |p_WT(case) - p_WT(base)| at equal s, um
-AtRow tool_difference(const QuantitySpec&, const CaseData& one, const CaseData* base) {
+AtRow tool_difference(const model::QuantitySpec&, const CaseData& one, const CaseData* base) {
   assert(base != nullptr);
   std::array<AtRow, 3> axes;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -140,14 +142,14 @@ AtRow tool_difference(const QuantitySpec&, const CaseData& one, const CaseData* 
   };
 }
 
-AtRow tcp_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
+AtRow tcp_deviation(const model::QuantitySpec&, const CaseData& one, const CaseData*) {
   return [&servo = *one.servo, first = *one.servo->column("tool_deviation", 'X')](std::size_t row) {
     return vector_at(servo, row, first).norm();
   };
 }
 
 // urad
-AtRow tool_axis_deviation(const QuantitySpec&, const CaseData& one, const CaseData*) {
+AtRow tool_axis_deviation(const model::QuantitySpec&, const CaseData& one, const CaseData*) {
   return [&servo = *one.servo, nominal = *one.servo->column("tool_axis_nominal", 'I'),
           actual = *one.servo->column("tool_axis_true", 'I')](std::size_t row) {
     return angle_between(vector_at(servo, row, nominal), vector_at(servo, row, actual)) / urad;
@@ -162,14 +164,14 @@ double statistic_of(std::string_view name, const AtRow& value, const RowRanges& 
 }
 
 // A statistic of all samples of a thinned recording; none if its rows do not tell of the signal.
-std::optional<double> statistic_of_samples(const QuantitySpec& spec, std::string_view signal,
+std::optional<double> statistic_of_samples(const model::QuantitySpec& spec, std::string_view signal,
                                            const CaseData& one, const RowRanges& rows) {
   const auto between_rows = [&](const char* what) {
     return column_of(one, std::string(signal) + what, spec.axis);
   };
   const AtRow least = between_rows("_least"), greatest = between_rows("_greatest");
   const AtRow mean = between_rows("_mean"), rms = between_rows("_rms");
-  const AtRow samples = column_of(one, kSamples, '\0');
+  const AtRow samples = column_of(one, records::kSamples, '\0');
   if (!least || !greatest || !mean || !rms || !samples) return std::nullopt;
   Statistic statistic(spec.statistic);
   rows.for_each([&](std::size_t row) {
@@ -197,12 +199,13 @@ std::string note_on_rows(const CaseData& one) {
   return is_thinned(one) ? "at the rows that are recorded (record.period_ms)" : "";
 }
 
-using Signal = AtRow (*)(const QuantitySpec&, const CaseData&, const CaseData*);
+using Signal = AtRow (*)(const model::QuantitySpec&, const CaseData&, const CaseData*);
 
 // Statistic of a value along the path.
 // @tparam kRecorded  name of the recorded signal; nullptr: that of the quantity
 template <Signal kValue, const char* kRecorded = nullptr>
-QuantityValue along_path(const QuantitySpec& spec, CaseEvaluation& compared, const CaseData* base) {
+QuantityValue along_path(const model::QuantitySpec& spec, CaseEvaluation& compared,
+                         const CaseData* base) {
   const CaseData& one = compared.data;
   const RowRanges& rows = compared.samples.rows(spec.sections);
   if (base == nullptr) {
@@ -220,7 +223,7 @@ double realised_share(const CaseData&, const AtRow& residual, const AtRow& impos
 
 // Looks at the imposed curve beside its residual.
 template <double (*kValue)(const CaseData&, const AtRow&, const AtRow&, const RowRanges&)>
-QuantityValue of_imposed_curve(const QuantitySpec& spec, CaseEvaluation& compared,
+QuantityValue of_imposed_curve(const model::QuantitySpec& spec, CaseEvaluation& compared,
                                const CaseData* base) {
   const CaseData& one = compared.data;
   const AtRow residual = imposed_error_residual(spec, one, base);
@@ -232,11 +235,11 @@ QuantityValue of_imposed_curve(const QuantitySpec& spec, CaseEvaluation& compare
   return out;
 }
 
-QuantityValue cycle_time(const QuantitySpec&, CaseEvaluation& one, const CaseData*) {
+QuantityValue cycle_time(const model::QuantitySpec&, CaseEvaluation& one, const CaseData*) {
   return {one.data.duration};
 }
 
-QuantityValue blocks(const QuantitySpec&, CaseEvaluation& one, const CaseData*) {
+QuantityValue blocks(const model::QuantitySpec&, CaseEvaluation& one, const CaseData*) {
   return {one.data.blocks};
 }
 
@@ -331,4 +334,4 @@ constexpr QuantityEntry kQuantities[] = {
 
 std::span<const QuantityEntry> path_quantities() { return kQuantities; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -11,9 +11,9 @@
 
 #include "sim/evaluation/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Entries of this family, and of the program that the NC runs.
 std::span<const QuantityEntry> path_quantities();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

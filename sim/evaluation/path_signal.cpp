@@ -8,7 +8,7 @@
 
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 // The tool stands from one place to another (mm) if both are the same but for rounding.
@@ -22,7 +22,7 @@ bool has_path_signal(std::string_view quantity) {
 }
 
 struct PathSignal::Parts {
-  Parts(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
+  Parts(const model::QuantitySpec& spec, const CaseData& one, const CaseData* base)
       : rows(CaseSamples(one).rows(spec.sections)),
         at(rows),
         s(column_of(one, "s", '\0')),
@@ -59,7 +59,7 @@ struct PathSignal::Parts {
   double turned = 0.0, to_turn = 0.0;  // since the tool stands; in all until it moves on
 };
 
-PathSignal::PathSignal(const QuantitySpec& spec, const CaseData& one, const CaseData* base)
+PathSignal::PathSignal(const model::QuantitySpec& spec, const CaseData& one, const CaseData* base)
     : parts_(std::make_unique<Parts>(spec, one, base)) {
   assert(has_path_signal(spec.name));
 }
@@ -86,4 +86,4 @@ bool PathSignal::next(PathSample& sample) {
   return true;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -8,7 +8,7 @@
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// A signed quantity at a sample of feed motion.
 struct PathSample {
@@ -26,7 +26,7 @@ class PathSignal {
   /// @param one, base  the recordings must outlive it; base: the case it is compared with, nullptr
   ///                   if it needs none
   /// @pre has_path_signal(spec.name), and both cases have finished
-  PathSignal(const QuantitySpec& spec, const CaseData& one, const CaseData* base);
+  PathSignal(const model::QuantitySpec& spec, const CaseData& one, const CaseData* base);
   PathSignal(PathSignal&&) noexcept;
   ~PathSignal();
 
@@ -40,4 +40,4 @@ class PathSignal {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -18,7 +18,7 @@
 #include "sim/metrology/plane_fit.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 using Eigen::Vector2d;
@@ -51,7 +51,7 @@ std::vector<Vector2d> seen_from_above(const Points& points) {
 
 // A line in its own plane: along it and along its normal.
 std::vector<Vector2d> along_line(const Points& points) {
-  const Feature& line = points.feature->feature;
+  const metrology::Feature& line = points.feature->feature;
   std::vector<Vector2d> out;
   for (const Vector3d& p : points.p) {
     out.emplace_back((p - line.origin).dot(line.direction), (p - line.origin).dot(line.normal));
@@ -61,7 +61,7 @@ std::vector<Vector2d> along_line(const Points& points) {
 
 // True if points around a circle leave no gap of half a turn or more.
 bool go_around(const Points& points) {
-  const Feature& round = points.feature->feature;
+  const metrology::Feature& round = points.feature->feature;
   std::vector<double> angles;
   for (const Vector3d& p : points.p) {
     const Vector3d d = p - round.origin;
@@ -79,19 +79,19 @@ constexpr const char* kGap =
     "minimum zone needs points all around, no gap of half a turn; fit = \"least_squares\" does not";
 
 template <class Shape>
-Fitted width_of(const std::optional<Zone<Shape>>& zone) {
+Fitted width_of(const std::optional<metrology::Zone<Shape>>& zone) {
   if (!zone) return {{}, kTooFew};
   return {zone->width};
 }
 
-std::optional<Cylinder> cylinder_of(const Points& points) {
-  return least_squares_cylinder(points.p, Vector3d::UnitZ());
+std::optional<metrology::Cylinder> cylinder_of(const Points& points) {
+  return metrology::least_squares_cylinder(points.p, Vector3d::UnitZ());
 }
 
 // Mean of the displacements, each along its normal; of a notch that of its centre line.
 double mean_position(const Points& points, int axis) {
   const auto& targets = points.feature->feature.targets;
-  if (points.feature->feature.kind != FeatureKind::notch) {
+  if (points.feature->feature.kind != metrology::FeatureKind::notch) {
     double sum = 0.0;
     for (std::size_t i = 0; i < points.d.size(); ++i) {
       sum += points.d[i] * targets[points.index[i]].normal[axis];
@@ -114,14 +114,14 @@ struct Direction {
 };
 
 std::optional<Direction> direction_of(const Points& points) {
-  const Feature& nominal = points.feature->feature;
-  if (nominal.kind == FeatureKind::plane) {
-    const auto plane = least_squares_plane(points.p, nominal.normal);
+  const metrology::Feature& nominal = points.feature->feature;
+  if (nominal.kind == metrology::FeatureKind::plane) {
+    const auto plane = metrology::least_squares_plane(points.p, nominal.normal);
     if (!plane) return std::nullopt;
     return Direction{nominal.normal, plane->normal};
   }
   const std::vector<Vector2d> p = along_line(points);
-  const auto line = least_squares_line(Points2(p));
+  const auto line = metrology::least_squares_line(metrology::Points2(p));
   if (!line) return std::nullopt;
   return Direction{nominal.direction,
                    line->direction[0] * nominal.direction + line->direction[1] * nominal.normal};
@@ -146,69 +146,71 @@ Points points_of(const std::string& name, const CaseData& one, const CaseData* b
   return out;
 }
 
-Fitted straightness(const QuantitySpec& spec, const Points& points) {
+Fitted straightness(const model::QuantitySpec& spec, const Points& points) {
   const bool minimum = spec.part->minimum_zone;
   const std::vector<Vector2d> p = along_line(points);
-  if (minimum) return width_of(minimum_zone_line(p));
-  const auto line = least_squares_line(p);
+  if (minimum) return width_of(metrology::minimum_zone_line(p));
+  const auto line = metrology::least_squares_line(p);
   if (!line) return {{}, kTooFew};
-  return {spread_about(Points2(p), *line).range()};
+  return {metrology::spread_about(metrology::Points2(p), *line).range()};
 }
 
-Fitted flatness(const QuantitySpec& spec, const Points& points) {
+Fitted flatness(const model::QuantitySpec& spec, const Points& points) {
   const bool minimum = spec.part->minimum_zone;
   const Vector3d& outside = points.feature->feature.normal;
-  if (minimum) return width_of(minimum_zone_plane(points.p, outside));
-  const auto plane = least_squares_plane(points.p, outside);
+  if (minimum) return width_of(metrology::minimum_zone_plane(points.p, outside));
+  const auto plane = metrology::least_squares_plane(points.p, outside);
   if (!plane) return {{}, kTooFew};
-  return {spread_about(Points3(points.p), *plane).range()};
+  return {metrology::spread_about(metrology::Points3(points.p), *plane).range()};
 }
 
-Fitted plane_rotation(const QuantitySpec& spec, const Points& points) {
+Fitted plane_rotation(const model::QuantitySpec& spec, const Points& points) {
   const Vector3d& normal = points.feature->feature.normal;
-  const auto plane = least_squares_plane(points.p, normal);
+  const auto plane = metrology::least_squares_plane(points.p, normal);
   if (!plane) return {{}, kTooFew};
-  return {rotation_between(normal, plane->normal)[spec.axis - 'X']};
+  return {metrology::rotation_between(normal, plane->normal)[spec.axis - 'X']};
 }
 
-Fitted roundness(const QuantitySpec& spec, const Points& points) {
+Fitted roundness(const model::QuantitySpec& spec, const Points& points) {
   const bool minimum = spec.part->minimum_zone;
   if (points.p.size() < 3) return {{}, kTooFew};
   const std::vector<Vector2d> p = seen_from_above(points);
-  if (!minimum) return {zone_about(p, least_squares_circle(p).centre).width()};
+  if (!minimum)
+    return {metrology::zone_about(p, metrology::least_squares_circle(p).centre).width()};
   if (!go_around(points)) return {{}, kGap};
-  return {minimum_zone(p).width()};
+  return {metrology::minimum_zone(p).width()};
 }
 
-Fitted cylindricity(const QuantitySpec& spec, const Points& points) {
+Fitted cylindricity(const model::QuantitySpec& spec, const Points& points) {
   const bool minimum = spec.part->minimum_zone;
   if (minimum && !go_around(points)) return {{}, kGap};
-  if (minimum) return width_of(minimum_zone_cylinder(points.p, Vector3d::UnitZ()));
+  if (minimum) return width_of(metrology::minimum_zone_cylinder(points.p, Vector3d::UnitZ()));
   const auto cylinder = cylinder_of(points);
   if (!cylinder) return {{}, kTooFew};
-  return {spread_about(Points3(points.p), *cylinder).range()};
+  return {metrology::spread_about(metrology::Points3(points.p), *cylinder).range()};
 }
 
-Fitted diameter(const QuantitySpec&, const Points& points) {
-  const Feature& nominal = points.feature->feature;
-  if (nominal.kind == FeatureKind::cylinder) {
+Fitted diameter(const model::QuantitySpec&, const Points& points) {
+  const metrology::Feature& nominal = points.feature->feature;
+  if (nominal.kind == metrology::FeatureKind::cylinder) {
     const auto cylinder = cylinder_of(points);
     if (!cylinder) return {{}, kTooFew};
     return {2.0 * (cylinder->radius - nominal.radius)};
   }
   if (points.p.size() < 3) return {{}, kTooFew};
-  return {2.0 * (least_squares_circle(seen_from_above(points)).radius - nominal.radius)};
+  return {2.0 * (metrology::least_squares_circle(seen_from_above(points)).radius - nominal.radius)};
 }
 
-Fitted position(const QuantitySpec& spec, const Points& points) {
+Fitted position(const model::QuantitySpec& spec, const Points& points) {
   const char letter = spec.axis;
   const int axis = letter - 'X';
-  const Feature& nominal = points.feature->feature;
-  if (nominal.kind == FeatureKind::circle && axis < 2) {
+  const metrology::Feature& nominal = points.feature->feature;
+  if (nominal.kind == metrology::FeatureKind::circle && axis < 2) {
     if (points.p.size() < 3) return {{}, kTooFew};
-    return {least_squares_circle(seen_from_above(points)).centre[axis] - nominal.origin[axis]};
+    return {metrology::least_squares_circle(seen_from_above(points)).centre[axis] -
+            nominal.origin[axis]};
   }
-  if (nominal.kind == FeatureKind::cylinder && axis < 2) {
+  if (nominal.kind == metrology::FeatureKind::cylinder && axis < 2) {
     const auto cylinder = cylinder_of(points);
     if (!cylinder) return {{}, kTooFew};
     const Vector3d& k = cylinder->direction;
@@ -237,4 +239,4 @@ Fitted angle_between_features(const Points& one, const Points& other, bool must_
   return {angle_between(a->actual, b->actual) - nominal};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

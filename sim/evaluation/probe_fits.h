@@ -8,10 +8,13 @@
 
 #include "sim/evaluation/probed_part.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
+struct QuantitySpec;
+}  // namespace servomill::sim::model
+
+namespace servomill::sim::evaluation {
 
 struct CaseData;
-struct QuantitySpec;
 
 /// The points of a feature that were met.
 struct Points {
@@ -32,15 +35,15 @@ struct Fitted {
   std::string why_not = {};
 };
 
-Fitted straightness(const QuantitySpec& spec, const Points& points);
-Fitted flatness(const QuantitySpec& spec, const Points& points);
-Fitted plane_rotation(const QuantitySpec& spec, const Points& points);
-Fitted roundness(const QuantitySpec& spec, const Points& points);
-Fitted cylindricity(const QuantitySpec& spec, const Points& points);
-Fitted diameter(const QuantitySpec& spec, const Points& points);
+Fitted straightness(const model::QuantitySpec& spec, const Points& points);
+Fitted flatness(const model::QuantitySpec& spec, const Points& points);
+Fitted plane_rotation(const model::QuantitySpec& spec, const Points& points);
+Fitted roundness(const model::QuantitySpec& spec, const Points& points);
+Fitted cylindricity(const model::QuantitySpec& spec, const Points& points);
+Fitted diameter(const model::QuantitySpec& spec, const Points& points);
 /// Along spec.axis, minus nominal.
-Fitted position(const QuantitySpec& spec, const Points& points);
+Fitted position(const model::QuantitySpec& spec, const Points& points);
 /// Minus nominal.
 Fitted angle_between_features(const Points& one, const Points& other, bool must_be_square);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -9,26 +9,28 @@
 #include "sim/metrology/best_fit.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::array kAll = {FeatureKind::line,     FeatureKind::plane, FeatureKind::circle,
-                             FeatureKind::cylinder, FeatureKind::notch, FeatureKind::points};
-constexpr std::array kLine = {FeatureKind::line};
-constexpr std::array kPlane = {FeatureKind::plane};
-constexpr std::array kCircle = {FeatureKind::circle};
-constexpr std::array kCylinder = {FeatureKind::cylinder};
-constexpr std::array kRound = {FeatureKind::circle, FeatureKind::cylinder};
-constexpr std::array kStraight = {FeatureKind::line, FeatureKind::plane};
+constexpr std::array kAll = {metrology::FeatureKind::line,   metrology::FeatureKind::plane,
+                             metrology::FeatureKind::circle, metrology::FeatureKind::cylinder,
+                             metrology::FeatureKind::notch,  metrology::FeatureKind::points};
+constexpr std::array kLine = {metrology::FeatureKind::line};
+constexpr std::array kPlane = {metrology::FeatureKind::plane};
+constexpr std::array kCircle = {metrology::FeatureKind::circle};
+constexpr std::array kCylinder = {metrology::FeatureKind::cylinder};
+constexpr std::array kRound = {metrology::FeatureKind::circle, metrology::FeatureKind::cylinder};
+constexpr std::array kStraight = {metrology::FeatureKind::line, metrology::FeatureKind::plane};
 
 constexpr const char* kNotProbed = "was not probed";
 
 // Deviations of the points of one feature, as a statistic.
 template <bool kMinusImposed>
-QuantityValue deviation(const QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
+QuantityValue deviation(const model::QuantitySpec& spec, CaseEvaluation& one,
+                        const CaseData* base) {
   const Points points = points_of(spec.part->probes.front(), one.data, base);
   if (points.feature == nullptr) return {.note = kNotProbed};
   Statistic statistic(spec.statistic);
@@ -41,7 +43,8 @@ QuantityValue deviation(const QuantitySpec& spec, CaseEvaluation& one, const Cas
 
 // Points of all features from the nominal part, or from the planes through their targets, once they
 // are laid upon it.
-QuantityValue distortion(const QuantitySpec& spec, CaseEvaluation& compared, const CaseData* base) {
+QuantityValue distortion(const model::QuantitySpec& spec, CaseEvaluation& compared,
+                         const CaseData* base) {
   std::vector<Vector3d> measured, nominal, normals;
   QuantityValue out;
   for (const std::string& name : spec.part->probes) {
@@ -56,11 +59,13 @@ QuantityValue distortion(const QuantitySpec& spec, CaseEvaluation& compared, con
       normals.push_back(target.normal);
     }
   }
-  const TriangleMesh* part = spec.part->nominal.get();
-  const auto fit = part ? best_fit(measured, *part) : best_fit(measured, nominal, normals);
-  if (const NoFit* none = std::get_if<NoFit>(&fit)) return {.note = none->why};
+  const metrology::TriangleMesh* part = spec.part->nominal.get();
+  const auto fit =
+      part ? metrology::best_fit(measured, *part) : metrology::best_fit(measured, nominal, normals);
+  if (const metrology::NoFit* none = std::get_if<metrology::NoFit>(&fit))
+    return {.note = none->why};
   Statistic statistic(spec.statistic);
-  for (const double d : std::get<BestFit>(fit).distances) statistic.add(d / um);
+  for (const double d : std::get<metrology::BestFit>(fit).distances) statistic.add(d / um);
   out.value = statistic.value();
   return out;
 }
@@ -72,7 +77,7 @@ struct Named {
   bool is_complete = false;
 };
 
-Named named_points(const QuantitySpec& spec, const CaseData& one, const CaseData* base) {
+Named named_points(const model::QuantitySpec& spec, const CaseData& one, const CaseData* base) {
   Named out;
   for (const std::string& name : spec.part->probes) {
     const Points& points = out.points.emplace_back(points_of(name, one, base));
@@ -91,15 +96,15 @@ QuantityValue noted(const Fitted& found, double unit, const std::string& note) {
 }
 
 // Fits one feature; um/m is urad.
-template <Fitted (*kFit)(const QuantitySpec&, const Points&), bool kIsAngle = false>
-QuantityValue fitted(const QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
+template <Fitted (*kFit)(const model::QuantitySpec&, const Points&), bool kIsAngle = false>
+QuantityValue fitted(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const Named named = named_points(spec, one.data, base);
   if (!named.is_complete) return {.note = named.note};
   return noted(kFit(spec, named.points.front()), kIsAngle ? deg : um, named.note);
 }
 
 template <bool kMustBeSquare>
-QuantityValue angle(const QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
+QuantityValue angle(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const Named named = named_points(spec, one.data, base);
   if (!named.is_complete) return {.note = named.note};
   return noted(angle_between_features(named.points.front(), named.points.back(), kMustBeSquare), um,
@@ -199,4 +204,4 @@ constexpr QuantityEntry kQuantities[] = {
 
 std::span<const QuantityEntry> probe_quantities() { return kQuantities; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -6,10 +6,10 @@
 
 #include "sim/evaluation/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Entries of this family, in QuantityEntry::probes at least 1. Points at which one of the cases
 /// met nothing are left out, and the note says so.
 std::span<const QuantityEntry> probe_quantities();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

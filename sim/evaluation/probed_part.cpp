@@ -16,7 +16,7 @@
 #include "sim/evaluation/vector_at.h"
 #include "sim/model/work_frame.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -40,8 +40,8 @@ Vector3d tip_that_cuts(const plant::Cutter& cutter, const Vector3d& k,
 
 // Displacement along the normal that the imposed errors ask for where a piece of the program cuts
 // the point, with the rotary axes where the work system has them at 0.
-double imposed_at(const PartSource& source, const PartFrame& frame, const ProgramPath::Piece& piece,
-                  const plant::ProbeTarget& target) {
+double imposed_at(const PartSource& source, const model::PartFrame& frame,
+                  const engine::ProgramPath::Piece& piece, const plant::ProbeTarget& target) {
   const plant::MachineChain& chain = source.chain;
   const Joints Q_0 = chain.layout.joints(source.work_offset);
   const auto tip = source.tips.find(piece.tool_offset);
@@ -58,14 +58,14 @@ double imposed_at(const PartSource& source, const PartFrame& frame, const Progra
 // Contact of a probe, and the feed that cut there.
 struct Probed {
   Meeting meeting;
-  const ProgramPath::Piece* feed = nullptr;
+  const engine::ProgramPath::Piece* feed = nullptr;
 };
 
 // The surface of a part. A short path of the cutters is held as a whole; of a long one, what comes
 // near some targets at a time.
 class ProbedSurface {
  public:
-  ProbedSurface(const PartSource& source, const Cmm& cmm, const PositionsHeld& held)
+  ProbedSurface(const PartSource& source, const metrology::Cmm& cmm, const PositionsHeld& held)
       : path_(source), cmm_(cmm), held_(held) {
     if (path_.positions() <= held.most) whole_.emplace(path_.all());
   }
@@ -127,7 +127,7 @@ class ProbedSurface {
   }
 
   CutterPath path_;
-  const Cmm& cmm_;
+  const metrology::Cmm& cmm_;
   const PositionsHeld& held_;
   std::optional<Cut> whole_;
 };
@@ -156,7 +156,7 @@ std::optional<Miss> miss_of(const Meeting& meeting, const plant::ProbeTarget& ta
   return std::nullopt;
 }
 
-std::string why(Miss miss, const Cmm& cmm) {
+std::string why(Miss miss, const metrology::Cmm& cmm) {
   switch (miss) {
     case Miss::untouched:
       return "no cutter came there";
@@ -177,7 +177,7 @@ std::string why(Miss miss, const Cmm& cmm) {
 
 }  // namespace
 
-double chord_error(const Series& servo) {
+double chord_error(const records::Series& servo) {
   const std::size_t position = *servo.column("tool_position_true", 'X');
   const std::size_t rapid = *servo.column("rapid");
   double largest = 0.0;
@@ -191,13 +191,13 @@ double chord_error(const Series& servo) {
   return largest;
 }
 
-ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan, const Cmm& cmm,
-                      const PositionsHeld& held) {
-  const PartFrame frame = work_frame(source.chain, source.work_offset);
+ProbedPart probe_part(const PartSource& source, const std::vector<metrology::ProbeSpec>& plan,
+                      const metrology::Cmm& cmm, const PositionsHeld& held) {
+  const model::PartFrame frame = model::work_frame(source.chain, source.work_offset);
   const ProbedSurface surface(source, cmm, held);
   ProbedPart out;
   std::size_t met = 0;
-  for (const ProbeSpec& probe : plan) {
+  for (const metrology::ProbeSpec& probe : plan) {
     const std::vector<plant::ProbeTarget>& targets = probe.feature.targets;
     ProbedFeature found{probe.name, probe.feature, {}, {}, {}};
     std::map<Miss, Misses> missed;
@@ -216,9 +216,9 @@ ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& pl
       out.notes.push_back(fmt::format(
           "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
           to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
-          program_words(targets[misses.first].point), why(miss, cmm)));
+          model::program_words(targets[misses.first].point), why(miss, cmm)));
     }
-    found.measured = probe_all(cmm, source.case_name, probe.name, found.deviation);
+    found.measured = metrology::probe_all(cmm, source.case_name, probe.name, found.deviation);
     out.features.push_back(std::move(found));
   }
   if (met == 0) return out;
@@ -233,11 +233,11 @@ ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& pl
 }
 
 std::vector<double> mean_deviations(const ProbedFeature& feature, const ProbedFeature* base) {
-  std::vector<double> d = mean_of(feature.measured);
+  std::vector<double> d = metrology::mean_of(feature.measured);
   if (base == nullptr) return d;
-  const std::vector<double> of_base = mean_of(base->measured);
+  const std::vector<double> of_base = metrology::mean_of(base->measured);
   for (std::size_t i = 0; i < d.size(); ++i) d[i] -= of_base[i];
   return d;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

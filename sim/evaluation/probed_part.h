@@ -9,12 +9,12 @@
 #include "sim/metrology/probing_plan.h"
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Result of the CMM for one feature of one case.
 struct ProbedFeature {
   std::string name;
-  Feature feature;                            // nominal
+  metrology::Feature feature;                 // nominal
   std::vector<double> deviation;              // m along the normals, without error of the CMM; NaN:
                                               // nothing was met
   std::vector<std::vector<double>> measured;  // repetition, point; m
@@ -30,7 +30,7 @@ struct ProbedPart {
 /// Largest distance (m) between the recorded feed motion, straight from row to row, and a parabola
 /// through three rows: a T^2 / 8 for an acceleration a and a record period T (0.6 um at 5 m/s^2 and
 /// 1 ms), 0 where the tool moves evenly.
-double chord_error(const Series& servo);
+double chord_error(const records::Series& servo);
 
 /// How many positions of the cutters are in memory, 200 bytes each.
 struct PositionsHeld {
@@ -39,8 +39,8 @@ struct PositionsHeld {
 };
 
 /// Cuts the part and probes it. Depths do not depend on what is held, but for 1 nm.
-ProbedPart probe_part(const PartSource& source, const std::vector<ProbeSpec>& plan, const Cmm& cmm,
-                      const PositionsHeld& held = {});
+ProbedPart probe_part(const PartSource& source, const std::vector<metrology::ProbeSpec>& plan,
+                      const metrology::Cmm& cmm, const PositionsHeld& held = {});
 
 /// Means of the repetitions along the normals (m); with a base case minus those of it. NaN: one of
 /// them met nothing.
@@ -51,4 +51,4 @@ inline Eigen::Vector3d probed_point(const plant::ProbeTarget& target, double dev
   return target.point + deviation * target.normal;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -8,7 +8,7 @@
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 std::span<const QuantityEntry> quantities() {
   static const std::vector<QuantityEntry> kQuantities = [] {
@@ -41,4 +41,4 @@ const QuantityEntry& quantity_entry(std::string_view name) {
   return *found;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -13,11 +13,14 @@
 
 #include "sim/metrology/probing_plan.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
+struct QuantitySpec;
+}  // namespace servomill::sim::model
+
+namespace servomill::sim::evaluation {
 
 struct CaseData;
 struct CaseEvaluation;
-struct QuantitySpec;
 
 /// Value of a recording at a row; rows are asked for in rising order. Empty: was not recorded.
 using AtRow = std::function<double(std::size_t)>;
@@ -50,19 +53,20 @@ struct QuantityEntry {
   bool identifies = false;  // location errors from readings: a line for each of them
   int probes = 0;           // features of the part evaluated together: probe_quantities.h; a
                             // base case is then optional unless needs_baseline
-  std::span<const FeatureKind> kinds = {};  // of these features
-  bool has_fit = false;                     // minimum zone or least squares
+  std::span<const metrology::FeatureKind> kinds = {};  // of these features
+  bool has_fit = false;                                // minimum zone or least squares
 
   /// Evaluates one case.
   /// @param base  the case it is compared with; nullptr: none
   /// @pre both cases have finished, unless is_of_program
-  QuantityValue (*evaluate)(const QuantitySpec& spec, CaseEvaluation& one,
+  QuantityValue (*evaluate)(const model::QuantitySpec& spec, CaseEvaluation& one,
                             const CaseData* base) = nullptr;
   bool is_of_program = false;  // known of a case that stopped, too
 
   // for budgets and convergence
   /// Signed value in `unit`, sample by sample: PathSignal. nullptr: it has none
-  AtRow (*signal)(const QuantitySpec& spec, const CaseData& one, const CaseData* base) = nullptr;
+  AtRow (*signal)(const model::QuantitySpec& spec, const CaseData& one,
+                  const CaseData* base) = nullptr;
   bool is_of_servo = false;            // of the servo loops alone: no geometric error is left in it
   std::string_view derived_from = {};  // the signal that it condenses; in % it is a share of it
 
@@ -77,4 +81,4 @@ const QuantityEntry* find_quantity(std::string_view name);
 /// @pre one of quantity_names()
 const QuantityEntry& quantity_entry(std::string_view name);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -9,27 +9,28 @@
 #include "sim/evaluation/statistic.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
-QuantityValue statistic_of(const QuantitySpec& spec, const BallDeviation& found) {
+QuantityValue statistic_of(const model::QuantitySpec& spec, const metrology::BallDeviation& found) {
   Statistic statistic(spec.statistic);
   for (const double d : found.d) statistic.add(d / um);
   return {statistic.value(), found.why_not};
 }
 
-template <NestDirection kDirection>
-QuantityValue of_nest(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
-  return statistic_of(spec,
-                      nest_deviation(one.data.chain, one.ball.path_of(spec.sections), kDirection));
+template <metrology::NestDirection kDirection>
+QuantityValue of_nest(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  return statistic_of(
+      spec, metrology::nest_deviation(one.data.chain, one.ball.path_of(spec.sections), kDirection));
 }
 
-QuantityValue of_bar(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
-  return statistic_of(spec,
-                      bar_deviation(one.ball.path_of(spec.sections), spec.ball->bar_centres[0]));
+QuantityValue of_bar(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  return statistic_of(
+      spec, metrology::bar_deviation(one.ball.path_of(spec.sections), spec.ball->bar_centres[0]));
 }
 
-QuantityValue location_error(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+QuantityValue location_error(const model::QuantitySpec& spec, CaseEvaluation& one,
+                             const CaseData*) {
   return one.ball.location(spec);
 }
 
@@ -40,19 +41,19 @@ constexpr QuantityEntry kQuantities[] = {
              "turns",
      .has_statistic = true,
      .is_r_test = true,
-     .evaluate = of_nest<NestDirection::radial>},
+     .evaluate = of_nest<metrology::NestDirection::radial>},
     {.name = "axial_ball_deviation",
      .unit = "um",
      .help = "R-test: the same along that axis",
      .has_statistic = true,
      .is_r_test = true,
-     .evaluate = of_nest<NestDirection::axial>},
+     .evaluate = of_nest<metrology::NestDirection::axial>},
     {.name = "tangential_ball_deviation",
      .unit = "um",
      .help = "R-test: the same in the sense in which the axis counts",
      .has_statistic = true,
      .is_r_test = true,
-     .evaluate = of_nest<NestDirection::tangential>},
+     .evaluate = of_nest<metrology::NestDirection::tangential>},
     {.name = "ball_bar_deviation",
      .unit = "um",
      .help = "ISO 10791-6 BK4: length of a ball bar between centre_mm of [[quantity.bar]] and the "
@@ -72,13 +73,13 @@ constexpr QuantityEntry kQuantities[] = {
 
 }  // namespace
 
-TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
+metrology::TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
   const RowRanges& rows = samples_.rows(sections);
-  TipPath out;
+  metrology::TipPath out;
   out.nominal = samples_.positions("tool_position_nominal", rows);
   out.actual = samples_.positions("tool_position_true", rows);
   out.Q.assign(rows.size(), Joints::Zero());
-  const Series& servo = *samples_.data().servo;
+  const records::Series& servo = *samples_.data().servo;
   for (const plant::ChainAxis& axis : samples_.data().chain.axes) {
     const bool linear = is_linear(axis.axis);
     const auto column = servo.column(linear ? "ref_linear" : "ref_rotary", letter(axis.axis));
@@ -92,29 +93,30 @@ TipPath BallQuantities::path_of(const std::vector<std::string>& sections) {
   return out;
 }
 
-BallQuantities::Identified BallQuantities::identify(const QuantitySpec& spec) {
+BallQuantities::Identified BallQuantities::identify(const model::QuantitySpec& spec) {
   const plant::MachineChain& chain = samples_.data().chain;
   const std::vector<Eigen::Vector3d>& bars = spec.ball->bar_centres;
-  std::vector<SensorReading> readings;
-  const auto add = [&](const BallReadings& found) {
+  std::vector<metrology::SensorReading> readings;
+  const auto add = [&](const metrology::BallReadings& found) {
     readings.insert(readings.end(), found.readings.begin(), found.readings.end());
     return found.why_not;
   };
   std::string why_not;
   if (bars.empty()) {
-    why_not = add(nest_readings(chain, path_of(spec.sections), spec.sections.size()));
+    why_not = add(metrology::nest_readings(chain, path_of(spec.sections), spec.sections.size()));
   }
   for (std::size_t i = 0; i < bars.size() && why_not.empty(); ++i) {
-    why_not = add(bar_readings(chain, path_of({spec.sections[i]}), bars[i], static_cast<int>(i)));
+    why_not = add(
+        metrology::bar_readings(chain, path_of({spec.sections[i]}), bars[i], static_cast<int>(i)));
   }
   if (!why_not.empty()) return {{}, why_not};
-  const RTestSetUp set_up{.tcp_is_unknown = !spec.ball->tcp_is_known,
-                          .length_is_unknown = !bars.empty()};
-  return {identify_locations(chain, readings, set_up), ""};
+  const metrology::RTestSetUp set_up{.tcp_is_unknown = !spec.ball->tcp_is_known,
+                                     .length_is_unknown = !bars.empty()};
+  return {metrology::identify_locations(chain, readings, set_up), ""};
 }
 
-QuantityValue BallQuantities::location(const QuantitySpec& spec) {
-  const BallSpec& ball = *spec.ball;
+QuantityValue BallQuantities::location(const model::QuantitySpec& spec) {
+  const model::BallSpec& ball = *spec.ball;
   assert(ball.error);
   std::string key = fmt::format("{}\n{}", fmt::join(spec.sections, "\n"), ball.tcp_is_known);
   for (const Eigen::Vector3d& centre : ball.bar_centres) {
@@ -123,7 +125,7 @@ QuantityValue BallQuantities::location(const QuantitySpec& spec) {
   auto known = identified_.find(key);
   if (known == identified_.end()) known = identified_.emplace(key, identify(spec)).first;
   const Identified& found = known->second;
-  const LocationEstimate* estimate = found.fit.find(*ball.error);
+  const metrology::LocationEstimate* estimate = found.fit.find(*ball.error);
   if (estimate == nullptr) return {.note = found.why_not};
   if (!estimate->value) return {.note = estimate->why_not()};
   return {*estimate->value / (is_linear(ball.error->direction) ? um : urad), ""};
@@ -135,4 +137,4 @@ std::string_view unit_of_location(const plant::ErrorName& name) {
   return is_linear(name.direction) ? "um" : "urad";
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

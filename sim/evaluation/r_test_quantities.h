@@ -12,7 +12,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/metrology/r_test.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Entries of this family: QuantityEntry::is_r_test.
 std::span<const QuantityEntry> r_test_quantities();
@@ -25,17 +25,17 @@ class BallQuantities {
 
   /// The recorded path of the tip; empty if it was not recorded.
   /// @pre the case has a recording
-  TipPath path_of(const std::vector<std::string>& sections);
+  metrology::TipPath path_of(const std::vector<std::string>& sections);
   /// A location error (spec.ball) in unit_of_location; or NaN and why the sections do not tell.
-  QuantityValue location(const QuantitySpec& spec);
+  QuantityValue location(const model::QuantitySpec& spec);
 
  private:
   struct Identified {
-    LocationFit fit;
+    metrology::LocationFit fit;
     std::string why_not;
   };
 
-  Identified identify(const QuantitySpec& spec);
+  Identified identify(const model::QuantitySpec& spec);
 
   CaseSamples& samples_;
   std::map<std::string, Identified> identified_;  // by sections and set-up
@@ -44,4 +44,4 @@ class BallQuantities {
 /// Unit of a location error of that name in comparisons.
 std::string_view unit_of_location(const plant::ErrorName& name);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// Rising numbers of rows; neighbours are kept as one range.
 class RowRanges {
@@ -59,4 +59,4 @@ class RowRanges {
   std::size_t size_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 Statistic::Statistic(std::string_view name)
     : kind_(name == "mean"    ? Kind::mean
@@ -34,4 +34,4 @@ double Statistic::value() const {
   return std::max(std::abs(least_), std::abs(greatest_));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 /// "max" (by magnitude), "range", "mean" or "rms".
 class Statistic {
@@ -40,4 +40,4 @@ class Statistic {
   double least_ = HUGE_VAL, greatest_ = -HUGE_VAL;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -5,10 +5,11 @@
 
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
-inline Eigen::Vector3d vector_at(const Series& series, std::size_t row, std::size_t first) {
+inline Eigen::Vector3d vector_at(const records::Series& series, std::size_t row,
+                                 std::size_t first) {
   return {series.at(row, first), series.at(row, first + 1), series.at(row, first + 2)};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

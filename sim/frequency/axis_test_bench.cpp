@@ -3,23 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 // The loops of the axis, and every tick.
-std::vector<Rate> stand_rates(const LoopPeriods& periods, Tick reading_delay, PositionLoop loop) {
-  std::vector<Rate> rates = loop_rates(periods, reading_delay);
+std::vector<model::Rate> stand_rates(const model::LoopPeriods& periods, Tick reading_delay,
+                                     PositionLoop loop) {
+  std::vector<model::Rate> rates = engine::loop_rates(periods, reading_delay);
   if (loop == PositionLoop::open) {
-    std::erase_if(rates,
-                  [](const Rate& rate) { return rate.due & (kFeedbackSample | kPositionLoop); });
+    std::erase_if(rates, [](const model::Rate& rate) {
+      return rate.due & (model::kFeedbackSample | model::kPositionLoop);
+    });
   }
-  rates.push_back({kRecord, 1, 0});
+  rates.push_back({model::kRecord, 1, 0});
   return rates;
 }
 
 // A setpoint that jumps is no following error.
-MachineSettings without_supervision(MachineSettings machine) {
-  for (AxisFunctions& functions : machine.nc.functions) functions.supervision = {};
+model::MachineSettings without_supervision(model::MachineSettings machine) {
+  for (model::AxisFunctions& functions : machine.nc.functions) functions.supervision = {};
   return machine;
 }
 
@@ -29,11 +31,11 @@ double current_limit_of(const controllers::CascadeParams& c) {
 
 }  // namespace
 
-AxisTestBench::AxisTestBench(const MachineSettings& machine, int joint, Tick reading_delay,
+AxisTestBench::AxisTestBench(const model::MachineSettings& machine, int joint, Tick reading_delay,
                              PositionLoop loop)
     : machine_(without_supervision(machine)),
       joint_(joint),
-      schedule_(make_schedule(stand_rates(machine_.nc.periods, reading_delay, loop))),
+      schedule_(model::make_schedule(stand_rates(machine_.nc.periods, reading_delay, loop))),
       axes_(machine_, {joint}, schedule_),
       current_limit_(current_limit_of(machine_.nc.cascade[static_cast<std::size_t>(joint)])) {
   settle(0.0);
@@ -71,8 +73,8 @@ bool AxisTestBench::at_current_limit() {
 
 void AxisTestBench::run_loops(std::uint8_t due, const StandInput& in) {
   axes_.inject(joint_, in.added);
-  if (due & kFeedbackSample) axes_.sample_position_feedback();
-  if (due & kPositionLoop) {
+  if (due & model::kFeedbackSample) axes_.sample_position_feedback();
+  if (due & model::kPositionLoop) {
     set_.Q_ref[joint_] = set_.Q_cmd[joint_] = in.q;
     set_.dQ_ff[joint_] = in.dq;
     set_.ddQ_ff[joint_] = in.ddq;
@@ -80,8 +82,8 @@ void AxisTestBench::run_loops(std::uint8_t due, const StandInput& in) {
     axes_.compensate_backlash();
     axes_.close_position_loops();
   }
-  if (due & kCurrentLoop) axes_.latch_current_commands();
-  if (due & kVelocityLoop) axes_.close_velocity_loops();
+  if (due & model::kCurrentLoop) axes_.latch_current_commands();
+  if (due & model::kVelocityLoop) axes_.close_velocity_loops();
 }
 
 AxisSignals AxisTestBench::signals() const {
@@ -98,4 +100,4 @@ AxisSignals AxisTestBench::signals() const {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -10,7 +10,7 @@
 
 #include "sim/engine/servo_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 /// Measured signal. Those marked (sampled) exist at the instants of their loop only.
 enum class AxisSignal : std::uint8_t {
@@ -29,9 +29,10 @@ constexpr std::size_t index_of(AxisSignal signal) { return static_cast<std::size
 
 /// Due bit of the loop at whose instants a signal exists; 0: at any time.
 constexpr std::uint8_t sampled_by(AxisSignal signal) {
-  if (signal == AxisSignal::reading || signal == AxisSignal::position_error) return kPositionLoop;
+  if (signal == AxisSignal::reading || signal == AxisSignal::position_error)
+    return model::kPositionLoop;
   if (signal == AxisSignal::measured_speed || signal == AxisSignal::speed_error)
-    return kVelocityLoop;
+    return model::kVelocityLoop;
   return 0;
 }
 
@@ -39,7 +40,7 @@ constexpr std::uint8_t sampled_by(AxisSignal signal) {
 struct StandInput {
   double q = 0.0;              // m, rad: setpoint
   double dq = 0.0, ddq = 0.0;  // m/s, m/s^2: fed forward
-  Injection added = {};
+  engine::Injection added = {};
 };
 
 enum class PositionLoop : std::uint8_t {
@@ -52,11 +53,12 @@ enum class PositionLoop : std::uint8_t {
 class AxisTestBench {
  public:
   /// @param reading_delay  ticks between the scale and what the position loop reads
-  AxisTestBench(const MachineSettings& machine, int joint, Tick reading_delay, PositionLoop loop);
+  AxisTestBench(const model::MachineSettings& machine, int joint, Tick reading_delay,
+                PositionLoop loop);
   AxisTestBench(const AxisTestBench&) = delete;
   AxisTestBench& operator=(const AxisTestBench&) = delete;
 
-  const MachineSettings& machine() const { return machine_; }
+  const model::MachineSettings& machine() const { return machine_; }
   int joint() const { return joint_; }
   double base() const { return machine_.nc.periods.base; }                      // s
   Tick hyperperiod() const { return static_cast<Tick>(schedule_.size()); }      // ticks
@@ -93,11 +95,11 @@ class AxisTestBench {
   void run_loops(std::uint8_t due, const StandInput& in);
   AxisSignals signals() const;
 
-  const MachineSettings machine_;
+  const model::MachineSettings machine_;
   int joint_;
-  std::vector<Instant> schedule_;
-  ServoAxes axes_;
-  AxisSetpoint set_;
+  std::vector<model::Instant> schedule_;
+  engine::ServoAxes axes_;
+  engine::AxisSetpoint set_;
   std::optional<std::string> fault_;
   double current_limit_;  // A
   int states_ = 0;
@@ -106,7 +108,7 @@ class AxisTestBench {
 template <class Input, class Look>
 void AxisTestBench::run(Tick begin, const Input& input, const Look& look) {
   Tick n = begin;
-  for (const Instant& instant : schedule_) {
+  for (const model::Instant& instant : schedule_) {
     run_loops(instant.due, input(n));
     look(n, instant.due, signals());
     axes_.advance(instant.step);
@@ -115,4 +117,4 @@ void AxisTestBench::run(Tick begin, const Input& input, const Look& look) {
   if (const auto fault = axes_.supervise(); fault && !fault_) fault_ = fault->reason;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

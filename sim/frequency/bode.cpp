@@ -8,7 +8,7 @@
 
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 constexpr std::size_t kDrawn = 600;    // points of an exact curve
@@ -61,7 +61,7 @@ Complex taken(const CurveOf& of, const Response& response, double r) {
 }
 
 // Acceleration whose feed-forward takes a share of the current.
-double fed_forward_acceleration(const MachineSettings& machine, int joint) {
+double fed_forward_acceleration(const model::MachineSettings& machine, int joint) {
   constexpr double kShare = 0.3;
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   return kShare * c.i_max * c.Kt * c.r / (c.kaf * c.J);  // infinite without feed-forward
@@ -82,7 +82,7 @@ ClosedLoop peak_of(const Curve& curve) {
 // All curves of one loop; those with the same entry share a measurement.
 class LoopCurves {
  public:
-  LoopCurves(const MachineSettings& machine, int joint, Tick reading_delay,
+  LoopCurves(const model::MachineSettings& machine, int joint, Tick reading_delay,
              const BodeSettings& settings)
       : machine_(machine),
         joint_(joint),
@@ -170,7 +170,7 @@ class LoopCurves {
     }
   }
 
-  const MachineSettings& machine_;
+  const model::MachineSettings& machine_;
   int joint_;
   Tick reading_delay_;
   const BodeSettings& settings_;
@@ -187,21 +187,22 @@ class LoopCurves {
 
 }  // namespace
 
-double nyquist_frequency(const LoopPeriods& periods, BodeLoop loop) {
+double nyquist_frequency(const model::LoopPeriods& periods, BodeLoop loop) {
   return 0.5 / periods.seconds(loop == BodeLoop::velocity ? periods.velocity : periods.position);
 }
 
-BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
+BodeResult bode(const model::MachineSettings& machine, int joint, Tick reading_delay,
                 const BodeSettings& settings) {
   LoopCurves curves(machine, joint, reading_delay, settings);
   for (const CurveOf& of : curves_of(settings.loop)) curves.add(of);
   return std::move(curves).result();
 }
 
-Tick reading_delay_of(const Scenario& scenario) {
-  const bool hardware = std::any_of(scenario.cases.begin(), scenario.cases.end(),
-                                    [](const CaseSpec& one) { return one.feedback_hardware; });
+Tick reading_delay_of(const model::Scenario& scenario) {
+  const bool hardware =
+      std::any_of(scenario.cases.begin(), scenario.cases.end(),
+                  [](const model::CaseSpec& one) { return one.feedback_hardware; });
   return scenario.machine.scale_delay + (hardware ? scenario.hardware.signal_delay : 0);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

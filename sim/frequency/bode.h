@@ -8,7 +8,11 @@
 #include "sim/frequency/margins.h"
 #include "sim/frequency/measured_response.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
+struct Scenario;
+}  // namespace servomill::sim::model
+
+namespace servomill::sim::frequency {
 
 enum class BodeLoop : std::uint8_t { position, velocity, compliance };
 
@@ -57,16 +61,14 @@ struct BodeSettings {
 };
 
 /// Half the rate of the loop that the curves are about (Hz); a force acts on the position loop.
-double nyquist_frequency(const LoopPeriods& periods, BodeLoop loop);
+double nyquist_frequency(const model::LoopPeriods& periods, BodeLoop loop);
 
 /// @pre 0 < from < to <= nyquist_frequency
-BodeResult bode(const MachineSettings& machine, int joint, Tick reading_delay,
+BodeResult bode(const model::MachineSettings& machine, int joint, Tick reading_delay,
                 const BodeSettings& settings);
-
-struct Scenario;
 
 /// Ticks between the scale and the position loop in the cases of a scenario: signal delay of the
 /// feedback hardware if one of them has it.
-Tick reading_delay_of(const Scenario& scenario);
+Tick reading_delay_of(const model::Scenario& scenario);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

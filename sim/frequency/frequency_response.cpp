@@ -8,7 +8,7 @@
 #include "sim/frequency/linear_algebra.h"
 #include "sim/frequency/stability.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 constexpr Complex kJ{0.0, 1.0};
@@ -58,8 +58,8 @@ StandInput sinusoid(Entry entry, Complex u, double w, double h) {
   return in;
 }
 
-FrequencyResponse::FrequencyResponse(const MachineSettings& machine, int joint, Tick reading_delay,
-                                     PositionLoop loop)
+FrequencyResponse::FrequencyResponse(const model::MachineSettings& machine, int joint,
+                                     Tick reading_delay, PositionLoop loop)
     : stand_(linearised(machine), joint, reading_delay, loop), monodromy_(monodromy_of(stand_)) {}
 
 Response FrequencyResponse::at(Entry entry, double f) {
@@ -109,7 +109,7 @@ double antiresonance_frequency(const plant::FeedDriveParams& p) {
   return p.is_rigid() ? 0.0 : std::sqrt(p.k / p.M) / (2.0 * std::numbers::pi);
 }
 
-std::vector<double> ringing_frequencies(const MachineSettings& machine, int joint,
+std::vector<double> ringing_frequencies(const model::MachineSettings& machine, int joint,
                                         Tick reading_delay, PositionLoop loop, double to) {
   const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
   std::vector<double> out;
@@ -137,18 +137,18 @@ std::vector<double> ringing_frequencies(const MachineSettings& machine, int join
   return out;
 }
 
-double slowest_time_constant(const MachineSettings& machine, int joint, Tick reading_delay,
+double slowest_time_constant(const model::MachineSettings& machine, int joint, Tick reading_delay,
                              PositionLoop loop) {
-  const LoopPeriods& p = machine.nc.periods;
-  const double T = p.seconds(hyperperiod(loop_rates(p, reading_delay)));
+  const model::LoopPeriods& p = machine.nc.periods;
+  const double T = p.seconds(model::hyperperiod(engine::loop_rates(p, reading_delay)));
   const double radius = loop == PositionLoop::closed
                             ? spectral_radius(machine, joint, reading_delay)
                             : velocity_spectral_radius(machine, joint);
   return radius < 1.0 ? -T / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
-double velocity_spectral_radius(const MachineSettings& machine, int joint) {
-  MachineSettings alone = linearised(machine);
+double velocity_spectral_radius(const model::MachineSettings& machine, int joint) {
+  model::MachineSettings alone = linearised(machine);
   alone.nc.cascade[static_cast<std::size_t>(joint)].Kv = 0.0;
   AxisTestBench stand(alone, joint, 0, PositionLoop::closed);
   const Eigen::MatrixXd monodromy = monodromy_of(stand);
@@ -164,4 +164,4 @@ double velocity_spectral_radius(const MachineSettings& machine, int joint) {
   return radius;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

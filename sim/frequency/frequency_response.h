@@ -3,7 +3,7 @@
 
 #include "sim/frequency/fundamental.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 /// Point at which a sinusoid of amplitude 1 enters.
 enum class Entry : std::uint8_t {
@@ -37,7 +37,7 @@ StandInput sinusoid(Entry entry, Complex u, double w, double h);
 class FrequencyResponse {
  public:
   /// @param loop  open: the velocity loop alone, without setpoint
-  FrequencyResponse(const MachineSettings& machine, int joint, Tick reading_delay,
+  FrequencyResponse(const model::MachineSettings& machine, int joint, Tick reading_delay,
                     PositionLoop loop);
 
   /// @param f  Hz, > 0
@@ -53,7 +53,7 @@ class FrequencyResponse {
 
 /// Largest eigenvalue magnitude of the velocity loop without position loop over one hyperperiod of
 /// all loops; the position that nobody controls is left out. Below 1 the loop is stable.
-double velocity_spectral_radius(const MachineSettings& machine, int joint);
+double velocity_spectral_radius(const model::MachineSettings& machine, int joint);
 
 /// Frequency at which motor and load oscillate against one another (Hz); 0 for a rigid drive.
 double resonance_frequency(const plant::FeedDriveParams& drive);
@@ -64,11 +64,11 @@ double antiresonance_frequency(const plant::FeedDriveParams& drive);
 /// dip: those of the drive alone, and the eigenvalues exp((-a + j w) T) of the loops with little
 /// damping, a < w. One hyperperiod T does not tell w from w + 2 pi k / T nor from -w: all are
 /// given.
-std::vector<double> ringing_frequencies(const MachineSettings& machine, int joint,
+std::vector<double> ringing_frequencies(const model::MachineSettings& machine, int joint,
                                         Tick reading_delay, PositionLoop loop, double to);
 
 /// Time in which the slowest part of a transient falls to 1/e (s); infinite if it grows.
-double slowest_time_constant(const MachineSettings& machine, int joint, Tick reading_delay,
+double slowest_time_constant(const model::MachineSettings& machine, int joint, Tick reading_delay,
                              PositionLoop loop);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

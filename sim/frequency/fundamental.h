@@ -6,7 +6,7 @@
 
 #include "sim/frequency/axis_test_bench.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 using Complex = std::complex<double>;
 
@@ -44,4 +44,4 @@ class Fundamental {
   std::array<int, kAxisSignals> count_{};
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

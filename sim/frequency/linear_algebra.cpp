@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
 
@@ -11,4 +11,4 @@ Eigen::VectorXcd solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
   return A.partialPivLu().solve(b);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

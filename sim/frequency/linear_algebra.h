@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// x of A x = b, by LU decomposition with partial pivoting. @pre A is regular
 Eigen::VectorXcd solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 using Complex = std::complex<double>;
@@ -185,4 +185,4 @@ ClosedLoop closed_loop_of(const Curve& curve, const ResponseAt& at) {
   return closed;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

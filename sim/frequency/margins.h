@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 /// A response over frequency.
 struct Curve {
@@ -56,4 +56,4 @@ struct ClosedLoop {
 };
 ClosedLoop closed_loop_of(const Curve& closed_loop, const ResponseAt& at = {});
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

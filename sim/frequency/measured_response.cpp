@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 constexpr double kDecay = 20.7;         // time constants to 1e-9
@@ -141,7 +141,7 @@ class EncoderErrors {
     last_speed_ = speed;
     errors[index_of(AxisSignal::reading)] = errors[index_of(AxisSignal::position_error)] =
         stand_.scale_error();
-    if (!(due & kVelocityLoop)) return errors;
+    if (!(due & model::kVelocityLoop)) return errors;
     if (whole_period_) {
       errors[index_of(AxisSignal::measured_speed)] = errors[index_of(AxisSignal::speed_error)] =
           y[index_of(AxisSignal::measured_speed)] - turned_ / Tv_;
@@ -202,7 +202,8 @@ void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& 
   const auto add = [&](Tick n, std::uint8_t due, AxisSignals y) {
     y[index_of(AxisSignal::position)] -= moved(n);
     y[index_of(AxisSignal::reading)] -= moved(n);
-    if (due & kVelocityLoop) out.current_limited = out.current_limited || stand.at_current_limit();
+    if (due & model::kVelocityLoop)
+      out.current_limited = out.current_limited || stand.at_current_limit();
     out.peak_current = std::max(out.peak_current, std::abs(y[index_of(AxisSignal::current)]));
     lines.add(excitation, n, due, y, encoders.at(due, y));
   };
@@ -235,7 +236,7 @@ bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input) {
   return point.response[index_of(output)] != 0.0 && small(output) && small(input);
 }
 
-MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading_delay,
+MeasuredResponse measure(const model::MachineSettings& machine, int joint, Tick reading_delay,
                          PositionLoop loop, const Measurement& how,
                          const std::vector<double>& wanted) {
   assert(how.amplitude > 0.0);
@@ -256,7 +257,7 @@ MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading
   return out;
 }
 
-double default_amplitude(const MachineSettings& machine, int joint, Entry entry) {
+double default_amplitude(const model::MachineSettings& machine, int joint, Entry entry) {
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   const double current = kCurrentShare * c.i_max;
   switch (entry) {
@@ -274,7 +275,8 @@ double default_amplitude(const MachineSettings& machine, int joint, Entry entry)
   return current;
 }
 
-double default_velocity(const MachineSettings& machine, int joint, Entry entry, double amplitude) {
+double default_velocity(const model::MachineSettings& machine, int joint, Entry entry,
+                        double amplitude) {
   const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
   if (drive.friction.kind == plant::FrictionKind::none && drive.gap == 0.0) return 0.0;
   // four times the velocity command that the amplitude asks for, or stands for
@@ -283,4 +285,4 @@ double default_velocity(const MachineSettings& machine, int joint, Entry entry, 
   return kAhead * share * default_amplitude(machine, joint, Entry::velocity_command);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -9,7 +9,7 @@
 
 #include "sim/frequency/frequency_response.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 enum class Method : std::uint8_t {
   sine,        // one frequency after the other
@@ -58,15 +58,16 @@ struct MeasuredResponse {
 /// autocorrelation, IEEE Trans. Inf. Theory 16 (1970) 85, for equal power.
 /// @param wanted  Hz, rising, below half the rate of the loop that is fed
 /// @pre the loop is stable
-MeasuredResponse measure(const MachineSettings& machine, int joint, Tick reading_delay,
+MeasuredResponse measure(const model::MachineSettings& machine, int joint, Tick reading_delay,
                          PositionLoop loop, const Measurement& how,
                          const std::vector<double>& wanted);
 
 /// Amplitude for which the velocity loop's proportional part takes 2 % of the current limit.
-double default_amplitude(const MachineSettings& machine, int joint, Entry entry);
+double default_amplitude(const model::MachineSettings& machine, int joint, Entry entry);
 
 /// Velocity at which friction does not stick under that amplitude; 0 for an axis without friction
 /// and backlash.
-double default_velocity(const MachineSettings& machine, int joint, Entry entry, double amplitude);
+double default_velocity(const model::MachineSettings& machine, int joint, Entry entry,
+                        double amplitude);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

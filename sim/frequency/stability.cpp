@@ -5,11 +5,11 @@
 #include "sim/engine/servo_axes.h"
 #include "sim/frequency/linear_algebra.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
-MachineSettings linearised(const MachineSettings& machine) {
-  MachineSettings linear = machine;
-  linear.integrator = Integrator::exact;  // of a linear drive it is
+model::MachineSettings linearised(const model::MachineSettings& machine) {
+  model::MachineSettings linear = machine;
+  linear.integrator = model::Integrator::exact;  // of a linear drive it is
   for (std::size_t j = 0; j < kJoints; ++j) {
     plant::FeedDriveParams& drive = linear.drives[j];
     drive.F_load = 0.0;
@@ -20,7 +20,7 @@ MachineSettings linearised(const MachineSettings& machine) {
     linear.marks[j].reset();
     linear.screw[j] = {};
     linear.nc.cascade[j] = controllers::without_limits(linear.nc.cascade[j]);
-    AxisFunctions& functions = linear.nc.functions[j];
+    model::AxisFunctions& functions = linear.nc.functions[j];
     functions.current_loop.u_max = controllers::kNoLimit;
     functions.friction = {};
     functions.backlash = {};
@@ -29,11 +29,11 @@ MachineSettings linearised(const MachineSettings& machine) {
   return linear;
 }
 
-double spectral_radius(const MachineSettings& machine, int joint, Tick reading_delay) {
-  const MachineSettings linear = linearised(machine);
-  const std::vector<Instant> schedule =
-      make_schedule(loop_rates(machine.nc.periods, reading_delay));
-  ServoAxes axes(linear, {joint}, schedule);
+double spectral_radius(const model::MachineSettings& machine, int joint, Tick reading_delay) {
+  const model::MachineSettings linear = linearised(machine);
+  const std::vector<model::Instant> schedule =
+      model::make_schedule(engine::loop_rates(machine.nc.periods, reading_delay));
+  engine::ServoAxes axes(linear, {joint}, schedule);
   int states = 0;
   axes.each_state(joint, [&](double&) { ++states; });
 
@@ -44,14 +44,14 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
     axes.follow({});
     int k = 0;
     axes.each_state(joint, [&](double& x) { x = k++ == column ? 1.0 : 0.0; });
-    for (const Instant& instant : schedule) {
-      if (instant.due & kFeedbackSample) axes.sample_position_feedback();
-      if (instant.due & kPositionLoop) {
+    for (const model::Instant& instant : schedule) {
+      if (instant.due & model::kFeedbackSample) axes.sample_position_feedback();
+      if (instant.due & model::kPositionLoop) {
         axes.compensate_backlash();
         axes.close_position_loops();
       }
-      if (instant.due & kCurrentLoop) axes.latch_current_commands();
-      if (instant.due & kVelocityLoop) axes.close_velocity_loops();
+      if (instant.due & model::kCurrentLoop) axes.latch_current_commands();
+      if (instant.due & model::kVelocityLoop) axes.close_velocity_loops();
       axes.advance(instant.step);
     }
     int row = 0;
@@ -60,4 +60,4 @@ double spectral_radius(const MachineSettings& machine, int joint, Tick reading_d
   return eigenvalues(monodromy).cwiseAbs().maxCoeff();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
@@ -73,7 +73,7 @@ StepFigures figures_of(StepKind kind, const std::vector<double>& time, const std
   return out;
 }
 
-StepResponse step_response(const MachineSettings& machine, int joint, Tick reading_delay,
+StepResponse step_response(const model::MachineSettings& machine, int joint, Tick reading_delay,
                            const StepSettings& settings, Tick every) {
   assert(settings.amplitude != 0.0 && settings.duration > 0.0 && every > 0);
   const PositionLoop loop =
@@ -109,4 +109,4 @@ StepResponse step_response(const MachineSettings& machine, int joint, Tick readi
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -7,7 +7,7 @@
 
 #include "sim/frequency/axis_test_bench.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 enum class StepKind : std::uint8_t {
   position,  // m, rad: of the setpoint, nothing fed forward
@@ -44,11 +44,11 @@ struct StepResponse {
 
 /// The step comes at t = 0, at an instant of all loops; the axis has stood for long.
 /// @param every  ticks between recorded rows
-StepResponse step_response(const MachineSettings& machine, int joint, Tick reading_delay,
+StepResponse step_response(const model::MachineSettings& machine, int joint, Tick reading_delay,
                            const StepSettings& settings, Tick every = 10);
 
 /// Figures of merit of a recorded value y(t) that was 0 before.
 StepFigures figures_of(StepKind kind, const std::vector<double>& time, const std::vector<double>& y,
                        double amplitude, double band);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -14,7 +14,7 @@
 #include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 namespace {
 
 constexpr double kLowest = 0.5;           // Hz
@@ -41,13 +41,14 @@ ResponseAt open_position(FrequencyResponse& response) {
   };
 }
 
-std::vector<double> position_grid(const MachineSettings& machine, int joint, Tick reading_delay) {
+std::vector<double> position_grid(const model::MachineSettings& machine, int joint,
+                                  Tick reading_delay) {
   const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.position);
   return logarithmic(
       kLowest, nyquist, kGrid,
       ringing_frequencies(machine, joint, reading_delay, PositionLoop::closed, nyquist));
 }
-std::vector<double> velocity_grid(const MachineSettings& machine, int joint) {
+std::vector<double> velocity_grid(const model::MachineSettings& machine, int joint) {
   const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.velocity);
   return logarithmic(kLowest, nyquist, kGrid,
                      ringing_frequencies(machine, joint, 0, PositionLoop::open, nyquist));
@@ -119,13 +120,13 @@ double kept_at(double gain, const Kept& kept) {
   return 0.0;
 }
 
-Margins velocity_margins(const MachineSettings& machine, int joint) {
+Margins velocity_margins(const model::MachineSettings& machine, int joint) {
   FrequencyResponse response(machine, joint, 0, PositionLoop::open);
   const ResponseAt L = open_velocity(response);
   return margins_of(curve_of(L, velocity_grid(machine, joint)), L);
 }
 
-double step_overshoot(const MachineSettings& linear, int joint, Tick reading_delay) {
+double step_overshoot(const model::MachineSettings& linear, int joint, Tick reading_delay) {
   const double slowest = slowest_time_constant(linear, joint, reading_delay, PositionLoop::closed);
   if (!std::isfinite(slowest)) return Margins::kNone;
   StepSettings step;
@@ -134,7 +135,7 @@ double step_overshoot(const MachineSettings& linear, int joint, Tick reading_del
   return step_response(linear, joint, reading_delay, step).figures.overshoot;
 }
 
-[[noreturn]] void no_gain(const MachineSettings& machine, int joint, std::string_view gain,
+[[noreturn]] void no_gain(const model::MachineSettings& machine, int joint, std::string_view gain,
                           const TuneSettings& wanted) {
   throw InputError(
       {"axis " + std::string(1, machine.chain.layout.letter_of(joint))},
@@ -143,10 +144,10 @@ double step_overshoot(const MachineSettings& linear, int joint, Tick reading_del
                   gain, wanted.phase_margin / deg, 20.0 * std::log10(wanted.gain_margin)));
 }
 
-Largest largest_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Gains gains,
-                   const TuneSettings& wanted) {
+Largest largest_Kv(const model::MachineSettings& machine, int joint, Tick reading_delay,
+                   Gains gains, const TuneSettings& wanted) {
   gains.Kv = 1.0;
-  const MachineSettings tried = with_gains(machine, joint, gains);
+  const model::MachineSettings tried = with_gains(machine, joint, gains);
   FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
   const double Tp = machine.nc.periods.seconds(machine.nc.periods.position);
   const Curve one = curve_of(open_position(response), position_grid(tried, joint, reading_delay));
@@ -170,7 +171,7 @@ double lowered(double most, double bound, const Of& quantity) {
   return good;
 }
 
-double position_bandwidth(const MachineSettings& machine, int joint, Tick reading_delay) {
+double position_bandwidth(const model::MachineSettings& machine, int joint, Tick reading_delay) {
   FrequencyResponse response(machine, joint, reading_delay, PositionLoop::closed);
   const ResponseAt T = [&](double f) {
     return response.at(Entry::setpoint, f)[index_of(AxisSignal::position)];
@@ -181,7 +182,8 @@ double position_bandwidth(const MachineSettings& machine, int joint, Tick readin
 // Gains of one axis, from the inner loop to the outer.
 class Tuner {
  public:
-  Tuner(const MachineSettings& machine, int joint, Tick reading_delay, const TuneSettings& wanted)
+  Tuner(const model::MachineSettings& machine, int joint, Tick reading_delay,
+        const TuneSettings& wanted)
       : machine_(machine),
         linear_(linearised(machine)),
         joint_(joint),
@@ -212,7 +214,7 @@ class Tuner {
     return gains;
   }
 
-  MachineSettings at_Kv(const Gains& gains, double Kv) const {
+  model::MachineSettings at_Kv(const Gains& gains, double Kv) const {
     Gains tried = gains;
     tried.Kv = Kv;
     return with_gains(linear_, joint_, tried);
@@ -280,8 +282,8 @@ class Tuner {
     out_.Kv_lowered = 1.0 - kept / rounded_down(gains.Kv);
   }
 
-  const MachineSettings& machine_;
-  const MachineSettings linear_;
+  const model::MachineSettings& machine_;
+  const model::MachineSettings linear_;
   int joint_;
   Tick reading_delay_;
   const TuneSettings& wanted_;
@@ -290,13 +292,14 @@ class Tuner {
 
 }  // namespace
 
-Gains gains_of(const MachineSettings& machine, int joint) {
+Gains gains_of(const model::MachineSettings& machine, int joint) {
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   return {c.Kp / c.J, c.Ki > 0.0 ? c.Kp / c.Ki : 0.0, c.Kv};
 }
 
-MachineSettings with_gains(const MachineSettings& machine, int joint, const Gains& gains) {
-  MachineSettings out = machine;
+model::MachineSettings with_gains(const model::MachineSettings& machine, int joint,
+                                  const Gains& gains) {
+  model::MachineSettings out = machine;
   controllers::CascadeParams& c = out.nc.cascade[static_cast<std::size_t>(joint)];
   c.Kp = gains.wv * c.J;
   c.Ki = gains.Tn > 0.0 ? c.Kp / gains.Tn : 0.0;
@@ -309,8 +312,8 @@ bool keeps(const Assessment& a, const TuneSettings& wanted) {
          a.overshoot <= wanted.overshoot;
 }
 
-Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay) {
-  const MachineSettings linear = linearised(machine);
+Assessment assess(const model::MachineSettings& machine, int joint, Tick reading_delay) {
+  const model::MachineSettings linear = linearised(machine);
   Assessment out;
   out.gains = gains_of(machine, joint);
   out.velocity = velocity_margins(linear, joint);
@@ -336,13 +339,13 @@ Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay)
   return out;
 }
 
-Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
+Tuning tune(const model::MachineSettings& machine, int joint, Tick reading_delay,
             const TuneSettings& wanted) {
   return Tuner(machine, joint, reading_delay, wanted).tune();
 }
 
-Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Tuning tuning,
-                      double Kv) {
+Tuning with_common_Kv(const model::MachineSettings& machine, int joint, Tick reading_delay,
+                      Tuning tuning, double Kv) {
   assert(Kv <= tuning.after.gains.Kv);
   Gains gains = tuning.after.gains;
   gains.Kv = Kv;
@@ -350,4 +353,4 @@ Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_de
   return tuning;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -9,7 +9,7 @@
 #include "sim/frequency/margins.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::frequency {
 
 struct Gains {
   double wv = 0.0;  // rad/s, velocity bandwidth: Kp = wv J
@@ -17,8 +17,9 @@ struct Gains {
   double Kv = 0.0;  // 1/s
 };
 
-Gains gains_of(const MachineSettings& machine, int joint);
-MachineSettings with_gains(const MachineSettings& machine, int joint, const Gains& gains);
+Gains gains_of(const model::MachineSettings& machine, int joint);
+model::MachineSettings with_gains(const model::MachineSettings& machine, int joint,
+                                  const Gains& gains);
 
 struct TuneSettings {
   double phase_margin = 60.0 * deg;  // rad, least, of both loops
@@ -47,7 +48,7 @@ struct Assessment {
 };
 /// Stable, with all margins and no more overshoot than wanted.
 bool keeps(const Assessment& assessment, const TuneSettings& wanted);
-Assessment assess(const MachineSettings& machine, int joint, Tick reading_delay);
+Assessment assess(const model::MachineSettings& machine, int joint, Tick reading_delay);
 
 struct Tuning {
   Assessment before, after;
@@ -66,12 +67,12 @@ struct Tuning {
 /// to four digits, assessed as rounded, and lowered further as long as the assessment misses a
 /// margin.
 /// @throws InputError that names the margin if no gain has it
-Tuning tune(const MachineSettings& machine, int joint, Tick reading_delay,
+Tuning tune(const model::MachineSettings& machine, int joint, Tick reading_delay,
             const TuneSettings& settings);
 
 /// The same with this Kv instead of the largest one, not above it (interpolating axes need equal
 /// ones).
-Tuning with_common_Kv(const MachineSettings& machine, int joint, Tick reading_delay, Tuning tuning,
-                      double Kv);
+Tuning with_common_Kv(const model::MachineSettings& machine, int joint, Tick reading_delay,
+                      Tuning tuning, double Kv);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::frequency

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -27,7 +27,7 @@ using Rows = std::vector<Plausible>;
 double inverse(double x) { return x == 0.0 ? 0.0 : 1.0 / x; }
 
 // Values with the same bounds on linear and rotary axes.
-void add_common(const MachineSettings& machine, std::size_t j, Rows& rows) {
+void add_common(const model::MachineSettings& machine, std::size_t j, Rows& rows) {
   const plant::FeedDriveParams& drive = machine.drives[j];
   const controllers::CascadeParams& cascade = machine.nc.cascade[j];
   const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
@@ -43,7 +43,7 @@ void add_common(const MachineSettings& machine, std::size_t j, Rows& rows) {
                {"winding.bandwidth", bandwidth, 10.0, 1e6, "rad/s", "3000 rad/s"}});
 }
 
-void add_friction(const MachineSettings& machine, std::size_t j, bool linear, Rows& rows) {
+void add_friction(const model::MachineSettings& machine, std::size_t j, bool linear, Rows& rows) {
   const plant::FrictionParams& f = machine.drives[j].friction;
   if (f.kind == plant::FrictionKind::none) return;
   const bool is_lugre = f.kind == plant::FrictionKind::lugre;
@@ -63,11 +63,11 @@ void add_friction(const MachineSettings& machine, std::size_t j, bool linear, Ro
         linear ? "N/m" : "Nm/rad", linear ? "50 N/um" : "0.1 Nm/urad"}});
 }
 
-void add_linear(const MachineSettings& machine, int joint, Rows& rows) {
+void add_linear(const model::MachineSettings& machine, int joint, Rows& rows) {
   const auto j = static_cast<std::size_t>(joint);
   const plant::FeedDriveParams& drive = machine.drives[j];
-  const NcSettings& nc = machine.nc;
-  const AxisFunctions& functions = nc.functions[j];
+  const model::NcSettings& nc = machine.nc;
+  const model::AxisFunctions& functions = nc.functions[j];
   const bool is_elastic = !drive.is_rigid();
   const bool is_linear_motor = drive.kind == plant::DriveKind::direct;
   const double lead_mm = is_linear_motor ? 0.0 : drive.r * 2.0 * std::numbers::pi / mm;
@@ -109,11 +109,11 @@ void add_linear(const MachineSettings& machine, int joint, Rows& rows) {
                {"motor_step", machine.motor[j].step(), 1e-10, 0.1, "rad", "0.75 urad"}});
 }
 
-void add_rotary(const MachineSettings& machine, int joint, Rows& rows) {
+void add_rotary(const model::MachineSettings& machine, int joint, Rows& rows) {
   const auto j = static_cast<std::size_t>(joint);
   const plant::FeedDriveParams& drive = machine.drives[j];
-  const NcSettings& nc = machine.nc;
-  const AxisFunctions& functions = nc.functions[j];
+  const model::NcSettings& nc = machine.nc;
+  const model::AxisFunctions& functions = nc.functions[j];
   const bool is_elastic = !drive.is_rigid();
   rows.insert(rows.end(),
               {{"stiffness", is_elastic ? drive.k : 0.0, 10.0, 1e12, "Nm/rad", "5 Nm/urad"},
@@ -143,7 +143,7 @@ bool is_plausible(const Plausible& p) {
 
 }  // namespace
 
-std::vector<std::string> implausible_values(const MachineSettings& machine, int joint) {
+std::vector<std::string> implausible_values(const model::MachineSettings& machine, int joint) {
   Rows rows;
   joint < kLinearJoints ? add_linear(machine, joint, rows) : add_rotary(machine, joint, rows);
   add_common(machine, static_cast<std::size_t>(joint), rows);
@@ -164,7 +164,7 @@ std::vector<std::string> implausible_values(const MachineSettings& machine, int 
   return out;
 }
 
-std::vector<std::string> implausible_values(const MachineSettings& machine) {
+std::vector<std::string> implausible_values(const model::MachineSettings& machine) {
   std::vector<std::string> out;
   for (const int joint : machine.joints()) {
     for (std::string& value : implausible_values(machine, joint)) out.push_back(std::move(value));
@@ -172,4 +172,4 @@ std::vector<std::string> implausible_values(const MachineSettings& machine) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -7,10 +7,10 @@
 
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// "axis.X.stiffness = 180 N/m; ...", one for each value.
-std::vector<std::string> implausible_values(const MachineSettings& machine, int joint);
-std::vector<std::string> implausible_values(const MachineSettings& machine);
+std::vector<std::string> implausible_values(const model::MachineSettings& machine, int joint);
+std::vector<std::string> implausible_values(const model::MachineSettings& machine);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

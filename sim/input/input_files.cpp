@@ -3,7 +3,7 @@
 #include "plant/vocabulary/checksum.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::size_t kMostDocuments = 100;
@@ -16,12 +16,12 @@ InputFiles::InputFiles(std::size_t most_bytes)
 
 std::shared_ptr<const std::string> InputFiles::text(const std::string& path, const Place& at,
                                                     std::string_view what) {
-  MemoKey key;
+  system::MemoKey key;
   key.add(path);
   return texts_.get(key, [&] {
     const bool is_document = what == "scenario" || what == "machine";
     std::string text =
-        read_file(path, at, what, is_document ? kMostBytesOfDocument : kMostBytesOfFile);
+        system::read_file(path, at, what, is_document ? kMostBytesOfDocument : kMostBytesOfFile);
     const std::uint64_t now = crc64(text);
     const std::scoped_lock lock(mutex_);
     if (checksums_.emplace(path, now).first->second != now) {
@@ -38,16 +38,16 @@ std::uint64_t InputFiles::checksum(const std::string& path, const Place& at,
   return checksums_.at(path);
 }
 
-std::shared_ptr<const Document> InputFiles::document(const std::string& path) {
+std::shared_ptr<const config::Document> InputFiles::document(const std::string& path) {
   return document(path, *text(path, {}, "scenario"));
 }
 
-std::shared_ptr<const Document> InputFiles::document(const std::string& path,
-                                                     const std::string& text) {
-  MemoKey key;
+std::shared_ptr<const config::Document> InputFiles::document(const std::string& path,
+                                                             const std::string& text) {
+  system::MemoKey key;
   key.add(path);
   key.add(text);
-  return documents_.get(key, [&] { return Document::from_text(text, path); });
+  return documents_.get(key, [&] { return config::Document::from_text(text, path); });
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -12,7 +12,7 @@
 #include "sim/config/document.h"
 #include "sim/system/shared_cache.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Reads every file once and keeps it, however often it is asked for, so that what happens to a
 /// file during a sweep does not matter. Beyond some bytes those asked for least recently are
@@ -34,17 +34,18 @@ class InputFiles {
 
   /// A scenario.
   /// @throws InputError if it cannot be read or is not TOML
-  std::shared_ptr<const Document> document(const std::string& path);
+  std::shared_ptr<const config::Document> document(const std::string& path);
 
   /// The document that the text of a file is.
   /// @throws InputError if it is not TOML
-  std::shared_ptr<const Document> document(const std::string& path, const std::string& text);
+  std::shared_ptr<const config::Document> document(const std::string& path,
+                                                   const std::string& text);
 
  private:
-  SharedCache<std::string> texts_;
-  SharedCache<Document> documents_;
+  system::SharedCache<std::string> texts_;
+  system::SharedCache<config::Document> documents_;
   std::mutex mutex_;
   std::unordered_map<std::string, std::uint64_t> checksums_;  // by path, of all that was read
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 std::string_view help_of_key(std::string_view section, std::string_view key) {
   if (section == "machine.axis.X.motor") section = "machine.axis.X.scale";
@@ -16,4 +16,4 @@ std::string_view help_of_key(std::string_view section, std::string_view key) {
   return {};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

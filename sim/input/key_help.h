@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 struct KeyHelp {
   std::string_view section, key, sentence;
@@ -21,4 +21,4 @@ std::span<const KeyHelp> machine_key_help();
 /// The sentence of a key as list_keys() names it; empty: it has none.
 std::string_view help_of_key(std::string_view section, std::string_view key);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -10,17 +10,18 @@
 #include "sim/input/input_files.h"
 #include "sim/input/key_help.h"
 #include "sim/input/key_specimens.h"
+#include "sim/input/read_scenario.h"
 #include "sim/input/scenario_document.h"
 #include "sim/model/scenario.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 // All requests of the readers for one key.
 struct Requests {
   std::string section, key;
-  std::vector<KeyUse> uses;
+  std::vector<config::KeyUse> uses;
 };
 
 // A component error over mm: listed with those.
@@ -60,11 +61,11 @@ std::string common_key(const std::string& section, const std::string& key) {
   return common_name(key);
 }
 
-std::shared_ptr<KeyLog> requests_of_readers() {
-  auto log = std::make_shared<KeyLog>();
+std::shared_ptr<config::KeyLog> requests_of_readers() {
+  auto log = std::make_shared<config::KeyLog>();
   for (const std::string_view text : key_specimens()) {
     InputFiles files;
-    Document document = Document::from_text(text, "specimen");
+    config::Document document = config::Document::from_text(text, "specimen");
     document.record_keys(log);
     const std::string name(document.root().find("title")->text);
     read_document(with_machine(std::move(document), {}, files), name, files);
@@ -84,7 +85,7 @@ bool is_parameter_of_strategy(std::string_view key) {
 std::vector<Requests> grouped() {
   const auto log = requests_of_readers();
   std::vector<Requests> out;
-  for (const KeyUse& use : log->uses()) {
+  for (const config::KeyUse& use : log->uses()) {
     const std::string section = common_name(use.table);
     const std::string key = common_key(section, use.key);
     if (section == "case.strategy" && is_parameter_of_strategy(key)) continue;
@@ -107,29 +108,29 @@ std::string quoted_words(const std::vector<std::string>& words) {
   return fmt::format("\"{}\"", fmt::join(words, "\" | \""));
 }
 
-std::string type_of(const KeyUse& use) {
+std::string type_of(const config::KeyUse& use) {
   const std::string unit = use.unit.empty() ? "" : " in " + use.unit;
   switch (use.type) {
-    case KeyType::asked:
+    case config::KeyType::asked:
       return "";
-    case KeyType::number:
+    case config::KeyType::number:
       return "number" + unit;
-    case KeyType::integer:
+    case config::KeyType::integer:
       return "integer";
-    case KeyType::boolean:
+    case config::KeyType::boolean:
       return "true | false";
-    case KeyType::text:
+    case config::KeyType::text:
       return "text";
-    case KeyType::choice:
+    case config::KeyType::choice:
       return use.words.size() > kMostWords ? fmt::format("one of {} names", use.words.size())
                                            : quoted_words(use.words);
-    case KeyType::numbers:
+    case config::KeyType::numbers:
       return "list of numbers" + unit;
-    case KeyType::texts:
+    case config::KeyType::texts:
       return "list of texts";
-    case KeyType::table:
+    case config::KeyType::table:
       return "table";
-    case KeyType::tables:
+    case config::KeyType::tables:
       return "list of tables";
   }
   return "";
@@ -143,13 +144,14 @@ void append_new(std::string& list, const std::string& item, std::string_view sep
 }
 
 // A key that a reader looks for before it requires it may be absent.
-std::string presence_of(const std::vector<KeyUse>& uses) {
+std::string presence_of(const std::vector<config::KeyUse>& uses) {
   bool asked = false, required = false, optional = false;
   std::vector<std::string> defaults;
-  const bool is_text = uses.back().type == KeyType::choice || uses.back().type == KeyType::text;
-  for (const KeyUse& use : uses) {
-    if (use.type == KeyType::asked) asked = asked || !required;
-    if (use.type == KeyType::asked) continue;
+  const bool is_text =
+      uses.back().type == config::KeyType::choice || uses.back().type == config::KeyType::text;
+  for (const config::KeyUse& use : uses) {
+    if (use.type == config::KeyType::asked) asked = asked || !required;
+    if (use.type == config::KeyType::asked) continue;
     required = required || (use.required && !asked);
     optional = optional || !use.required;
     if (!use.fallback || use.fallback->empty()) continue;
@@ -170,7 +172,7 @@ KeyEntry entry_of(const Requests& requests) {
                "",
                presence_of(requests.uses),
                help_of_key(requests.section, requests.key)};
-  for (const KeyUse& use : requests.uses) {
+  for (const config::KeyUse& use : requests.uses) {
     append_new(out.type, type_of(use), " | ");
     append_new(out.unit, use.unit, " | ");
     if (!use.range.empty() && !out.range.empty() && use.range != out.range) {
@@ -229,4 +231,4 @@ std::vector<KeyEntry> keys_of(std::string_view section) {
                    fmt::format("no section '{}'{}", section, did_you_mean(section, views)));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -7,7 +7,7 @@
 
 #include "sim/config/key_log.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// The name by which the keys without a section are asked for.
 inline constexpr std::string_view kTopSection = "top";
@@ -31,4 +31,4 @@ std::vector<KeyEntry> list_keys();
 /// @throws InputError if there are none, with the nearest name
 std::vector<KeyEntry> keys_of(std::string_view section);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -1,6 +1,6 @@
 #include "sim/input/key_specimens.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::string_view kFirst = R"(
@@ -385,4 +385,4 @@ name = "nominal"
 
 std::array<std::string_view, 3> key_specimens() { return {kFirst, kSecond, kThird}; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

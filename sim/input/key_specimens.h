@@ -5,10 +5,10 @@
 #include <array>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Complete documents. Together they make the readers ask for every key; defaults that follow from
 /// other keys differ between them.
 std::array<std::string_view, 3> key_specimens();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -4,7 +4,7 @@
 
 #include "sim/system/json.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::string_view kDefault = "default ";
@@ -73,7 +73,7 @@ std::string as_markdown(std::span<const KeyEntry> keys) {
 std::string as_json(std::span<const KeyEntry> keys) {
   std::string out;
   for (const KeyEntry& one : keys) {
-    JsonObject line;
+    system::JsonObject line;
     line.text_or_null("section", one.section).text("key", one.key).text("help", one.help);
     line.text("type", one.type).text_or_null("unit", one.unit).text_or_null("range", one.range);
     line.text("presence", one.presence).text_or_null("default", default_of(one));
@@ -82,4 +82,4 @@ std::string as_json(std::span<const KeyEntry> keys) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

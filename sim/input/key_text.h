@@ -6,7 +6,7 @@
 
 #include "sim/input/key_list.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// "[record]" and one line a key: name, sentence, and in brackets type, unit, range, presence.
 std::string as_text(std::span<const KeyEntry> keys);
@@ -18,4 +18,4 @@ std::string as_markdown(std::span<const KeyEntry> keys);
 /// where there is none.
 std::string as_json(std::span<const KeyEntry> keys);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -7,9 +7,9 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
-bool must_be_known(Reader& table, std::string_view key, const std::string& name,
+bool must_be_known(config::Reader& table, std::string_view key, const std::string& name,
                    std::string_view what, std::span<const std::string> names) {
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
   const std::string all = names.empty() ? std::string("; there is none")
@@ -20,4 +20,4 @@ bool must_be_known(Reader& table, std::string_view key, const std::string& name,
   return false;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

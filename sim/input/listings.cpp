@@ -9,7 +9,7 @@
 #include "sim/evaluation/quantity.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 std::string describe(const strategies::Entry& entry) {
@@ -35,7 +35,7 @@ std::string describe_strategies() {
 
 std::string describe_quantities() {
   std::string out;
-  for (const QuantityEntry& info : quantities()) {
+  for (const evaluation::QuantityEntry& info : evaluation::quantities()) {
     out += fmt::format("{:<24} {:<3} {}\n", info.name, info.unit, info.help);
   }
   return out;
@@ -68,11 +68,11 @@ std::string describe_reader_rules() {
 }
 
 std::string title_of(const std::string& path) {
-  const Document document = Document::from_file(path);
+  const config::Document document = config::Document::from_file(path);
   for (const char* key : {"title", "name"}) {
-    if (const Value* value = document.root().find(key)) return value->text;
+    if (const config::Value* value = document.root().find(key)) return value->text;
   }
   return "";
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

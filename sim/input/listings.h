@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Every strategy with its keys, units, defaults and words.
 std::string describe_strategies();
@@ -18,4 +18,4 @@ std::string describe_reader_rules();
 /// `title` of a scenario or `name` of a machine; the fault if it cannot be read.
 std::string title_of(const std::string& path);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -1,6 +1,6 @@
 #include "sim/input/key_help.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr KeyHelp kMachine[] = {
@@ -210,4 +210,4 @@ constexpr KeyHelp kMachine[] = {
 
 std::span<const KeyHelp> machine_key_help() { return kMachine; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -14,7 +14,7 @@
 #include "strategies/plugin_file.h"
 #include "strategies/plugin_watch.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 // In resolved documents: a result is data, and must not have code run that it names.
@@ -23,7 +23,7 @@ constexpr std::string_view kLoaded = "loaded:";
 // A number without a unit that is known would be taken as one in SI.
 void check_units(const strategies::Entry& entry, const std::string& file) {
   for (const ParameterSpec& one : entry.parameters) {
-    if (one.unit.empty() || parse_unit(one.unit).unit) continue;
+    if (one.unit.empty() || config::parse_unit(one.unit).unit) continue;
     throw InputError({file}, fmt::format("strategy {}: parameter {} has the unit '{}', which is "
                                          "not known",
                                          entry.name, one.name, one.unit));
@@ -47,7 +47,7 @@ void on_plugin_failure(std::function<void(const std::string& why)> then) {
   strategies::on_plugin_failure(std::move(then));
 }
 
-std::string read_plugins(Reader& root) {
+std::string read_plugins(config::Reader& root) {
   const Place at = root.place("plugins");
   for (const std::string& name : root.texts_or("plugins", {})) {
     if (!name.starts_with(kLoaded)) {
@@ -61,9 +61,9 @@ std::string read_plugins(Reader& root) {
   std::vector<std::string> files;
   for (const strategies::LoadedPlugin& one : strategies::loaded_plugins()) {
     const std::filesystem::path file = one.file;
-    files.push_back(quoted_text(std::string(kLoaded) + file.filename().string()));
+    files.push_back(config::quoted_text(std::string(kLoaded) + file.filename().string()));
   }
   return files.empty() ? "" : fmt::format("plugins=[{}]", fmt::join(files, ", "));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -4,9 +4,11 @@
 #include <functional>
 #include <string>
 
-namespace servomill::sim {
-
+namespace servomill::sim::config {
 class Reader;
+}  // namespace servomill::sim::config
+
+namespace servomill::sim::input {
 
 /// Loads a shared library with strategies; scenarios that are read from now on find them.
 /// @throws InputError as strategies::load_plugin does
@@ -23,6 +25,6 @@ void on_plugin_failure(std::function<void(const std::string& why)> then);
 /// alone, and those must have been loaded: reading a result runs no code that it names.
 /// @return what the resolved document has of all that are loaded: "plugins=[...]"; or empty
 /// @throws InputError
-std::string read_plugins(Reader& root);
+std::string read_plugins(config::Reader& root);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

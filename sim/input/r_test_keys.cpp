@@ -3,13 +3,13 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
-void read_bar(Reader& bar, QuantitySpec& spec) {
+void read_bar(config::Reader& bar, model::QuantitySpec& spec) {
   spec.sections.push_back(bar.text("section"));
   const std::size_t before = bar.faults();
-  const std::vector<double> centre = bar.reals("centre_mm", kLength);
+  const std::vector<double> centre = bar.reals("centre_mm", config::kLength);
   if (bar.faults() > before) return;
   if (centre.size() == 3) {
     spec.ball->bar_centres.emplace_back(centre.data());
@@ -18,7 +18,7 @@ void read_bar(Reader& bar, QuantitySpec& spec) {
   }
 }
 
-std::optional<plant::ErrorName> read_error(Reader& table, const JointLayout& layout) {
+std::optional<plant::ErrorName> read_error(config::Reader& table, const JointLayout& layout) {
   const std::size_t before = table.faults();
   const std::string text = table.text("error");
   if (table.faults() > before || layout == JointLayout{}) return std::nullopt;
@@ -34,11 +34,12 @@ std::optional<plant::ErrorName> read_error(Reader& table, const JointLayout& lay
 
 }  // namespace
 
-void read_r_test(Reader& table, const QuantityEntry& entry, const JointLayout& layout,
-                 QuantitySpec& spec) {
+void read_r_test(config::Reader& table, const evaluation::QuantityEntry& entry,
+                 const JointLayout& layout, model::QuantitySpec& spec) {
   spec.ball.emplace();
-  if (entry.bars == BallBars::required || (entry.bars == BallBars::optional && table.has("bar"))) {
-    for (Reader& bar : table.tables("bar")) read_bar(bar, spec);
+  if (entry.bars == evaluation::BallBars::required ||
+      (entry.bars == evaluation::BallBars::optional && table.has("bar"))) {
+    for (config::Reader& bar : table.tables("bar")) read_bar(bar, spec);
     spec.sections_place = table.place("bar");
   } else {
     spec.sections = table.texts("sections");
@@ -52,4 +53,4 @@ void read_r_test(Reader& table, const QuantityEntry& entry, const JointLayout& l
   if (table.has("error")) spec.ball->error = read_error(table, layout);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -15,13 +15,13 @@
 #include "sim/input/read_strategy.h"
 #include "sim/input/scenario_document.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::array<std::string_view, 2> kServos = {"cascade", "ideal"};
 
-const strategies::Entry* user_of_hardware(const CaseSpec& spec) {
-  for (const StrategySpec& strategy : spec.strategies) {
+const strategies::Entry* user_of_hardware(const model::CaseSpec& spec) {
+  for (const model::StrategySpec& strategy : spec.strategies) {
     if (strategy.entry->uses_feedback_hardware) return strategy.entry;
   }
   return nullptr;
@@ -30,23 +30,23 @@ const strategies::Entry* user_of_hardware(const CaseSpec& spec) {
 }  // namespace
 
 CaseReader::CaseReader(std::vector<std::string> error_models, bool hardware_is_chosen,
-                       Scenario& out)
+                       model::Scenario& out)
     : error_models_(std::move(error_models)), hardware_is_chosen_(hardware_is_chosen), out_(out) {}
 
-void CaseReader::read(Reader& table) {
-  CaseSpec spec;
+void CaseReader::read(config::Reader& table) {
+  model::CaseSpec spec;
   const std::size_t before = table.faults();
   spec.name = table.text("name");
   if (table.faults() == before) check_name(table, spec.name);
   if (table.faults() > before) names_are_known_ = false;
   if (table.has("work_offset")) {
-    Reader words = table.table("work_offset");
+    config::Reader words = table.table("work_offset");
     spec.work_offset = read_offsets(words, out_.machine.chain.layout);
   }
   const bool says_hardware = table.has("feedback_hardware");
   spec.feedback_hardware = table.boolean_or("feedback_hardware", out_.hardware.connected);
   read_case_cutting(table, out_.cutting, spec);
-  spec.servo = static_cast<ServoModel>(table.choice_or("servo", 0, kServos));
+  spec.servo = static_cast<model::ServoModel>(table.choice_or("servo", 0, kServos));
   check_recording(table, spec);
   if (table.has("machine_errors")) {
     spec.machine_errors = table.text("machine_errors");
@@ -54,7 +54,7 @@ void CaseReader::read(Reader& table) {
       must_be_known(table, "machine_errors", *spec.machine_errors, "error model", error_models_);
     }
   }
-  for (Reader& strategy : table.tables_or_none("strategy")) {
+  for (config::Reader& strategy : table.tables_or_none("strategy")) {
     read_strategy(strategy, error_models_, spec);
   }
   if (table.has("machine_override")) note_machine_override(table);
@@ -63,7 +63,7 @@ void CaseReader::read(Reader& table) {
 }
 
 // The name becomes a group of the result file.
-void CaseReader::check_name(Reader& table, const std::string& name) const {
+void CaseReader::check_name(config::Reader& table, const std::string& name) const {
   if (name.empty() || name == "." || name == "..") {
     table.fault("name", "must name the case");
   } else if (name.find('/') != std::string::npos) {
@@ -73,8 +73,8 @@ void CaseReader::check_name(Reader& table, const std::string& name) const {
   }
 }
 
-void CaseReader::check_recording(Reader& table, const CaseSpec& spec) const {
-  if (spec.servo == ServoModel::ideal &&
+void CaseReader::check_recording(config::Reader& table, const model::CaseSpec& spec) const {
+  if (spec.servo == model::ServoModel::ideal &&
       out_.record_period % out_.machine.nc.periods.position != 0) {
     table.fault(
         "servo",
@@ -84,7 +84,7 @@ void CaseReader::check_recording(Reader& table, const CaseSpec& spec) const {
   }
 }
 
-void CaseReader::give_hardware(Reader& table, bool says_hardware, CaseSpec& spec) {
+void CaseReader::give_hardware(config::Reader& table, bool says_hardware, model::CaseSpec& spec) {
   if (const strategies::Entry* user = user_of_hardware(spec)) {
     if (says_hardware && !spec.feedback_hardware) {
       table.fault("feedback_hardware",
@@ -97,14 +97,15 @@ void CaseReader::give_hardware(Reader& table, bool says_hardware, CaseSpec& spec
 }
 
 void CaseReader::connect_hardware() {
-  const bool any = std::any_of(out_.cases.begin(), out_.cases.end(),
-                               [](const CaseSpec& one) { return one.needs_feedback_hardware(); });
+  const bool any =
+      std::any_of(out_.cases.begin(), out_.cases.end(),
+                  [](const model::CaseSpec& one) { return one.needs_feedback_hardware(); });
   for (const std::size_t index : follows_others_) out_.cases[index].feedback_hardware = any;
 }
 
-void CaseReader::note_machine_override(Reader& table) {
-  const Value* override = table.raw("machine_override");
-  if (override->type != Value::Type::table) {
+void CaseReader::note_machine_override(config::Reader& table) {
+  const config::Value* override = table.raw("machine_override");
+  if (override->type != config::Value::Type::table) {
     table.fault("machine_override", "must be a table");
     return;
   }
@@ -117,18 +118,18 @@ void CaseReader::note_machine_override(Reader& table) {
   overrides_.emplace(out_.cases.size(), *override);
 }
 
-void CaseReader::read_machines(const Document& scenario) {
+void CaseReader::read_machines(const config::Document& scenario) {
   std::vector<Fault> faults;
   for (const auto& [index, override] : overrides_) {
-    Document document = scenario;
+    config::Document document = scenario;
     document.merge(as_machine(override));
-    Reader root(document);
+    config::Reader root(document);
     for (const std::string& key : root.keys()) {
       if (key != "machine") root.raw(key);
     }
     try {
-      Reader machine = root.table("machine");
-      CaseSpec& one = out_.cases[index];
+      config::Reader machine = root.table("machine");
+      model::CaseSpec& one = out_.cases[index];
       one.machine = read_machine(machine);
       root.finish();
       if (one.machine->nc.periods != out_.machine.nc.periods ||
@@ -145,4 +146,4 @@ void CaseReader::read_machines(const Document& scenario) {
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -10,7 +10,7 @@
 #include "sim/config/reader.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Adds the cases of a document to its scenario, one [[case]] after the other. Two things can be
 /// said of them only when all have been read: who has the feedback hardware, and on which machine a
@@ -20,9 +20,9 @@ class CaseReader {
   /// @param error_models        names of all models of the scenario
   /// @param hardware_is_chosen  [feedback_hardware] says if it is connected
   /// @param out                 its machine, periods and cutting have been read
-  CaseReader(std::vector<std::string> error_models, bool hardware_is_chosen, Scenario& out);
+  CaseReader(std::vector<std::string> error_models, bool hardware_is_chosen, model::Scenario& out);
 
-  void read(Reader& table);
+  void read(config::Reader& table);
 
   /// All cases read have names of their own, which others may refer to.
   bool names_are_known() const { return names_are_known_; }
@@ -34,20 +34,20 @@ class CaseReader {
   /// Machines of cases with machine_override: that of the scenario with these keys replaced. To be
   /// called when all else is known to be right: of a faulty machine no override can be judged.
   /// @throws InputError with the faults of all overrides
-  void read_machines(const Document& scenario);
+  void read_machines(const config::Document& scenario);
 
  private:
-  void check_name(Reader& table, const std::string& name) const;
-  void check_recording(Reader& table, const CaseSpec& spec) const;
-  void give_hardware(Reader& table, bool says_hardware, CaseSpec& spec);
-  void note_machine_override(Reader& table);
+  void check_name(config::Reader& table, const std::string& name) const;
+  void check_recording(config::Reader& table, const model::CaseSpec& spec) const;
+  void give_hardware(config::Reader& table, bool says_hardware, model::CaseSpec& spec);
+  void note_machine_override(config::Reader& table);
 
   std::vector<std::string> error_models_;
   bool hardware_is_chosen_;
-  Scenario& out_;
+  model::Scenario& out_;
   bool names_are_known_ = true;
-  std::vector<std::size_t> follows_others_;  // cases that have the hardware if any needs it
-  std::map<std::size_t, Value> overrides_;   // machine_override, by index of the case
+  std::vector<std::size_t> follows_others_;         // cases that have the hardware if any needs it
+  std::map<std::size_t, config::Value> overrides_;  // machine_override, by index of the case
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -5,7 +5,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr double kUsualSlenderness = 4.0;  // flutes over diameter
@@ -13,7 +13,7 @@ constexpr double kMostTeeth = 100.0;
 
 }  // namespace
 
-std::optional<plant::Cutter> read_cutter(Reader& tool, double diameter) {
+std::optional<plant::Cutter> read_cutter(config::Reader& tool, double diameter) {
   if (diameter <= 0.0) {
     for (const std::string_view key :
          {"corner_radius_mm", "flute_length_mm", "teeth", "helix_deg"}) {
@@ -25,15 +25,16 @@ std::optional<plant::Cutter> read_cutter(Reader& tool, double diameter) {
   }
   const std::size_t before = tool.faults();
   plant::Cutter cutter{.radius = 0.5 * diameter};
-  cutter.corner_radius =
-      tool.real_or("corner_radius_mm", 0.0, kLength, {at_least(0.0), at_most(cutter.radius)});
-  cutter.length = tool.real_or("flute_length_mm", kUsualSlenderness * diameter, kLength,
-                               {above(cutter.corner_radius)});
-  cutter.teeth =
-      static_cast<int>(tool.integer_or("teeth", cutter.teeth, {at_least(1), at_most(kMostTeeth)}));
-  cutter.helix = tool.real_or("helix_deg", 30 * deg, kAngle, {at_least(0.0), at_most(80 * deg)});
+  cutter.corner_radius = tool.real_or("corner_radius_mm", 0.0, config::kLength,
+                                      {config::at_least(0.0), config::at_most(cutter.radius)});
+  cutter.length = tool.real_or("flute_length_mm", kUsualSlenderness * diameter, config::kLength,
+                               {config::above(cutter.corner_radius)});
+  cutter.teeth = static_cast<int>(
+      tool.integer_or("teeth", cutter.teeth, {config::at_least(1), config::at_most(kMostTeeth)}));
+  cutter.helix = tool.real_or("helix_deg", 30 * deg, config::kAngle,
+                              {config::at_least(0.0), config::at_most(80 * deg)});
   if (tool.faults() > before) return std::nullopt;
   return cutter;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

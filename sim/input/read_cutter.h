@@ -6,11 +6,11 @@
 #include "plant/cutting/cutter.h"
 #include "sim/config/reader.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Keys corner_radius_mm (default 0: flat), flute_length_mm (default: four diameters), teeth (2)
 /// and helix_deg (30) of a tool.
 /// @param diameter  m; without one a tool cuts nothing, and these keys are faults
-std::optional<plant::Cutter> read_cutter(Reader& tool, double diameter);
+std::optional<plant::Cutter> read_cutter(config::Reader& tool, double diameter);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

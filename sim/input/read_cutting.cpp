@@ -4,35 +4,35 @@
 
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
-Eigen::Vector3d read_point(Reader& table, std::string_view key) {
+Eigen::Vector3d read_point(config::Reader& table, std::string_view key) {
   const std::size_t before = table.faults();
-  const auto p = table.reals(key, kLength);
+  const auto p = table.reals(key, config::kLength);
   if (table.faults() > before) return Eigen::Vector3d::Zero();
   if (p.size() == 3) return Eigen::Vector3d(p.data());
   table.fault(key, "must be [x, y, z]");
   return Eigen::Vector3d::Zero();
 }
 
-plant::StockBox read_box(Reader table) {
+plant::StockBox read_box(config::Reader table) {
   const std::size_t before = table.faults();
   plant::StockBox box{read_point(table, "from_mm"), read_point(table, "to_mm"),
-                      table.real_or("rotation_deg", 0.0, kAngle)};
+                      table.real_or("rotation_deg", 0.0, config::kAngle)};
   if (table.faults() == before && !(box.from.array() < box.to.array()).all()) {
     table.fault("to_mm", "must be above from_mm in X, Y and Z");
   }
   return box;
 }
 
-plant::StockCylinder read_cylinder(Reader table) {
+plant::StockCylinder read_cylinder(config::Reader table) {
   const std::size_t before = table.faults();
-  const auto centre = table.reals("centre_mm", kLength);
+  const auto centre = table.reals("centre_mm", config::kLength);
   plant::StockCylinder cylinder;
-  cylinder.radius = table.real("radius_mm", kLength, {above(0.0)});
-  cylinder.from = table.real("from_mm", kLength);
-  cylinder.to = table.real("to_mm", kLength);
+  cylinder.radius = table.real("radius_mm", config::kLength, {config::above(0.0)});
+  cylinder.from = table.real("from_mm", config::kLength);
+  cylinder.to = table.real("to_mm", config::kLength);
   if (table.faults() > before) return cylinder;
   if (centre.size() == 2) {
     cylinder.centre = Eigen::Vector2d(centre.data());
@@ -44,7 +44,7 @@ plant::StockCylinder read_cylinder(Reader table) {
 }
 
 // Without a material the coefficients have no defaults.
-plant::CuttingCoefficients read_material(Reader& table) {
+plant::CuttingCoefficients read_material(config::Reader& table) {
   std::vector<std::string_view> names;
   for (const plant::Material& one : plant::materials()) names.push_back(one.name);
   const std::size_t before = table.faults();
@@ -55,9 +55,9 @@ plant::CuttingCoefficients read_material(Reader& table) {
 
 }  // namespace
 
-plant::Stock read_stock(Reader& part) {
+plant::Stock read_stock(config::Reader& part) {
   std::vector<plant::StockSolid> solids;
-  for (Reader& solid : part.tables_or_none("stock")) {
+  for (config::Reader& solid : part.tables_or_none("stock")) {
     const bool is_box = solid.has("box"), is_cylinder = solid.has("cylinder");
     if (is_box) solids.emplace_back(read_box(solid.table("box")));
     if (is_cylinder) solids.emplace_back(read_cylinder(solid.table("cylinder")));
@@ -72,25 +72,27 @@ plant::Stock read_stock(Reader& part) {
   return plant::Stock(std::move(solids));
 }
 
-CuttingSpec read_cutting(Reader& table) {
-  CuttingSpec spec;
+model::CuttingSpec read_cutting(config::Reader& table) {
+  model::CuttingSpec spec;
   const bool has_material = table.has("material");
   if (has_material) spec.coefficients = read_material(table);
   for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
-    const Quantity quantity = K.is_of_edge ? kStiffness : kPressure;
+    const config::Quantity quantity = K.is_of_edge ? config::kStiffness : config::kPressure;
     double& to = spec.coefficients.*K.member;
-    to = has_material ? table.real_or(K.name, to, quantity, {at_least(0.0)})
-                      : table.real(K.name, quantity, {at_least(0.0)});
+    to = has_material ? table.real_or(K.name, to, quantity, {config::at_least(0.0)})
+                      : table.real(K.name, quantity, {config::at_least(0.0)});
   }
-  spec.wear.initial = table.real_or("wear", 1.0, kNumber, {at_least(0.0)});
-  spec.wear.per_m = table.real_or("wear_per_m", 0.0, kPerLength, {at_least(0.0)});
+  spec.wear.initial = table.real_or("wear", 1.0, config::kNumber, {config::at_least(0.0)});
+  spec.wear.per_m = table.real_or("wear_per_m", 0.0, config::kPerLength, {config::at_least(0.0)});
   return spec;
 }
 
-void read_case_cutting(Reader& table, const std::optional<CuttingSpec>& common, CaseSpec& spec) {
+void read_case_cutting(config::Reader& table, const std::optional<model::CuttingSpec>& common,
+                       model::CaseSpec& spec) {
   spec.cutting = table.boolean_or("cutting", common.has_value());
   if (common) spec.wear = common->wear;
-  spec.wear.initial = table.real_or("wear", spec.wear.initial, kNumber, {at_least(0.0)});
+  spec.wear.initial =
+      table.real_or("wear", spec.wear.initial, config::kNumber, {config::at_least(0.0)});
   if (spec.cutting && !common) {
     table.fault("cutting", "needs a table [cutting] of the scenario");
     spec.cutting = false;
@@ -99,4 +101,4 @@ void read_case_cutting(Reader& table, const std::optional<CuttingSpec>& common, 
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

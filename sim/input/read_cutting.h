@@ -6,16 +6,17 @@
 #include "sim/config/reader.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Tables [[part.stock]], each a box or a cylinder.
-plant::Stock read_stock(Reader& part);
+plant::Stock read_stock(config::Reader& part);
 
 /// Keys of [cutting]: material, Ktc to Kae, wear, wear_per_m.
-CuttingSpec read_cutting(Reader& table);
+model::CuttingSpec read_cutting(config::Reader& table);
 
 /// Keys cutting and wear of a case.
 /// @param common  of the scenario; without it a case has neither
-void read_case_cutting(Reader& table, const std::optional<CuttingSpec>& common, CaseSpec& spec);
+void read_case_cutting(config::Reader& table, const std::optional<model::CuttingSpec>& common,
+                       model::CaseSpec& spec);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

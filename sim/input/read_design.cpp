@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::array<std::string_view, 3> kDesigns = {"random", "latin_hypercube", "sobol"};
@@ -18,18 +18,18 @@ constexpr std::array<std::string_view, 4> kDistributions = {"uniform", "log_unif
 constexpr std::array<std::string_view, 3> kFixed = {"sweep", "based_on", "quantity"};
 
 // A scalar as TOML that any reader of numbers understands: 1_000 and 0x10 become 1000 and 16.
-std::string plain_toml(const Value& value) {
+std::string plain_toml(const config::Value& value) {
   const bool plain = value.written.find_first_of("_xob") == std::string::npos;
-  if (value.type == Value::Type::integer && !plain) return fmt::format("{}", value.integer);
-  if (value.type == Value::Type::real && !plain) return fmt::format("{}", value.real);
+  if (value.type == config::Value::Type::integer && !plain) return fmt::format("{}", value.integer);
+  if (value.type == config::Value::Type::real && !plain) return fmt::format("{}", value.real);
   const bool lines =
-      value.type == Value::Type::text && value.written.find('\n') != std::string::npos;
-  return lines ? quoted_text(value.text) : inline_toml(value);
+      value.type == config::Value::Type::text && value.written.find('\n') != std::string::npos;
+  return lines ? config::quoted_text(value.text) : config::inline_toml(value);
 }
 
-ValueTexts texts_of(const Value& list) {
-  ValueTexts texts;
-  for (const Value& one : list.children) texts.push_back(plain_toml(one));
+model::ValueTexts texts_of(const config::Value& list) {
+  model::ValueTexts texts;
+  for (const config::Value& one : list.children) texts.push_back(plain_toml(one));
   return texts;
 }
 
@@ -42,17 +42,17 @@ std::string step(const std::string& path, const std::string& name) {
 
 class DesignReader {
  public:
-  SweepDesign read(Reader& table) {
+  model::SweepDesign read(config::Reader& table) {
     if (table.has("samples")) {
-      Reader samples = table.table("samples");
+      config::Reader samples = table.table("samples");
       read_samples(samples);
     }
-    const std::vector<Reader> together = table.tables_or_none("zip");
+    const std::vector<config::Reader> together = table.tables_or_none("zip");
     for (const std::string& key : table.keys()) {
       // at the root a key stands as --set takes it: "program.feed_override"
       if (key != "samples" && key != "zip") read_key(table, key, key);
     }
-    for (Reader one : together) read_together(one);
+    for (config::Reader one : together) read_together(one);
     if (design_.sampled_dimensions > 0 && !has_samples_ && table.faults() == 0) {
       table.fault(
           "samples is missing: keys with a distribution need one such as samples = "
@@ -66,22 +66,24 @@ class DesignReader {
   }
 
  private:
-  void read_samples(Reader& table) {
+  void read_samples(config::Reader& table) {
     has_samples_ = true;
-    design_.samples.sampling = static_cast<Sampling>(table.choice("design", kDesigns));
-    design_.samples.count = static_cast<std::uint64_t>(table.integer("count", {at_least(1)}));
-    design_.samples.seed = static_cast<std::uint64_t>(table.integer_or("seed", 1, {at_least(0)}));
+    design_.samples.sampling = static_cast<model::Sampling>(table.choice("design", kDesigns));
+    design_.samples.count =
+        static_cast<std::uint64_t>(table.integer("count", {config::at_least(1)}));
+    design_.samples.seed =
+        static_cast<std::uint64_t>(table.integer_or("seed", 1, {config::at_least(0)}));
   }
 
-  void read_key(Reader& table, const std::string& key, const std::string& path) {
+  void read_key(config::Reader& table, const std::string& key, const std::string& path) {
     if (refuse_key(table, key, path)) return;
-    if (table.is(key, Value::Type::list)) {
+    if (table.is(key, config::Value::Type::list)) {
       read_list(table, key, path, design_.grid.size());
       if (!design_.keys.empty() && design_.keys.back().key == path) new_dimension();
       return;
     }
-    if (!table.is(key, Value::Type::table)) return refuse_form(table, key);
-    Reader form = table.table(key);
+    if (!table.is(key, config::Value::Type::table)) return refuse_form(table, key);
+    config::Reader form = table.table(key);
     const std::vector<std::string> names = form.keys();
     const auto is_one_of = [&](const auto& words) {
       return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -94,18 +96,18 @@ class DesignReader {
     for (const std::string& name : names) read_key(form, name, step(path, name));
   }
 
-  static void refuse_form(Reader& table, const std::string& key) {
+  static void refuse_form(config::Reader& table, const std::string& key) {
     table.raw(key);
     table.fault(key,
                 "must be a list of at least one value, a range such as { linear = [0.5, 2.0], "
                 "count = 4 } or a distribution such as { normal = [1.0, 0.1] }");
   }
 
-  bool refuse_key(Reader& table, const std::string& key, const std::string& path) {
+  bool refuse_key(config::Reader& table, const std::string& key, const std::string& path) {
     const std::string first = path.substr(0, path.find_first_of(".["));
     const bool fixed = std::find(kFixed.begin(), kFixed.end(), first) != kFixed.end();
     const bool again = std::any_of(design_.keys.begin(), design_.keys.end(),
-                                   [&](const SweepKey& one) { return one.key == path; });
+                                   [&](const model::SweepKey& one) { return one.key == path; });
     if (!fixed && !again) return false;
     table.raw(key);
     table.fault(key, fixed ? fmt::format("is the same at all points; {} cannot be swept", first)
@@ -113,27 +115,27 @@ class DesignReader {
     return true;
   }
 
-  void add(Reader& table, const std::string& key, const std::string& path,
-           std::variant<ValueTexts, SweepRange, NumberDistribution> values, bool sampled,
-           std::size_t dimension) {
+  void add(config::Reader& table, const std::string& key, const std::string& path,
+           std::variant<model::ValueTexts, model::SweepRange, model::NumberDistribution> values,
+           bool sampled, std::size_t dimension) {
     design_.keys.push_back({path, table.place(key), std::move(values), sampled, dimension});
   }
 
   // The dimension of the grid that the last key varies along.
   void new_dimension() {
     const auto& values = design_.keys.back().values;
-    const auto* range = std::get_if<SweepRange>(&values);
-    design_.grid.push_back(range ? range->count : std::get<ValueTexts>(values).size());
+    const auto* range = std::get_if<model::SweepRange>(&values);
+    design_.grid.push_back(range ? range->count : std::get<model::ValueTexts>(values).size());
   }
 
-  void read_list(Reader& table, const std::string& key, const std::string& path,
+  void read_list(config::Reader& table, const std::string& key, const std::string& path,
                  std::size_t dimension) {
-    const Value* value = table.raw(key);
+    const config::Value* value = table.raw(key);
     if (value->children.empty()) return refuse_form(table, key);
     add(table, key, path, texts_of(*value), false, dimension);
   }
 
-  void read_together(Reader& table) {
+  void read_together(config::Reader& table) {
     const std::size_t before = design_.keys.size();
     for (const std::string& key : table.keys()) read_member(table, key, key);
     if (design_.keys.size() == before) {
@@ -143,23 +145,24 @@ class DesignReader {
     new_dimension();
   }
 
-  void read_member(Reader& table, const std::string& key, const std::string& path) {
+  void read_member(config::Reader& table, const std::string& key, const std::string& path) {
     if (refuse_key(table, key, path)) return;
-    if (table.is(key, Value::Type::table)) {
-      Reader nested = table.table(key);
+    if (table.is(key, config::Value::Type::table)) {
+      config::Reader nested = table.table(key);
       for (const std::string& name : nested.keys()) read_member(nested, name, step(path, name));
       return;
     }
     const std::size_t dimension = design_.grid.size();
-    const Value* value = table.raw(key);
-    if (value == nullptr || value->type != Value::Type::list || value->children.empty()) {
+    const config::Value* value = table.raw(key);
+    if (value == nullptr || value->type != config::Value::Type::list || value->children.empty()) {
       table.fault(key, "must be a list of at least one value");
       return;
     }
     const bool first = design_.keys.empty() || design_.keys.back().sampled ||
                        design_.keys.back().dimension != dimension;
-    const std::size_t wanted =
-        first ? value->children.size() : std::get<ValueTexts>(design_.keys.back().values).size();
+    const std::size_t wanted = first
+                                   ? value->children.size()
+                                   : std::get<model::ValueTexts>(design_.keys.back().values).size();
     if (value->children.size() != wanted) {
       table.fault(key, fmt::format("has {} values, {} has {}: lists that go together must be as "
                                    "long as each other",
@@ -174,90 +177,94 @@ class DesignReader {
     double a, b;
     std::string unit;
   };
-  static std::optional<Pair> read_pair(Reader& form, std::string_view word, std::string_view rule) {
-    const Value* value = form.raw(word);
-    const bool two = value->type == Value::Type::list && value->children.size() == 2;
-    const auto a = two ? written_number(plain_toml(value->children[0])) : std::nullopt;
-    const auto b = two ? written_number(plain_toml(value->children[1])) : std::nullopt;
+  static std::optional<Pair> read_pair(config::Reader& form, std::string_view word,
+                                       std::string_view rule) {
+    const config::Value* value = form.raw(word);
+    const bool two = value->type == config::Value::Type::list && value->children.size() == 2;
+    const auto a = two ? model::written_number(plain_toml(value->children[0])) : std::nullopt;
+    const auto b = two ? model::written_number(plain_toml(value->children[1])) : std::nullopt;
     if (a && b && a->unit == b->unit) return Pair{a->value, b->value, a->unit};
     form.fault(word, fmt::format("must be two numbers, {}, in one unit", rule));
     return std::nullopt;
   }
 
-  static bool refuse_log(Reader& form, std::string_view word, bool log, const Pair& pair) {
+  static bool refuse_log(config::Reader& form, std::string_view word, bool log, const Pair& pair) {
     if (!log || (pair.a > 0.0 && pair.b > 0.0)) return false;
     form.fault(word, "must have numbers > 0");
     return true;
   }
 
-  void read_range(Reader& table, const std::string& key, Reader& form, const std::string& path) {
+  void read_range(config::Reader& table, const std::string& key, config::Reader& form,
+                  const std::string& path) {
     const bool log = form.has("log");
     const std::string_view word = log ? "log" : "linear";
     if (log && form.has("linear")) form.fault("log", "stands beside linear; choose one");
     const auto pair = read_pair(form, word, "the first and the last");
-    const std::int64_t count = form.integer("count", {at_least(2)});
+    const std::int64_t count = form.integer("count", {config::at_least(2)});
     if (!pair || refuse_log(form, word, log, *pair) || count < 2) return;
     if (pair->a == pair->b) return form.fault(word, "must have two numbers that differ");
     add(table, key, path,
-        SweepRange{pair->a, pair->b, static_cast<std::uint64_t>(count), log, pair->unit}, false,
-        design_.grid.size());
+        model::SweepRange{pair->a, pair->b, static_cast<std::uint64_t>(count), log, pair->unit},
+        false, design_.grid.size());
     new_dimension();
   }
 
-  void read_distribution(Reader& table, const std::string& key, Reader& form,
+  void read_distribution(config::Reader& table, const std::string& key, config::Reader& form,
                          const std::string& path) {
     const std::vector<std::string> names = form.keys();
     const auto word = *std::find_if(names.begin(), names.end(), [](const std::string& name) {
       return std::find(kDistributions.begin(), kDistributions.end(), name) != kDistributions.end();
     });
     const std::size_t dimension = design_.sampled_dimensions;
-    if (dimension == kMostDimensions) {
+    if (dimension == model::kMostDimensions) {
       form.raw(word);
-      return table.fault(
-          key, fmt::format("is one key too many to sample; there may be {}", kMostDimensions));
+      return table.fault(key, fmt::format("is one key too many to sample; there may be {}",
+                                          model::kMostDimensions));
     }
     if (word == "choice") {
-      const Value* value = form.raw(word);
-      if (value->type != Value::Type::list || value->children.empty()) {
+      const config::Value* value = form.raw(word);
+      if (value->type != config::Value::Type::list || value->children.empty()) {
         return form.fault(word, "must be a list of at least one value");
       }
       add(table, key, path, texts_of(*value), true, dimension);
       ++design_.sampled_dimensions;
       return;
     }
-    const auto kind = word == "uniform"       ? NumberDistribution::Kind::uniform
-                      : word == "log_uniform" ? NumberDistribution::Kind::log_uniform
-                                              : NumberDistribution::Kind::normal;
-    const bool normal = kind == NumberDistribution::Kind::normal;
+    const auto kind = word == "uniform"       ? model::NumberDistribution::Kind::uniform
+                      : word == "log_uniform" ? model::NumberDistribution::Kind::log_uniform
+                                              : model::NumberDistribution::Kind::normal;
+    const bool normal = kind == model::NumberDistribution::Kind::normal;
     const auto pair =
         read_pair(form, word, normal ? "the mean and the standard deviation" : "the two ends");
-    if (!pair || refuse_log(form, word, kind == NumberDistribution::Kind::log_uniform, *pair)) {
+    if (!pair ||
+        refuse_log(form, word, kind == model::NumberDistribution::Kind::log_uniform, *pair)) {
       return;
     }
     if (normal && !(pair->b > 0.0)) return form.fault(word, "must have a deviation > 0");
     if (!normal && !(pair->a < pair->b)) {
       return form.fault(word, "must have a first number below the second");
     }
-    add(table, key, path, NumberDistribution{kind, pair->a, pair->b, pair->unit}, true, dimension);
+    add(table, key, path, model::NumberDistribution{kind, pair->a, pair->b, pair->unit}, true,
+        dimension);
     ++design_.sampled_dimensions;
   }
 
-  void refuse_too_many(Reader& table) const {
+  void refuse_too_many(config::Reader& table) const {
     double points = design_.sampled_dimensions > 0 ? static_cast<double>(design_.samples.count) : 1;
     for (const std::uint64_t length : design_.grid) points *= static_cast<double>(length);
-    if (points <= static_cast<double>(kMostPoints)) return;
+    if (points <= static_cast<double>(model::kMostPoints)) return;
     constexpr double kCountable = 1e15;
     table.fault(points < kCountable
-                    ? fmt::format("has {:.0f} points; must be <= {}", points, kMostPoints)
-                    : fmt::format("has {:.3g} points; must be <= {}", points, kMostPoints));
+                    ? fmt::format("has {:.0f} points; must be <= {}", points, model::kMostPoints)
+                    : fmt::format("has {:.3g} points; must be <= {}", points, model::kMostPoints));
   }
 
-  SweepDesign design_;
+  model::SweepDesign design_;
   bool has_samples_ = false;
 };
 
 }  // namespace
 
-SweepDesign read_sweep(Reader& table) { return DesignReader().read(table); }
+model::SweepDesign read_sweep(config::Reader& table) { return DesignReader().read(table); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

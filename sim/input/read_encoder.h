@@ -4,11 +4,12 @@
 #include "sim/config/reader.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Tables `scale`, `motor`, `marks` and `screw` of an axis, or the keys scale_step and motor_step.
 /// @param noise_seed  of the machine; each encoder gets a stream of its own
 /// @pre machine.nc.lower and upper are read
-void read_encoders(Reader& axis, int joint, std::uint64_t noise_seed, MachineSettings& machine);
+void read_encoders(config::Reader& axis, int joint, std::uint64_t noise_seed,
+                   model::MachineSettings& machine);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 using plant::ErrorFunction;
@@ -29,20 +29,25 @@ struct Units {
   std::string travel(std::string_view what) const {
     return fmt::format("{}_{}", what, travel_is_length ? "mm" : "deg");
   }
-  Quantity value_quantity() const { return value_is_length ? kLength : kAngle; }
-  Quantity travel_quantity() const { return travel_is_length ? kLength : kAngle; }
+  config::Quantity value_quantity() const {
+    return value_is_length ? config::kLength : config::kAngle;
+  }
+  config::Quantity travel_quantity() const {
+    return travel_is_length ? config::kLength : config::kAngle;
+  }
 };
 
 Units units_of(const ErrorName& name) { return {is_linear(name.direction), is_linear(name.axis)}; }
 
-ErrorFunction read_harmonic(Reader& table, const Units& units) {
+ErrorFunction read_harmonic(config::Reader& table, const Units& units) {
   const double amplitude = table.real(units.value("amplitude"), units.value_quantity());
-  const double period = table.real(units.travel("period"), units.travel_quantity(), {above(0.0)});
-  const double phase = table.real_or("phase_deg", 0.0, kAngle);
+  const double period =
+      table.real(units.travel("period"), units.travel_quantity(), {config::above(0.0)});
+  const double phase = table.real_or("phase_deg", 0.0, config::kAngle);
   return period > 0.0 ? plant::harmonic(amplitude, period, phase) : ErrorFunction{};
 }
 
-ErrorFunction read_table(Reader& table, const Units& units) {
+ErrorFunction read_table(config::Reader& table, const Units& units) {
   auto at = table.reals(units.travel("at"), units.travel_quantity());
   auto values = table.reals(units.value("value"), units.value_quantity());
   const auto in_unit = [](std::vector<double> all, double unit) {
@@ -59,7 +64,8 @@ ErrorFunction read_table(Reader& table, const Units& units) {
 }
 
 // c_n in value unit per travel unit^n; SI inside.
-std::vector<double> read_coefficients(Reader& table, const std::string& key, const Units& units) {
+std::vector<double> read_coefficients(config::Reader& table, const std::string& key,
+                                      const Units& units) {
   auto coefficients = table.reals(key, units.value_quantity());
   const double travel = units.travel_is_length ? mm : deg;
   double scale = 1.0;
@@ -70,7 +76,7 @@ std::vector<double> read_coefficients(Reader& table, const std::string& key, con
   return coefficients;
 }
 
-ErrorFunction read_reversal(Reader& table, const Units& units) {
+ErrorFunction read_reversal(config::Reader& table, const Units& units) {
   const std::string constant = units.value("width"), curve = units.value("width_polynomial");
   std::vector<double> width = {0.0};
   if (table.has(curve)) width = read_coefficients(table, curve, units);
@@ -79,11 +85,11 @@ ErrorFunction read_reversal(Reader& table, const Units& units) {
     width.front() += table.real(constant, units.value_quantity());
   }
   const double distance =
-      table.real(units.travel("distance"), units.travel_quantity(), {above(0.0)});
+      table.real(units.travel("distance"), units.travel_quantity(), {config::above(0.0)});
   return distance > 0.0 ? plant::reversal(std::move(width), distance) : ErrorFunction{};
 }
 
-ErrorFunction read_function(Reader& table, const Units& units) {
+ErrorFunction read_function(config::Reader& table, const Units& units) {
   ErrorFunction sum;
   if (table.has(units.value("constant"))) {
     sum = sum + plant::constant(table.real(units.value("constant"), units.value_quantity()));
@@ -92,35 +98,35 @@ ErrorFunction read_function(Reader& table, const Units& units) {
     sum = sum + plant::polynomial(read_coefficients(table, key, units));
   }
   if (units.value_is_length && units.travel_is_length && table.has("um_per_m")) {
-    sum = sum + plant::polynomial({0.0, table.real("um_per_m", kNumber) * um});
+    sum = sum + plant::polynomial({0.0, table.real("um_per_m", config::kNumber) * um});
   }
   if (table.has("harmonic")) {
-    if (table.is("harmonic", Value::Type::list)) {
-      for (Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
+    if (table.is("harmonic", config::Value::Type::list)) {
+      for (config::Reader& one : table.tables("harmonic")) sum = sum + read_harmonic(one, units);
     } else {
-      Reader one = table.table("harmonic");
+      config::Reader one = table.table("harmonic");
       sum = sum + read_harmonic(one, units);
     }
   }
   if (table.has("table")) {
-    Reader points = table.table("table");
+    config::Reader points = table.table("table");
     sum = sum + read_table(points, units);
   }
   return sum;
 }
 
 // Squareness as it is measured: "0.2 mm/m", "50 um/m".
-bool is_slope(Reader& model, std::string_view key) {
-  if (!model.is(key, Value::Type::text)) return false;
-  const ScaledText slope = scale_text(model.text(key), kNumber);
+bool is_slope(config::Reader& model, std::string_view key) {
+  if (!model.is(key, config::Value::Type::text)) return false;
+  const config::ScaledText slope = config::scale_text(model.text(key), config::kNumber);
   return slope.complaint.empty();
 }
 
 // A bare number is in m or rad: one that was meant in um or um/m would pass for kilometres.
-double read_bare_location(Reader& model, std::string_view key, const Units& units) {
+double read_bare_location(config::Reader& model, std::string_view key, const Units& units) {
   double value = 0.0;
   if (!units.value_is_length && is_slope(model, key)) {
-    value = scale_text(model.text(key), kNumber).si;
+    value = config::scale_text(model.text(key), config::kNumber).si;
   } else {
     value = model.real(key, units.value_quantity());
   }
@@ -135,20 +141,20 @@ double read_bare_location(Reader& model, std::string_view key, const Units& unit
 }
 
 // A location error: a number with its unit in a text, or a table with one key.
-double read_location(Reader& model, std::string_view key, const ErrorName& name) {
+double read_location(config::Reader& model, std::string_view key, const ErrorName& name) {
   const Units units = units_of(name);
-  if (!model.is(key, Value::Type::table)) return read_bare_location(model, key, units);
-  Reader table = model.table(key);
+  if (!model.is(key, config::Value::Type::table)) return read_bare_location(model, key, units);
+  config::Reader table = model.table(key);
   if (!units.value_is_length && table.has("um_per_m"))
-    return table.real("um_per_m", kNumber) * urad;
+    return table.real("um_per_m", config::kNumber) * urad;
   return table.real(units.value("constant"), units.value_quantity());
 }
 
 // Name of the model that this one differs from; empty: from none.
-std::string read_base(Reader& model, const std::string& name, Reader& models) {
+std::string read_base(config::Reader& model, const std::string& name, config::Reader& models) {
   if (!model.has(kDiffersFrom)) return "";
   const std::string base = model.text(kDiffersFrom);
-  if (!model.is(kDiffersFrom, Value::Type::text)) return "";
+  if (!model.is(kDiffersFrom, config::Value::Type::text)) return "";
   const std::vector<std::string> names = models.keys();
   if (base == name || std::find(names.begin(), names.end(), base) == names.end()) {
     const std::vector<std::string_view> others(names.begin(), names.end());
@@ -165,11 +171,11 @@ std::string read_base(Reader& model, const std::string& name, Reader& models) {
 
 }  // namespace
 
-plant::ErrorFunction read_length_function(Reader& table) {
+plant::ErrorFunction read_length_function(config::Reader& table) {
   return read_function(table, {true, true});
 }
 
-plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
+plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) {
   plant::ErrorModel errors;
   std::map<std::string, std::string> aliases;
   std::set<std::string> known;
@@ -186,14 +192,14 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
     known.insert(key);
     if (name->is_location) {
       errors.location(*name) = read_location(model, key, *name);
-    } else if (model.is(key, Value::Type::text)) {
+    } else if (model.is(key, config::Value::Type::text)) {
       aliases[key] = model.text(key);
     } else {
-      Reader table = model.table(key);
+      config::Reader table = model.table(key);
       const Units units = units_of(*name);
       errors.component(*name) = read_function(table, units);
       if (table.has("reversal")) {
-        Reader reversal = table.table("reversal");
+        config::Reader reversal = table.table("reversal");
         errors.component(*name) = errors.component(*name) + read_reversal(reversal, units);
       }
     }
@@ -215,12 +221,12 @@ plant::ErrorModel read_errors(Reader& model, const JointLayout& layout) {
   return errors;
 }
 
-std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
+std::map<std::string, plant::ErrorModel> read_error_models(config::Reader& models,
                                                            const JointLayout& layout) {
   std::map<std::string, plant::ErrorModel> out;
   std::map<std::string, std::string> base_of;
   for (const std::string& name : models.keys()) {
-    Reader model = models.table(name);
+    config::Reader model = models.table(name);
     base_of[name] = read_base(model, name, models);
     out[name] = read_errors(model, layout);
   }
@@ -232,17 +238,17 @@ std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
 
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
                                                          const JointLayout& layout) {
-  const Document document = Document::from_file(path);
+  const config::Document document = config::Document::from_file(path);
   if (document.root().find("structure") != nullptr) {  // a machine file, with its own errors
     MachineDescription described = read_machine_description(path);
     if (described.machine.chain.layout == layout) return std::move(described.errors);
     throw InputError({path}, "holds the errors of a machine with other axes");
   }
-  Reader root(document);
-  Reader models = root.table("errors");
+  config::Reader root(document);
+  config::Reader models = root.table("errors");
   auto out = read_error_models(models, layout);
   root.finish();
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

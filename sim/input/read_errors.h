@@ -7,16 +7,16 @@
 #include "plant/geometry/error_model.h"
 #include "sim/config/reader.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// One named model: ISO 230-1 names, each a function of the axis' coordinate or the name of another
 /// error of this model whose function it shares.
-plant::ErrorModel read_errors(Reader& model, const JointLayout& layout);
+plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout);
 
 /// All models of a table [errors], by name. A model with the key `relative_to` is the sum of the
 /// model of that name and what it says itself: an identified model and its identification errors,
 /// say.
-std::map<std::string, plant::ErrorModel> read_error_models(Reader& models,
+std::map<std::string, plant::ErrorModel> read_error_models(config::Reader& models,
                                                            const JointLayout& layout);
 
 /// The models of a file that holds nothing but tables [errors.NAME], or of a machine file's own
@@ -26,6 +26,6 @@ std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path
                                                          const JointLayout& layout);
 
 /// A length (um) as a function of a linear coordinate (mm), written like a component error.
-plant::ErrorFunction read_length_function(Reader& table);
+plant::ErrorFunction read_length_function(config::Reader& table);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

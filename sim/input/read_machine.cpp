@@ -17,7 +17,7 @@
 #include "sim/input/read_errors.h"
 #include "sim/input/read_servo.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPresets = {"CC422", "CC424"};
@@ -39,9 +39,10 @@ constexpr double kLongestPeriod = 1.0;   // s
 constexpr double kFinestSolver = 1e-14;  // m; what rounding leaves of a position of 1 m is 1e-16
 constexpr double kCoarsestSolver = 1 * um;
 
-Tick period(Reader& nc, std::string_view key, double fallback, double base) {
+Tick period(config::Reader& nc, std::string_view key, double fallback, double base) {
   const std::size_t before = nc.faults();
-  const double seconds = nc.real_or(key, fallback, kTime, {above(0.0), at_most(kLongestPeriod)});
+  const double seconds = nc.real_or(key, fallback, config::kTime,
+                                    {config::above(0.0), config::at_most(kLongestPeriod)});
   if (nc.faults() > before) return 1;
   const auto ticks = whole_ticks(seconds, base);
   if (ticks && *ticks > 0) return *ticks;
@@ -54,16 +55,17 @@ Tick period(Reader& nc, std::string_view key, double fallback, double base) {
   return 1;
 }
 
-LoopPeriods read_periods(Reader& nc) {
-  LoopPeriods periods;
+model::LoopPeriods read_periods(config::Reader& nc) {
+  model::LoopPeriods periods;
   const std::size_t before = nc.faults();
-  periods.base = nc.real_or("base_period_us", 10 * us, kTime, {at_least(kLeastBase)});
+  periods.base =
+      nc.real_or("base_period_us", 10 * us, config::kTime, {config::at_least(kLeastBase)});
   const Preset& preset = kPresetPeriods[nc.choice_or("preset", 1, kPresets)];
   if (nc.faults() > before) return {};
   periods.position = period(nc, "position_period_us", preset.position, periods.base);
   periods.velocity = period(nc, "velocity_period_us", preset.velocity, periods.base);
   periods.current = period(nc, "current_period_us", preset.current, periods.base);
-  if (!can_be_scheduled({periods.position, periods.velocity, periods.current})) {
+  if (!model::can_be_scheduled({periods.position, periods.velocity, periods.current})) {
     nc.fault(
         "the periods of position, velocity and current loop meet too seldom; let them be "
         "multiples of one another");
@@ -72,10 +74,11 @@ LoopPeriods read_periods(Reader& nc) {
   return periods;
 }
 
-NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
-  NominalFilter filter;
+model::NominalFilter read_filter(config::Reader& nc, const model::LoopPeriods& periods) {
+  model::NominalFilter filter;
   const std::size_t kind = nc.choice_or("nominal_filter", 0, kFilters);
-  const double length = nc.real_or("nominal_filter_ms", 0.0, kTime, {at_least(0.0), at_most(10.0)});
+  const double length = nc.real_or("nominal_filter_ms", 0.0, config::kTime,
+                                   {config::at_least(0.0), config::at_most(10.0)});
   if (kind == 0) return filter;
   filter.triangle = kind == 2;
   filter.length = static_cast<Tick>(std::lround(length / periods.seconds(periods.position)));
@@ -89,14 +92,17 @@ NominalFilter read_filter(Reader& nc, const LoopPeriods& periods) {
 // SI; far from any machine, and near enough that a path can be planned with them.
 constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
 
-void read_dynamic_limits(Reader& axis, bool linear, int j, NcSettings& nc) {
+void read_dynamic_limits(config::Reader& axis, bool linear, int j, model::NcSettings& nc) {
   const AxisQuantities& q = quantities_of(linear);
-  nc.v_max[j] = axis.real("v_max", q.velocity, {at_least(kLeastLimit), at_most(kMostLimit)});
-  nc.a_max[j] = axis.real("a_max", q.acceleration, {at_least(kLeastLimit), at_most(kMostLimit)});
-  nc.j_max[j] = axis.real("j_max", q.jerk, {at_least(kLeastLimit), at_most(kMostLimit)});
+  nc.v_max[j] =
+      axis.real("v_max", q.velocity, {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
+  nc.a_max[j] = axis.real("a_max", q.acceleration,
+                          {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
+  nc.j_max[j] =
+      axis.real("j_max", q.jerk, {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
 }
 
-void read_travel(Reader& axis, bool linear, int j, NcSettings& nc) {
+void read_travel(config::Reader& axis, bool linear, int j, model::NcSettings& nc) {
   const AxisQuantities& q = quantities_of(linear);
   const std::string_view key = linear ? "travel_mm" : "travel_deg";
   nc.lower[j] = -std::numeric_limits<double>::infinity();
@@ -124,12 +130,12 @@ struct Common {
   std::uint64_t noise_seed = 0;
 };
 
-Place winding_place(Reader& axis) {
+Place winding_place(config::Reader& axis) {
   return axis.has("winding") ? axis.table("winding").place("bandwidth") : Place{};
 }
 
 // An axis begins at rest, with the current that its load needs.
-void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
+void refuse_unbearable_load(config::Reader& axis, const plant::FeedDriveParams& drive,
                             const controllers::CascadeParams& cascade, bool linear) {
   const double most = std::min(cascade.i_max * drive.Kt, cascade.tau_max) / drive.r;
   if (!(std::abs(drive.F_load) > most)) return;
@@ -137,10 +143,10 @@ void refuse_unbearable_load(Reader& axis, const plant::FeedDriveParams& drive,
                                          most, linear ? "N" : "Nm"));
 }
 
-void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
+void read_direction(config::Reader& axis, plant::ChainAxis& chain_axis) {
   if (!axis.has("direction")) return;
   const std::size_t before = axis.faults();
-  const auto direction = axis.reals("direction", kNumber);
+  const auto direction = axis.reals("direction", config::kNumber);
   if (axis.faults() > before) return;
   if (is_linear(chain_axis.axis)) {
     axis.fault("direction", "must not be given: only rotary axes can be inclined");
@@ -156,10 +162,11 @@ void read_direction(Reader& axis, plant::ChainAxis& chain_axis) {
 }
 
 // Direction and offset of the axis.
-void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
+void read_axis_geometry(config::Reader& axis, int j, model::MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
-  if (axis.has(kRetractKey)) axis.real(kRetractKey, kLength);  // of programs, not of a simulation
+  if (axis.has(kRetractKey))
+    axis.real(kRetractKey, config::kLength);  // of programs, not of a simulation
   auto& chain_axis = machine.chain.at(*machine.chain.layout.axis[lane]);
   if (!linear) {
     chain_axis.sense = static_cast<plant::Sense>(axis.choice_or("sense", 0, kSenses));
@@ -167,7 +174,7 @@ void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
   read_direction(axis, chain_axis);
   if (axis.has("centre_mm")) {
     const std::size_t before = axis.faults();
-    const auto centre = axis.reals("centre_mm", kLength);
+    const auto centre = axis.reals("centre_mm", config::kLength);
     if (axis.faults() > before) return;
     if (centre.size() == 3) {
       chain_axis.centre << centre[0], centre[1], centre[2];
@@ -177,13 +184,13 @@ void read_axis_geometry(Reader& axis, int j, MachineSettings& machine) {
   }
 }
 
-void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machine) {
+void read_axis(config::Reader& axis, const Common& common, int j, model::MachineSettings& machine) {
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
   const std::size_t before_drive = axis.faults();
   machine.drives[lane] = read_drive(axis, linear, common.friction_model);
   const bool in_sub_steps =
-      machine.integrator == Integrator::exact && !machine.drives[lane].is_linear();
+      machine.integrator == model::Integrator::exact && !machine.drives[lane].is_linear();
   if (axis.faults() == before_drive && in_sub_steps) {
     const double base = machine.nc.periods.base;
     for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
@@ -191,7 +198,8 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
     }
   }
   if (linear && axis.has("structural_stiffness")) {
-    const double stiffness = axis.real("structural_stiffness", kStiffness, {above(0.0)});
+    const double stiffness =
+        axis.real("structural_stiffness", config::kStiffness, {config::above(0.0)});
     if (stiffness > 0.0) machine.structural_compliance[j] = 1.0 / stiffness;
   }
   read_servo(axis, common.servo, j, machine);
@@ -204,7 +212,7 @@ void read_axis(Reader& axis, const Common& common, int j, MachineSettings& machi
   read_encoders(axis, j, common.noise_seed, machine);  // marks lie within the travel
 }
 
-plant::MachineChain read_chain(Reader& machine) {
+plant::MachineChain read_chain(config::Reader& machine) {
   const std::size_t before = machine.faults();
   const std::string text = machine.text("structure");
   if (machine.faults() > before) return {};
@@ -219,21 +227,27 @@ plant::MachineChain read_chain(Reader& machine) {
 }  // namespace
 
 const AxisQuantities& quantities_of(bool linear) {
-  static constexpr AxisQuantities kLinear = {kLength, kVelocity, kAcceleration, kJerk,
-                                             kForce,  kMass,     kStiffness,    kDamping};
-  static constexpr AxisQuantities kRotary = {
-      kAngle,  kAngularVelocity, kAngularAcceleration, kAngularJerk,
-      kTorque, kInertia,         kTorsionalStiffness,  kTorsionalDamping};
+  static constexpr AxisQuantities kLinear = {
+      config::kLength, config::kVelocity, config::kAcceleration, config::kJerk,
+      config::kForce,  config::kMass,     config::kStiffness,    config::kDamping};
+  static constexpr AxisQuantities kRotary = {config::kAngle,
+                                             config::kAngularVelocity,
+                                             config::kAngularAcceleration,
+                                             config::kAngularJerk,
+                                             config::kTorque,
+                                             config::kInertia,
+                                             config::kTorsionalStiffness,
+                                             config::kTorsionalDamping};
   return linear ? kLinear : kRotary;
 }
 
-AxisWords read_words(Reader& table, const JointLayout& layout) {
+AxisWords read_words(config::Reader& table, const JointLayout& layout) {
   AxisWords words = AxisWords::Zero();
   for (const Axis axis : kAllAxes) {
     if (!layout.joint_of(axis)) continue;
     const bool linear = is_linear(axis);
     const std::string key = fmt::format("{}_{}", letter(axis), linear ? "mm" : "deg");
-    words[index_of(axis)] = table.real_or(key, 0.0, linear ? kLength : kAngle);
+    words[index_of(axis)] = table.real_or(key, 0.0, linear ? config::kLength : config::kAngle);
   }
   return words;
 }
@@ -242,28 +256,28 @@ namespace {
 
 using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
-void read_models(Reader& machine, const JointLayout& layout, ErrorModels* errors) {
+void read_models(config::Reader& machine, const JointLayout& layout, ErrorModels* errors) {
   if (!machine.has("errors")) return;
-  Reader models = machine.table("errors");
+  config::Reader models = machine.table("errors");
   auto read = read_error_models(models, layout);
   if (errors != nullptr) *errors = std::move(read);
 }
 
 // Keys that every drive needs: a file with one of them is that of a machine to simulate.
-bool describes_drives(const Document& machine) {
+bool describes_drives(const config::Document& machine) {
   constexpr std::array<std::string_view, 5> kNeeded = {"Kt", "moving_mass", "moving_inertia",
                                                        "motor_inertia", "i_max_A"};
-  const Value* axes = machine.root().find("axis");
+  const config::Value* axes = machine.root().find("axis");
   if (axes == nullptr) return false;
-  return std::any_of(axes->children.begin(), axes->children.end(), [&](const Value& axis) {
+  return std::any_of(axes->children.begin(), axes->children.end(), [&](const config::Value& axis) {
     return std::any_of(kNeeded.begin(), kNeeded.end(),
                        [&](std::string_view key) { return axis.find(key) != nullptr; });
   });
 }
 
 // A machine file without drives: structure, travel, limits, errors.
-MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
-  MachineSettings machine;
+model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors) {
+  model::MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
   machine.chain = read_chain(table);
@@ -275,19 +289,20 @@ MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
   }
   machine.nc.lower.setConstant(-std::numeric_limits<double>::infinity());
   machine.nc.upper.setConstant(std::numeric_limits<double>::infinity());
-  Reader axes = table.table_or_empty("axis");
+  config::Reader axes = table.table_or_empty("axis");
   for (int j = 0; j < kJoints; ++j) {
     const std::string name(1,
                            machine.chain.layout.has(j) ? machine.chain.layout.letter_of(j) : ' ');
     if (!axes.has(name)) continue;
-    Reader axis = axes.table(name);
+    config::Reader axis = axes.table(name);
     const std::array<std::string_view, 3> limits = {"v_max", "a_max", "j_max"};
     const AxisQuantities& q = quantities_of(j < kLinearJoints);
-    const std::array<Quantity, 3> of = {q.velocity, q.acceleration, q.jerk};
+    const std::array<config::Quantity, 3> of = {q.velocity, q.acceleration, q.jerk};
     Joints* const into[] = {&machine.nc.v_max, &machine.nc.a_max, &machine.nc.j_max};
     for (std::size_t k = 0; k < limits.size(); ++k) {
       if (!axis.has(limits[k])) continue;
-      (*into[k])[j] = axis.real(limits[k], of[k], {at_least(kLeastLimit), at_most(kMostLimit)});
+      (*into[k])[j] =
+          axis.real(limits[k], of[k], {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
     }
     read_travel(axis, j < kLinearJoints, j, machine.nc);
     read_axis_geometry(axis, j, machine);
@@ -300,41 +315,42 @@ MachineSettings read_geometry(Reader& table, ErrorModels* errors) {
 
 MachineDescription read_machine_description(const std::string& path,
                                             const std::vector<std::string>& changes) {
-  Document document = Document::from_file(path);
+  config::Document document = config::Document::from_file(path);
   for (const std::string& change : changes) document.set(change);
-  Reader root(document);
+  config::Reader root(document);
   MachineDescription out;
   out.has_drives = describes_drives(document);
   out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
   const bool has_axes = out.machine.chain.layout != JointLayout{};  // not with a faulty structure
   if (has_axes && root.has("axis") && root.table("axis").has("Z")) {
-    Reader Z = root.table("axis").table("Z");
-    if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, kLength);
+    config::Reader Z = root.table("axis").table("Z");
+    if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, config::kLength);
   }
   root.finish();
   return out;
 }
 
-MachineSettings read_machine(Reader& table, ErrorModels* errors) {
-  MachineSettings machine;
+model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) {
+  model::MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
   machine.chain = read_chain(table);
-  Reader nc = table.table("nc");
+  config::Reader nc = table.table("nc");
   machine.nc.periods = read_periods(nc);
   machine.nc.filter = read_filter(nc, machine.nc.periods);
   machine.nc.program_reader =
       static_cast<controllers::Reader>(nc.choice_or("reader", 0, controllers::kReaders));
   machine.nc.decimal_point = static_cast<controllers::DecimalPoint>(
       nc.choice_or("decimal_point", 0, controllers::kDecimalPoints));
-  machine.nc.path_tolerance = nc.real_or("path_tolerance_um", 10 * um, kLength, {above(0.0)});
+  machine.nc.path_tolerance =
+      nc.real_or("path_tolerance_um", 10 * um, config::kLength, {config::above(0.0)});
   machine.nc.rotary_tolerance =
-      nc.real_or("rotary_tolerance_urad", 100 * urad, kAngle, {above(0.0)});
-  machine.nc.block_time =
-      nc.real_or("block_processing_time_ms", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+      nc.real_or("rotary_tolerance_urad", 100 * urad, config::kAngle, {config::above(0.0)});
+  machine.nc.block_time = nc.real_or("block_processing_time_ms", 0.0, config::kTime,
+                                     {config::at_least(0.0), config::at_most(kLongestPeriod)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
-  const double delay =
-      nc.real_or("scale_delay_us", 0.0, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+  const double delay = nc.real_or("scale_delay_us", 0.0, config::kTime,
+                                  {config::at_least(0.0), config::at_most(kLongestPeriod)});
   const double base = machine.nc.periods.base;
   const auto delay_ticks = whole_ticks(delay, base);
   if (!delay_ticks) {
@@ -343,27 +359,28 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   }
   machine.scale_delay = delay_ticks.value_or(0);
 
-  machine.integrator = static_cast<Integrator>(table.choice_or("integrator", 0, kIntegrators));
+  machine.integrator =
+      static_cast<model::Integrator>(table.choice_or("integrator", 0, kIntegrators));
   const double solver_tolerance =
-      table.real_or("solver_tolerance_nm", plant::kSolverTolerance, kLength,
-                    {at_least(kFinestSolver), at_most(kCoarsestSolver)});
+      table.real_or("solver_tolerance_nm", plant::kSolverTolerance, config::kLength,
+                    {config::at_least(kFinestSolver), config::at_most(kCoarsestSolver)});
   Common common;
   common.servo = read_common_servo(nc);
   common.Kv_place = nc.place("Kv");
   common.friction_model =
       static_cast<plant::FrictionKind>(table.choice_or("friction_model", 0, friction_models()));
   common.noise_seed =
-      static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {at_least(0.0)}));
+      static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {config::at_least(0.0)}));
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
     return machine;
   }
-  Reader axes = table.table("axis");
+  config::Reader axes = table.table("axis");
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
-    Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
+    config::Reader axis = axes.table(std::string(1, machine.chain.layout.letter_of(j)));
     read_axis(axis, common, j, machine);
     machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
@@ -371,4 +388,4 @@ MachineSettings read_machine(Reader& table, ErrorModels* errors) {
   return machine;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -10,17 +10,17 @@
 #include "sim/config/reader.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Machine of a table; faults are collected in the reader.
 /// @param machine  table as documented in scenarios/machines/hsm600u.toml
 /// @param errors   receives the error models that it holds, by name; nullptr: they are but checked
-MachineSettings read_machine(Reader& machine,
-                             std::map<std::string, plant::ErrorModel>* errors = nullptr);
+model::MachineSettings read_machine(config::Reader& machine,
+                                    std::map<std::string, plant::ErrorModel>* errors = nullptr);
 
 /// A machine file as programs and tables for a real machine need it.
 struct MachineDescription {
-  MachineSettings machine;  // without drives: structure, travel and what limits it gives
+  model::MachineSettings machine;  // without drives: structure, travel and what limits it gives
   std::map<std::string, plant::ErrorModel> errors;  // of the file's own [errors], by name
   bool has_drives = false;                          // all that a simulation needs
   std::optional<double> retract_Z;  // m; where Z is clear of everything (axis.Z.retract_mm)
@@ -36,11 +36,11 @@ MachineDescription read_machine_description(const std::string& path,
 
 /// "X", "Y", ...: the table of an axis and what its quantities are called.
 struct AxisQuantities {
-  Quantity position, velocity, acceleration, jerk, force, load, stiffness, damping;
+  config::Quantity position, velocity, acceleration, jerk, force, load, stiffness, damping;
 };
 const AxisQuantities& quantities_of(bool linear);
 
 /// Six program words such as X_mm = 1.5, C_deg = 90 (6; m, rad); absent ones are 0.
-AxisWords read_words(Reader& table, const JointLayout& layout);
+AxisWords read_words(config::Reader& table, const JointLayout& layout);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

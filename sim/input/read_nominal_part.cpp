@@ -8,18 +8,19 @@
 #include "sim/metrology/triangle_mesh.h"
 #include "sim/system/base64.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
-std::optional<std::string> bytes_of_text(Reader& part) {
-  auto bytes = from_base64(part.text("stl_base64"));
+std::optional<std::string> bytes_of_text(config::Reader& part) {
+  auto bytes = system::from_base64(part.text("stl_base64"));
   if (!bytes) part.fault("stl_base64 is not base64");
   return bytes;
 }
 
 }  // namespace
 
-std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& files) {
+std::shared_ptr<const evaluation::NominalPart> read_nominal_part(config::Reader& part,
+                                                                 InputFiles& files) {
   if (!part.has("stl")) return nullptr;
   const std::size_t before = part.faults();
   const std::string name = part.text("stl");
@@ -30,8 +31,10 @@ std::shared_ptr<const NominalPart> read_nominal_part(Reader& part, InputFiles& f
   const std::string file = is_here ? name : beside(part.place("stl"), name);
   auto bytes = is_here ? bytes_of_text(part) : *files.text(file, part.place("stl"), "part");
   if (!bytes) return nullptr;
-  auto mesh = std::make_shared<const TriangleMesh>(TriangleMesh::parse(*bytes, file));
-  return std::make_shared<const NominalPart>(NominalPart{file, *std::move(bytes), std::move(mesh)});
+  auto mesh =
+      std::make_shared<const metrology::TriangleMesh>(metrology::TriangleMesh::parse(*bytes, file));
+  return std::make_shared<const evaluation::NominalPart>(
+      evaluation::NominalPart{file, *std::move(bytes), std::move(mesh)});
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -11,7 +11,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 using Eigen::Vector3d;
@@ -25,7 +25,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kAcross = 1e-6;  // cosine of what still counts as a right angle
 
 // A list of three numbers; zero with a fault if it is not.
-Vector3d read_vector(Reader& table, std::string_view key, Quantity quantity) {
+Vector3d read_vector(config::Reader& table, std::string_view key, config::Quantity quantity) {
   const std::size_t before = table.faults();
   const std::vector<double> v = table.reals(key, quantity);
   if (table.faults() > before) return Vector3d::Zero();
@@ -35,23 +35,24 @@ Vector3d read_vector(Reader& table, std::string_view key, Quantity quantity) {
 }
 
 // A direction of any length but 0.
-Vector3d read_direction(Reader& table, std::string_view key) {
+Vector3d read_direction(config::Reader& table, std::string_view key) {
   const std::size_t before = table.faults();
-  const Vector3d v = read_vector(table, key, kNumber);
+  const Vector3d v = read_vector(table, key, config::kNumber);
   if (table.faults() > before) return Vector3d::UnitZ();
   if (v.norm() > 0.0) return v.normalized();
   table.fault(key, "must not be zero");
   return Vector3d::UnitZ();
 }
 
-int read_points(Reader& table, int least) {
-  return static_cast<int>(table.integer("points", {at_least(least), at_most(kMostPoints)}));
+int read_points(config::Reader& table, int least) {
+  return static_cast<int>(
+      table.integer("points", {config::at_least(least), config::at_most(kMostPoints)}));
 }
 
 // [along, across] with at least `least` each.
-std::array<int, 2> read_grid(Reader& table, std::array<int, 2> least) {
+std::array<int, 2> read_grid(config::Reader& table, std::array<int, 2> least) {
   const std::size_t before = table.faults();
-  const std::vector<double> n = table.reals("points", kNumber);
+  const std::vector<double> n = table.reals("points", config::kNumber);
   const auto is_whole = [](double x) { return x == std::floor(x); };
   if (table.faults() > before) return least;
   if (n.size() == 2 && is_whole(n[0]) && is_whole(n[1]) && n[0] >= least[0] && n[1] >= least[1] &&
@@ -68,10 +69,10 @@ bool is_across(const Vector3d& normal, const Vector3d& along) {
   return std::abs(normal.dot(along)) <= kAcross * along.norm();
 }
 
-std::optional<Feature> read_line(Reader& table) {
+std::optional<metrology::Feature> read_line(config::Reader& table) {
   const std::size_t before = table.faults();
-  const Vector3d from = read_vector(table, "from_mm", kLength);
-  const Vector3d to = read_vector(table, "to_mm", kLength);
+  const Vector3d from = read_vector(table, "from_mm", config::kLength);
+  const Vector3d to = read_vector(table, "to_mm", config::kLength);
   const Vector3d normal = read_direction(table, "normal");
   const int points = read_points(table, 2);
   if (table.faults() > before) return std::nullopt;
@@ -81,14 +82,14 @@ std::optional<Feature> read_line(Reader& table) {
     table.fault("normal", "must be at right angles to the line");
   }
   if (table.faults() > before) return std::nullopt;
-  return line_feature(from, to, normal, points);
+  return metrology::line_feature(from, to, normal, points);
 }
 
-std::optional<Feature> read_plane(Reader& table) {
+std::optional<metrology::Feature> read_plane(config::Reader& table) {
   const std::size_t before = table.faults();
-  const Vector3d corner = read_vector(table, "corner_mm", kLength);
-  const Vector3d u = read_vector(table, "u_mm", kLength);
-  const Vector3d v = read_vector(table, "v_mm", kLength);
+  const Vector3d corner = read_vector(table, "corner_mm", config::kLength);
+  const Vector3d u = read_vector(table, "u_mm", config::kLength);
+  const Vector3d v = read_vector(table, "v_mm", config::kLength);
   const Vector3d normal = read_direction(table, "normal");
   const auto points = read_grid(table, {2, 2});
   if (table.faults() > before) return std::nullopt;
@@ -98,23 +99,23 @@ std::optional<Feature> read_plane(Reader& table) {
     table.fault("normal", "must be at right angles to u_mm and v_mm");
   }
   if (table.faults() > before) return std::nullopt;
-  return plane_feature(corner, u, v, normal, points[0], points[1]);
+  return metrology::plane_feature(corner, u, v, normal, points[0], points[1]);
 }
 
 struct Round {
   Vector3d centre;
   double radius;
   bool outside;
-  ArcOfPoints arc;
+  metrology::ArcOfPoints arc;
 };
 
-Round read_round(Reader& table) {
+Round read_round(config::Reader& table) {
   Round out;
-  out.centre = read_vector(table, "centre_mm", kLength);
-  out.radius = table.real("radius_mm", kLength, {above(0.0)});
+  out.centre = read_vector(table, "centre_mm", config::kLength);
+  out.radius = table.real("radius_mm", config::kLength, {config::above(0.0)});
   out.outside = table.boolean("outside");
-  out.arc.from = table.real_or("from_deg", 0.0, kAngle);
-  out.arc.to = table.real_or("to_deg", out.arc.from + kTurn, kAngle);
+  out.arc.from = table.real_or("from_deg", 0.0, config::kAngle);
+  out.arc.to = table.real_or("to_deg", out.arc.from + kTurn, config::kAngle);
   const double sweep = out.arc.to - out.arc.from;
   if (table.has("to_deg") && !(sweep > 0.0 && sweep <= kTurn * (1.0 + 1e-12))) {
     table.fault("to_deg", "must be above from_deg, by at most 360");
@@ -122,18 +123,18 @@ Round read_round(Reader& table) {
   return out;
 }
 
-std::optional<Feature> read_circle(Reader& table) {
+std::optional<metrology::Feature> read_circle(config::Reader& table) {
   const std::size_t before = table.faults();
   Round round = read_round(table);
   round.arc.points = read_points(table, 3);
   if (table.faults() > before) return std::nullopt;
-  return circle_feature(round.centre, round.radius, round.outside, round.arc);
+  return metrology::circle_feature(round.centre, round.radius, round.outside, round.arc);
 }
 
-std::optional<Feature> read_cylinder(Reader& table) {
+std::optional<metrology::Feature> read_cylinder(config::Reader& table) {
   const std::size_t before = table.faults();
   Round round = read_round(table);
-  const double to_z = table.real("to_mm", kLength);
+  const double to_z = table.real("to_mm", config::kLength);
   const auto points = read_grid(table, {3, 2});
   round.arc.points = points[0];
   if (table.faults() > before) return std::nullopt;
@@ -141,14 +142,15 @@ std::optional<Feature> read_cylinder(Reader& table) {
     table.fault("to_mm", "is the Z of the other end and must differ from that of centre_mm");
     return std::nullopt;
   }
-  return cylinder_feature(round.centre, round.radius, round.outside, round.arc, to_z, points[1]);
+  return metrology::cylinder_feature(round.centre, round.radius, round.outside, round.arc, to_z,
+                                     points[1]);
 }
 
-std::optional<Feature> read_notch(Reader& table) {
+std::optional<metrology::Feature> read_notch(config::Reader& table) {
   const std::size_t before = table.faults();
-  const Vector3d from = read_vector(table, "from_mm", kLength);
-  const Vector3d to = read_vector(table, "to_mm", kLength);
-  const double width = table.real("width_mm", kLength, {above(0.0)});
+  const Vector3d from = read_vector(table, "from_mm", config::kLength);
+  const Vector3d to = read_vector(table, "to_mm", config::kLength);
+  const double width = table.real("width_mm", config::kLength, {config::above(0.0)});
   const int points = read_points(table, 1);
   if (table.faults() > before) return std::nullopt;
   if (from == to) {
@@ -157,18 +159,19 @@ std::optional<Feature> read_notch(Reader& table) {
     table.fault("to_mm", "must be at the height of from_mm");
   }
   if (table.faults() > before) return std::nullopt;
-  return notch_feature(from, to, width, points);
+  return metrology::notch_feature(from, to, width, points);
 }
 
-std::optional<double> number(const Value& value) {
-  if (value.type == Value::Type::integer) return static_cast<double>(value.integer);
-  if (value.type == Value::Type::real && std::isfinite(value.real)) return value.real;
+std::optional<double> number(const config::Value& value) {
+  if (value.type == config::Value::Type::integer) return static_cast<double>(value.integer);
+  if (value.type == config::Value::Type::real && std::isfinite(value.real)) return value.real;
   return std::nullopt;
 }
 
-std::optional<plant::ProbeTarget> target(const Value& item) {
+std::optional<plant::ProbeTarget> target(const config::Value& item) {
   std::array<double, 6> x{};
-  if (item.type != Value::Type::list || item.children.size() != x.size()) return std::nullopt;
+  if (item.type != config::Value::Type::list || item.children.size() != x.size())
+    return std::nullopt;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto found = number(item.children[i]);
     if (!found) return std::nullopt;
@@ -179,20 +182,20 @@ std::optional<plant::ProbeTarget> target(const Value& item) {
   return plant::ProbeTarget{Vector3d(x[0], x[1], x[2]) * mm, normal.normalized()};
 }
 
-std::optional<Feature> read_explicit(Reader& probe) {
+std::optional<metrology::Feature> read_explicit(config::Reader& probe) {
   constexpr const char* kKey = "points_mm";
-  const Value* list = probe.raw(kKey);
-  if (list->type != Value::Type::list || list->children.empty()) {
+  const config::Value* list = probe.raw(kKey);
+  if (list->type != config::Value::Type::list || list->children.empty()) {
     probe.fault(kKey, "must be a list of [x, y, z, nx, ny, nz]");
     return std::nullopt;
   }
-  Feature out;
-  for (const Value& item : list->children) {
+  metrology::Feature out;
+  for (const config::Value& item : list->children) {
     const auto found = target(item);
     if (!found) {
       probe.fault(kKey, fmt::format("has the item {}; must be [x, y, z, nx, ny, nz] with a "
                                     "normal that is not zero",
-                                    inline_toml(item)));
+                                    config::inline_toml(item)));
       return std::nullopt;
     }
     out.targets.push_back(*found);
@@ -200,9 +203,9 @@ std::optional<Feature> read_explicit(Reader& probe) {
   return out;
 }
 
-std::optional<Feature> read_kind(Reader& probe, std::string_view kind) {
+std::optional<metrology::Feature> read_kind(config::Reader& probe, std::string_view kind) {
   if (kind == "points_mm") return read_explicit(probe);
-  Reader table = probe.table(kind);
+  config::Reader table = probe.table(kind);
   if (kind == "line") return read_line(table);
   if (kind == "plane") return read_plane(table);
   if (kind == "circle") return read_circle(table);
@@ -211,7 +214,7 @@ std::optional<Feature> read_kind(Reader& probe, std::string_view kind) {
 }
 
 // The one kind that a probe names.
-std::optional<std::string_view> kind_of(Reader& probe) {
+std::optional<std::string_view> kind_of(config::Reader& probe) {
   std::optional<std::string_view> found;
   for (const std::string_view kind : kKinds) {
     if (!probe.has(kind)) continue;
@@ -232,37 +235,41 @@ std::optional<std::string_view> kind_of(Reader& probe) {
 }
 
 // The name becomes a group of the result file.
-void check_name(Reader& probe, const std::string& name, const std::vector<ProbeSpec>& earlier) {
+void check_name(config::Reader& probe, const std::string& name,
+                const std::vector<metrology::ProbeSpec>& earlier) {
   if (name.empty() || name == "." || name == "..") {
     probe.fault("name", "must name the feature");
   } else if (name.find('/') != std::string::npos) {
     probe.fault("name", "must not contain '/'");
   } else if (std::any_of(earlier.begin(), earlier.end(),
-                         [&](const ProbeSpec& one) { return one.name == name; })) {
+                         [&](const metrology::ProbeSpec& one) { return one.name == name; })) {
     probe.fault("name", "is the name of an earlier probe");
   }
 }
 
 }  // namespace
 
-Cmm read_cmm(Reader& root) {
-  Reader table = root.table_or_empty("cmm");
-  Cmm cmm;
-  cmm.uncertainty = table.real_or("uncertainty_um", cmm.uncertainty, kLength, {at_least(0.0)});
-  cmm.probe_radius = table.real_or("probe_radius_mm", cmm.probe_radius, kLength, {at_least(0.0)});
-  cmm.repetitions = static_cast<int>(
-      table.integer_or("repetitions", cmm.repetitions, {at_least(1), at_most(kMostRepetitions)}));
-  cmm.seed =
-      static_cast<std::uint64_t>(table.integer_or("seed", 1, {at_least(0), at_most(kMostSeed)}));
-  cmm.clearance = table.real_or("approach_mm", cmm.clearance, kLength, {above(0.0)});
-  cmm.depth = table.real_or("search_mm", cmm.depth, kLength, {above(0.0)});
+metrology::Cmm read_cmm(config::Reader& root) {
+  config::Reader table = root.table_or_empty("cmm");
+  metrology::Cmm cmm;
+  cmm.uncertainty =
+      table.real_or("uncertainty_um", cmm.uncertainty, config::kLength, {config::at_least(0.0)});
+  cmm.probe_radius =
+      table.real_or("probe_radius_mm", cmm.probe_radius, config::kLength, {config::at_least(0.0)});
+  cmm.repetitions = static_cast<int>(table.integer_or(
+      "repetitions", cmm.repetitions, {config::at_least(1), config::at_most(kMostRepetitions)}));
+  cmm.seed = static_cast<std::uint64_t>(
+      table.integer_or("seed", 1, {config::at_least(0), config::at_most(kMostSeed)}));
+  cmm.clearance =
+      table.real_or("approach_mm", cmm.clearance, config::kLength, {config::above(0.0)});
+  cmm.depth = table.real_or("search_mm", cmm.depth, config::kLength, {config::above(0.0)});
   return cmm;
 }
 
-std::vector<ProbeSpec> read_probes(Reader& root, bool has_cutter) {
-  std::vector<ProbeSpec> out;
-  for (Reader& probe : root.tables_or_none("probe")) {
-    ProbeSpec spec;
+std::vector<metrology::ProbeSpec> read_probes(config::Reader& root, bool has_cutter) {
+  std::vector<metrology::ProbeSpec> out;
+  for (config::Reader& probe : root.tables_or_none("probe")) {
+    metrology::ProbeSpec spec;
     spec.place = probe.place("name");
     const std::size_t before = probe.faults();
     spec.name = probe.text("name");
@@ -278,4 +285,4 @@ std::vector<ProbeSpec> read_probes(Reader& root, bool has_cutter) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -16,14 +16,14 @@
 #include "sim/input/subroutine_files.h"
 #include "sim/system/utf8.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 // A program becomes a text of the result file, which is UTF-8 without NUL.
 void refuse_unwritable(const std::string& file, std::string_view text) {
   int line = 1, column = 1;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text.substr(i));
+    const std::size_t length = system::utf8_length(text.substr(i));
     const auto byte = static_cast<unsigned char>(text[i]);
     if (length == 0) {
       throw InputError({file, line, column},
@@ -38,7 +38,7 @@ void refuse_unwritable(const std::string& file, std::string_view text) {
 
 // Files of subroutines that a text may call, and those that they may call in turn.
 void read_subroutines(const std::shared_ptr<const std::string>& text, const Place& at,
-                      InputFiles& files, ProgramSpec& program) {
+                      InputFiles& files, model::ProgramSpec& program) {
   for (const std::string& name : controllers::called_subroutines(
            controllers::ProgramText::of_shared_text(text, program.file))) {
     const std::string file = subroutine_file(program.file, name);
@@ -51,12 +51,12 @@ void read_subroutines(const std::shared_ptr<const std::string>& text, const Plac
 }
 
 // The text of the program, from its file or as a resolved document holds it.
-void read_text(Reader& table, InputFiles& files, ProgramSpec& program) {
+void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& program) {
   program.file = table.text("file");
   if (table.has("text") && !is_outdated_copy(table, "file", "text")) {
     program.shared_text = std::make_shared<const std::string>(table.text("text"));
     if (table.has("subroutines")) {
-      Reader texts = table.table("subroutines");
+      config::Reader texts = table.table("subroutines");
       for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
     }
   } else if (!program.file.empty()) {
@@ -66,7 +66,7 @@ void read_text(Reader& table, InputFiles& files, ProgramSpec& program) {
     program.shared_text = files.text(program.file, at, "program");
     read_subroutines(program.shared_text, at, files, program);
   }
-  if (table.is("file", Value::Type::text) && table.text("file").empty()) {
+  if (table.is("file", config::Value::Type::text) && table.text("file").empty()) {
     table.fault("file", "must name the program");
   }
   refuse_unwritable(program.file, program.text());
@@ -80,10 +80,10 @@ bool is_parameter_name(std::string_view key) {
          key.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-std::map<std::string, double> read_parameters(Reader& table) {
+std::map<std::string, double> read_parameters(config::Reader& table) {
   std::map<std::string, double> out;
   for (const std::string& key : table.keys()) {
-    out[key] = table.real(key, kNumber);
+    out[key] = table.real(key, config::kNumber);
     if (!is_parameter_name(key)) {
       table.fault(key, "must be named #N or #<name>, or QN in a conversational program");
     }
@@ -91,12 +91,14 @@ std::map<std::string, double> read_parameters(Reader& table) {
   return out;
 }
 
-void read_tool(Reader& table, ProgramSpec& program) {
+void read_tool(config::Reader& table, model::ProgramSpec& program) {
   controllers::ToolEntry tool;
-  tool.number = static_cast<int>(table.integer("number", {at_least(1), at_most(99999)}));
+  tool.number =
+      static_cast<int>(table.integer("number", {config::at_least(1), config::at_most(99999)}));
   tool.pocket = tool.number;
-  tool.offset[index_of(Axis::Z)] = table.real("length_mm", kLength, {at_least(0.0)});
-  tool.diameter = table.real_or("diameter_mm", 0.0, kLength, {at_least(0.0)});
+  tool.offset[index_of(Axis::Z)] =
+      table.real("length_mm", config::kLength, {config::at_least(0.0)});
+  tool.diameter = table.real_or("diameter_mm", 0.0, config::kLength, {config::at_least(0.0)});
   const auto cutter = read_cutter(table, tool.diameter);
   if (program.tools.find(tool.number) != nullptr) {
     table.fault("number", "is the number of an earlier tool");
@@ -108,40 +110,42 @@ void read_tool(Reader& table, ProgramSpec& program) {
 
 }  // namespace
 
-ProgramSpec read_program(Reader& table, const MachineSettings& machine, InputFiles& files) {
-  ProgramSpec program;
+model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
+                                InputFiles& files) {
+  model::ProgramSpec program;
   read_text(table, files, program);
-  const NcSettings& nc = machine.nc;
+  const model::NcSettings& nc = machine.nc;
   program.reader = static_cast<controllers::Reader>(table.choice_or(
       "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
   program.decimal_point = static_cast<controllers::DecimalPoint>(table.choice_or(
       "decimal_point", static_cast<std::size_t>(nc.decimal_point), controllers::kDecimalPoints));
   if (table.has("first_feed"))
-    program.first_feed = table.real("first_feed", kVelocity, {above(0.0)});
-  program.feed_override = table.real_or("feed_override", 1.0, kNumber, {above(0.0)});
+    program.first_feed = table.real("first_feed", config::kVelocity, {config::above(0.0)});
+  program.feed_override =
+      table.real_or("feed_override", 1.0, config::kNumber, {config::above(0.0)});
   if (table.has("parameters")) {
-    Reader parameters = table.table("parameters");
+    config::Reader parameters = table.table("parameters");
     program.parameters = read_parameters(parameters);
   }
   const JointLayout& layout = machine.chain.layout;
   if (table.has("work_offset")) {
-    Reader words = table.table("work_offset");
+    config::Reader words = table.table("work_offset");
     program.work_offset = read_offsets(words, layout);
   }
   program.start_place = table.place("start");
   if (table.has("start")) {
-    Reader words = table.table("start");
+    config::Reader words = table.table("start");
     program.start = read_offsets(words, layout);
   }
-  for (Reader& tool : table.tables_or_none("tool")) read_tool(tool, program);
+  for (config::Reader& tool : table.tables_or_none("tool")) read_tool(tool, program);
   return program;
 }
 
-AxisWords read_offsets(Reader& table, const JointLayout& layout) {
+AxisWords read_offsets(config::Reader& table, const JointLayout& layout) {
   if (layout == JointLayout{}) {
     for (const std::string& key : table.keys()) table.raw(key);
   }
   return read_words(table, layout);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

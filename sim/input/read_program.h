@@ -7,15 +7,16 @@
 #include "sim/model/machine.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Table [program]: file, reader, parameters, work offset, start and tools. A resolved document
 /// holds the texts of all files.
 /// @throws InputError if a file cannot be read or its text cannot be stored in a result file
-ProgramSpec read_program(Reader& table, const MachineSettings& machine, InputFiles& files);
+model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
+                                InputFiles& files);
 
 /// Program words such as X_mm = 1.5.
 /// @param layout  of the machine; empty where that could not be read: any words are then taken
-AxisWords read_offsets(Reader& table, const JointLayout& layout);
+AxisWords read_offsets(config::Reader& table, const JointLayout& layout);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

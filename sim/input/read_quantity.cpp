@@ -16,7 +16,7 @@
 #include "sim/input/known_name.h"
 #include "sim/input/r_test_keys.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr std::array<std::string_view, 4> kStatistics = {"max", "rms", "mean", "range"};
@@ -32,17 +32,18 @@ std::vector<std::string_view> letters_of(std::string_view axes) {
 
 class QuantityReader {
  public:
-  QuantityReader(bool checks_cases, Scenario& out) : checks_cases_(checks_cases), out_(out) {}
+  QuantityReader(bool checks_cases, model::Scenario& out)
+      : checks_cases_(checks_cases), out_(out) {}
 
-  void read(Reader& table) {
-    QuantitySpec spec;
+  void read(config::Reader& table) {
+    model::QuantitySpec spec;
     const std::size_t before = table.faults();
-    const std::size_t index = table.choice("name", quantity_names());
+    const std::size_t index = table.choice("name", evaluation::quantity_names());
     if (table.faults() > before) {
       table.skip_rest();
       return;
     }
-    const QuantityEntry& info = quantities()[index];
+    const evaluation::QuantityEntry& info = evaluation::quantities()[index];
     spec.name = info.name;
     if (info.needs_axis()) read_axis(table, info, spec);
     if (info.has_statistic) {
@@ -66,29 +67,32 @@ class QuantityReader {
   }
 
  private:
-  void read_axis(Reader& table, const QuantityEntry& info, QuantitySpec& spec) const {
+  void read_axis(config::Reader& table, const evaluation::QuantityEntry& info,
+                 model::QuantitySpec& spec) const {
     spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];
     const JointLayout& layout = out_.machine.chain.layout;
     const auto axis = axis_of(spec.axis);
-    if (layout != JointLayout{} && table.is("axis", Value::Type::text) && axis &&
+    if (layout != JointLayout{} && table.is("axis", config::Value::Type::text) && axis &&
         !layout.joint_of(*axis)) {
       table.fault("axis", "the machine has no such axis");
     }
   }
 
-  void read_compared_cases(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
+  void read_compared_cases(config::Reader& table, const evaluation::QuantityEntry& info,
+                           model::QuantitySpec& spec) {
     std::vector<std::string> all;
-    for (const CaseSpec& one : out_.cases) all.push_back(one.name);
+    for (const model::CaseSpec& one : out_.cases) all.push_back(one.name);
     if (info.needs_baseline || (info.probes > 0 && table.has("baseline"))) {
       spec.baseline = table.text("baseline");
-      if (table.is("baseline", Value::Type::text) && checks_cases_)
+      if (table.is("baseline", config::Value::Type::text) && checks_cases_)
         must_be_known(table, "baseline", spec.baseline, "case", all);
     }
     read_cases_of(table, std::move(all), spec);
   }
 
   // Default: all but the one compared with, whose differences would all be 0.
-  void read_cases_of(Reader& table, std::vector<std::string> all, QuantitySpec& spec) {
+  void read_cases_of(config::Reader& table, std::vector<std::string> all,
+                     model::QuantitySpec& spec) {
     std::vector<std::string> others = all;
     if (others.size() > 1) std::erase(others, spec.baseline);
     spec.cases = table.texts_or("cases", others);
@@ -98,12 +102,13 @@ class QuantityReader {
   }
 
   // Features that a quantity evaluates, and how they are fitted.
-  void read_part(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
+  void read_part(config::Reader& table, const evaluation::QuantityEntry& info,
+                 model::QuantitySpec& spec) {
     spec.part.emplace();
     std::vector<std::string> names;
-    for (const ProbeSpec& one : out_.probes) names.push_back(one.name);
+    for (const metrology::ProbeSpec& one : out_.probes) names.push_back(one.name);
     const bool all_named = std::find(names.begin(), names.end(), "") == names.end();
-    if (info.probes == kEveryProbe) {
+    if (info.probes == evaluation::kEveryProbe) {
       spec.part->probes = table.texts_or("probes", names);
       for (const std::string& name : spec.part->probes) {
         if (all_named) must_be_known(table, "probes", name, fmt::format("probe '{}'", name), names);
@@ -123,24 +128,26 @@ class QuantityReader {
   }
 
   // A probe measures a kind of feature; a quantity is of some kinds only.
-  void must_suit(Reader& table, const QuantityEntry& info, std::string_view key,
+  void must_suit(config::Reader& table, const evaluation::QuantityEntry& info, std::string_view key,
                  const std::string& name) {
-    const auto probe = std::find_if(out_.probes.begin(), out_.probes.end(),
-                                    [&](const ProbeSpec& one) { return one.name == name; });
+    const auto probe =
+        std::find_if(out_.probes.begin(), out_.probes.end(),
+                     [&](const metrology::ProbeSpec& one) { return one.name == name; });
     if (probe->feature.targets.empty()) return;  // its fault has been noted
-    const FeatureKind kind = probe->feature.kind;
+    const metrology::FeatureKind kind = probe->feature.kind;
     if (std::count(info.kinds.begin(), info.kinds.end(), kind) > 0) return;
     std::vector<std::string_view> wanted;
-    for (const FeatureKind one : info.kinds) wanted.push_back(name_of(one));
-    table.fault(key, fmt::format("is a {}; {} is of: {}", name_of(kind), info.name,
+    for (const metrology::FeatureKind one : info.kinds) wanted.push_back(metrology::name_of(one));
+    table.fault(key, fmt::format("is a {}; {} is of: {}", metrology::name_of(kind), info.name,
                                  fmt::join(wanted, ", ")));
   }
 
   // One quantity, or one for each circle, ball bar or location error.
-  void add(Reader& table, const QuantityEntry& info, QuantitySpec& spec) {
+  void add(config::Reader& table, const evaluation::QuantityEntry& info,
+           model::QuantitySpec& spec) {
     if (info.circles > 0) {
       add_circles(table, spec, static_cast<std::size_t>(info.circles));
-    } else if (info.bars == BallBars::required) {
+    } else if (info.bars == evaluation::BallBars::required) {
       add_bars(spec);
     } else if (info.identifies) {
       add_location_errors(spec);
@@ -150,9 +157,9 @@ class QuantityReader {
   }
 
   // Ball bars are evaluated one by one.
-  void add_bars(const QuantitySpec& all) {
+  void add_bars(const model::QuantitySpec& all) {
     for (std::size_t i = 0; i < all.ball->bar_centres.size(); ++i) {
-      QuantitySpec one = all;
+      model::QuantitySpec one = all;
       one.sections = {all.sections[i]};
       one.ball->bar_centres = {all.ball->bar_centres[i]};
       out_.quantities.push_back(std::move(one));
@@ -161,34 +168,34 @@ class QuantityReader {
 
   // The one asked for or every location error of the machine, and what it truly is where no other
   // reference is given.
-  void add_location_errors(const QuantitySpec& all) {
+  void add_location_errors(const model::QuantitySpec& all) {
     const auto truth = out_.errors.find(out_.machine_errors);
-    std::vector<plant::ErrorName> names = location_errors(out_.machine.chain);
+    std::vector<plant::ErrorName> names = metrology::location_errors(out_.machine.chain);
     if (all.ball->error) names = {*all.ball->error};
     const bool is_true_of_each =
         std::none_of(out_.cases.begin(), out_.cases.end(),
-                     [](const CaseSpec& one) { return one.machine_errors.has_value(); });
+                     [](const model::CaseSpec& one) { return one.machine_errors.has_value(); });
     for (const plant::ErrorName& name : names) {
-      QuantitySpec one = all;
+      model::QuantitySpec one = all;
       one.ball->error = name;
       if (one.reference.empty() && truth != out_.errors.end() && is_true_of_each) {
         const double unit = is_linear(name.direction) ? um : urad;
         one.reference = fmt::format("{:g} {} true", truth->second.location(name) / unit,
-                                    unit_of_location(name));
+                                    evaluation::unit_of_location(name));
       }
       out_.quantities.push_back(std::move(one));
     }
   }
 
   // Circles are evaluated one by one, or in pairs of directions: a quantity for each.
-  void add_circles(Reader& table, const QuantitySpec& all, std::size_t together) {
+  void add_circles(config::Reader& table, const model::QuantitySpec& all, std::size_t together) {
     if (table.has("sections") && (all.sections.empty() || all.sections.size() % together != 0)) {
       table.fault("sections", together == 1
                                   ? "must name at least one turn of a circle"
                                   : "must name pairs of turns of a circle, one in each direction");
     }
     for (std::size_t i = 0; i + together <= all.sections.size(); i += together) {
-      QuantitySpec one = all;
+      model::QuantitySpec one = all;
       const auto first = all.sections.begin() + static_cast<std::ptrdiff_t>(i);
       one.sections.assign(first, first + static_cast<std::ptrdiff_t>(together));
       out_.quantities.push_back(std::move(one));
@@ -196,13 +203,13 @@ class QuantityReader {
   }
 
   bool checks_cases_;
-  Scenario& out_;
+  model::Scenario& out_;
 };
 
 }  // namespace
 
-void read_quantity(Reader& table, bool checks_cases, Scenario& out) {
+void read_quantity(config::Reader& table, bool checks_cases, model::Scenario& out) {
   QuantityReader(checks_cases, out).read(table);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -1,4 +1,4 @@
-#include "sim/model/scenario.h"
+#include "sim/input/read_scenario.h"
 
 #include <fmt/format.h>
 
@@ -28,16 +28,16 @@
 #include "sim/system/base64.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 class ScenarioReader {
  public:
-  ScenarioReader(Document document, InputFiles& files, Scenario& out)
+  ScenarioReader(config::Document document, InputFiles& files, model::Scenario& out)
       : document_(std::move(document)), files_(files), out_(out) {}
 
   void read() {
-    Reader root(document_);
+    config::Reader root(document_);
     root.raw("based_on");  // still there in result files of earlier versions
     if (root.place("based_on").file.starts_with("--set")) {
       root.fault("based_on", "is none of the keys that --set changes: name the other scenario");
@@ -46,9 +46,9 @@ class ScenarioReader {
     out_.title = root.text_or("title", out_.name);
     out_.source = root.text_or("source", "");
     const std::string plugins = read_plugins(root);
-    Reader machine = root.table("machine");
+    config::Reader machine = root.table("machine");
     out_.machine = read_machine(machine, &out_.errors);
-    Reader program = root.table("program");
+    config::Reader program = root.table("program");
     out_.program = read_program(program, out_.machine, files_);
     read_error_models(root);
     read_hardware(root);
@@ -59,17 +59,17 @@ class ScenarioReader {
     read_cut(root);
     refuse_unused(root);
     const std::size_t before = root.faults();
-    std::vector<Reader> cases = root.tables("case");
+    std::vector<config::Reader> cases = root.tables("case");
     const bool has_cases = root.faults() == before;
     CaseReader case_reader(error_models_, hardware_is_chosen_, out_);
-    for (Reader& table : cases) case_reader.read(table);
+    for (config::Reader& table : cases) case_reader.read(table);
     case_reader.connect_hardware();
     const bool checks_cases = has_cases && case_reader.names_are_known();
-    for (Reader& table : root.tables_or_none("quantity")) {
+    for (config::Reader& table : root.tables_or_none("quantity")) {
       read_quantity(table, checks_cases, out_);
     }
     if (root.has("sweep")) {
-      Reader sweep = root.table("sweep");
+      config::Reader sweep = root.table("sweep");
       out_.sweep = read_sweep(sweep);
     }
     root.finish();
@@ -81,47 +81,47 @@ class ScenarioReader {
   }
 
  private:
-  static Value text_value(const std::string& key, const std::string& text) {
-    Value value;
-    value.type = Value::Type::text;
+  static config::Value text_value(const std::string& key, const std::string& text) {
+    config::Value value;
+    value.type = config::Value::Type::text;
     value.key = key;
     value.text = text;
-    value.written = quoted_text(text);
+    value.written = config::quoted_text(text);
     return value;
   }
 
   // { program = { text = "..." }, part = { ... } }: a resolved document needs no other file.
-  Value with_contents_of_files() const {
-    Value program;
+  config::Value with_contents_of_files() const {
+    config::Value program;
     program.key = "program";
     program.children.push_back(text_value("text", out_.program.text()));
     if (!out_.program.subroutines.empty()) {
-      Value subroutines;
+      config::Value subroutines;
       subroutines.key = "subroutines";
       for (const auto& [name, text] : out_.program.subroutines) {
         subroutines.children.push_back(text_value(name, text));
       }
       program.children.push_back(std::move(subroutines));
     }
-    Value root;
+    config::Value root;
     root.children.push_back(std::move(program));
     if (out_.part) {
-      Value part;
+      config::Value part;
       part.key = "part";
       part.children.push_back(text_value("stl", out_.part->file));
-      part.children.push_back(text_value("stl_base64", base64(out_.part->bytes)));
+      part.children.push_back(text_value("stl_base64", system::base64(out_.part->bytes)));
       root.children.push_back(std::move(part));
     }
     return root;
   }
 
-  void read_error_models(Reader& root) {
+  void read_error_models(config::Reader& root) {
     std::vector<std::string>& names = error_models_;
     if (root.has("errors")) {
-      Reader models = root.table("errors");
+      config::Reader models = root.table("errors");
       names = models.keys();
       if (out_.machine.chain.layout != JointLayout{}) {
-        for (auto& [name, model] : sim::read_error_models(models, out_.machine.chain.layout)) {
+        for (auto& [name, model] : input::read_error_models(models, out_.machine.chain.layout)) {
           out_.errors[name] = std::move(model);
         }
       } else {  // their errors have no axes
@@ -138,10 +138,10 @@ class ScenarioReader {
     }
   }
 
-  void read_hardware(Reader& root) {
-    FeedbackHardware& hardware = out_.hardware;
+  void read_hardware(config::Reader& root) {
+    model::FeedbackHardware& hardware = out_.hardware;
     const double base = out_.machine.nc.periods.base;
-    Reader table = root.table_or_empty("feedback_hardware");
+    config::Reader table = root.table_or_empty("feedback_hardware");
     hardware_is_chosen_ = table.has("connected");
     hardware.connected = table.boolean_or("connected", false);
     hardware.signal_delay = read_ticks(table, "signal_delay_us", 10 * us, base, 0);
@@ -156,30 +156,31 @@ class ScenarioReader {
   }
 
   // The static schedule covers one common multiple of all periods.
-  void check_periods(Reader& root) {
-    const LoopPeriods& p = out_.machine.nc.periods;
-    if (!can_be_scheduled({p.position, p.velocity, p.current})) return;  // said with the machine
-    if (hyperperiod({{kPositionLoop, p.position},
-                     {kVelocityLoop, p.velocity},
-                     {kCurrentLoop, p.current},
-                     {kErrorModel, out_.hardware.model_period},
-                     {kRecord, out_.record_period}}) > 0) {
+  void check_periods(config::Reader& root) {
+    const model::LoopPeriods& p = out_.machine.nc.periods;
+    if (!model::can_be_scheduled({p.position, p.velocity, p.current}))
+      return;  // said with the machine
+    if (model::hyperperiod({{model::kPositionLoop, p.position},
+                            {model::kVelocityLoop, p.velocity},
+                            {model::kCurrentLoop, p.current},
+                            {model::kErrorModel, out_.hardware.model_period},
+                            {model::kRecord, out_.record_period}}) > 0) {
       return;
     }
     root.table_or_empty("record").fault(fmt::format(
         "the periods of the loops, of the error model and of the recorder meet again only "
         "after more than {:g} s; make them multiples of each other",
-        p.seconds(kMaxHyperperiod)));
+        p.seconds(model::kMaxHyperperiod)));
   }
 
-  void read_cut(Reader& root) {
+  void read_cut(config::Reader& root) {
     if (root.has("part")) {
-      Reader part = root.table("part");
+      config::Reader part = root.table("part");
       out_.part = read_nominal_part(part, files_);
       out_.stock = read_stock(part);
     }
     if (!root.has("cutting")) return;
-    Reader cutting = root.table("cutting");
+    config::Reader cutting = root.table("cutting");
     out_.cutting = read_cutting(cutting);
     out_.cutting->place = root.place("cutting");
     if (out_.stock.empty() && cutting.faults() == 0) {
@@ -188,7 +189,7 @@ class ScenarioReader {
   }
 
   // Refuses keys that nothing would look at, though the user counts on them.
-  void refuse_unused(Reader& root) {
+  void refuse_unused(config::Reader& root) {
     if (root.faults() > 0 || root.has("probe")) return;
     if (out_.part) {
       root.table("part").fault("stl", "is what probed points are laid on: it needs a [[probe]]");
@@ -203,42 +204,44 @@ class ScenarioReader {
   // Only of a plan that is right in itself.
   void check_plan() const {
     if (!out_.part) return;
-    auto faults = faults_of_plan(out_.probes, *out_.part);
+    auto faults = evaluation::faults_of_plan(out_.probes, *out_.part);
     if (!faults.empty()) throw InputError(std::move(faults));
   }
 
-  Document document_;
+  config::Document document_;
   InputFiles& files_;
-  Scenario& out_;
+  model::Scenario& out_;
   std::vector<std::string> error_models_;  // names, as far as read
   bool hardware_is_chosen_ = false;        // [feedback_hardware] says if it is connected
 };
 
 }  // namespace
 
-Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files) {
-  Scenario out;
+model::Scenario read_document(ScenarioDocument scenario, const std::string& name,
+                              InputFiles& files) {
+  model::Scenario out;
   out.name = name;
   out.machine_text = std::move(scenario.machine_text);
   ScenarioReader(std::move(scenario.document), files, out).read();
   return out;
 }
 
-Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
+model::Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
   return ScenarioSource(path, changes).at();
 }
 
-Scenario read_resolved_scenario(const std::string& resolved, const std::string& name) {
+model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name) {
   InputFiles files;
-  return read_document(with_machine(Document::from_text(resolved, name), {}, files), name, files);
+  return read_document(with_machine(config::Document::from_text(resolved, name), {}, files), name,
+                       files);
 }
 
-MachineSettings read_machine_file(const std::string& path) {
-  const Document document = Document::from_file(path);
-  Reader root(document);
-  MachineSettings machine = read_machine(root);
+model::MachineSettings read_machine_file(const std::string& path) {
+  const config::Document document = config::Document::from_file(path);
+  config::Reader root(document);
+  model::MachineSettings machine = read_machine(root);
   root.finish();
   return machine;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

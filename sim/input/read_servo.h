@@ -4,7 +4,7 @@
 #include "sim/config/reader.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// Settings of all axes unless they have their own: keys of the table `nc`.
 struct CommonServo {
@@ -14,10 +14,11 @@ struct CommonServo {
   double following_error_linear = 10e-3;  // m
   double following_error_rotary = 0.0;    // rad
 };
-CommonServo read_common_servo(Reader& nc);
+CommonServo read_common_servo(config::Reader& nc);
 
 /// Cascade and functions of one axis, from its table.
 /// @pre machine.drives and machine.nc.periods are read
-void read_servo(Reader& axis, const CommonServo& common, int joint, MachineSettings& machine);
+void read_servo(config::Reader& axis, const CommonServo& common, int joint,
+                model::MachineSettings& machine);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

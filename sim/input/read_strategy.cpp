@@ -12,24 +12,25 @@
 #include "sim/input/known_name.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr double kNoBound = 1e300;  // of a parameter's specification
 constexpr std::array<std::string_view, 2> kActions = {"impose", "compensate"};
 
-void read_model(Reader& table, std::span<const std::string> error_models, StrategySpec& strategy) {
+void read_model(config::Reader& table, std::span<const std::string> error_models,
+                model::StrategySpec& strategy) {
   strategy.action = table.choice_or("action", 1, kActions) == 0 ? strategies::Action::impose
                                                                 : strategies::Action::compensate;
   strategy.model = table.text("model");
-  if (table.is("model", Value::Type::text)) {
+  if (table.is("model", config::Value::Type::text)) {
     must_be_known(table, "model", strategy.model, "error model", error_models);
   }
 }
 
 // Tells if a text does not even begin like a number with its unit.
-bool is_word(Reader& table, std::string_view key) {
-  if (!table.is(key, Value::Type::text)) return false;
+bool is_word(config::Reader& table, std::string_view key) {
+  if (!table.is(key, config::Value::Type::text)) return false;
   const std::string text = table.text(key);
   return text.find_first_of("0123456789") == std::string::npos;
 }
@@ -39,9 +40,9 @@ bool is_one_of(const std::string& word, const ParameterSpec& spec) {
 }
 
 // The word of a parameter that is given, or its default; false if that is none of its words.
-bool read_word(Reader& table, const ParameterSpec& spec, Parameters& out) {
+bool read_word(config::Reader& table, const ParameterSpec& spec, Parameters& out) {
   const bool given = table.has(spec.name);
-  if (given && !table.is(spec.name, Value::Type::text)) return false;
+  if (given && !table.is(spec.name, config::Value::Type::text)) return false;
   const std::string word = given ? table.text(spec.name) : std::string(spec.default_text);
   if (!is_one_of(word, spec)) return false;
   out.set(spec.name, std::string_view(word));
@@ -49,16 +50,16 @@ bool read_word(Reader& table, const ParameterSpec& spec, Parameters& out) {
 }
 
 // A parameter that has no words but these.
-void read_other_word(Reader& table, const ParameterSpec& spec, Parameters& out) {
+void read_other_word(config::Reader& table, const ParameterSpec& spec, Parameters& out) {
   // numbers stand for words, too: iterations = 1
-  if (table.has(spec.name) && table.is(spec.name, Value::Type::integer)) {
+  if (table.has(spec.name) && table.is(spec.name, config::Value::Type::integer)) {
     const std::string word = std::to_string(table.integer(spec.name));
     if (is_one_of(word, spec)) {
       out.set(spec.name, std::string_view(word));
       return;
     }
   }
-  if (table.has(spec.name) && table.is(spec.name, Value::Type::boolean)) {
+  if (table.has(spec.name) && table.is(spec.name, config::Value::Type::boolean)) {
     const std::string word = table.boolean(spec.name) ? "true" : "false";
     if (is_one_of(word, spec)) {
       out.set(spec.name, std::string_view(word));
@@ -66,20 +67,20 @@ void read_other_word(Reader& table, const ParameterSpec& spec, Parameters& out) 
     }
   }
   table.raw(spec.name);
-  const std::string near = table.is(spec.name, Value::Type::text)
+  const std::string near = table.is(spec.name, config::Value::Type::text)
                                ? did_you_mean(table.text(spec.name), spec.words)
                                : std::string();
   table.fault(spec.name, fmt::format("must be one of {}{}", fmt::join(spec.words, ", "), near));
   out.set(spec.name, spec.words.front());
 }
 
-void read_number(Reader& table, const ParameterSpec& spec, Parameters& out) {
+void read_number(config::Reader& table, const ParameterSpec& spec, Parameters& out) {
   const bool given = table.has(spec.name);
-  const ParsedUnit unit = parse_unit(spec.unit);
+  const config::ParsedUnit unit = config::parse_unit(spec.unit);
   const double factor = unit.unit ? unit.unit->factor : 1.0;
-  const Quantity quantity = unit.unit ? unit.unit->quantity : kNumber;
-  const Rule least = at_least(spec.min * factor);
-  const Rules rules = {least, at_most(spec.max * factor)};
+  const config::Quantity quantity = unit.unit ? unit.unit->quantity : config::kNumber;
+  const config::Rule least = config::at_least(spec.min * factor);
+  const config::Rules rules = {least, config::at_most(spec.max * factor)};
   if (given && !spec.words.empty() && is_word(table, spec.name)) {
     const std::string word = table.text(spec.name);
     table.fault(spec.name, fmt::format("must be a number or {}{}", fmt::join(spec.words, ", "),
@@ -95,7 +96,7 @@ void read_number(Reader& table, const ParameterSpec& spec, Parameters& out) {
   }
 }
 
-void read_parameter(Reader& table, const ParameterSpec& spec, Parameters& out) {
+void read_parameter(config::Reader& table, const ParameterSpec& spec, Parameters& out) {
   if (read_word(table, spec, out)) return;
   if (spec.is_number) {
     read_number(table, spec, out);
@@ -104,15 +105,16 @@ void read_parameter(Reader& table, const ParameterSpec& spec, Parameters& out) {
   }
 }
 
-bool adds_start(const StrategySpec& one) {
+bool adds_start(const model::StrategySpec& one) {
   return one.entry->holds_error_at_reference != nullptr &&
          one.entry->holds_error_at_reference(one.parameters);
 }
 
 // Tells if an earlier strategy for the same model adds the value at the start already.
-bool repeats_start(const StrategySpec& strategy, const std::vector<StrategySpec>& earlier) {
+bool repeats_start(const model::StrategySpec& strategy,
+                   const std::vector<model::StrategySpec>& earlier) {
   return adds_start(strategy) &&
-         std::any_of(earlier.begin(), earlier.end(), [&](const StrategySpec& other) {
+         std::any_of(earlier.begin(), earlier.end(), [&](const model::StrategySpec& other) {
            return other.entry == strategy.entry && other.model == strategy.model &&
                   adds_start(other);
          });
@@ -120,7 +122,8 @@ bool repeats_start(const StrategySpec& strategy, const std::vector<StrategySpec>
 
 }  // namespace
 
-void read_strategy(Reader& table, std::span<const std::string> error_models, CaseSpec& spec) {
+void read_strategy(config::Reader& table, std::span<const std::string> error_models,
+                   model::CaseSpec& spec) {
   const auto names = strategies::names();
   const std::size_t before = table.faults();
   const std::size_t index = table.choice("type", names);
@@ -128,7 +131,7 @@ void read_strategy(Reader& table, std::span<const std::string> error_models, Cas
     table.skip_rest();
     return;
   }
-  StrategySpec strategy;
+  model::StrategySpec strategy;
   strategy.entry = strategies::find(names[index]);
   strategy.place = table.place("type");
   if (strategy.entry->reads_errors) read_model(table, error_models, strategy);
@@ -151,4 +154,4 @@ void read_strategy(Reader& table, std::span<const std::string> error_models, Cas
   spec.strategies.push_back(std::move(strategy));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

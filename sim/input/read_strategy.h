@@ -7,11 +7,12 @@
 #include "sim/config/reader.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// One [[case.strategy]], added to those of `spec`: type, sign, model and the parameters that the
 /// registry lists for that type. A strategy at fault in its type is left out.
 /// @param error_models  names of all models of the scenario
-void read_strategy(Reader& table, std::span<const std::string> error_models, CaseSpec& spec);
+void read_strategy(config::Reader& table, std::span<const std::string> error_models,
+                   model::CaseSpec& spec);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

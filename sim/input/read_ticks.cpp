@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr double kLongestPeriod = 60.0;  // s
@@ -16,13 +16,15 @@ double unit_of(std::string_view key) { return key.ends_with("_us") ? us : ms; }
 
 }  // namespace
 
-Tick read_ticks(Reader& table, std::string_view key, double fallback, double base_period,
+Tick read_ticks(config::Reader& table, std::string_view key, double fallback, double base_period,
                 Tick least) {
   const Tick harmless = std::max<Tick>(least, 1);
   const std::size_t before = table.faults();
   const double seconds =
-      least > 0 ? table.real_or(key, fallback, kTime, {above(0.0), at_most(kLongestPeriod)})
-                : table.real_or(key, fallback, kTime, {at_least(0.0), at_most(kLongestPeriod)});
+      least > 0 ? table.real_or(key, fallback, config::kTime,
+                                {config::above(0.0), config::at_most(kLongestPeriod)})
+                : table.real_or(key, fallback, config::kTime,
+                                {config::at_least(0.0), config::at_most(kLongestPeriod)});
   if (table.faults() > before) return harmless;
   const auto whole = whole_ticks(seconds, base_period);
   if (whole && *whole >= least) return *whole;
@@ -37,4 +39,4 @@ Tick read_ticks(Reader& table, std::string_view key, double fallback, double bas
   return harmless;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -6,13 +6,13 @@
 #include "sim/config/reader.h"
 #include "sim/model/schedule.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// A time of a key that ends with _us or _ms.
 /// @param fallback     s, where the key is absent
 /// @param base_period  s, of the machine
 /// @param least        allowed; returned where the time is at fault, but at least 1
-Tick read_ticks(Reader& table, std::string_view key, double fallback, double base_period,
+Tick read_ticks(config::Reader& table, std::string_view key, double fallback, double base_period,
                 Tick least);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/user_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -16,15 +16,15 @@ constexpr int kMostBases = 8;
 
 // The cases of two documents: one of the same name takes the place of the other, a new one comes
 // behind them.
-Value merged_cases(Value cases, const Value& above) {
-  const auto name_of = [](const Value& one) {
-    const Value* name = one.find("name");
+config::Value merged_cases(config::Value cases, const config::Value& above) {
+  const auto name_of = [](const config::Value& one) {
+    const config::Value* name = one.find("name");
     return name == nullptr ? std::string() : name->text;
   };
-  for (const Value& one : above.children) {
+  for (const config::Value& one : above.children) {
     const auto known =
         std::find_if(cases.children.begin(), cases.children.end(),
-                     [&](const Value& other) { return name_of(other) == name_of(one); });
+                     [&](const config::Value& other) { return name_of(other) == name_of(one); });
     if (known == cases.children.end()) {
       cases.children.push_back(one);
     } else {
@@ -36,11 +36,11 @@ Value merged_cases(Value cases, const Value& above) {
 
 // A document laid over the one that it is based on: what it says wins, lists as a whole, but for
 // the cases.
-Document with_base(const std::string& path, InputFiles& files, int bases_left) {
-  Document document = *files.document(path);
-  const Value* base = document.root().find("based_on");
+config::Document with_base(const std::string& path, InputFiles& files, int bases_left) {
+  config::Document document = *files.document(path);
+  const config::Value* base = document.root().find("based_on");
   if (base == nullptr) return document;
-  if (base->type != Value::Type::text || base->text.empty()) {
+  if (base->type != config::Value::Type::text || base->text.empty()) {
     throw InputError(base->place, "based_on must be the name of a scenario");
   }
   if (bases_left == 0) {
@@ -53,13 +53,13 @@ Document with_base(const std::string& path, InputFiles& files, int bases_left) {
   if (!fs::exists(base_path)) {
     throw InputError(base->place, fmt::format("based_on = \"{}\"; no such file", base->text));
   }
-  Document below = with_base(base_path, files, bases_left - 1);
-  Value above = document.root();
+  config::Document below = with_base(base_path, files, bases_left - 1);
+  config::Value above = document.root();
   // done: what comes out needs no other file
-  std::erase_if(above.children, [](const Value& child) { return child.key == "based_on"; });
-  const Value* cases = below.root().find("case");
-  Value* more = above.find("case");
-  constexpr auto kList = Value::Type::list;
+  std::erase_if(above.children, [](const config::Value& child) { return child.key == "based_on"; });
+  const config::Value* cases = below.root().find("case");
+  config::Value* more = above.find("case");
+  constexpr auto kList = config::Value::Type::list;
   if (cases != nullptr && more != nullptr && cases->type == kList && more->type == kList) {
     *more = merged_cases(*cases, *more);
   }
@@ -68,20 +68,20 @@ Document with_base(const std::string& path, InputFiles& files, int bases_left) {
 }
 
 // Faults of the machine without which no later message would make sense.
-void refuse_machine(const Document& document) {
-  const Value& root = document.root();
-  const Value* machine = root.find("machine");
+void refuse_machine(const config::Document& document) {
+  const config::Value& root = document.root();
+  const config::Value* machine = root.find("machine");
   if (machine == nullptr && root.find("structure") != nullptr) {
     throw InputError({document.name()},
                      "is a machine, not a scenario; name it in a scenario: machine = \"FILE\"");
   }
-  if (machine == nullptr || machine->type == Value::Type::text ||
-      machine->type == Value::Type::table) {
+  if (machine == nullptr || machine->type == config::Value::Type::text ||
+      machine->type == config::Value::Type::table) {
     return;
   }
   throw InputError(machine->place,
                    fmt::format("machine = {}; must be the name of a machine file, or a table",
-                               inline_toml(*machine)));
+                               config::inline_toml(*machine)));
 }
 
 }  // namespace
@@ -94,14 +94,14 @@ std::string beside(const Place& place, const std::string& path) {
   return file;
 }
 
-bool is_outdated_copy(Reader& table, std::string_view name, std::string_view contents) {
+bool is_outdated_copy(config::Reader& table, std::string_view name, std::string_view contents) {
   return table.place(name).file.starts_with("--set") &&
          !table.place(contents).file.starts_with("--set");
 }
 
-Value as_machine(Value table) {
+config::Value as_machine(config::Value table) {
   table.key = "machine";
-  Value root;
+  config::Value root;
   root.place = table.place;
   root.children.push_back(std::move(table));
   return root;
@@ -111,28 +111,28 @@ bool comes_before_machine(std::string_view change) {
   return change.starts_with("machine=") || change.starts_with("machine_override");
 }
 
-Document scenario_document(const std::string& path, InputFiles& files) {
+config::Document scenario_document(const std::string& path, InputFiles& files) {
   return with_base(path, files, kMostBases);
 }
 
-ScenarioDocument with_machine(Document scenario, std::span<const std::string> changes,
+ScenarioDocument with_machine(config::Document scenario, std::span<const std::string> changes,
                               InputFiles& files) {
   ScenarioDocument out{std::move(scenario), {}};
-  Document& document = out.document;
+  config::Document& document = out.document;
   for (const std::string& change : changes) {
     if (comes_before_machine(change)) document.set(change);
   }
   refuse_machine(document);
-  const Value* machine = document.root().find("machine");
-  if (machine != nullptr && machine->type == Value::Type::text) {
+  const config::Value* machine = document.root().find("machine");
+  if (machine != nullptr && machine->type == config::Value::Type::text) {
     const std::string path = beside(machine->place, machine->text);
     out.machine_text = *files.text(path, machine->place, "machine");
     document.merge(as_machine(files.document(path, out.machine_text)->root()));
   }
-  if (const Value* overrides = document.root().find("machine_override")) {
-    if (overrides->type != Value::Type::table) {
+  if (const config::Value* overrides = document.root().find("machine_override")) {
+    if (overrides->type != config::Value::Type::table) {
       throw InputError(overrides->place, fmt::format("machine_override = {}; must be a table",
-                                                     inline_toml(*overrides)));
+                                                     config::inline_toml(*overrides)));
     }
     document.merge(as_machine(*overrides));
     // done: read again, the resolved document must not undo what later changes say
@@ -144,4 +144,4 @@ ScenarioDocument with_machine(Document scenario, std::span<const std::string> ch
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -9,23 +9,23 @@
 #include "sim/config/reader.h"
 #include "sim/input/input_files.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// A scenario with its machine in it.
 struct ScenarioDocument {
-  Document document;
+  config::Document document;
   std::string machine_text;  // as read; empty if the scenario itself describes the machine
 };
 
 /// Reads a scenario, laid over those that it is based on.
 /// @throws InputError
-Document scenario_document(const std::string& path, InputFiles& files);
+config::Document scenario_document(const std::string& path, InputFiles& files);
 
 /// Puts the machine in, and the changes that --set asks for. `machine = "file"` is replaced by its
 /// contents, `machine_override` laid over them. Changes of the file's name and of the overrides
 /// come before, all others after, so that `machine.nc.Kv` means the value that counts.
 /// @throws InputError
-ScenarioDocument with_machine(Document scenario, std::span<const std::string> changes,
+ScenarioDocument with_machine(config::Document scenario, std::span<const std::string> changes,
                               InputFiles& files);
 
 /// True if a change acts before the machine is put in.
@@ -37,9 +37,9 @@ std::string beside(const Place& place, const std::string& path);
 
 /// Tells if a table holds the contents of another file than the one it names: --set has changed the
 /// name in a document that is complete by itself.
-bool is_outdated_copy(Reader& table, std::string_view name, std::string_view contents);
+bool is_outdated_copy(config::Reader& table, std::string_view name, std::string_view contents);
 
 /// { machine = table }, to be laid over a document.
-Value as_machine(Value table);
+config::Value as_machine(config::Value table);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -1,6 +1,6 @@
 #include "sim/input/key_help.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 constexpr KeyHelp kScenario[] = {
@@ -212,4 +212,4 @@ constexpr KeyHelp kScenario[] = {
 
 std::span<const KeyHelp> scenario_key_help() { return kScenario; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/input/read_scenario.h"
 #include "sim/input/scenario_document.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 struct ScenarioSource::Parts {
   std::string path, name;
   std::vector<std::string> changes;
   std::unique_ptr<InputFiles> files;
-  Document as_written;
+  config::Document as_written;
   ScenarioDocument base;  // with the machine and the changes in it
 
   ScenarioDocument document(const std::vector<std::string>& more) const {
@@ -28,7 +29,7 @@ struct ScenarioSource::Parts {
 
 ScenarioSource::ScenarioSource(const std::string& path, std::vector<std::string> changes) {
   auto files = std::make_unique<InputFiles>();
-  Document as_written = scenario_document(path, *files);
+  config::Document as_written = scenario_document(path, *files);
   ScenarioDocument base = with_machine(as_written, changes, *files);
   parts_.reset(new Parts{path, std::filesystem::path(path).stem().string(), std::move(changes),
                          std::move(files), std::move(as_written), std::move(base)});
@@ -37,9 +38,9 @@ ScenarioSource::ScenarioSource(const std::string& path, std::vector<std::string>
 ScenarioSource::~ScenarioSource() = default;
 ScenarioSource::ScenarioSource(ScenarioSource&&) noexcept = default;
 
-Scenario ScenarioSource::at(const std::vector<std::string>& more) const {
+model::Scenario ScenarioSource::at(const std::vector<std::string>& more) const {
   const Parts& p = *parts_;
-  Scenario scenario = read_document(p.document(more), p.name, *p.files);
+  model::Scenario scenario = read_document(p.document(more), p.name, *p.files);
   scenario.text = *p.files->text(p.path, {}, "scenario");
   return scenario;
 }
@@ -52,4 +53,4 @@ std::optional<std::uint64_t> ScenarioSource::checksum(const std::string& path) c
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// A scenario and the files that it names, each read once. For any number of threads.
 ///
@@ -25,7 +26,7 @@ class ScenarioSource {
 
   /// @param more  changes that come after the others
   /// @throws InputError with all faults of a file at once
-  Scenario at(const std::vector<std::string>& more = {}) const;
+  model::Scenario at(const std::vector<std::string>& more = {}) const;
 
   /// A number that other contents of a file do not have (sim/input/input_files.h); none, if it
   /// cannot be read. The scenario and its changes see the file as it is now, whatever becomes of
@@ -37,4 +38,4 @@ class ScenarioSource {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

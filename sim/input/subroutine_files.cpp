@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 namespace {
 
 // LinuxCNC calls *.ngc, conversational programs call their like.
@@ -42,4 +42,4 @@ std::function<std::optional<controllers::ProgramText>(const std::string& name)> 
   };
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

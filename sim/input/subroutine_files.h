@@ -8,7 +8,7 @@
 
 #include "controllers/gcode/program_text.h"
 
-namespace servomill::sim {
+namespace servomill::sim::input {
 
 /// NAME.ngc in the folder of a program; NAME.H for a program called *.H.
 std::string subroutine_file(const std::string& program_file, const std::string& name);
@@ -18,4 +18,4 @@ std::string subroutine_file(const std::string& program_file, const std::string& 
 std::function<std::optional<controllers::ProgramText>(const std::string& name)> subroutine_files(
     const std::string& program_file, const std::vector<std::string>& folders);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::input

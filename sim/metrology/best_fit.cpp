@@ -12,7 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/dense_solver.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Isometry3d;
@@ -284,4 +284,4 @@ std::vector<Arrow> quiver(Points3 measured, const Isometry3d& motion, Points3 no
   return arrows;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -10,7 +10,7 @@
 #include "sim/metrology/points.h"
 #include "sim/metrology/triangle_mesh.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 struct BestFit {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // measured -> nominal
@@ -64,4 +64,4 @@ std::vector<Arrow> quiver(Points3 measured, const Eigen::Isometry3d& motion,
 std::vector<Arrow> quiver(Points3 measured, const Eigen::Isometry3d& motion, Points3 nominal,
                           Points3 normals);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -9,7 +9,7 @@
 #include "sim/metrology/round_fit.h"
 #include "sim/metrology/zone_search.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector2d;
@@ -70,4 +70,4 @@ RingZone minimum_zone(Points2 points) {
   return zone_about(points, zone.centre());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

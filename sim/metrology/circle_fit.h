@@ -5,7 +5,7 @@
 
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 struct Circle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
@@ -37,4 +37,4 @@ RingZone zone_about(Points2 points, const Eigen::Vector2d& centre);
 ///      are small against the radius; else a zone of smaller width may exist far away
 RingZone minimum_zone(Points2 points);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

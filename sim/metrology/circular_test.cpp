@@ -10,7 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/dense_solver.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector2d;
@@ -182,4 +182,4 @@ BidirectionalCircle evaluate_both(Points2 one, Points2 other, const Circle& nomi
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -19,7 +19,7 @@
 
 #include "sim/metrology/circle_fit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 enum class Sense { counter_clockwise, clockwise };
 
@@ -91,4 +91,4 @@ CircularTurn evaluate_turn(Points2 points, const Circle& nominal);
 /// @pre two turns, one in each direction
 BidirectionalCircle evaluate_both(Points2 one, Points2 other, const Circle& nominal);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -4,7 +4,7 @@
 
 #include "plant/sensing/noise.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 constexpr double kCoverage = 2.0;
@@ -65,4 +65,4 @@ std::vector<double> standard_deviation_of(std::span<const std::vector<double>> m
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// A CMM and how it probes. Without a word about it, it is a perfect one with a point for a stylus.
 struct Cmm {
@@ -46,4 +46,4 @@ std::vector<double> mean_of(std::span<const std::vector<double>> measured);
 /// @pre as mean_of
 std::vector<double> standard_deviation_of(std::span<const std::vector<double>> measured);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -9,7 +9,7 @@
 #include "sim/metrology/dense_solver.h"
 #include "sim/metrology/round_fit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector2d;
@@ -209,4 +209,4 @@ std::optional<Cylinder> least_squares_cylinder(Points3 points) {
   return best;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

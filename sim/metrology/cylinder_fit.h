@@ -6,7 +6,7 @@
 
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 struct Cylinder {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();       // of the axis, next to the points' mean
@@ -32,4 +32,4 @@ std::optional<Cylinder> least_squares_cylinder(Points3 points, const Eigen::Vect
 /// with the algebraic circle of the points along it. The direction's largest component is positive.
 std::optional<Cylinder> least_squares_cylinder(Points3 points);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

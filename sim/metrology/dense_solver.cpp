@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return A.ldlt().solve(b);
@@ -39,4 +39,4 @@ SingularValues singular_values(const Eigen::MatrixXd& A) {
   return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

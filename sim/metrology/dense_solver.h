@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// x of A x = b, by LDL^T. @pre A is symmetric and positive definite
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
@@ -31,4 +31,4 @@ struct SingularValues {
 };
 SingularValues singular_values(const Eigen::MatrixXd& A);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

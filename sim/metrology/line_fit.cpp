@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 template <typename Line, typename Points>
@@ -26,4 +26,4 @@ double Line3::distance(const Eigen::Vector3d& p) const { return direction.cross(
 std::optional<Line2> least_squares_line(Points2 points) { return line_through<Line2>(points); }
 std::optional<Line3> least_squares_line(Points3 points) { return line_through<Line3>(points); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

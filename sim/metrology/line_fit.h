@@ -6,7 +6,7 @@
 
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// A line of a plane.
 struct Line2 {
@@ -32,4 +32,4 @@ struct Line3 {
 std::optional<Line2> least_squares_line(Points2 points);
 std::optional<Line3> least_squares_line(Points3 points);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

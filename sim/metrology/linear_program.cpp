@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 constexpr double kRounding = 1e-13;  // of what is added up, for components of the order of 1
@@ -94,4 +94,4 @@ std::optional<SmallVector> minimize(const SmallVector& cost, const SmallVector& 
   return solve(cost, bound, constraints);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// Vector of up to 6 numbers, which needs no memory of its own.
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
@@ -29,4 +29,4 @@ struct HalfSpace {
 std::optional<SmallVector> minimize(const SmallVector& cost, const SmallVector& bound,
                                     std::vector<HalfSpace> constraints);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -10,7 +10,7 @@
 #include "plant/geometry/volumetric.h"
 #include "sim/metrology/dense_solver.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::MatrixXd;
@@ -271,4 +271,4 @@ LocationFit observable_locations(const plant::MachineChain& chain,
   return fit(chain, readings, set_up, false);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

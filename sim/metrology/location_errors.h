@@ -28,7 +28,7 @@
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// Orientation of the spindle seen from the workpiece (3x3), of the ideal machine.
 Eigen::Matrix3d R_WS(const plant::MachineChain& chain, const Joints& Q);
@@ -100,4 +100,4 @@ LocationFit observable_locations(const plant::MachineChain& chain,
                                  const std::vector<SensorReading>& readings,
                                  const RTestSetUp& set_up);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

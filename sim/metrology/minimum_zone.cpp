@@ -9,7 +9,7 @@
 
 #include "sim/metrology/zone_search.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector2d;
@@ -192,4 +192,4 @@ std::optional<Zone<Cylinder>> minimum_zone_cylinder(Points3 points, const Vector
   return Zone<Cylinder>{cylinder, spread.range()};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

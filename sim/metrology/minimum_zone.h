@@ -10,7 +10,7 @@
 #include "sim/metrology/plane_fit.h"
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// Between two surfaces parallel to a shape, half the width on either side.
 template <typename Shape>
@@ -41,4 +41,4 @@ std::optional<Zone<Plane>> minimum_zone_plane(Points3 points, const Eigen::Vecto
 /// nullopt: as there
 std::optional<Zone<Cylinder>> minimum_zone_cylinder(Points3 points, const Eigen::Vector3d& near);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 double Plane::distance(const Eigen::Vector3d& p) const { return normal.dot(p - point); }
 
@@ -23,4 +23,4 @@ Eigen::Vector3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vecto
   return std::atan2(sine, from.dot(to)) / sine * cross;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

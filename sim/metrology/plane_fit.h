@@ -6,7 +6,7 @@
 
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 struct Plane {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -26,4 +26,4 @@ std::optional<Plane> least_squares_plane(Points3 points, const Eigen::Vector3d& 
 /// @param from, to  unit, not opposite
 Eigen::Vector3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

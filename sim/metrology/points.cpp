@@ -4,7 +4,7 @@
 
 #include "sim/metrology/dense_solver.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 // Relative to the largest extent. Extents are roots of eigenvalues, exact to 1e-16 of the largest.
@@ -45,4 +45,4 @@ Eigen::Vector3d across(const Eigen::Vector3d& unit) {
   return unit.cross(Eigen::Vector3d::Unit(least)).normalized();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

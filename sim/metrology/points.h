@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// Points of a plane; coordinates in one unit, m where it matters.
 using Points2 = std::span<const Eigen::Vector2d>;
@@ -49,4 +49,4 @@ PrincipalAxes<3> principal_axes(Points3 points);
 /// A unit vector across a unit vector; the same for the same.
 Eigen::Vector3d across(const Eigen::Vector3d& unit);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -102,4 +102,4 @@ Feature notch_feature(const Eigen::Vector3d& from, const Eigen::Vector3d& to, do
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -13,7 +13,7 @@
 #include "plant/cutting/machined_surface.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 enum class FeatureKind : std::uint8_t { line, plane, circle, cylinder, notch, points };
 
@@ -74,4 +74,4 @@ Feature cylinder_feature(const Eigen::Vector3d& centre, double radius, bool outs
 Feature notch_feature(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double width,
                       int points);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector3d;
@@ -134,4 +134,4 @@ BallReadings bar_readings(const plant::MachineChain& chain, const TipPath& path,
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

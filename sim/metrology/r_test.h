@@ -17,7 +17,7 @@
 #include "plant/kinematics/chain.h"
 #include "sim/metrology/location_errors.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// The tip along some part of a program, sample by sample.
 struct TipPath {
@@ -58,4 +58,4 @@ BallReadings nest_readings(const plant::MachineChain& chain, const TipPath& path
 BallReadings bar_readings(const plant::MachineChain& chain, const TipPath& path,
                           const Eigen::Vector3d& centre, int set_up);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

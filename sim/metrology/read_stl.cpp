@@ -13,7 +13,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector3d;
@@ -216,4 +216,4 @@ std::string binary_stl(const Triangles& triangles) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -7,7 +7,7 @@
 
 #include "sim/metrology/dense_solver.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// All points at one distance from a centre, in N dimensions.
 template <int N>
@@ -68,4 +68,4 @@ Round<N> geometric_round(std::span<const Eigen::Vector<double, N>> points) {
   return round;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/circular_test.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector2d;
@@ -52,4 +52,4 @@ bool is_same_circle(const SectionCircle& one, const SectionCircle& other) {
          std::abs(one.nominal.radius - other.nominal.radius) <= kRound;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

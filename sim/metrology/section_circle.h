@@ -9,7 +9,7 @@
 
 #include "sim/metrology/circle_fit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// One turn of a circle in a principal plane of the workpiece.
 struct SectionCircle {
@@ -32,4 +32,4 @@ std::variant<SectionCircle, NoCircle> circle_of_section(std::span<const Eigen::V
 /// True if two sections go around the same centre with the same radius.
 bool is_same_circle(const SectionCircle& one, const SectionCircle& other);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -8,7 +8,7 @@
 #include "sim/metrology/plane_fit.h"
 #include "sim/metrology/round_fit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::optional<Circle3> least_squares_circle(Points3 points, const Vector3d& axis
                           plane->normal, circle.radius});
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -6,7 +6,7 @@
 
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 struct Sphere {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -37,4 +37,4 @@ std::optional<Sphere> least_squares_sphere(Points3 points);
 /// nullopt: the points lie on a line, or in one place
 std::optional<Circle3> least_squares_circle(Points3 points, const Eigen::Vector3d& axis);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -17,7 +17,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/read_stl.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 using Eigen::Vector3d;
@@ -299,4 +299,4 @@ SurfacePoint TriangleMesh::closest(const Vector3d& place) const {
   return {best.point, normal, side * std::sqrt(least), best.part == 6};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

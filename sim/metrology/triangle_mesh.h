@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// A point of a surface.
 struct SurfacePoint {
@@ -63,4 +63,4 @@ class TriangleMesh {
 /// themselves, 4 nm at 100 mm.
 std::string binary_stl(const Triangles& triangles);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 namespace {
 
 constexpr int kMostSteps = 500;    // about five are needed, more where many points nearly touch
@@ -125,4 +125,4 @@ void narrow_zone(ZoneShape& shape) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

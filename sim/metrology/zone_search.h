@@ -7,7 +7,7 @@
 #include "sim/metrology/linear_program.h"
 #include "sim/metrology/points.h"
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 /// A shape that moves among points.
 class ZoneShape {
@@ -39,4 +39,4 @@ class ZoneShape {
 /// @pre the shape lies well among the points, whose range is small against size()
 void narrow_zone(ZoneShape& shape);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

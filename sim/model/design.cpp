@@ -13,13 +13,13 @@
 #include "sim/config/quantity.h"
 #include "sim/config/value.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 namespace {
 
 // The shortest text that reads again to the same number.
 std::string as_toml(double value, const std::string& unit) {
   const std::string number = fmt::format("{}", value);
-  return unit.empty() ? number : quoted_text(number + " " + unit);
+  return unit.empty() ? number : config::quoted_text(number + " " + unit);
 }
 
 // TOML of a number between two that the user wrote, without digits that come from rounding.
@@ -81,7 +81,7 @@ std::optional<WrittenNumber> written_number(const std::string& toml) {
   if (unit.empty() || unit.back() != toml.front()) return {};
   unit.pop_back();
   unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty() || !parse_unit(unit).unit) return {};
+  if (unit.empty() || !config::parse_unit(unit).unit) return {};
   return WrittenNumber{value, unit};
 }
 
@@ -140,4 +140,4 @@ SweepColumn SweepDesign::column(std::size_t key) const {
   return column;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -29,7 +29,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/model/sampling.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 /// Most points that a sweep may have: far more than a mistake, fewer than a table can hold.
 inline constexpr std::uint64_t kMostPoints = 10'000'000;
@@ -96,4 +96,4 @@ struct SweepDesign {
   SweepColumn column(std::size_t key) const;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -23,7 +23,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 /// Periods of the loops in base ticks; every one is a whole multiple of the base period.
 struct LoopPeriods {
@@ -118,4 +118,4 @@ struct MachineSettings {
   }
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -6,7 +6,7 @@
 #include "plant/vocabulary/ticks.h"
 #include "sim/records/chunk_encoder.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 enum class ServoModel : std::uint8_t {
   cascade,  // loops and drives as described
@@ -35,7 +35,7 @@ struct RecordFormat {
   /// every bit is kept.
   double resolution = 0.0;  // m
   /// Storage of all signals but time, s and counts, which stay float64.
-  Storage storage = Storage::float64;
+  records::Storage storage = records::Storage::float64;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 namespace {
 
 // Mixes all bits of a word with all others (the finaliser of SplitMix64).
@@ -111,4 +111,4 @@ std::vector<double> unit_sample(const SampleSettings& settings, std::uint64_t in
 
 double normal_quantile(double u) { return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * u); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

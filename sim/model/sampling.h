@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 enum class Sampling : std::uint8_t {
   random,           // independent, from the uniform distribution
@@ -47,4 +47,4 @@ std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t k
 /// @pre 0 < u < 1
 double normal_quantile(double u);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

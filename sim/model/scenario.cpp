@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 bool CaseSpec::needs_feedback_hardware() const {
   return std::any_of(strategies.begin(), strategies.end(),
@@ -21,4 +21,4 @@ std::optional<double> Scenario::signal_delay_of(const CaseSpec& one) const {
   return machine.nc.periods.seconds(one.feedback_hardware ? hardware.signal_delay : 0);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

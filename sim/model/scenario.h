@@ -23,10 +23,15 @@
 #include "sim/model/run_settings.h"
 #include "strategies/entry.h"
 
-namespace servomill::sim {
-
+namespace servomill::sim::evaluation {
 struct NominalPart;  // sim/evaluation/nominal_part.h
+}  // namespace servomill::sim::evaluation
+
+namespace servomill::sim::metrology {
 class TriangleMesh;
+}  // namespace servomill::sim::metrology
+
+namespace servomill::sim::model {
 
 struct ProgramSpec {
   std::string file;  // as messages name it
@@ -83,7 +88,8 @@ struct BallSpec {
 struct PartSpec {
   std::vector<std::string> probes;  // features, each the name of a [[probe]]
   bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
-  std::shared_ptr<const TriangleMesh> nominal;  // of a best fit; none: to the faces at the probes
+  std::shared_ptr<const metrology::TriangleMesh>
+      nominal;  // of a best fit; none: to the faces at the probes
 };
 
 /// One line of the comparison, for one or several cases.
@@ -127,12 +133,12 @@ struct Scenario {
   std::string machine_errors;  // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;
-  plant::Stock stock;                       // in work coordinates of the program
-  std::shared_ptr<const NominalPart> part;  // likewise; or none
+  plant::Stock stock;                                   // in work coordinates of the program
+  std::shared_ptr<const evaluation::NominalPart> part;  // likewise; or none
   std::optional<CuttingSpec> cutting;
   std::vector<CaseSpec> cases;
-  std::vector<ProbeSpec> probes;  // measured on the part of every case
-  Cmm cmm;
+  std::vector<metrology::ProbeSpec> probes;  // measured on the part of every case
+  metrology::Cmm cmm;
   Tick record_period = 100;
   RecordSpec record;
   double settle_time = 0.1;  // s
@@ -153,21 +159,4 @@ struct Scenario {
   std::optional<double> signal_delay_of(const CaseSpec& one) const;
 };
 
-/// Reads a scenario and the files that it names (paths relative to it).
-/// @param changes  what --set says, in order
-/// @throws InputError with all faults of a file at once
-Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes = {});
-
-/// The same from a resolved document (as stored in a result file), program text included.
-Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
-
-struct ScenarioDocument;
-class InputFiles;
-/// Common part of both: reads the document with the machine in it (sim/input/scenario_document.h).
-/// @param files  where the program is looked for
-Scenario read_document(ScenarioDocument scenario, const std::string& name, InputFiles& files);
-
-/// Only a machine, for `check`.
-MachineSettings read_machine_file(const std::string& path);
-
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

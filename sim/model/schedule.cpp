@@ -6,7 +6,7 @@
 
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 Tick hyperperiod(const std::vector<Rate>& rates) {
   Tick total = 1;
@@ -47,4 +47,4 @@ std::vector<Instant> make_schedule(const std::vector<Rate>& rates) {
   return schedule;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/ticks.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 enum Due : std::uint8_t {
   kErrorModel = 1,      // feedback hardware evaluates its model
@@ -42,4 +42,4 @@ Tick hyperperiod(const std::vector<Rate>& rates);
 /// one rate has phase 0
 std::vector<Instant> make_schedule(const std::vector<Rate>& rates);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

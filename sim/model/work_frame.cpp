@@ -4,7 +4,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 PartFrame work_frame(const plant::MachineChain& chain, const AxisWords& work_offset) {
   const Joints Q_0 = chain.layout.joints(work_offset);
@@ -15,4 +15,4 @@ std::string program_words(const Eigen::Vector3d& p_G) {
   return fmt::format("X{:g} Y{:g} Z{:g}", p_G.x() / mm, p_G.y() / mm, p_G.z() / mm);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -8,7 +8,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::model {
 
 /// G, in the frame W of the workpiece (plant/kinematics/chain.h). Stock, probes and positions of
 /// cutters are given in G; the tip is recorded in W.
@@ -38,4 +38,4 @@ PartFrame work_frame(const plant::MachineChain& chain, const AxisWords& work_off
 /// A place in G as programs say it: "X1 Y2.5 Z-3", in mm.
 std::string program_words(const Eigen::Vector3d& p_G);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::model

@@ -16,16 +16,16 @@
 #include "sim/preparation/rewritten_text.h"
 #include "strategies/gcode.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 // Title of a rewritten program.
-std::string header_of(const Scenario& scenario, const CaseSpec& spec) {
+std::string header_of(const model::Scenario& scenario, const model::CaseSpec& spec) {
   return fmt::format("{}, case {}", scenario.title, spec.name);
 }
 
 // Place of the key that a strategy's fault names first; of the strategy if it is not given.
-Place place_in(const StrategySpec& spec, const std::string& complaint) {
+Place place_in(const model::StrategySpec& spec, const std::string& complaint) {
   Place place = spec.place;
   std::size_t first = std::string::npos;
   for (const auto& [key, at] : spec.key_places) {
@@ -37,13 +37,13 @@ Place place_in(const StrategySpec& spec, const std::string& complaint) {
   return place;
 }
 
-const plant::ErrorModel& errors_of(const Scenario& scenario, const std::string& model) {
+const plant::ErrorModel& errors_of(const model::Scenario& scenario, const std::string& model) {
   static const plant::ErrorModel kNone;
   const auto found = scenario.errors.find(model);
   return found == scenario.errors.end() ? kNone : found->second;
 }
 
-void add(MemoKey& key, const StrategySpec& spec) {
+void add(system::MemoKey& key, const model::StrategySpec& spec) {
   key.add(spec.entry->name);
   key.add(spec.action);
   for (const ParameterSpec& parameter : spec.entry->parameters) {
@@ -56,7 +56,7 @@ void add(MemoKey& key, const StrategySpec& spec) {
   }
 }
 
-void add(MemoKey& key, const plant::Stock& stock) {
+void add(system::MemoKey& key, const plant::Stock& stock) {
   key.add(stock.solids().size());
   for (const plant::StockSolid& solid : stock.solids()) {
     key.add(solid.index());
@@ -73,7 +73,7 @@ void add(MemoKey& key, const plant::Stock& stock) {
   }
 }
 
-void add(MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
+void add(system::MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
   key.add(cutters.size());
   for (const auto& [number, cutter] : cutters) {
     const auto& [radius, corner_radius, length, teeth, helix] = cutter;
@@ -83,7 +83,8 @@ void add(MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
   }
 }
 
-controllers::PathOptions path_options(const Scenario& scenario, const MachineSettings& machine) {
+controllers::PathOptions path_options(const model::Scenario& scenario,
+                                      const model::MachineSettings& machine) {
   controllers::PathOptions options;
   options.tolerance = machine.nc.path_tolerance;
   options.rotary_tolerance = machine.nc.rotary_tolerance;
@@ -95,7 +96,7 @@ controllers::PathOptions path_options(const Scenario& scenario, const MachineSet
 
 }  // namespace
 
-CasePreparation::CasePreparation(const Scenario& scenario, const CaseSpec& spec,
+CasePreparation::CasePreparation(const model::Scenario& scenario, const model::CaseSpec& spec,
                                  PreparationCache& cache)
     : scenario_(scenario),
       spec_(spec),
@@ -105,7 +106,7 @@ CasePreparation::CasePreparation(const Scenario& scenario, const CaseSpec& spec,
 
 SharedProgram CasePreparation::program() const {
   const controllers::ProgramSetup setup = program_setup(scenario_, spec_);
-  MemoKey key;
+  system::MemoKey key;
   const auto shared = cache_.texts.shared(scenario_.program.shared_text);
   key.add_shared(shared.get());
   for (const auto& [name, text] : scenario_.program.subroutines) {
@@ -130,13 +131,13 @@ double CasePreparation::least_time(const InterpretedProgram& program) const {
 
 SharedModel CasePreparation::model(const std::string& name) const {
   const plant::ErrorModel& errors = errors_of(scenario_, name);
-  MemoKey key;
+  system::MemoKey key;
   add(key, machine_.chain);
   add(key, errors);
   return cache_.models.get(key, [&] { return plant::VolumetricModel(machine_.chain, errors); });
 }
 
-SharedStrategy CasePreparation::strategy(const StrategySpec& spec,
+SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
                                          const Eigen::Vector3d& tip) const {
   const auto gain = [&](std::size_t j) {
     return spec.entry->reads_gains ? machine_.nc.cascade[j].Kv
@@ -145,7 +146,7 @@ SharedStrategy CasePreparation::strategy(const StrategySpec& spec,
   Joints Kv;
   Kv << gain(0), gain(1), gain(2), gain(3), gain(4);
   const Joints shift = machine_.chain.layout.joints(spec_.work_offset);
-  MemoKey key;
+  system::MemoKey key;
   add(key, spec);
   add(key, machine_.chain);
   add(key, errors_of(scenario_, spec.model));
@@ -162,7 +163,7 @@ SharedStrategy CasePreparation::strategy(const StrategySpec& spec,
 }
 
 // A strategy knows the fault, but not the place of the key.
-SharedStrategy CasePreparation::make(const StrategySpec& spec,
+SharedStrategy CasePreparation::make(const model::StrategySpec& spec,
                                      const strategies::IdentifiedMachine& machine) const {
   try {
     return spec.entry->make(spec.parameters, spec.action, machine);
@@ -183,7 +184,7 @@ controllers::ProgramSetup CasePreparation::setup_of_rewritten() const {
 
 std::shared_ptr<const RewrittenProgram> CasePreparation::rewritten(
     const SharedMoves& moves, const SharedStrategy& strategy) const {
-  MemoKey key;
+  system::MemoKey key;
   key.add_shared(moves.get());
   key.add_shared(strategy.get());
   key.add(header_of(scenario_, spec_));
@@ -223,7 +224,7 @@ SharedMotion CasePreparation::motion(const SharedMoves& moves,
                                      const InterpretedProgram& program) const {
   const controllers::JointLimits limits = {machine_.nc.v_max, machine_.nc.a_max, machine_.nc.j_max};
   const controllers::PathOptions options = path_options(scenario_, machine_);
-  MemoKey key;
+  system::MemoKey key;
   key.add_shared(moves.get());
   add(key, machine_.chain.layout);
   if (program.first_tip_move() != nullptr) add(key, machine_.chain);
@@ -264,7 +265,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
                                     scenario_.cutting->coefficients,
                                     scenario_.program.file,
                                     scenario_.cutting->place};
-  MemoKey key;
+  system::MemoKey key;
   key.add_shared(program.get());
   add(key, machine_.chain);
   key.add(start_);
@@ -279,18 +280,18 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
 
 double CasePreparation::distance_of_plan() const {
   if (!scenario_.part) return 0.0;
-  const std::shared_ptr<const TriangleMesh>& mesh = scenario_.part->mesh;
-  MemoKey key;
+  const std::shared_ptr<const metrology::TriangleMesh>& mesh = scenario_.part->mesh;
+  system::MemoKey key;
   key.add_shared(mesh.get());
-  for (const ProbeSpec& probe : scenario_.probes) {
+  for (const metrology::ProbeSpec& probe : scenario_.probes) {
     for (const plant::ProbeTarget& target : probe.feature.targets) key.add(target.point);
   }
   return cache_.plan_distances
       .get(key,
            [&] {
-             return PlanDistance{mesh, largest_distance(scenario_.probes, *mesh)};
+             return PlanDistance{mesh, evaluation::largest_distance(scenario_.probes, *mesh)};
            })
       ->distance;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

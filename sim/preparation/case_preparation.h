@@ -12,7 +12,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 using SharedModel = std::shared_ptr<const plant::VolumetricModel>;
 using SharedProgram = std::shared_ptr<const InterpretedProgram>;
@@ -24,7 +24,8 @@ using SharedMotion = std::shared_ptr<const PlannedMotion>;
 class CasePreparation {
  public:
   /// All must outlive this.
-  CasePreparation(const Scenario& scenario, const CaseSpec& spec, PreparationCache& cache);
+  CasePreparation(const model::Scenario& scenario, const model::CaseSpec& spec,
+                  PreparationCache& cache);
 
   /// Position (m, rad) from which the program starts.
   const Joints& start() const { return start_; }
@@ -39,7 +40,7 @@ class CasePreparation {
   SharedModel model(const std::string& name) const;
 
   /// @param tip  p_ST (m) of the first tool that works
-  SharedStrategy strategy(const StrategySpec& spec, const Eigen::Vector3d& tip) const;
+  SharedStrategy strategy(const model::StrategySpec& spec, const Eigen::Vector3d& tip) const;
 
   /// The program that a strategy makes of `moves`, as LinuxCNC reads its text.
   std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
@@ -56,7 +57,8 @@ class CasePreparation {
   double distance_of_plan() const;
 
  private:
-  SharedStrategy make(const StrategySpec& spec, const strategies::IdentifiedMachine& machine) const;
+  SharedStrategy make(const model::StrategySpec& spec,
+                      const strategies::IdentifiedMachine& machine) const;
   controllers::ProgramSetup setup_of_rewritten() const;
   controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
                                       const controllers::JointLimits& limits,
@@ -67,11 +69,11 @@ class CasePreparation {
                      const controllers::JointLimits& limits,
                      const controllers::PathOptions& options) const;
 
-  const Scenario& scenario_;
-  const CaseSpec& spec_;
-  const MachineSettings& machine_;
+  const model::Scenario& scenario_;
+  const model::CaseSpec& spec_;
+  const model::MachineSettings& machine_;
   Joints start_;
   PreparationCache& cache_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -7,17 +7,18 @@
 #include "controllers/gcode/interpreter.h"
 #include "sim/input/subroutine_files.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
-controllers::ProgramText program_text(const ProgramSpec& program) {
+controllers::ProgramText program_text(const model::ProgramSpec& program) {
   return controllers::ProgramText::of_shared_text(program.shared_text, program.file);
 }
 
-AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec) {
+AxisWords machine_start(const model::Scenario& scenario, const model::CaseSpec& spec) {
   return scenario.program.start + scenario.program.work_offset + spec.work_offset;
 }
 
-controllers::ProgramSetup program_setup(const Scenario& scenario, const CaseSpec& spec) {
+controllers::ProgramSetup program_setup(const model::Scenario& scenario,
+                                        const model::CaseSpec& spec) {
   controllers::ProgramSetup setup;
   setup.parameters = scenario.program.parameters;
   setup.work_offset[0] = scenario.program.work_offset + spec.work_offset;
@@ -31,21 +32,21 @@ controllers::ProgramSetup program_setup(const Scenario& scenario, const CaseSpec
                               const std::string& name) -> std::optional<controllers::ProgramText> {
     const auto found = texts.find(name);
     if (found == texts.end()) return std::nullopt;
-    return controllers::ProgramText::of_text(found->second, subroutine_file(file, name));
+    return controllers::ProgramText::of_text(found->second, input::subroutine_file(file, name));
   };
   return setup;
 }
 
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
-    const MachineSettings& machine) {
+    const model::MachineSettings& machine) {
   return std::make_shared<const controllers::ToolCentrePoint>(
       machine.chain, machine.nc.lower, machine.nc.upper,
       controllers::kGreatCircleShare * machine.nc.rotary_tolerance);
 }
 
-MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
+MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& spec,
                       std::vector<Fault>* warnings) {
-  const ProgramSpec& program = scenario.program;
+  const model::ProgramSpec& program = scenario.program;
   try {
     controllers::Interpreter interpreter(program_text(program), program_setup(scenario, spec));
     MoveList moves = interpreter.rest_held();
@@ -61,4 +62,4 @@ MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -11,26 +11,27 @@
 #include "plant/vocabulary/move_list.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 /// Text of the original program; it shares the memory of the scenario's.
-controllers::ProgramText program_text(const ProgramSpec& program);
+controllers::ProgramText program_text(const model::ProgramSpec& program);
 
 /// Start of the program in machine coordinates (m, rad).
-AxisWords machine_start(const Scenario& scenario, const CaseSpec& spec);
+AxisWords machine_start(const model::Scenario& scenario, const model::CaseSpec& spec);
 
 /// Settings with which the NC reads the program: parameters, work offset, tools, start,
 /// subroutines.
-controllers::ProgramSetup program_setup(const Scenario& scenario, const CaseSpec& spec);
+controllers::ProgramSetup program_setup(const model::Scenario& scenario,
+                                        const model::CaseSpec& spec);
 
 /// Interprets the program of a case as its machine would (work offset, tools, parameters).
 /// @param warnings  receives what the NC put right; may be nullptr
 /// @throws InputError with all faults of the program
-MoveList read_program(const Scenario& scenario, const CaseSpec& spec,
+MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& spec,
                       std::vector<Fault>* warnings = nullptr);
 
 /// Nominal kinematics and travel with which the NC of a machine does TCP control.
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
-    const MachineSettings& machine);
+    const model::MachineSettings& machine);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/preparation/tool_passes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 using Eigen::Vector3d;
@@ -48,23 +48,23 @@ class Planner {
            fmt::format("{} more rapid moves through material", rapids_ - kMostWarnings)});
     }
     plan_.program = in_.program;
-    plan_.table = CuttingTable(std::move(rows_));
+    plan_.table = engine::CuttingTable(std::move(rows_));
     return std::move(plan_);
   }
 
  private:
   void add_rows(const Stage& stage) {
-    const ProgramPath::Piece p = path_.piece(stage.piece);
+    const engine::ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
     if (length <= 0.0) return;
     const double step =
         stage.cutter != nullptr ? std::min(kCoarse, 0.5 * stage.cutter->radius) : kCoarse;
     const int parts = may_meet(stage) ? static_cast<int>(std::ceil(length / step)) : 1;
-    CuttingTable::Row a = row(stage, 0.0);
+    engine::CuttingTable::Row a = row(stage, 0.0);
     push(stage, a);
     for (int n = 1; n <= parts; ++n) {
       throw_if_interrupted();
-      const CuttingTable::Row b = row(stage, static_cast<double>(n) / parts);
+      const engine::CuttingTable::Row b = row(stage, static_cast<double>(n) / parts);
       refine(stage, a, b);
       a = b;
     }
@@ -74,15 +74,16 @@ class Planner {
   }
 
   // Rows between a, which is in the table, and b, and b.
-  void refine(const Stage& stage, const CuttingTable::Row& a, const CuttingTable::Row& b) {
-    const ProgramPath::Piece p = path_.piece(stage.piece);
-    const auto force = [](const CuttingTable::Row& r) {
+  void refine(const Stage& stage, const engine::CuttingTable::Row& a,
+              const engine::CuttingTable::Row& b) {
+    const engine::ProgramPath::Piece p = path_.piece(stage.piece);
+    const auto force = [](const engine::CuttingTable::Row& r) {
       return Vector3d(r.edge + kUsualChip * r.shear);
     };
     const Vector3d F_a = force(a), F_b = force(b);
     if (b.s - a.s > kFinest && may_meet(stage)) {
       const double share = (0.5 * (a.s + b.s) - p.s_begin) / (p.s_end - p.s_begin);
-      const CuttingTable::Row middle = row(stage, share);
+      const engine::CuttingTable::Row middle = row(stage, share);
       const Vector3d F = force(middle);
       const double most = std::max({F_a.norm(), F_b.norm(), F.norm()});
       const bool begins = F_a.isZero(0.0) != F_b.isZero(0.0);
@@ -97,10 +98,10 @@ class Planner {
     push(stage, b);
   }
 
-  void push(const Stage& stage, CuttingTable::Row row) {
+  void push(const Stage& stage, engine::CuttingTable::Row row) {
     const bool cuts = !row.edge.isZero(0.0);
     if (!rows_.empty()) {
-      const CuttingTable::Row& before = rows_.back();
+      const engine::CuttingTable::Row& before = rows_.back();
       const double share = 0.5 * (static_cast<double>(cuts) + static_cast<double>(cut_before_));
       const bool rapid = path_.is_rapid(stage.piece);
       row.cut = before.cut + (rapid ? 0.0 : share * (row.s - before.s));
@@ -118,10 +119,10 @@ class Planner {
     return box.intersects(in_.stock.bounds());
   }
 
-  CuttingTable::Row row(const Stage& stage, double share) {
-    const ProgramPath::Piece p = path_.piece(stage.piece);
+  engine::CuttingTable::Row row(const Stage& stage, double share) {
+    const engine::ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
-    CuttingTable::Row row{.s = share < 1.0 ? p.s_begin + share * length : p.s_end};
+    engine::CuttingTable::Row row{.s = share < 1.0 ? p.s_begin + share * length : p.s_end};
     if (!may_meet(stage)) return row;
     const double at = std::max(share, std::min(0.5, kBehind / length));
     const double ahead = std::min(1.0, at + kTangent / length);
@@ -263,11 +264,11 @@ class Planner {
   }
 
   const CuttingPlanInputs& in_;
-  const ProgramPath& path_;
+  const engine::ProgramPath& path_;
   ToolPasses passes_;
   const std::vector<Stage>& stages_;
   const plant::RemovedVolume* removed_ = nullptr;
-  std::vector<CuttingTable::Row> rows_;
+  std::vector<engine::CuttingTable::Row> rows_;
   bool cut_before_ = false, meets_ = false, touches_ = false;
   std::size_t rapids_ = 0;
   double rapid_depth_ = 0.0;     // m, of the present move
@@ -279,4 +280,4 @@ class Planner {
 
 PlannedCutting plan_cutting(const CuttingPlanInputs& inputs) { return Planner(inputs).plan(); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/preparation/preparation_cache.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct CuttingPlanInputs {
   std::shared_ptr<const InterpretedProgram> program;  // the original one
@@ -34,4 +34,4 @@ struct CuttingPlanInputs {
 ///         is in material, or nothing ever touches the stock
 PlannedCutting plan_cutting(const CuttingPlanInputs& inputs);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

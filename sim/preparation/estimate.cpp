@@ -12,7 +12,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/system/worker_thread.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 constexpr double kGigabyte = 1e9;
@@ -21,15 +21,15 @@ constexpr double kMemoryShare = 0.8;  // of the memory; the rest is the program'
 
 // Columns of the recorded signals (sim/records/README.md); those that only some cases have are
 // rounded up.
-double columns_of(const MachineSettings& machine) {
+double columns_of(const model::MachineSettings& machine) {
   constexpr double kOfRow = 27.0, kOfAxis = 10.0;
   return kOfRow + kOfAxis * static_cast<double>(machine.joints().size());
 }
 
 constexpr double kUsualCompression = 6.0, kLeastCompression = 4.0;
 
-bool needs_every_row(const QuantitySpec& quantity) {
-  const QuantityEntry& info = quantity_entry(quantity.name);
+bool needs_every_row(const model::QuantitySpec& quantity) {
+  const evaluation::QuantityEntry& info = evaluation::quantity_entry(quantity.name);
   return info.circles > 0 || info.is_r_test;
 }
 
@@ -43,31 +43,32 @@ std::string in_time(double seconds) {
 }
 
 // Probes, and quantities of balls that name no section, look at the whole path.
-bool can_be_thinned(const Scenario& scenario) {
+bool can_be_thinned(const model::Scenario& scenario) {
   return !scenario.record.period_is_given && scenario.probes.empty() &&
-         std::none_of(
-             scenario.quantities.begin(), scenario.quantities.end(),
-             [](const QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
+         std::none_of(scenario.quantities.begin(), scenario.quantities.end(),
+                      [](const model::QuantitySpec& one) {
+                        return needs_every_row(one) && one.sections.empty();
+                      });
 }
 
-double compression_of(const Scenario& scenario) {
-  return scenario.record.compression == kNoCompression ? 1.0 : kUsualCompression;
+double compression_of(const model::Scenario& scenario) {
+  return scenario.record.compression == records::kNoCompression ? 1.0 : kUsualCompression;
 }
 
 // Rows of short cases are held, of long ones a chunk while they run and pages while they are
 // compared; where the path of a cutter counts, so many places of it as are held at once, where that
 // of a ball does, all.
-double memory_of(const Scenario& scenario, std::span<const double> motions, double row,
+double memory_of(const model::Scenario& scenario, std::span<const double> motions, double row,
                  unsigned threads) {
   constexpr double kCaseRuns = 25e6, kCaseIsCompared = 8e6;
   constexpr double kPlaceOfCutter = 200.0, kPlaceOfBall = 100.0;
-  const auto most_of_cutter = static_cast<double>(PositionsHeld{}.most);
-  const RowKeeping keeping;
+  const auto most_of_cutter = static_cast<double>(evaluation::PositionsHeld{}.most);
+  const records::RowKeeping keeping;
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
   const bool has_ball = std::any_of(
       scenario.quantities.begin(), scenario.quantities.end(),
-      [](const QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
-  double sum = resident_memory();
+      [](const model::QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
+  double sum = system::resident_memory();
   double longest = 0.0;
   for (const double motion : motions) {
     const double rows = (motion + scenario.settle_time) / period;
@@ -75,7 +76,7 @@ double memory_of(const Scenario& scenario, std::span<const double> motions, doub
     sum += rows * row > keeping.most_in_memory ? kCaseIsCompared : rows * row;
   }
   const double at_once =
-      std::min<double>(thread_count(threads), static_cast<double>(motions.size()));
+      std::min<double>(system::thread_count(threads), static_cast<double>(motions.size()));
   double places = has_ball ? longest * kPlaceOfBall : 0.0;
   if (!scenario.probes.empty()) places += std::min(longest, most_of_cutter) * kPlaceOfCutter;
   return sum + at_once * (kCaseRuns + places);
@@ -83,10 +84,11 @@ double memory_of(const Scenario& scenario, std::span<const double> motions, doub
 
 }  // namespace
 
-RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, unsigned threads) {
+RunEstimate estimate(const model::Scenario& scenario, std::span<const double> motions,
+                     unsigned threads) {
   RunEstimate out;
   double longest = 0.0, ticks = 0.0;
-  const LoopPeriods& periods = scenario.machine.nc.periods;
+  const model::LoopPeriods& periods = scenario.machine.nc.periods;
   for (const double one : motions) {
     const double motion = one + scenario.settle_time;
     out.motion += motion;
@@ -100,12 +102,12 @@ RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, 
   out.file = out.is_thinned ? scenario.record.max_size / kLeastCompression
                             : out.size / compression_of(scenario);
   out.memory = memory_of(scenario, motions, row, threads);
-  const double cores = std::min<double>(thread_count(threads), thread_count(0));
+  const double cores = std::min<double>(system::thread_count(threads), system::thread_count(0));
   out.computing = std::max(longest, ticks / cores) / kTicksPerSecond;
   return out;
 }
 
-RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
+RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads) {
   std::vector<double> motions;
   for (const PreparedCase& one : cases) motions.push_back(one.duration());
@@ -131,15 +133,16 @@ std::string thinning_message(const RunEstimate& estimate) {
       estimate.motion / estimate.rows / ms);
 }
 
-std::vector<bool> sections_kept_whole(const Scenario& scenario,
+std::vector<bool> sections_kept_whole(const model::Scenario& scenario,
                                       const std::vector<std::string>& sections) {
   std::vector<bool> out;
   for (const std::string& name : sections) {
-    out.push_back(std::any_of(
-        scenario.quantities.begin(), scenario.quantities.end(), [&](const QuantitySpec& one) {
-          return needs_every_row(one) &&
-                 std::find(one.sections.begin(), one.sections.end(), name) != one.sections.end();
-        }));
+    out.push_back(std::any_of(scenario.quantities.begin(), scenario.quantities.end(),
+                              [&](const model::QuantitySpec& one) {
+                                return needs_every_row(one) &&
+                                       std::find(one.sections.begin(), one.sections.end(), name) !=
+                                           one.sections.end();
+                              }));
   }
   return out;
 }
@@ -149,7 +152,7 @@ bool is_worth_telling(const RunEstimate& estimate) {
   return estimate.computing > kMinute || estimate.size > kGigabyte;
 }
 
-void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate, double memory) {
+void refuse_too_large(const model::Scenario& scenario, const RunEstimate& estimate, double memory) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(
         {scenario.program.file},
@@ -181,7 +184,7 @@ std::optional<double> room_in(const std::string& folder) {
 
 }  // namespace
 
-void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
+void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estimate,
                       const std::string& folder, double copies, std::optional<double> available) {
   const std::string where = folder.empty() ? "." : folder;
   if (!available) available = room_in(where);
@@ -194,4 +197,4 @@ void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
                                scenario.record.max_size / kGigabyte));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -9,7 +9,7 @@
 #include "sim/preparation/prepared_case.h"
 #include "sim/system/memory_limit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 /// Estimate for all cases together.
 struct RunEstimate {
@@ -24,8 +24,9 @@ struct RunEstimate {
 
 /// @param motions  of the cases, s
 /// @param threads  that share the cases; 0: one a core
-RunEstimate estimate(const Scenario& scenario, std::span<const double> motions, unsigned threads);
-RunEstimate estimate(const Scenario& scenario, std::span<const PreparedCase> cases,
+RunEstimate estimate(const model::Scenario& scenario, std::span<const double> motions,
+                     unsigned threads);
+RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads);
 
 /// "373 s of motion, 3.7e+05 rows, 0.2 GB of signals in a file of 0.04 GB, 0.1 GB of memory, about
@@ -38,7 +39,7 @@ std::string thinning_message(const RunEstimate& estimate);
 
 /// Sections of which every row is kept: those that quantities of circles and balls look at.
 /// @param sections  names of all of the program
-std::vector<bool> sections_kept_whole(const Scenario& scenario,
+std::vector<bool> sections_kept_whole(const model::Scenario& scenario,
                                       const std::vector<std::string>& sections);
 
 /// True above a minute or a gigabyte, so that the user should know before the work begins.
@@ -47,8 +48,8 @@ bool is_worth_telling(const RunEstimate& estimate);
 /// @param memory  bytes that this process may use
 /// @throws InputError if the signals are larger than the scenario allows, or if the run takes more
 ///     than four fifths of the memory
-void refuse_too_large(const Scenario& scenario, const RunEstimate& estimate,
-                      double memory = memory_of_process());
+void refuse_too_large(const model::Scenario& scenario, const RunEstimate& estimate,
+                      double memory = system::memory_of_process());
 
 /// How often the recordings of a run are on the disk at the same time: what was recorded goes to
 /// the result file when a case ends, and stays until all are compared.
@@ -58,8 +59,8 @@ inline constexpr double kCopiesOfRun = 2.0;
 /// @param copies     of the recordings
 /// @param available  bytes that are free there; none: the system says how many
 /// @throws InputError if there is not so much room
-void refuse_full_disk(const Scenario& scenario, const RunEstimate& estimate,
+void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estimate,
                       const std::string& folder, double copies = kCopiesOfRun,
                       std::optional<double> available = {});
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

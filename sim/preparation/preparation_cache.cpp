@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 std::size_t weight_of(const MoveList& moves) { return moves.size() + 1; }
@@ -16,7 +16,7 @@ std::size_t weight_of(const PlannedMotion& motion) {
   return weight;
 }
 
-void add(MemoKey& key, const controllers::ToolTable& tools) {
+void add(system::MemoKey& key, const controllers::ToolTable& tools) {
   key.add(tools.size());
   for (const auto& [number, tool] : tools.entries()) {
     const auto& [tool_number, pocket, offset, diameter, front_angle, back_angle, orientation] =
@@ -31,7 +31,7 @@ void add(MemoKey& key, const controllers::ToolTable& tools) {
   }
 }
 
-void add(MemoKey& key, const plant::ErrorFunction& function) {
+void add(system::MemoKey& key, const plant::ErrorFunction& function) {
   const auto& [polynomial, harmonics, tables, reversals] = function;
   const auto add_all = [&key](const std::vector<double>& values) {
     key.add(values.size());
@@ -56,7 +56,7 @@ void add(MemoKey& key, const plant::ErrorFunction& function) {
   }
 }
 
-void add(MemoKey& key, const controllers::FilterChain& filters) {
+void add(system::MemoKey& key, const controllers::FilterChain& filters) {
   const auto& [sections, count] = filters;
   key.add(count);
   for (std::size_t n = 0; n < count; ++n) {
@@ -124,7 +124,7 @@ PreparationCache::PreparationCache()
       spectral_radii(kRadii),
       plan_distances(kModels) {}
 
-void add(MemoKey& key, const JointLayout& layout) {
+void add(system::MemoKey& key, const JointLayout& layout) {
   const auto& [axes] = layout;
   for (const auto& axis : axes) {
     key.add(axis.has_value());
@@ -132,7 +132,7 @@ void add(MemoKey& key, const JointLayout& layout) {
   }
 }
 
-void add(MemoKey& key, const plant::MachineChain& chain) {
+void add(system::MemoKey& key, const plant::MachineChain& chain) {
   const auto& [axes, layout] = chain;
   key.add(axes.size());
   for (const auto& [axis, side, joint, centre, sense, R_MA, is_inclined] : axes) {
@@ -147,14 +147,14 @@ void add(MemoKey& key, const plant::MachineChain& chain) {
   add(key, layout);
 }
 
-void add(MemoKey& key, const plant::ErrorModel& errors) {
+void add(system::MemoKey& key, const plant::ErrorModel& errors) {
   for (const auto& of_axis : errors.components) {
     for (const plant::ErrorFunction& function : of_axis) add(key, function);
   }
   for (const AxisWords& location : errors.locations) key.add(location);
 }
 
-void add(MemoKey& key, const controllers::ProgramSetup& setup) {
+void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
                decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
                accepts_unknown_dwells, is_trial, start, block_delete, subroutine_file, most_jumps,
@@ -199,14 +199,14 @@ void add(MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(machine->axis_tolerance());
 }
 
-void add(MemoKey& key, const controllers::JointLimits& limits) {
+void add(system::MemoKey& key, const controllers::JointLimits& limits) {
   const auto& [v, a, j] = limits;
   key.add(v);
   key.add(a);
   key.add(j);
 }
 
-void add(MemoKey& key, const controllers::PathOptions& options) {
+void add(system::MemoKey& key, const controllers::PathOptions& options) {
   const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
                feed_override, rapid_override, tolerance_share, block_time] = options;
   for (const double value :
@@ -216,7 +216,7 @@ void add(MemoKey& key, const controllers::PathOptions& options) {
   }
 }
 
-void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint) {
+void add_linear_axis(system::MemoKey& key, const model::MachineSettings& linear, int joint) {
   const auto j = static_cast<std::size_t>(joint);
   const auto& [base, position, velocity, current] = linear.nc.periods;
   key.add(base);
@@ -247,4 +247,4 @@ void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint) {
   key.add(gain);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

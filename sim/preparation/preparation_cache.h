@@ -22,9 +22,11 @@
 #include "sim/system/shared_texts.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
-
+namespace servomill::sim::metrology {
 class TriangleMesh;
+}  // namespace servomill::sim::metrology
+
+namespace servomill::sim::preparation {
 
 /// Moves of a program, shared by all that was made of them.
 using SharedMoves = std::shared_ptr<const MoveList>;
@@ -46,7 +48,7 @@ struct InterpretedProgram {
   std::vector<Fault> warnings;
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
   Eigen::Vector3d first_tip = Eigen::Vector3d::Zero();  // m, of the first tool that works
-  ProgramPath path;
+  engine::ProgramPath path;
   std::array<int, kAxisWords> first_line{};  // in which an axis leaves the start; 0: none
 
  private:
@@ -78,14 +80,14 @@ struct SectionsOfMotion {
 
 /// How far nominal points of probes are from the part.
 struct PlanDistance {
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const metrology::TriangleMesh> mesh;
   double distance = 0.0;  // m, the largest
 };
 
 /// The force of the cut along a program.
 struct PlannedCutting {
   std::shared_ptr<const InterpretedProgram> program;
-  CuttingTable table;
+  engine::CuttingTable table;
   std::vector<Fault>
       warnings;  // rapid moves through material, shanks in it; of every case that cuts it so
 };
@@ -102,29 +104,29 @@ struct PreparationCache {
 
   PreparationCache();
 
-  SharedTexts texts;  // of programs
-  SharedCache<InterpretedProgram> programs;
-  SharedCache<RewrittenProgram> rewritten;
-  SharedCache<PlannedMotion> motions;
-  SharedCache<SectionsOfMotion> circles;
-  SharedCache<PlannedCutting> cuttings;
-  SharedCache<plant::VolumetricModel> models;
-  SharedCache<strategies::Strategy> strategies;
-  SharedCache<double> spectral_radii;
-  SharedCache<PlanDistance> plan_distances;
+  system::SharedTexts texts;  // of programs
+  system::SharedCache<InterpretedProgram> programs;
+  system::SharedCache<RewrittenProgram> rewritten;
+  system::SharedCache<PlannedMotion> motions;
+  system::SharedCache<SectionsOfMotion> circles;
+  system::SharedCache<PlannedCutting> cuttings;
+  system::SharedCache<plant::VolumetricModel> models;
+  system::SharedCache<strategies::Strategy> strategies;
+  system::SharedCache<double> spectral_radii;
+  system::SharedCache<PlanDistance> plan_distances;
   plant::PreparedDrives drives{kDrives};
 };
 
 // Inputs as parts of keys, complete: a member that is added to one of these does not compile here.
-void add(MemoKey& key, const plant::MachineChain& chain);
-void add(MemoKey& key, const plant::ErrorModel& errors);
-void add(MemoKey& key, const controllers::ProgramSetup& setup);
-void add(MemoKey& key, const controllers::JointLimits& limits);
-void add(MemoKey& key, const controllers::PathOptions& options);
-void add(MemoKey& key, const JointLayout& layout);
+void add(system::MemoKey& key, const plant::MachineChain& chain);
+void add(system::MemoKey& key, const plant::ErrorModel& errors);
+void add(system::MemoKey& key, const controllers::ProgramSetup& setup);
+void add(system::MemoKey& key, const controllers::JointLimits& limits);
+void add(system::MemoKey& key, const controllers::PathOptions& options);
+void add(system::MemoKey& key, const JointLayout& layout);
 
 /// Everything that the linear loops of one axis depend on (sim/frequency/stability.h).
 /// @param linear  linearised(machine)
-void add_linear_axis(MemoKey& key, const MachineSettings& linear, int joint);
+void add_linear_axis(system::MemoKey& key, const model::MachineSettings& linear, int joint);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

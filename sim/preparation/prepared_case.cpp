@@ -15,11 +15,11 @@
 #include "strategies/gcode.h"
 #include "strategies/plugin_child.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct PreparedCase::Parts {
-  const Scenario& scenario;
-  const CaseSpec& spec;
+  const model::Scenario& scenario;
+  const model::CaseSpec& spec;
   SharedProgram program;
   std::vector<SharedStrategy> strategies;
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
@@ -27,11 +27,11 @@ struct PreparedCase::Parts {
   SharedModel machine_errors, imposed;
   SharedCutting cutting;
   Joints machine_start;
-  std::optional<ThinningLimits> thinning = {};  // of its recording
-  double distance_of_plan = 0.0;                // m, of nominal points from the part
-  std::string stops_with = {};                  // why a plug-in could not rewrite the program
+  std::optional<records::ThinningLimits> thinning = {};  // of its recording
+  double distance_of_plan = 0.0;                         // m, of nominal points from the part
+  std::string stops_with = {};  // why a plug-in could not rewrite the program
 
-  const MachineSettings& machine() const { return scenario.machine_of(spec); }
+  const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
 };
 
@@ -39,7 +39,7 @@ struct PreparedCase::Parts {
 // that run.
 SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare) {
   SharedMoves moves(program, &program->moves);
-  for (const StrategySpec& strategy : spec.strategies) {
+  for (const model::StrategySpec& strategy : spec.strategies) {
     strategies.push_back(prepare.strategy(strategy, program->first_tip));
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
@@ -59,7 +59,8 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
   return moves;
 }
 
-PreparedCase::PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache)
+PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpec& spec,
+                           PreparationCache* cache)
     : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
   PreparationCache own;
   const CasePreparation prepare(scenario, spec, cache != nullptr ? *cache : own);
@@ -98,27 +99,27 @@ double PreparedCase::duration() const { return parts_->motion->trajectory.durati
 PreparedCase::~PreparedCase() = default;
 PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
 
-CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
+engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   const Parts& p = *parts_;
-  FeedbackHardware hardware = p.scenario.hardware;
+  model::FeedbackHardware hardware = p.scenario.hardware;
   hardware.connected = p.spec.feedback_hardware;
-  CaseInputs inputs{p.machine(),
-                    *p.machine_errors,
-                    p.imposed.get(),
-                    p.motion->trajectory,
-                    p.program->path,
-                    p.program->tips,
-                    p.spec.servo,
-                    hardware,
-                    {},
-                    nullptr,
-                    {},
-                    p.scenario.record_period,
-                    p.scenario.settle_time,
-                    p.scenario.record.format,
-                    {.folder = scratch_folder,
-                     .compression = p.scenario.record.compression,
-                     .thinning = p.thinning}};
+  engine::CaseInputs inputs{p.machine(),
+                            *p.machine_errors,
+                            p.imposed.get(),
+                            p.motion->trajectory,
+                            p.program->path,
+                            p.program->tips,
+                            p.spec.servo,
+                            hardware,
+                            {},
+                            nullptr,
+                            {},
+                            p.scenario.record_period,
+                            p.scenario.settle_time,
+                            p.scenario.record.format,
+                            {.folder = scratch_folder,
+                             .compression = p.scenario.record.compression,
+                             .thinning = p.thinning}};
   inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
   if (p.cutting) {
     inputs.cutting = &p.cutting->table;
@@ -126,7 +127,7 @@ CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   }
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;
-  const LoopPeriods& periods = p.machine().nc.periods;
+  const model::LoopPeriods& periods = p.machine().nc.periods;
   for (std::size_t k = 0; k < p.strategies.size(); ++k) {
     const auto& strategy = p.strategies[k];
     if (auto part = strategy->setpoint()) inputs.setpoints.push_back(std::move(part));
@@ -151,7 +152,7 @@ PreparedParts PreparedCase::parts() const {
 
 const std::string& PreparedCase::stops_with() const { return parts_->stops_with; }
 
-const CaseSpec& PreparedCase::spec() const { return parts_->spec; }
+const model::CaseSpec& PreparedCase::spec() const { return parts_->spec; }
 
 const std::vector<std::string>& PreparedCase::sections() const {
   return parts_->program->path.sections();
@@ -161,9 +162,9 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
     const std::set<std::string>& sections) const {
   if (sections.empty()) return {};
   const Parts& p = *parts_;
-  const MachineSettings& machine = p.machine();
+  const model::MachineSettings& machine = p.machine();
   const controllers::Trajectory& trajectory = p.motion->trajectory;
-  const ProgramPath& path = p.program->path;
+  const engine::ProgramPath& path = p.program->path;
   const double period = machine.nc.periods.seconds(p.scenario.record_period);
   std::map<std::string, std::vector<Eigen::Vector3d>> positions;
   std::vector<std::vector<Eigen::Vector3d>*> of_section;  // by index; nullptr: not asked for
@@ -175,7 +176,7 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
   for (std::size_t n = 0; static_cast<double>(n) * period <= trajectory.duration(); ++n) {
     const auto now = trajectory.at(static_cast<double>(n) * period, cursor);
     const std::size_t piece = pieces[now.move];
-    const ProgramPath::Piece at = path.piece(piece);
+    const engine::ProgramPath::Piece at = path.piece(piece);
     std::vector<Eigen::Vector3d>* out = of_section[static_cast<std::size_t>(at.section)];
     if (at.rapid || out == nullptr) continue;
     const Joints Q_prog = path.joints(piece, now.s, machine.chain.layout, now.Q_ref);
@@ -189,7 +190,7 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
   const std::set<std::string> names = circular_section_names(p.scenario);
   if (names.empty()) return {};
   PreparationCache own;
-  MemoKey key;
+  system::MemoKey key;
   key.add_shared(p.program.get());
   key.add_shared(p.motion.get());
   add(key, p.machine().chain);
@@ -202,25 +203,25 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
     }
     return out;
   };
-  return sim::circular_faults(p.scenario,
-                              (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
+  return preparation::circular_faults(
+      p.scenario, (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
 }
 
-std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCache* cache) {
+std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, PreparationCache* cache) {
   PreparationCache own;  // the cases of one scenario share much, too
   if (cache == nullptr) cache = &own;
-  const auto reading_delay = [&](const CaseSpec& spec) {
+  const auto reading_delay = [&](const model::CaseSpec& spec) {
     return scenario.machine.scale_delay +
            (spec.feedback_hardware ? scenario.hardware.signal_delay : 0);
   };
   Tick longest = scenario.machine.scale_delay;
-  for (const CaseSpec& spec : scenario.cases) {
+  for (const model::CaseSpec& spec : scenario.cases) {
     if (!spec.machine) longest = std::max(longest, reading_delay(spec));
   }
   check_stability(scenario.machine, longest, cache);
   std::vector<PreparedCase> prepared;
   CaseFaults faults;
-  for (const CaseSpec& spec : scenario.cases) {
+  for (const model::CaseSpec& spec : scenario.cases) {
     try {
       if (spec.machine) check_stability(*spec.machine, reading_delay(spec), cache);
       prepared.emplace_back(scenario, spec, cache);
@@ -240,4 +241,4 @@ std::vector<PreparedCase> prepare_cases(const Scenario& scenario, PreparationCac
   return prepared;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -14,7 +14,7 @@
 #include "sim/preparation/case_program.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct InterpretedProgram;
 struct PlannedCutting;
@@ -24,8 +24,8 @@ struct RewrittenProgram;
 
 /// A case as it was prepared; refers to the PreparedCase and to its scenario.
 struct PreparedParts {
-  const Scenario& scenario;
-  const CaseSpec& spec;
+  const model::Scenario& scenario;
+  const model::CaseSpec& spec;
   const InterpretedProgram& program;
   const PlannedMotion& motion;
   std::span<const std::shared_ptr<const strategies::Strategy>> strategies;  // those of spec
@@ -41,11 +41,12 @@ class PreparedCase {
   /// @param scenario, spec  must outlive this
   /// @param cache           takes what earlier cases computed from the same inputs; may be nullptr
   /// @throws InputError
-  PreparedCase(const Scenario& scenario, const CaseSpec& spec, PreparationCache* cache = nullptr);
+  PreparedCase(const model::Scenario& scenario, const model::CaseSpec& spec,
+               PreparationCache* cache = nullptr);
   ~PreparedCase();
   PreparedCase(PreparedCase&&) noexcept;
 
-  const CaseSpec& spec() const;
+  const model::CaseSpec& spec() const;
   /// Lets rows of its recording be left out, so that it takes about so many bytes of the file.
   void thin(double bytes);
 
@@ -69,7 +70,7 @@ class PreparedCase {
 
   /// Inputs of one run; refers to this and to the scenario.
   /// @param scratch_folder  of recordings that are long; empty: that of temporary files
-  CaseInputs inputs(const std::string& scratch_folder = {}) const;
+  engine::CaseInputs inputs(const std::string& scratch_folder = {}) const;
   PreparedParts parts() const;
 
  private:
@@ -81,7 +82,7 @@ class PreparedCase {
 /// @param scenario  must outlive them
 /// @param cache     may be nullptr
 /// @throws InputError with the faults of all cases: gains that are unstable included
-std::vector<PreparedCase> prepare_cases(const Scenario& scenario,
+std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario,
                                         PreparationCache* cache = nullptr);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

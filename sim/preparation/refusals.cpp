@@ -9,7 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/preparation/preparation_cache.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 // Adds a fault that is not said yet.
@@ -32,7 +32,7 @@ void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file) {
                    "[[program.tool]]: use G43 H");
 }
 
-void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario) {
+void refuse_absent_axes(const InterpretedProgram& program, const model::Scenario& scenario) {
   std::vector<Fault> faults;
   for (const Axis axis : kAllAxes) {
     const int line = program.first_line[static_cast<std::size_t>(axis)];
@@ -43,7 +43,7 @@ void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scena
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario) {
+void refuse_standing_spindle(const InterpretedProgram& program, const model::Scenario& scenario) {
   for (const Move& move : program.moves) {
     const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
     if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
@@ -53,8 +53,8 @@ void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& 
   }
 }
 
-void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
-                       const CaseSpec& spec) {
+void refuse_turned_tip(const InterpretedProgram& program, const model::Scenario& scenario,
+                       const model::CaseSpec& spec) {
   const AxisWords offset = scenario.program.work_offset + spec.work_offset;
   const Move* tip = program.first_tip_move();
   const bool is_probed = !scenario.probes.empty();
@@ -67,7 +67,7 @@ void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenar
                                scenario.program.file, tip->line));
 }
 
-void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
+void refuse_start_outside(const model::Scenario& scenario, const model::MachineSettings& machine,
                           const Joints& start) {
   std::vector<Fault> faults;
   for (int j = 0; j < kJoints; ++j) {
@@ -85,8 +85,8 @@ void refuse_start_outside(const Scenario& scenario, const MachineSettings& machi
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
-                         const MachineSettings& machine, const std::string& case_name) {
+void refuse_unread_scale(const model::StrategySpec& spec, const strategies::Strategy& strategy,
+                         const model::MachineSettings& machine, const std::string& case_name) {
   if (!strategy.displaces_feedback()) return;
   for (const int j : machine.joints()) {
     const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
@@ -99,7 +99,8 @@ void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& s
   }
 }
 
-void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Strategy& strategy) {
+void refuse_undeclared_feedback(const model::StrategySpec& spec,
+                                const strategies::Strategy& strategy) {
   if (!strategy.displaces_feedback() || spec.entry->uses_feedback_hardware) return;
   throw std::logic_error(
       fmt::format("strategy {} displaces the feedback, but its entry in the registry lacks "
@@ -107,7 +108,7 @@ void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Stra
                   spec.entry->name));
 }
 
-void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,
+void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strategy& strategy,
                       const InterpretedProgram& program, const std::string& file,
                       const std::string& case_name) {
   const Move* move = program.first_tip_move();
@@ -129,7 +130,7 @@ void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& stra
   }
 }
 
-void refuse_endless(const Scenario& scenario, double duration) {
+void refuse_endless(const model::Scenario& scenario, double duration) {
   constexpr double kHour = 3600.0;
   if (duration > scenario.record.max_duration) {
     throw InputError(
@@ -149,13 +150,14 @@ void refuse_endless(const Scenario& scenario, double duration) {
                                duration, samples, period / ms, kMostSamples));
 }
 
-void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections) {
+void refuse_absent_sections(const model::Scenario& scenario,
+                            const std::vector<std::string>& sections) {
   std::vector<std::string_view> known;
   for (const std::string& name : sections) {
     if (!name.empty()) known.push_back(name);
   }
   std::vector<Fault> faults;
-  for (const QuantitySpec& quantity : scenario.quantities) {
+  for (const model::QuantitySpec& quantity : scenario.quantities) {
     for (const std::string& name : quantity.sections) {
       if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
       const std::string near = did_you_mean(name, known);
@@ -196,4 +198,4 @@ void CaseFaults::report(std::size_t cases) {
   throw InputError(std::move(faults));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

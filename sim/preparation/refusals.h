@@ -11,7 +11,7 @@
 #include "sim/model/scenario.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct InterpretedProgram;
 
@@ -22,53 +22,55 @@ void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file);
 
 /// Words of axes that the machine lacks would have no effect.
 /// @throws InputError for each such axis, where the program first moves it
-void refuse_absent_axes(const InterpretedProgram& program, const Scenario& scenario);
+void refuse_absent_axes(const InterpretedProgram& program, const model::Scenario& scenario);
 
 /// A feed per revolution of a spindle that stands still moves nothing, for ever.
 /// @throws InputError at the first such move
-void refuse_standing_spindle(const InterpretedProgram& program, const Scenario& scenario);
+void refuse_standing_spindle(const InterpretedProgram& program, const model::Scenario& scenario);
 
 /// Under tool control X Y Z do not turn with the work offset, so that the coordinates of the
 /// program are not those of the probes and the stock.
 /// @throws InputError at the first probe; without one, if the case feels its cut, at [cutting]
-void refuse_turned_tip(const InterpretedProgram& program, const Scenario& scenario,
-                       const CaseSpec& spec);
+void refuse_turned_tip(const InterpretedProgram& program, const model::Scenario& scenario,
+                       const model::CaseSpec& spec);
 
 /// @param machine  that the case runs on
 /// @param start    of the joints, all work offsets in it (5; m, rad)
 /// @throws InputError for each axis that starts outside its travel
-void refuse_start_outside(const Scenario& scenario, const MachineSettings& machine,
+void refuse_start_outside(const model::Scenario& scenario, const model::MachineSettings& machine,
                           const Joints& start);
 
 /// A displaced scale moves nothing where the motor closes the position loop.
 /// @param spec  of the strategy
 /// @throws InputError at the strategy
-void refuse_unread_scale(const StrategySpec& spec, const strategies::Strategy& strategy,
-                         const MachineSettings& machine, const std::string& case_name);
+void refuse_unread_scale(const model::StrategySpec& spec, const strategies::Strategy& strategy,
+                         const model::MachineSettings& machine, const std::string& case_name);
 
 /// Hardware and delay follow what the registry says of a strategy, its action what the strategy
 /// says: a displacement without hardware would be one without delay.
 /// @param spec  of the strategy
 /// @throws std::logic_error if it displaces the feedback and its entry says nothing of hardware
-void refuse_undeclared_feedback(const StrategySpec& spec, const strategies::Strategy& strategy);
+void refuse_undeclared_feedback(const model::StrategySpec& spec,
+                                const strategies::Strategy& strategy);
 
 /// Most strategies displace axes; moves under tool control are not of the axes. No strategy knows
 /// more than one tool.
 /// @param spec  of the strategy, which rewrites moves
 /// @param file  of the program
 /// @throws InputError at the strategy
-void refuse_tip_moves(const StrategySpec& spec, const strategies::Strategy& strategy,
+void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strategy& strategy,
                       const InterpretedProgram& program, const std::string& file,
                       const std::string& case_name);
 
 /// A slip of the unit can make a program last for years.
 /// @param duration  s; of the planned motion, or less: way over feed, which is known before
 /// @throws InputError at the program
-void refuse_endless(const Scenario& scenario, double duration);
+void refuse_endless(const model::Scenario& scenario, double duration);
 
 /// Sections that quantities name, among those that the program has.
 /// @throws InputError for each that it has not
-void refuse_absent_sections(const Scenario& scenario, const std::vector<std::string>& sections);
+void refuse_absent_sections(const model::Scenario& scenario,
+                            const std::vector<std::string>& sections);
 
 /// Faults of several cases, each said once; with the case if not all cases have it.
 class CaseFaults {
@@ -87,4 +89,4 @@ class CaseFaults {
   std::vector<Found> found_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -10,7 +10,7 @@
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 constexpr double kPrinted = 1e-8;   // m, rad: what printing may change of a position
@@ -203,4 +203,4 @@ RewrittenText through_text(const std::vector<Move>& rewritten,
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/move_list.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct RewrittenText {
   std::string text;
@@ -31,4 +31,4 @@ struct RewrittenTextRequest {
 /// @throws InputError where it does not
 RewrittenText through_text(const std::vector<Move>& rewritten, const RewrittenTextRequest& request);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

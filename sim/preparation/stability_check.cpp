@@ -7,15 +7,15 @@
 #include "sim/input/implausible.h"
 #include "sim/preparation/preparation_cache.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 constexpr double kMarginal = 1.0 + 1e-9;  // spectral radius, for rounding
 
 // The innermost loop that is unstable by itself: its gain is the one to lower.
-Fault instability(const MachineSettings& machine, int joint, double radius) {
+Fault instability(const model::MachineSettings& machine, int joint, double radius) {
   const auto j = static_cast<std::size_t>(joint);
-  const GainPlaces& places = machine.nc.gain_place[j];
+  const model::GainPlaces& places = machine.nc.gain_place[j];
   const controllers::CascadeParams& cascade = machine.nc.cascade[j];
   const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
   const plant::FeedDriveParams& drive = machine.drives[j];
@@ -27,7 +27,7 @@ Fault instability(const MachineSettings& machine, int joint, double radius) {
                         "rad/s; must be < {:.4g} rad/s at its period, {}",
                         axis, current.Kp / drive.L, 2.0 / current.Ti, watch)};
   }
-  if (velocity_spectral_radius(machine, joint) >= kMarginal) {
+  if (frequency::velocity_spectral_radius(machine, joint) >= kMarginal) {
     return {places.velocity_bandwidth,
             fmt::format("axis {}: the velocity loop is unstable with velocity_bandwidth = {:.4g} "
                         "rad/s over its current loop and filters; lower it or make them faster, "
@@ -43,28 +43,29 @@ Fault instability(const MachineSettings& machine, int joint, double radius) {
 
 }  // namespace
 
-void check_stability(const MachineSettings& machine, Tick reading_delay, PreparationCache* cache) {
+void check_stability(const model::MachineSettings& machine, Tick reading_delay,
+                     PreparationCache* cache) {
   if (!machine.nc.check_stability) return;
-  const MachineSettings linear = linearised(machine);
+  const model::MachineSettings linear = frequency::linearised(machine);
   std::vector<Fault> faults;
   for (const int j : machine.joints()) {
-    const auto compute = [&] { return spectral_radius(machine, j, reading_delay); };
+    const auto compute = [&] { return frequency::spectral_radius(machine, j, reading_delay); };
     double radius = 0.0;
     if (cache == nullptr) {
       radius = compute();
     } else {
-      MemoKey key;
+      system::MemoKey key;
       key.add(reading_delay);
       add_linear_axis(key, linear, j);
       radius = *cache->spectral_radii.get(key, compute);
     }
     if (radius < kMarginal) continue;
     faults.push_back(instability(machine, j, radius));
-    for (const std::string& value : implausible_values(machine, j)) {
+    for (const std::string& value : input::implausible_values(machine, j)) {
       faults.back().message += "; " + value;
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

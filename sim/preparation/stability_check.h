@@ -3,7 +3,7 @@
 
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 struct PreparationCache;
 
@@ -11,6 +11,7 @@ struct PreparationCache;
 /// @param reading_delay  ticks between the scale and what the position loop reads
 /// @param cache          may be nullptr
 /// @throws InputError with one fault for each unstable axis
-void check_stability(const MachineSettings& machine, Tick reading_delay, PreparationCache* cache);
+void check_stability(const model::MachineSettings& machine, Tick reading_delay,
+                     PreparationCache* cache);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

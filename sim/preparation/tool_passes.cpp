@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 using Eigen::Vector3d;
@@ -31,7 +31,7 @@ double departure(const Stage& stage, const plant::CutterPosition& from,
 ToolPasses::ToolPasses(const CuttingPlanInputs& in)
     : in_(in),
       path_(in.program->path),
-      frame_(work_frame(in.chain, in.work_offset)),
+      frame_(model::work_frame(in.chain, in.work_offset)),
       Q_near_(in.start) {
   int tool = 0, direction = 0;
   double speed = 0.0;
@@ -55,7 +55,7 @@ ToolPasses::ToolPasses(const CuttingPlanInputs& in)
 }
 
 plant::CutterPosition ToolPasses::position(const Stage& stage, double share) {
-  const ProgramPath::Piece p = path_.piece(stage.piece);
+  const engine::ProgramPath::Piece p = path_.piece(stage.piece);
   const JointLayout& layout = in_.chain.layout;
   const double length = p.s_end - p.s_begin;
   // where s stands still, the programmed joints choose the position
@@ -116,11 +116,11 @@ void ToolPasses::add_steps(Stage& stage, double end, const plant::CutterPosition
 }
 
 std::size_t ToolPasses::positions_before(const Stage& stage, double share) const {
-  const ProgramPath::Piece p = path_.piece(stage.piece);
+  const engine::ProgramPath::Piece p = path_.piece(stage.piece);
   const double behind = share - 0.5 * kBehind / (p.s_end - p.s_begin);
   const auto next = std::upper_bound(stage.shares.begin(), stage.shares.end(), behind);
   const auto last = std::max<std::ptrdiff_t>(0, next - stage.shares.begin() - 1);
   return stage.counts[static_cast<std::size_t>(last)];
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

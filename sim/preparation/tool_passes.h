@@ -12,7 +12,7 @@
 #include "sim/model/work_frame.h"
 #include "sim/preparation/cutting_force_plan.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 
 /// One move of the program with what turns in the spindle.
 struct Stage {
@@ -38,7 +38,7 @@ class ToolPasses {
   explicit ToolPasses(const CuttingPlanInputs& in);
 
   const std::vector<Stage>& stages() const { return stages_; }
-  const PartFrame& frame() const { return frame_; }
+  const model::PartFrame& frame() const { return frame_; }
 
   /// Passes of the cutters over the whole program. Fills in the steps of all stages.
   plant::RemovedVolume remove();
@@ -55,10 +55,10 @@ class ToolPasses {
                  std::vector<plant::CutterPosition>& positions, int halvings);
 
   const CuttingPlanInputs& in_;
-  const ProgramPath& path_;
-  PartFrame frame_;
+  const engine::ProgramPath& path_;
+  model::PartFrame frame_;
   Joints Q_near_;  // of the last position: the next one is the nearest to it
   std::vector<Stage> stages_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

@@ -15,6 +15,7 @@
 #include "sim/config/document.h"
 #include "sim/input/implausible.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/read_scenario.h"
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
@@ -23,24 +24,24 @@
 #include "sim/sweep/sweep.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
 
-void warn_of(const MachineSettings& machine, const std::string& path,
+void warn_of(const model::MachineSettings& machine, const std::string& path,
              std::vector<Fault>* warnings) {
   if (warnings == nullptr) return;
-  for (std::string& value : implausible_values(machine)) {
+  for (std::string& value : input::implausible_values(machine)) {
     warnings->push_back({{path}, std::move(value)});
   }
 }
 
 // Uses of rules beyond LinuxCNC's in the cases' programs; the cases mostly run the same one.
-void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings) {
-  for (const CaseSpec& spec : scenario.cases) {
+void add_program_warnings(const model::Scenario& scenario, std::vector<Fault>& warnings) {
+  for (const model::CaseSpec& spec : scenario.cases) {
     std::vector<Fault> found;
-    read_program(scenario, spec, &found);
+    preparation::read_program(scenario, spec, &found);
     for (Fault& one : found) {
       const bool is_known = std::any_of(warnings.begin(), warnings.end(), [&](const Fault& other) {
         return other.place == one.place && other.message == one.message;
@@ -52,18 +53,18 @@ void add_program_warnings(const Scenario& scenario, std::vector<Fault>& warnings
 
 void check_toml(const std::string& path, const std::vector<std::string>& changes,
                 std::vector<Fault>* warnings) {
-  const Document document = Document::from_file(path);
+  const config::Document document = config::Document::from_file(path);
   if (document.root().find("structure") != nullptr) {
-    const MachineSettings machine = read_machine_file(path);
+    const model::MachineSettings machine = input::read_machine_file(path);
     warn_of(machine, path, warnings);
-    check_machine(machine);
+    run::check_machine(machine);
     return;
   }
-  const Scenario scenario = read_scenario(path, changes);
+  const model::Scenario scenario = input::read_scenario(path, changes);
   warn_of(scenario.machine, path, warnings);
-  check_scenario(scenario);
+  run::check_scenario(scenario);
   if (warnings != nullptr) add_program_warnings(scenario, *warnings);
-  if (!scenario.sweep.empty()) Sweep(path, changes).check();
+  if (!scenario.sweep.empty()) sweep::Sweep(path, changes).check();
 }
 
 bool holds_cutter_locations(std::string_view path) {
@@ -84,7 +85,7 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
   const std::string option = "--additional-offset";
   const std::size_t colon = text.find(':');
   const double P = text.starts_with('P') && colon != std::string::npos
-                       ? number_of(text.substr(1, colon - 1))
+                       ? model::number_of(text.substr(1, colon - 1))
                        : std::nan("");
   if (!(P >= 1.0) || P != std::floor(P) || P > 300.0) {
     throw InputError({option + " " + text},
@@ -97,7 +98,7 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
 
 // The number of "M82", a code that no rule of a reader gives a meaning.
 int ignored_code(const std::string& text) {
-  const double number = text.starts_with('M') ? number_of(text.substr(1)) : std::nan("");
+  const double number = text.starts_with('M') ? model::number_of(text.substr(1)) : std::nan("");
   const bool is_code = number >= 0.0 && number <= 9999.0 && number == std::floor(number);
   if (is_code && !controllers::is_known_function(static_cast<int>(number))) {
     return static_cast<int>(number);
@@ -109,7 +110,7 @@ int ignored_code(const std::string& text) {
 
 }  // namespace
 
-void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
+void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
                    controllers::ProgramSetup& setup) {
   using controllers::DecimalPoint;
   using controllers::Reader;
@@ -126,25 +127,25 @@ void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
 controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
                                         const std::string& program_file) {
   controllers::ProgramSetup setup;
-  NcSettings nc;
+  model::NcSettings nc;
   if (!inputs.tool_table.empty()) {
-    setup.tools = controllers::ToolTable::parse(read_file(inputs.tool_table, {}, "tool table"),
-                                                inputs.tool_table);
+    setup.tools = controllers::ToolTable::parse(
+        system::read_file(inputs.tool_table, {}, "tool table"), inputs.tool_table);
   }
   if (!inputs.parameter_file.empty()) {
     setup.stored = controllers::parse_parameter_file(
-        read_file(inputs.parameter_file, {}, "parameter file"), inputs.parameter_file);
+        system::read_file(inputs.parameter_file, {}, "parameter file"), inputs.parameter_file);
     setup.work_system = controllers::work_system_of(setup.stored);
   }
   if (!inputs.machine.empty()) {
-    const MachineSettings machine = read_machine_description(inputs.machine).machine;
-    setup.machine = tool_centre_point(machine);
+    const model::MachineSettings machine = input::read_machine_description(inputs.machine).machine;
+    setup.machine = preparation::tool_centre_point(machine);
     nc = machine.nc;
   }
   for (const std::string& parameter : inputs.parameters) {
     const std::size_t equals = parameter.find('=');
     const double value =
-        equals == std::string::npos ? std::nan("") : number_of(parameter.substr(equals + 1));
+        equals == std::string::npos ? std::nan("") : model::number_of(parameter.substr(equals + 1));
     if (!std::isfinite(value)) {
       throw InputError({"--parameter " + parameter}, "must be #N=NUMBER, such as '#101=1394'");
     }
@@ -163,7 +164,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     if (!std::filesystem::is_directory(folder))
       throw InputError({"--subs " + folder}, "is no folder");
   }
-  setup.subroutine_file = subroutine_files(program_file, inputs.subroutine_folders);
+  setup.subroutine_file = input::subroutine_files(program_file, inputs.subroutine_folders);
   return setup;
 }
 
@@ -205,7 +206,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
       return {};
     }
     if (holds_cutter_locations(path)) {
-      controllers::read_cl_data(read_file(path, {}, "cutter location file"), path);
+      controllers::read_cl_data(system::read_file(path, {}, "cutter location file"), path);
       return {};
     }
     controllers::ProgramSetup setup = program_setup(inputs, path);
@@ -218,4 +219,4 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Inputs of a program next to its text.
 struct ProgramInputs {
@@ -36,7 +36,7 @@ struct ProgramInputs {
 
 /// Takes the reader that the inputs name, else that of the machine file.
 /// @throws InputError
-void choose_reader(const ProgramInputs& inputs, const NcSettings& nc,
+void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
                    controllers::ProgramSetup& setup);
 
 /// Settings of the control before the program runs.
@@ -63,4 +63,4 @@ bool is_program(std::string_view path);
 std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
                               const ProgramInputs& inputs, std::vector<Fault>* warnings = nullptr);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

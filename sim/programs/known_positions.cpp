@@ -7,7 +7,7 @@
 #include "controllers/gcode/request.h"
 #include "sim/programs/named_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ExecutedBlock;
@@ -158,4 +158,4 @@ MoveKnowledge KnownPositions::next(const Move& move, const ExecutedBlock& block,
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

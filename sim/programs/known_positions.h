@@ -10,7 +10,7 @@
 #include "controllers/gcode/modal_state.h"
 #include "sim/programs/compensate/program_corrector.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Inputs whose value the user has given.
 struct GivenPlaces {
@@ -67,4 +67,4 @@ class KnownPositions {
   AxisFlags work_at_begin_of_line_{};
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -2,7 +2,7 @@
 
 #include "controllers/gcode/request.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 int non_modal_code(const controllers::ExecutedBlock& block) {
   return block.request == nullptr ? -1 : block.request->code(controllers::Group::g_non_modal);
@@ -14,4 +14,4 @@ bool names_axis(const controllers::ExecutedBlock& block, Axis axis) {
   return block.request->has(letter(axis)) || (is_of_plane && block.request->has_polar());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -15,7 +15,7 @@
 #include "sim/programs/verify_post.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,9 +40,9 @@ Joints joints_of(const std::string& text, const JointLayout& layout) {
       throw InputError({"--start " + text},
                        "must be positions, such as A=10,C=90 (in mm and deg) or \"C=90 deg\"");
     }
-    const ScaledText value =
-        scale_option(std::string_view(word).substr(2), is_linear(*axis) ? kLength : kAngle,
-                     is_linear(*axis) ? "mm" : "deg");
+    const config::ScaledText value = config::scale_option(
+        std::string_view(word).substr(2), is_linear(*axis) ? config::kLength : config::kAngle,
+        is_linear(*axis) ? "mm" : "deg");
     if (!value.complaint.empty()) {
       throw InputError({"--start " + text}, fmt::format("{}: {}", word, value.complaint));
     }
@@ -74,8 +74,8 @@ std::string no_length_of(int tool) {
 void take_tools(const PostRequest& request, const controllers::ClData& data,
                 controllers::PostOptions& options) {
   if (!request.tool_table.empty()) {
-    options.tools = controllers::ToolTable::parse(read_file(request.tool_table, {}, "tool table"),
-                                                  request.tool_table);
+    options.tools = controllers::ToolTable::parse(
+        system::read_file(request.tool_table, {}, "tool table"), request.tool_table);
   } else if (request.tool_length) {
     if (options.tool == 0 && !request.has_no_tool) options.tool = 1;
     for (const int number : tools_loaded(data, options.tool)) {
@@ -144,7 +144,7 @@ void refuse_unknown_place(const PostRequest& request, const plant::MachineChain&
 }
 
 // Z of the machine from which every way down is free.
-double retract_height(const PostRequest& request, const MachineDescription& machine) {
+double retract_height(const PostRequest& request, const input::MachineDescription& machine) {
   const JointLayout& layout = machine.machine.chain.layout;
   constexpr int kZ = 2;
   if (!layout.has(kZ)) {
@@ -201,13 +201,13 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
 }  // namespace
 
 PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
-  const MachineDescription described =
-      read_machine_description(request.machine_file, request.changes);
-  const MachineSettings& machine = described.machine;
+  const input::MachineDescription described =
+      input::read_machine_description(request.machine_file, request.changes);
+  const model::MachineSettings& machine = described.machine;
   std::vector<controllers::Warning> ignored;
   std::vector<controllers::Warning>& warnings = of_refused != nullptr ? *of_refused : ignored;
   const controllers::ClData data = controllers::read_cl_data(
-      read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &warnings);
+      system::read_file(request.cl_file, {}, "cutter location file"), request.cl_file, &warnings);
   warnings = data.warnings;
   refuse_unknown_place(request, machine.chain);
   controllers::PostOptions& options = request.options;
@@ -246,4 +246,4 @@ PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warnin
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 
 #include "controllers/gcode/post_processor.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct PostRequest {
   std::string cl_file, machine_file;
@@ -38,4 +38,4 @@ struct PostProcessedFile {
 PostProcessedFile post_file(PostRequest request,
                             std::vector<controllers::Warning>* of_refused = nullptr);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

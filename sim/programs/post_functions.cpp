@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kTimeTolerance = 1e-6;  // s; relative of speeds
@@ -96,4 +96,4 @@ std::string PostFunctions::arrive(const PostState& now) {
   return fault_of(now);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "controllers/gcode/cl_data.h"
 #include "sim/programs/post_kinematics.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 class PostFunctions {
  public:
@@ -51,4 +51,4 @@ class PostFunctions {
 /// The machine is at the height to retract to.
 bool is_retracted(const Joints& Q, const controllers::PostOptions& options);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -2,7 +2,7 @@
 
 #include "plant/kinematics/inverse.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using Eigen::Vector3d;
 
@@ -61,4 +61,4 @@ bool PostKinematics::moves_only_Z(const PostBlock& block) const {
   return (end - block.from.Q).head<2>().cwiseAbs().maxCoeff() <= tolerance;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

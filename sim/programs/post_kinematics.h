@@ -8,7 +8,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/move.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 // Words have seven decimals of mm and deg; the tip is up to some metres from a rotary axis.
 inline constexpr double kPostTip = 1e-8;    // m
@@ -61,4 +61,4 @@ class PostKinematics {
   const controllers::PostOptions& options_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -4,17 +4,17 @@
 
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 // The planner stops between rapid and feed: from so many moves on, the next such place ends a part
 // that is planned for itself, so that long programs are not held.
 constexpr std::size_t kMovesAtOnce = 20'000;
 
-std::string missing_limits(const MachineSettings& machine) {
+std::string missing_limits(const model::MachineSettings& machine) {
   std::string axes;
   for (const int j : machine.joints()) {
-    const NcSettings& nc = machine.nc;
+    const model::NcSettings& nc = machine.nc;
     if (nc.v_max[j] > 0.0 && nc.a_max[j] > 0.0 && nc.j_max[j] > 0.0) continue;
     axes += fmt::format("{}{}", axes.empty() ? "" : ", ", machine.chain.layout.letter_of(j));
   }
@@ -24,7 +24,7 @@ std::string missing_limits(const MachineSettings& machine) {
 
 }  // namespace
 
-ProgramDuration::ProgramDuration(const MachineSettings& machine)
+ProgramDuration::ProgramDuration(const model::MachineSettings& machine)
     : machine_(machine),
       limits_{machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
       why_unknown_(missing_limits(machine)) {
@@ -90,4 +90,4 @@ void ProgramDuration::add(const Move& move) {
 
 void ProgramDuration::finish() { plan(); }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -9,14 +9,14 @@
 #include "sim/model/machine.h"
 #include "sim/programs/known_positions.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Adds up motion and dwells. Moves over a distance that is not known (from where the machine
 /// happens to be at the start, behind a tool change or between places of unknown offset) are left
 /// out, and counted.
 class ProgramDuration {
  public:
-  explicit ProgramDuration(const MachineSettings& machine);
+  explicit ProgramDuration(const model::MachineSettings& machine);
 
   void add(const Move& move, const MoveKnowledge& known);  ///< a motion
   void add(const Move& move);                              ///< anything else
@@ -34,7 +34,7 @@ class ProgramDuration {
   bool refuses(const Move& move);
   void plan();
 
-  const MachineSettings& machine_;
+  const model::MachineSettings& machine_;
   controllers::JointLimits limits_;
   controllers::PathOptions options_;
   MoveList moves_;  // not planned yet
@@ -47,4 +47,4 @@ class ProgramDuration {
   MoveKind last_ = MoveKind::dwell;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
@@ -73,4 +73,4 @@ void ProgramExtent::add(const Move& move, const MoveKnowledge& known) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

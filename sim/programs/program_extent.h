@@ -9,7 +9,7 @@
 #include "plant/vocabulary/arc_sweep.h"
 #include "sim/programs/known_positions.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Positions from `lower` to `upper` (m, rad).
 struct AxisRange {
@@ -52,4 +52,4 @@ class ProgramExtent {
   int tilted_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -14,7 +14,7 @@
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/program_duration.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ExecutedBlock;
@@ -29,13 +29,13 @@ constexpr double kSomeHeight = 1.23456789;  // m
 struct SurveyInputs {
   ProgramSetup setup;
   GivenPlaces given;
-  std::optional<MachineSettings> machine;
+  std::optional<model::MachineSettings> machine;
 };
 
 SurveyInputs read_inputs(const SurveyRequest& request) {
   SurveyInputs out;
   if (!request.inputs.machine.empty()) {
-    out.machine = read_machine_description(request.inputs.machine).machine;
+    out.machine = input::read_machine_description(request.inputs.machine).machine;
   }
   out.setup = program_setup(request.inputs, request.program_file);
   const JointLayout* layout = out.machine ? &out.machine->chain.layout : nullptr;
@@ -220,4 +220,4 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -13,7 +13,7 @@
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/program_extent.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct SurveyRequest {
   std::string program_file;
@@ -78,4 +78,4 @@ std::string to_text(const ProgramSurvey& survey);
 /// The same as one JSON object; lengths in mm, angles in deg, null for what is unknown.
 std::string to_json(const ProgramSurvey& survey);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -10,7 +10,7 @@
 #include "sim/system/counted.h"
 #include "sim/system/json.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::size_t kLabel = 15;  // columns
@@ -168,18 +168,19 @@ void add_cycle_time(const ProgramSurvey& survey, Text& text) {
   std::vector<std::string> without;
   if (!time.left_out.empty()) {
     without.push_back(fmt::format("{} from unknown positions ({})",
-                                  counted(time.left_out.size(), "move"),
+                                  system::counted(time.left_out.size(), "move"),
                                   lines_text(time.left_out)));
   }
   if (time.unknown_dwells > 0) {
-    without.push_back(counted(static_cast<std::size_t>(time.unknown_dwells), "dwell") +
+    without.push_back(system::counted(static_cast<std::size_t>(time.unknown_dwells), "dwell") +
                       " in an unknown unit");
   }
   if (survey.tool_changes > 0) {
-    without.push_back(counted(static_cast<std::size_t>(survey.tool_changes), "tool change"));
+    without.push_back(
+        system::counted(static_cast<std::size_t>(survey.tool_changes), "tool change"));
   }
   if (survey.stops > 0) {
-    without.push_back(counted(static_cast<std::size_t>(survey.stops), "stop"));
+    without.push_back(system::counted(static_cast<std::size_t>(survey.stops), "stop"));
   }
   if (!without.empty()) {
     text.add("cycle time", fmt::format("without {}", fmt::join(without, ", ")));
@@ -230,7 +231,7 @@ namespace {
 
 // A number in the unit of its key, or null.
 std::string number_or_null(const std::optional<double>& value, double unit) {
-  return value ? json_number(*value / unit) : "null";
+  return value ? system::json_number(*value / unit) : "null";
 }
 
 // null for line 0, which is none.
@@ -240,22 +241,23 @@ std::string line_or_null(int line) { return line > 0 ? std::to_string(line) : "n
 std::string uses_json(const std::vector<FirstUse>& uses) {
   std::vector<std::string> out;
   for (const FirstUse& use : uses) {
-    out.push_back(JsonObject().text("word", use.word).raw("line", line_or_null(use.line)).line());
+    out.push_back(
+        system::JsonObject().text("word", use.word).raw("line", line_or_null(use.line)).line());
   }
-  return json_list(out);
+  return system::json_list(out);
 }
 
 // Less than a picometre is rounding.
 double rounded(double position) { return std::round(position * 1e9) / 1e9 + 0.0; }
 
 std::string ranges_json(const AxisRanges& ranges) {
-  JsonObject out;
+  system::JsonObject out;
   for (const Axis axis : kAllAxes) {
     const AxisRange& range = ranges[static_cast<std::size_t>(index_of(axis))];
     if (!range.is_known()) continue;
-    const std::string ends[] = {json_number(rounded(range.lower / unit_of(axis))),
-                                json_number(rounded(range.upper / unit_of(axis)))};
-    out.raw(std::string(1, letter(axis)), json_list(ends));
+    const std::string ends[] = {system::json_number(rounded(range.lower / unit_of(axis))),
+                                system::json_number(rounded(range.upper / unit_of(axis)))};
+    out.raw(std::string(1, letter(axis)), system::json_list(ends));
   }
   return out.line();
 }
@@ -263,7 +265,7 @@ std::string ranges_json(const AxisRanges& ranges) {
 std::string tools_json(const ProgramSurvey& survey) {
   std::vector<std::string> out;
   for (const auto& [number, tool] : survey.tools) {
-    out.push_back(JsonObject()
+    out.push_back(system::JsonObject()
                       .integer("number", number)
                       .integer("line", tool.first_line)
                       .boolean("in_table", tool.is_in_table)
@@ -274,14 +276,14 @@ std::string tools_json(const ProgramSurvey& survey) {
                       .boolean("uses_diameter", tool.uses_diameter)
                       .line());
   }
-  return json_list(out);
+  return system::json_list(out);
 }
 
 std::string extent_json(const ProgramSurvey& survey) {
-  JsonObject work, unknown;
+  system::JsonObject work, unknown;
   for (const auto& [system, ranges] : survey.extent.work()) {
     work.raw(kWorkSystems[static_cast<std::size_t>(system - 1)],
-             JsonObject()
+             system::JsonObject()
                  .raw("motion", ranges_json(ranges.motion))
                  .raw("feed", ranges_json(ranges.feed))
                  .line());
@@ -290,11 +292,12 @@ std::string extent_json(const ProgramSurvey& survey) {
     const auto i = static_cast<std::size_t>(index_of(axis));
     const int line = survey.extent.unknown_work(i), machine = survey.extent.unknown_machine(i);
     if (line == 0 && machine == 0) continue;
-    unknown.raw(
-        std::string(1, letter(axis)),
-        JsonObject().raw("work", line_or_null(line)).raw("machine", line_or_null(machine)).line());
+    unknown.raw(std::string(1, letter(axis)), system::JsonObject()
+                                                  .raw("work", line_or_null(line))
+                                                  .raw("machine", line_or_null(machine))
+                                                  .line());
   }
-  return JsonObject()
+  return system::JsonObject()
       .raw("work", work.line())
       .raw("machine", ranges_json(survey.extent.machine()))
       .raw("unknown_from_line", unknown.line())
@@ -305,9 +308,9 @@ std::string cycle_time_json(const ProgramSurvey& survey) {
   if (!survey.cycle_time) return "null";
   const CycleTime& time = *survey.cycle_time;
   const bool is_known = time.why_unknown.empty();
-  return JsonObject()
+  return system::JsonObject()
       .text("machine", time.machine)
-      .raw("s", is_known ? json_number(time.duration) : "null")
+      .raw("s", is_known ? system::json_number(time.duration) : "null")
       .text_or_null("why_unknown", time.why_unknown)
       .raw("left_out_lines", fmt::format("[{}]", fmt::join(time.left_out, ", ")))
       .integer("unknown_dwells", time.unknown_dwells)
@@ -315,9 +318,9 @@ std::string cycle_time_json(const ProgramSurvey& survey) {
 }
 
 std::string readers_json(const ProgramSurvey& survey) {
-  JsonObject out;
+  system::JsonObject out;
   for (const ReaderVerdict& one : survey.readers) {
-    JsonObject verdict;
+    system::JsonObject verdict;
     verdict.boolean("reads", !one.stop);
     if (one.stop) {
       const Place& place = one.stop->place;
@@ -334,7 +337,7 @@ std::string readers_json(const ProgramSurvey& survey) {
 }  // namespace
 
 std::string to_json(const ProgramSurvey& survey) {
-  return JsonObject()
+  return system::JsonObject()
       .text("file", survey.file)
       .raw("units", uses_json(survey.units))
       .raw("work_offsets", uses_json(survey.work_systems))
@@ -349,4 +352,4 @@ std::string to_json(const ProgramSurvey& survey) {
       .line();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

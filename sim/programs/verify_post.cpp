@@ -14,7 +14,7 @@
 #include "sim/programs/post_functions.h"
 #include "sim/programs/post_kinematics.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ClRecord;
@@ -29,7 +29,7 @@ constexpr int kZ = 2;
 class PostReplay {
  public:
   PostReplay(const std::string& program, const controllers::ClData& data,
-             const MachineSettings& machine, const controllers::PostOptions& options,
+             const model::MachineSettings& machine, const controllers::PostOptions& options,
              const std::string& cl_file)
       : program_(program),
         data_(data),
@@ -41,7 +41,7 @@ class PostReplay {
     setup.tools = options.tools;
     setup.work_offset[static_cast<std::size_t>(options.work_system - 1)].head<3>() =
         options.work_offset;
-    setup.machine = tool_centre_point(machine);
+    setup.machine = preparation::tool_centre_point(machine);
     setup.start = elsewhere(machine.chain.layout);
     now_.Q = machine.chain.layout.joints(setup.start);
     moves_ = controllers::interpret(program, "program", std::move(setup));
@@ -283,7 +283,7 @@ class PostReplay {
 }  // namespace
 
 PostVerification verify_post(const std::string& program, const controllers::ClData& data,
-                             const MachineSettings& machine,
+                             const model::MachineSettings& machine,
                              const controllers::PostOptions& options, const std::string& cl_file) {
   return PostReplay(program, data, machine, options, cl_file).run();
 }
@@ -296,4 +296,4 @@ std::string to_string(const PostVerification& v) {
                      v.tip / um, v.axis / urad);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

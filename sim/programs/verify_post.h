@@ -8,7 +8,7 @@
 #include "controllers/gcode/post_processor.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Result of a verification without a fault.
 struct PostVerification {
@@ -33,11 +33,11 @@ struct PostVerification {
 /// @param cl_file  for messages
 /// @throws InputError with the line of the program and of the location
 PostVerification verify_post(const std::string& program, const controllers::ClData& data,
-                             const MachineSettings& machine,
+                             const model::MachineSettings& machine,
                              const controllers::PostOptions& options, const std::string& cl_file);
 
 /// "verified: 20 locations, 31 blocks, tip within 0.42 um and tool axis within 3.1 urad of the
 /// path"
 std::string to_string(const PostVerification& verification);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include <new>
 #include <stdexcept>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);  // as the types of the file are
@@ -69,4 +69,4 @@ void ChunkDecoder::decode(std::span<const std::uint8_t> chunk, std::size_t rows,
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

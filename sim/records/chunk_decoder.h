@@ -9,7 +9,7 @@
 
 #include "sim/records/chunk_encoder.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Not for several threads.
 class ChunkDecoder {
@@ -31,4 +31,4 @@ class ChunkDecoder {
   std::vector<std::uint8_t> shuffled_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

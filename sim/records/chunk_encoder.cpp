@@ -8,7 +8,7 @@
 #include <limits>
 #include <new>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);  // as the types of the file are
@@ -87,4 +87,4 @@ void ChunkEncoder::encode(std::span<const double> values, std::size_t rows, Stor
   chunk.resize(size);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// How a number is stored.
 enum class Storage : std::uint8_t { float64, float32, int32 };
@@ -38,4 +38,4 @@ class ChunkEncoder {
   std::vector<std::uint8_t> plain_, shuffled_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

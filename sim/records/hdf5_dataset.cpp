@@ -7,7 +7,7 @@
 
 #include "sim/system/utf8.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 Hdf5Dataset::Hdf5Dataset(Hdf5Handle id, std::size_t columns)
     : Hdf5Object(std::move(id)), columns_(columns) {}
@@ -38,7 +38,7 @@ void Hdf5Dataset::write_text(std::size_t row, std::string_view text) {
   constexpr std::string_view kCut = "...";
   std::string room(text.substr(0, columns_));
   if (text.size() > columns_) {
-    const std::size_t end = utf8_start(text, columns_ - kCut.size());
+    const std::size_t end = system::utf8_start(text, columns_ - kCut.size());
     room = std::string(text.substr(0, end)) + std::string(kCut);
   }
   room.resize(columns_, '\0');
@@ -64,4 +64,4 @@ void Hdf5Dataset::append(std::size_t rows, std::span<const std::vector<std::uint
   rows_ += rows;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

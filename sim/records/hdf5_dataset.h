@@ -10,7 +10,7 @@
 
 #include "sim/records/hdf5_object.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Description of a dataset, for readers and plots.
 struct Meaning {
@@ -42,4 +42,4 @@ class Hdf5Dataset : public Hdf5Object {
   std::size_t columns_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <limits>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 hid_t stored_type(Storage storage) {
@@ -223,4 +223,4 @@ void Hdf5Group::list(const std::string& name, std::span<const double> values,
   made.attach_scale(of, 0);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

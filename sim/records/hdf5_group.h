@@ -13,7 +13,7 @@
 #include "sim/records/chunk_encoder.h"
 #include "sim/records/hdf5_dataset.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 class Hdf5Group : public Hdf5Object {
  public:
@@ -74,4 +74,4 @@ class Hdf5Group : public Hdf5Object {
   Hdf5Dataset create(const std::string& name, const Layout& layout, const Meaning& meaning);
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

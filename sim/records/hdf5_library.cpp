@@ -12,7 +12,7 @@
 
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>);
@@ -73,7 +73,7 @@ std::string hdf5_file_name(hid_t object) {
 std::int64_t written(std::int64_t result, hid_t object) {
   if (result >= 0) return result;
   const std::string reason = hdf5_reason();
-  throw SystemError(hdf5_file_name(object), "cannot be written", reason);
+  throw system::SystemError(hdf5_file_name(object), "cannot be written", reason);
 }
 
 Hdf5Handle hdf5_handle(hid_t id) {
@@ -91,7 +91,7 @@ Hdf5Handle group_creation(hid_t kind) {
 // A process locks the file that it writes.
 void refuse_if_locked(const std::string& path) {
   if (hdf5_reason() != std::strerror(EWOULDBLOCK)) return;
-  throw SystemError(path, "cannot be opened", "another process writes it");
+  throw system::SystemError(path, "cannot be opened", "another process writes it");
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

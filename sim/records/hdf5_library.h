@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Debian's library is not made for threads: every function that calls it holds this.
 class Hdf5Lock {
@@ -57,4 +57,4 @@ Hdf5Handle group_creation(std::int64_t kind);
 /// @throws SystemError
 void refuse_if_locked(const std::string& path);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

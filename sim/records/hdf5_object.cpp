@@ -10,7 +10,7 @@
 
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 std::string system_reason() { return std::strerror(errno); }
@@ -62,7 +62,7 @@ void announce_end(hid_t file) {
   }
   const bool done = ftruncate(descriptor, static_cast<off_t>(size)) == 0 &&
                     pwrite(descriptor, bytes.data(), bytes.size(), kEndOffset) == 8;
-  if (!done) throw SystemError(hdf5_file_name(file), "cannot be written", system_reason());
+  if (!done) throw system::SystemError(hdf5_file_name(file), "cannot be written", system_reason());
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ void Hdf5Object::reserve(std::size_t bytes) {
   const int status =
       fallocate(descriptor_of(file.get()), FALLOC_FL_KEEP_SIZE, size, static_cast<off_t>(bytes));
   if (status == 0 || errno == EOPNOTSUPP || errno == ENOSYS) return;
-  throw SystemError(hdf5_file_name(id_.get()), "cannot be written", system_reason());
+  throw system::SystemError(hdf5_file_name(id_.get()), "cannot be written", system_reason());
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -11,7 +11,7 @@
 
 #include "sim/records/hdf5_library.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// A group or a dataset. An attribute set twice has the later value.
 /// All members throw SystemError if the file cannot be written.
@@ -35,4 +35,4 @@ class Hdf5Object {
   Hdf5Handle id_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

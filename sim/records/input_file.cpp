@@ -10,7 +10,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
   const Hdf5Lock lock;
@@ -218,4 +218,4 @@ double InputFile::number(const std::string& object, const std::string& name) con
   return all.front();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -7,7 +7,7 @@
 
 #include "sim/records/hdf5_library.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// A file to read. Paths are absolute: "/cases/table/servo/time".
 /// All members throw InputError that names the file and what it lacks.
@@ -51,4 +51,4 @@ class InputFile {
   Hdf5Handle file_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -15,23 +15,23 @@
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 std::string system_reason() { return std::strerror(errno); }
 
 // The library would cut the file before it finds it locked.
 void refuse_to_cut_locked(const std::string& path) {
-  if (writer_of(path) != Writer::alive) return;
-  throw SystemError(path, "cannot be made", "another process writes it");
+  if (system::writer_of(path) != system::Writer::alive) return;
+  throw system::SystemError(path, "cannot be made", "another process writes it");
 }
 
 }  // namespace
 
 OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), force_(force) {
-  path_ = output_target(path_, existing_of(force_));
+  path_ = system::output_target(path_, system::existing_of(force_));
   partial_path_ = path_ + ".partial";
-  if (!force_) refuse_partial(partial_path_);
+  if (!force_) system::refuse_partial(partial_path_);
   const Hdf5Lock lock;
   prepare_hdf5();
   const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
@@ -42,7 +42,7 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   if (force_) refuse_to_cut_locked(partial_path_);
   const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
-  if (file_.get() < 0) throw SystemError(partial_path_, "cannot be made", hdf5_reason());
+  if (file_.get() < 0) throw system::SystemError(partial_path_, "cannot be made", hdf5_reason());
 }
 
 OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
@@ -71,12 +71,12 @@ OutputFile OutputFile::reopened(std::string path) {
     if (errno == EEXIST) {
       throw InputError({partial}, "is there as well, of another run; use --force to overwrite");
     }
-    throw SystemError(path, "cannot be renamed", system_reason());
+    throw system::SystemError(path, "cannot be renamed", system_reason());
   }
   if (::unlink(path.c_str()) != 0) {
     const std::string reason = system_reason();
     ::unlink(partial.c_str());
-    throw SystemError(path, "cannot be renamed", reason);
+    throw system::SystemError(path, "cannot be renamed", reason);
   }
   return resumed(std::move(path), false);
 }
@@ -85,7 +85,8 @@ OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
 void OutputFile::remove_unless_committed() {
-  temporary_ = std::make_unique<TemporaryFile>(TemporaryFile::existing(partial_path_));
+  temporary_ =
+      std::make_unique<system::TemporaryFile>(system::TemporaryFile::existing(partial_path_));
 }
 
 Hdf5Group OutputFile::root() {
@@ -98,15 +99,15 @@ void OutputFile::commit() {
   assert(file_.get() >= 0);
   written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), file_.get());
   const herr_t closed = H5Fclose(file_.get());
-  if (closed < 0) throw SystemError(partial_path_, "cannot be written", hdf5_reason());
+  if (closed < 0) throw system::SystemError(partial_path_, "cannot be written", hdf5_reason());
   file_ = Hdf5Handle();
 
   // the data must be on the disk before the name says that they are
   const int descriptor = open(partial_path_.c_str(), O_RDONLY | O_CLOEXEC);
   const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
-  if (!synced) throw SystemError(partial_path_, "cannot be written", system_reason());
+  if (!synced) throw system::SystemError(partial_path_, "cannot be written", system_reason());
   close(descriptor);
-  give_name(partial_path_, path_, existing_of(force_));
+  system::give_name(partial_path_, path_, system::existing_of(force_));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -6,9 +6,11 @@
 
 #include "sim/records/hdf5_group.h"
 
-namespace servomill::sim {
-
+namespace servomill::sim::system {
 class TemporaryFile;
+}  // namespace servomill::sim::system
+
+namespace servomill::sim::records {
 
 /// A file under construction: it is called `path` + ".partial" until `commit()`. Without a commit
 /// that file stays, readable up to the last flush.
@@ -49,8 +51,8 @@ class OutputFile {
   std::string path_;
   std::string partial_path_;
   bool force_;
-  std::unique_ptr<TemporaryFile> temporary_;  // where nothing stays without a commit
-  Hdf5Handle file_;                           // closed before that one is removed
+  std::unique_ptr<system::TemporaryFile> temporary_;  // where nothing stays without a commit
+  Hdf5Handle file_;                                   // closed before that one is removed
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 // A thinned recording is bounded by its size, not by a number of rows; its chunks must reach the
@@ -71,4 +71,4 @@ Series RowKeeper::take() {
   return {series_.signals(), std::move(spool_)};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -12,7 +12,7 @@
 #include "sim/records/series.h"
 #include "sim/records/series_spool.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Storage of the rows of a case until they have been compared.
 struct RowKeeping {
@@ -44,4 +44,4 @@ class RowKeeper {
   std::shared_ptr<SeriesSpool> spool_;  // or there
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/tool_axis.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 constexpr double kShare = 0.97;            // of the limit; the rest is for what the file notes
@@ -225,4 +225,4 @@ void RowThinning::spread() {
   events_per_row_ = 1.0 / longest_;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -9,7 +9,7 @@
 
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// The number of rows before it that a row of a thinned recording stands for, itself included.
 inline constexpr std::string_view kSamples = "samples";
@@ -96,4 +96,4 @@ class RowThinning {
   double events_ = 0.0, events_per_row_ = 0.0;         // that may be kept
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 Series::Series(std::vector<Signal> signals) : signals_(std::move(signals)) {
   for (Signal& channel : signals_) {
@@ -50,4 +50,4 @@ std::optional<std::size_t> Series::column(std::string_view name, char label) con
   return channel->offset + place;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -12,7 +12,7 @@
 
 #include "sim/records/chunk_encoder.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// One dataset: `columns` neighbouring numbers of every row.
 struct Signal {
@@ -94,4 +94,4 @@ class Series {
   mutable std::vector<std::array<Resident, 2>> residents_;  // of each column, the latest first
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -11,7 +11,7 @@
 
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 std::vector<Storage> storage_of_columns(const std::vector<Signal>& signals) {
@@ -34,7 +34,8 @@ int open_without_name(const std::string& folder) {
 ScratchFile::ScratchFile(std::string folder)
     : folder_(std::move(folder)), descriptor_(open_without_name(folder_)) {
   if (descriptor_ < 0) {
-    throw SystemError(folder_, "recorded signals cannot be kept there", std::strerror(errno));
+    throw system::SystemError(folder_, "recorded signals cannot be kept there",
+                              std::strerror(errno));
   }
 }
 
@@ -47,7 +48,8 @@ std::uint64_t ScratchFile::append(std::span<const std::uint8_t> bytes) {
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
-      throw SystemError(folder_, "recorded signals cannot be written", std::strerror(errno));
+      throw system::SystemError(folder_, "recorded signals cannot be written",
+                                std::strerror(errno));
     }
     size_ += static_cast<std::uint64_t>(done);
     bytes = bytes.subspan(static_cast<std::size_t>(done));
@@ -61,7 +63,7 @@ void ScratchFile::read(std::uint64_t place, std::span<std::uint8_t> bytes) const
         ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
-      throw SystemError(folder_, "recorded signals cannot be read", std::strerror(errno));
+      throw system::SystemError(folder_, "recorded signals cannot be read", std::strerror(errno));
     }
     place += static_cast<std::uint64_t>(done);
     bytes = bytes.subspan(static_cast<std::size_t>(done));
@@ -132,4 +134,4 @@ void SeriesSpool::read(std::size_t column, std::size_t page, std::vector<double>
   decoder_.decode(encoded_, format_.chunk_rows, storage_[column], format_.compression, values);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

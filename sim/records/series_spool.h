@@ -11,7 +11,7 @@
 #include "sim/records/chunk_encoder.h"
 #include "sim/records/series.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// A file without a name, which goes with the process however that ends.
 class ScratchFile {
@@ -88,4 +88,4 @@ class SeriesSpool final : public ColumnPages {
   std::size_t pages_ = 0, rows_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 namespace {
 
 // Room for what the library notes about a new chunk; a node of its index is about half of it.
@@ -117,8 +117,9 @@ void SeriesWriter::encode(Neighbours& columns, const std::vector<double>& block,
 
 void SeriesWriter::write_block(const std::vector<double>& block, std::size_t rows) {
   const auto useful = static_cast<unsigned>(1 + rows * width_ / kValuesPerThread);
-  for_each_index(neighbours_.size(), std::min(thread_count(layout_.threads), useful),
-                 [&](std::size_t i) { encode(neighbours_[i], block, rows); });
+  system::for_each_index(neighbours_.size(),
+                         std::min(system::thread_count(layout_.threads), useful),
+                         [&](std::size_t i) { encode(neighbours_[i], block, rows); });
   write_chunks(rows, chunks_);
 }
 
@@ -139,4 +140,4 @@ void SeriesWriter::write_chunks(std::size_t rows,
   group_.flush_file();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -10,7 +10,7 @@
 #include "sim/records/hdf5_group.h"
 #include "sim/system/worker_thread.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Names of the columns: `{"axis_linear", "XYZ", "linear axis"}`; one letter a column.
 struct ColumnLabels {
@@ -107,7 +107,7 @@ class SeriesWriter {
   std::vector<double> filling_, writing_;  // chunk_rows x width
   std::size_t rows_ = 0;                   // in the block that fills
   bool finished_ = false;
-  WorkerThread background_;  // last: its thread uses the others
+  system::WorkerThread background_;  // last: its thread uses the others
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

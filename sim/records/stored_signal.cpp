@@ -10,7 +10,7 @@
 #include "sim/records/chunk_encoder.h"
 #include "sim/records/series_spool.h"
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 struct SignalStore::Parts {
   // Bytes of a chunk, here or in the file.
@@ -104,4 +104,4 @@ double StoredSignal::Reader::next() {
   return values_[at_++];
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// Room that signals share: memory, and behind its limit a file without a name. One encoder, so
 /// not for several threads.
@@ -75,4 +75,4 @@ class StoredSignal {
   std::vector<std::size_t> chunks_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records

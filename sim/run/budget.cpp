@@ -15,14 +15,14 @@
 #include "sim/evaluation/statistic.h"
 #include "sim/preparation/preparation_cache.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 // Reads a signal at the places of a budget, one after the other; constant beyond its ends.
 class AtPlaces {
  public:
   /// @pre the signal has samples
-  AtPlaces(PathSignal signal, const Budget& places)
+  AtPlaces(evaluation::PathSignal signal, const Budget& places)
       : signal_(std::move(signal)), s_(places.s), turned_(places.turned) {
     signal_.next(now_);
     has_ahead_ = signal_.next(ahead_);
@@ -43,13 +43,13 @@ class AtPlaces {
 
  private:
   static double key(double s) { return std::round(s * 1e6); }  // nm: cases differ by rounding
-  static bool is_behind(const PathSample& sample, double s, double turned) {
+  static bool is_behind(const evaluation::PathSample& sample, double s, double turned) {
     return std::pair(key(sample.s), sample.turned) > std::pair(key(s), turned);
   }
 
-  PathSignal signal_;
-  StoredSignal::Reader s_, turned_;
-  PathSample now_, ahead_;
+  evaluation::PathSignal signal_;
+  records::StoredSignal::Reader s_, turned_;
+  evaluation::PathSample now_, ahead_;
   bool has_ahead_ = false;
 };
 
@@ -58,14 +58,14 @@ using Runs = std::map<std::string, std::shared_ptr<const CaseOutput>>;  // by ca
 // The budgets of all quantities, filled run by run.
 class BudgetRun {
  public:
-  BudgetRun(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+  BudgetRun(const model::Scenario& scenario, std::span<const model::QuantitySpec> quantities,
             const BudgetControl& control)
       : scenario_(scenario),
         control_(control),
-        store_(std::make_shared<SignalStore>(control.scratch_folder)) {
+        store_(std::make_shared<records::SignalStore>(control.scratch_folder)) {
     scenario_.quantities.assign(quantities.begin(), quantities.end());
     const Causes all = all_causes();
-    for (const QuantitySpec& quantity : quantities) {
+    for (const model::QuantitySpec& quantity : quantities) {
       Budget budget;
       budget.quantity = quantity;
       for (std::size_t c = 0; c < kCauses; ++c) budget.parts[c].cause = static_cast<Cause>(c);
@@ -110,7 +110,7 @@ class BudgetRun {
   // others are those of `former`.
   Runs run(const Causes& removed, const Causes& already, const Runs& former) {
     Runs out = former;
-    const Scenario changed = without(scenario_, removed, already, present_);
+    const model::Scenario changed = without(scenario_, removed, already, present_);
     if (!changed.cases.empty() && !stopped()) {
       RunControl control;
       control.threads = control_.threads;
@@ -131,21 +131,22 @@ class BudgetRun {
   }
 
   // The residual of a run; none and why in the note of the budget, otherwise.
-  static std::optional<PathSignal> residual(Budget& budget, const Runs& runs, const char* stops) {
-    const QuantitySpec& quantity = budget.quantity;
-    std::vector<CaseData> compared;
+  static std::optional<evaluation::PathSignal> residual(Budget& budget, const Runs& runs,
+                                                        const char* stops) {
+    const model::QuantitySpec& quantity = budget.quantity;
+    std::vector<evaluation::CaseData> compared;
     for (const std::string& name : {quantity.cases.front(), quantity.baseline}) {
       if (name.empty()) continue;
       const CaseOutput& one = *runs.at(name);
-      const Outcome& outcome = one.result.outcome;
+      const engine::Outcome& outcome = one.result.outcome;
       if (!outcome.finished) {
         budget.note = fmt::format("case {} {}: {}", name, stops, outcome.reason);
         return std::nullopt;
       }
       compared.push_back(one.data());
     }
-    const CaseData* base = compared.size() > 1 ? &compared.back() : nullptr;
-    PathSignal found(quantity, compared.front(), base);
+    const evaluation::CaseData* base = compared.size() > 1 ? &compared.back() : nullptr;
+    evaluation::PathSignal found(quantity, compared.front(), base);
     if (found.size() > 0) return found;
     budget.note = "no samples";
     return std::nullopt;
@@ -155,11 +156,11 @@ class BudgetRun {
     auto signal = residual(budget, complete, "stopped");
     if (!signal) return;
     const std::size_t size = signal->size();
-    for (StoredSignal* one : {&budget.s, &budget.turned, &budget.residual.signal}) {
-      *one = StoredSignal(store_, size);
+    for (records::StoredSignal* one : {&budget.s, &budget.turned, &budget.residual.signal}) {
+      *one = records::StoredSignal(store_, size);
     }
-    Statistic rms("rms");
-    PathSample sample;
+    evaluation::Statistic rms("rms");
+    evaluation::PathSample sample;
     for (std::size_t n = 0; signal->next(sample); ++n) {
       budget.s.append(sample.s);
       budget.turned.append(sample.turned);
@@ -200,16 +201,16 @@ class BudgetRun {
   template <class Next>
   void add(Budget& budget, Cause cause, Next next) const {
     BudgetPart& part = budget.parts[static_cast<std::size_t>(cause)];
-    const StoredSignal before = part.signal;
-    StoredSignal::Reader values(before);
+    const records::StoredSignal before = part.signal;
+    records::StoredSignal::Reader values(before);
     fill(budget, part, [&] { return (part.present ? values.next() : 0.0) + next(); });
     part.present = true;
   }
 
   template <class Next>
   void fill(const Budget& budget, BudgetSignal& signal, Next next) const {
-    StoredSignal out(store_, budget.s.size());
-    Statistic rms("rms");
+    records::StoredSignal out(store_, budget.s.size());
+    evaluation::Statistic rms("rms");
     for (std::size_t n = 0; n < budget.s.size(); ++n) {
       const double value = next();
       out.append(value);
@@ -222,7 +223,7 @@ class BudgetRun {
 
   void finish(Budget& budget, const Runs& none) const {
     if (!budget.note.empty()) return;
-    const QuantitySpec& quantity = budget.quantity;
+    const model::QuantitySpec& quantity = budget.quantity;
     const auto rest = rest_of(quantity, *scenario_.find_case(quantity.cases.front()),
                               scenario_.find_case(quantity.baseline));
     if (rest) {
@@ -230,14 +231,14 @@ class BudgetRun {
       if (!left) return;
       add(budget, *rest, [&] { return left->next(); });
     }
-    StoredSignal::Reader residual(budget.residual.signal);
-    std::vector<StoredSignal::Reader> parts;
+    records::StoredSignal::Reader residual(budget.residual.signal);
+    std::vector<records::StoredSignal::Reader> parts;
     for (const BudgetPart& part : budget.parts) {
       if (part.present) parts.emplace_back(part.signal);
     }
     fill(budget, budget.remainder, [&] {
       double left = residual.next();
-      for (StoredSignal::Reader& part : parts) left -= part.next();
+      for (records::StoredSignal::Reader& part : parts) left -= part.next();
       return left;
     });
   }
@@ -245,26 +246,27 @@ class BudgetRun {
   // complete, without measurement, each that adds, all of these, each of the chain
   static constexpr double kRuns = 3.0 + std::size(kAdding) + std::size(kChain);
 
-  Scenario scenario_;
+  model::Scenario scenario_;
   const BudgetControl& control_;
-  PreparationCache cache_;
-  std::shared_ptr<SignalStore> store_;
+  preparation::PreparationCache cache_;
+  std::shared_ptr<records::SignalStore> store_;
   std::map<std::string, Causes> present_;  // by case
   std::vector<Budget> budgets_;
   double runs_ = 0.0;
 };
 
 // The quantities of a scenario, and those of all cases and axes that it has none of.
-std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const std::string> also) {
-  std::vector<QuantitySpec> out = scenario.quantities;
+std::vector<model::QuantitySpec> asked_for(const model::Scenario& scenario,
+                                           std::span<const std::string> also) {
+  std::vector<model::QuantitySpec> out = scenario.quantities;
   const JointLayout& layout = scenario.machine.chain.layout;
   for (const std::string& name : also) {
     assert(is_of_any_case(name));
-    const auto has_name = [&](const QuantitySpec& one) { return one.name == name; };
+    const auto has_name = [&](const model::QuantitySpec& one) { return one.name == name; };
     if (std::any_of(out.begin(), out.end(), has_name)) continue;
-    QuantitySpec one;
+    model::QuantitySpec one;
     one.name = name;
-    for (const CaseSpec& each : scenario.cases) one.cases.push_back(each.name);
+    for (const model::CaseSpec& each : scenario.cases) one.cases.push_back(each.name);
     for (int joint = 0; joint < kLinearJoints; ++joint) {
       if (!layout.has(joint)) continue;
       one.axis = layout.letter_of(joint);
@@ -277,27 +279,27 @@ std::vector<QuantitySpec> asked_for(const Scenario& scenario, std::span<const st
 }  // namespace
 
 bool is_of_any_case(std::string_view quantity) {
-  if (!has_path_signal(quantity)) return false;
-  const QuantityEntry& info = quantity_entry(quantity);
+  if (!evaluation::has_path_signal(quantity)) return false;
+  const evaluation::QuantityEntry& info = evaluation::quantity_entry(quantity);
   return !info.needs_baseline && !info.needs_imposed;
 }
 
-std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
-                                            std::span<const std::string> also,
-                                            const std::vector<std::string>& sections) {
-  std::vector<QuantitySpec> out;
-  for (const QuantitySpec& asked : asked_for(scenario, also)) {
-    QuantitySpec one = asked;
-    const std::string_view derived_from = quantity_entry(one.name).derived_from;
+std::vector<model::QuantitySpec> budget_quantities(const model::Scenario& scenario,
+                                                   std::span<const std::string> also,
+                                                   const std::vector<std::string>& sections) {
+  std::vector<model::QuantitySpec> out;
+  for (const model::QuantitySpec& asked : asked_for(scenario, also)) {
+    model::QuantitySpec one = asked;
+    const std::string_view derived_from = evaluation::quantity_entry(one.name).derived_from;
     if (!derived_from.empty()) one.name = derived_from;
-    if (!has_path_signal(one.name)) continue;
+    if (!evaluation::has_path_signal(one.name)) continue;
     one.statistic = "max";
     one.reference.clear();
     one.basis.clear();
     if (!sections.empty()) one.sections = sections;
     for (const std::string& name : asked.cases) {
       one.cases = {name};
-      const bool known = std::any_of(out.begin(), out.end(), [&](const QuantitySpec& other) {
+      const bool known = std::any_of(out.begin(), out.end(), [&](const model::QuantitySpec& other) {
         return other.name == one.name && other.axis == one.axis && other.baseline == one.baseline &&
                other.sections == one.sections && other.cases == one.cases;
       });
@@ -307,9 +309,10 @@ std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
   return out;
 }
 
-std::vector<Budget> find_budgets(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+std::vector<Budget> find_budgets(const model::Scenario& scenario,
+                                 std::span<const model::QuantitySpec> quantities,
                                  const BudgetControl& control) {
   return BudgetRun(scenario, quantities, control).find();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

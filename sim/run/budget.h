@@ -13,11 +13,11 @@
 #include "sim/run/budget_causes.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// A signal of a budget, um, at all places of it.
 struct BudgetSignal {
-  StoredSignal signal;
+  records::StoredSignal signal;
   double at_place = 0.0;  // signed, where the residual is largest
   double rms = 0.0;       // along the path
 };
@@ -62,9 +62,9 @@ struct BudgetPart : BudgetSignal {
 /// Signals are computed sample by sample, from recordings that may lie on the disk, and kept there
 /// themselves when they are long.
 struct Budget {
-  QuantitySpec quantity;  // of one case; a signal along the path (PathSignal)
-  StoredSignal s;         // mm, of the original path
-  StoredSignal turned;    // as in PathSample
+  model::QuantitySpec quantity;  // of one case; a signal along the path (PathSignal)
+  records::StoredSignal s;       // mm, of the original path
+  records::StoredSignal turned;  // as in PathSample
   BudgetSignal residual;
   std::size_t place = 0;  // index of its largest value
   double place_s = 0.0;   // mm
@@ -85,16 +85,16 @@ bool is_of_any_case(std::string_view quantity);
 /// @param sections  of the program, in place of those of the quantities; none: as they are, and
 ///                  all of it for `also`
 /// @pre is_of_any_case(also)
-std::vector<QuantitySpec> budget_quantities(const Scenario& scenario,
-                                            std::span<const std::string> also = {},
-                                            const std::vector<std::string>& sections = {});
+std::vector<model::QuantitySpec> budget_quantities(const model::Scenario& scenario,
+                                                   std::span<const std::string> also = {},
+                                                   const std::vector<std::string>& sections = {});
 
 struct BudgetControl {
   unsigned threads = 0;  // 0: one a core
-  const StopFlag* stop = nullptr;
+  const engine::StopFlag* stop = nullptr;
   std::function<void(double)> progress;  // share done, 0 to 1
   // what the first run, that of all causes, takes; before it begins
-  std::function<void(const RunEstimate&)> prepared;
+  std::function<void(const preparation::RunEstimate&)> prepared;
   std::string scratch_folder;  // as in RunControl
 };
 
@@ -106,7 +106,8 @@ inline constexpr double kCopiesOfBudget = 5.0;
 /// @param quantities  of one case each, as budget_quantities gives them
 /// @return empty if it was stopped
 /// @throws InputError before anything is simulated
-std::vector<Budget> find_budgets(const Scenario& scenario, std::span<const QuantitySpec> quantities,
+std::vector<Budget> find_budgets(const model::Scenario& scenario,
+                                 std::span<const model::QuantitySpec> quantities,
                                  const BudgetControl& control = {});
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

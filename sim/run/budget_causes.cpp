@@ -9,7 +9,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/run/budget.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr std::array<CauseInfo, kCauses> kInfos = {{
@@ -31,7 +31,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
 constexpr double kFine = 0.01;        // share of tolerances that are taken away
 constexpr double kLeastChord = 1e-9;  // m
 
-MachineSettings& own_machine(const Scenario& scenario, CaseSpec& one) {
+model::MachineSettings& own_machine(const model::Scenario& scenario, model::CaseSpec& one) {
   if (!one.machine) one.machine = scenario.machine;
   return *one.machine;
 }
@@ -45,7 +45,7 @@ bool idealise(const ParameterSpec& spec, Parameters& parameters) {
     parameters.set(spec.name, spec.ideal);
     return true;
   }
-  const ParsedUnit unit = parse_unit(spec.unit);
+  const config::ParsedUnit unit = config::parse_unit(spec.unit);
   const double ideal = std::stod(std::string(spec.ideal)) * (unit.unit ? unit.unit->factor : 1.0);
   if (!parameters.is_word(spec.name) && parameters.number(spec.name) == ideal) return false;
   parameters.set(spec.name, ideal);
@@ -53,9 +53,9 @@ bool idealise(const ParameterSpec& spec, Parameters& parameters) {
 }
 
 // Takes a shortcoming away from all strategies that have it; whether any had.
-bool idealise(CaseSpec& one, Shortcoming shortcoming) {
+bool idealise(model::CaseSpec& one, Shortcoming shortcoming) {
   bool any = false;
-  for (StrategySpec& strategy : one.strategies) {
+  for (model::StrategySpec& strategy : one.strategies) {
     for (const ParameterSpec& spec : strategy.entry->parameters) {
       if (spec.shortcoming != shortcoming || spec.ideal.empty()) continue;
       any |= idealise(spec, strategy.parameters);
@@ -64,12 +64,12 @@ bool idealise(CaseSpec& one, Shortcoming shortcoming) {
   return any;
 }
 
-bool remove_friction(MachineSettings& machine) {
+bool remove_friction(model::MachineSettings& machine) {
   bool any = false;
   for (const int joint : machine.joints()) {
     const auto j = static_cast<std::size_t>(joint);
     plant::FeedDriveParams& drive = machine.drives[j];
-    AxisFunctions& functions = machine.nc.functions[j];
+    model::AxisFunctions& functions = machine.nc.functions[j];
     any |=
         !drive.is_linear() || functions.friction.compensates() || functions.backlash.width != 0.0;
     drive.friction = {};
@@ -81,7 +81,7 @@ bool remove_friction(MachineSettings& machine) {
   return any;
 }
 
-bool remove_measurement(MachineSettings& machine) {
+bool remove_measurement(model::MachineSettings& machine) {
   bool any = false;
   for (const int joint : machine.joints()) {
     const auto j = static_cast<std::size_t>(joint);
@@ -96,10 +96,10 @@ bool remove_measurement(MachineSettings& machine) {
   return any;
 }
 
-bool remove_delay(Scenario& scenario, CaseSpec& one) {
+bool remove_delay(model::Scenario& scenario, model::CaseSpec& one) {
   constexpr Tick kNone = 0, kLeast = 1;
   const bool needs_hardware = one.needs_feedback_hardware();
-  MachineSettings& machine = own_machine(scenario, one);
+  model::MachineSettings& machine = own_machine(scenario, one);
   bool any = machine.scale_delay != kNone ||
              (one.feedback_hardware && scenario.hardware.signal_delay != kNone) ||
              (needs_hardware && scenario.hardware.model_period != kLeast);
@@ -108,21 +108,22 @@ bool remove_delay(Scenario& scenario, CaseSpec& one) {
   return any;
 }
 
-const std::string& machine_errors_of(const Scenario& scenario, const CaseSpec& one) {
+const std::string& machine_errors_of(const model::Scenario& scenario, const model::CaseSpec& one) {
   return one.machine_errors ? *one.machine_errors : scenario.machine_errors;
 }
 
 // True if strategies of a case know errors, to correct or to generate them.
-bool has_strategy(const CaseSpec& one, strategies::Action action) {
-  return std::any_of(one.strategies.begin(), one.strategies.end(), [&](const StrategySpec& spec) {
-    return spec.entry->reads_errors && spec.action == action;
-  });
+bool has_strategy(const model::CaseSpec& one, strategies::Action action) {
+  return std::any_of(one.strategies.begin(), one.strategies.end(),
+                     [&](const model::StrategySpec& spec) {
+                       return spec.entry->reads_errors && spec.action == action;
+                     });
 }
 
-bool remove_identification(const Scenario& scenario, CaseSpec& one) {
+bool remove_identification(const model::Scenario& scenario, model::CaseSpec& one) {
   bool any = idealise(one, Shortcoming::identification);
   const std::string& machine_errors = machine_errors_of(scenario, one);
-  for (StrategySpec& strategy : one.strategies) {
+  for (model::StrategySpec& strategy : one.strategies) {
     if (!strategy.entry->reads_errors) continue;
     const bool removes_machine_errors =
         strategy.action == strategies::Action::compensate && !machine_errors.empty();
@@ -134,21 +135,21 @@ bool remove_identification(const Scenario& scenario, CaseSpec& one) {
   return any;
 }
 
-bool remove_uncorrected(const Scenario& scenario, CaseSpec& one) {
+bool remove_uncorrected(const model::Scenario& scenario, model::CaseSpec& one) {
   if (machine_errors_of(scenario, one).empty() || has_strategy(one, strategies::Action::compensate))
     return false;
   one.machine_errors = "";
   return true;
 }
 
-bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
-  NcSettings& nc = own_machine(scenario, one).nc;
+bool remove_interpolation(const model::Scenario& scenario, model::CaseSpec& one) {
+  model::NcSettings& nc = own_machine(scenario, one).nc;
   nc.path_tolerance *= kFine;
   nc.rotary_tolerance *= kFine;
   nc.tolerance_share *= kFine;
   nc.filter = {};
   nc.block_time = 0.0;
-  for (StrategySpec& strategy : one.strategies) {
+  for (model::StrategySpec& strategy : one.strategies) {
     for (const ParameterSpec& spec : strategy.entry->parameters) {
       if (spec.shortcoming != Shortcoming::chord_tolerance) continue;
       Parameters& p = strategy.parameters;
@@ -159,11 +160,11 @@ bool remove_interpolation(const Scenario& scenario, CaseSpec& one) {
 }
 
 // Takes a cause away from a case, but for what is the scenario's; whether it had it.
-bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
+bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
   switch (cause) {
     case Cause::lag: {
-      const bool had = one.servo != ServoModel::ideal;
-      one.servo = ServoModel::ideal;
+      const bool had = one.servo != model::ServoModel::ideal;
+      one.servo = model::ServoModel::ideal;
       return had;
     }
     case Cause::table:
@@ -194,11 +195,12 @@ bool remove(Cause cause, Scenario& scenario, CaseSpec& one) {
 }
 
 // True if strategies of a case move the tool off the programmed path on purpose.
-bool moves_on_purpose(const CaseSpec& one) {
+bool moves_on_purpose(const model::CaseSpec& one) {
   return has_strategy(one, strategies::Action::impose) ||
-         std::any_of(one.strategies.begin(), one.strategies.end(), [](const StrategySpec& spec) {
-           return !spec.entry->reads_errors && spec.entry->acts;
-         });
+         std::any_of(one.strategies.begin(), one.strategies.end(),
+                     [](const model::StrategySpec& spec) {
+                       return !spec.entry->reads_errors && spec.entry->acts;
+                     });
 }
 
 }  // namespace
@@ -212,14 +214,14 @@ Causes all_causes() {
   return out;
 }
 
-std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
-                             const CaseSpec* base) {
-  const QuantityEntry& entry = quantity_entry(quantity.name);
+std::optional<Cause> rest_of(const model::QuantitySpec& quantity, const model::CaseSpec& one,
+                             const model::CaseSpec* base) {
+  const evaluation::QuantityEntry& entry = evaluation::quantity_entry(quantity.name);
   if (entry.is_of_servo) return std::nullopt;
   const auto any = [&](auto fact) { return fact(one) || (base != nullptr && fact(*base)); };
   const bool takes_imposed_off = entry.needs_imposed;
   if (any(moves_on_purpose) && !takes_imposed_off) return Cause::imposed;
-  const bool knows_errors = any([](const CaseSpec& spec) {
+  const bool knows_errors = any([](const model::CaseSpec& spec) {
     return has_strategy(spec, strategies::Action::impose) ||
            has_strategy(spec, strategies::Action::compensate);
   });
@@ -228,32 +230,32 @@ std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
   return std::nullopt;
 }
 
-Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one) {
+Causes present(const Causes& causes, const model::Scenario& scenario, const model::CaseSpec& one) {
   Causes out;
   for (const Cause cause : causes) {
-    Scenario trial = scenario;
-    CaseSpec spec = one;
+    model::Scenario trial = scenario;
+    model::CaseSpec spec = one;
     if (remove(cause, trial, spec)) out.insert(cause);
   }
-  if (one.servo == ServoModel::ideal) {
+  if (one.servo == model::ServoModel::ideal) {
     for (const Cause cause : {Cause::friction, Cause::measurement}) out.erase(cause);
   }
   return out;
 }
 
-Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
-                 const std::map<std::string, Causes>& present_in) {
-  Scenario out = scenario;
+model::Scenario without(const model::Scenario& scenario, const Causes& removed,
+                        const Causes& already, const std::map<std::string, Causes>& present_in) {
+  model::Scenario out = scenario;
   if (!removed.empty()) {  // the first run has checked them; signals along the path need no part
     out.quantities.clear();
     out.probes.clear();
     out.part.reset();
   }
   out.cases.clear();
-  for (const CaseSpec& one : scenario.cases) {
+  for (const model::CaseSpec& one : scenario.cases) {
     const auto found = present_in.find(one.name);
     if (found == present_in.end()) continue;  // nobody asks for it
-    CaseSpec changed = one;
+    model::CaseSpec changed = one;
     bool any = removed.empty();
     for (const Cause cause : removed) {
       if (!found->second.contains(cause)) continue;
@@ -269,4 +271,4 @@ Scenario without(const Scenario& scenario, const Causes& removed, const Causes& 
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

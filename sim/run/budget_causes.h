@@ -12,7 +12,7 @@
 
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// Causes of a residual. Taking a cause away (of the case and of the case that it is
 /// compared with) means:
@@ -55,16 +55,16 @@ inline constexpr std::array kAdding = {
 Causes all_causes();
 
 /// Causes that are present in a case. An ideal servo has none of the loops.
-Causes present(const Causes& causes, const Scenario& scenario, const CaseSpec& one);
+Causes present(const Causes& causes, const model::Scenario& scenario, const model::CaseSpec& one);
 
 /// Cause that remains without all others; none if it begins behind the strategies.
 /// @param base  the case it is compared with, or nullptr
-std::optional<Cause> rest_of(const QuantitySpec& quantity, const CaseSpec& one,
-                             const CaseSpec* base);
+std::optional<Cause> rest_of(const model::QuantitySpec& quantity, const model::CaseSpec& one,
+                             const model::CaseSpec* base);
 
 /// The cases that have a cause to be removed that another run has not removed already, without it.
 /// @param present_in  by case; others are left out
-Scenario without(const Scenario& scenario, const Causes& removed, const Causes& already,
-                 const std::map<std::string, Causes>& present_in);
+model::Scenario without(const model::Scenario& scenario, const Causes& removed,
+                        const Causes& already, const std::map<std::string, Causes>& present_in);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -4,13 +4,14 @@
 
 #include "sim/run/store.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
-Hdf5Dataset write(Hdf5Group& group, const std::string& name, const StoredSignal& signal,
-                  const Meaning& meaning) {
-  Hdf5Dataset data = group.extendible(name, 1, false, signal.chunk_rows(), Storage::float64,
-                                      SignalStore::kCompression, meaning);
+records::Hdf5Dataset write(records::Hdf5Group& group, const std::string& name,
+                           const records::StoredSignal& signal, const records::Meaning& meaning) {
+  records::Hdf5Dataset data =
+      group.extendible(name, 1, false, signal.chunk_rows(), records::Storage::float64,
+                       records::SignalStore::kCompression, meaning);
   for (std::size_t chunk = 0; chunk < signal.chunks(); ++chunk) {
     const std::vector<std::uint8_t> encoded = signal.encoded(chunk);
     data.append(signal.rows_of(chunk), {&encoded, 1});
@@ -18,9 +19,9 @@ Hdf5Dataset write(Hdf5Group& group, const std::string& name, const StoredSignal&
   return data;
 }
 
-void write(Hdf5Group& group, const std::string& name, const BudgetSignal& signal,
-           const std::string& help, Hdf5Dataset& s) {
-  Hdf5Dataset data = write(group, name, signal.signal, {"um", help});
+void write(records::Hdf5Group& group, const std::string& name, const BudgetSignal& signal,
+           const std::string& help, records::Hdf5Dataset& s) {
+  records::Hdf5Dataset data = write(group, name, signal.signal, {"um", help});
   data.attach_scale(s, 0);
   data.attribute("at_place", signal.at_place);
   data.attribute("rms", signal.rms);
@@ -28,16 +29,16 @@ void write(Hdf5Group& group, const std::string& name, const BudgetSignal& signal
 
 }  // namespace
 
-BudgetStore::BudgetStore(const std::string& path, bool force, const Scenario& scenario)
+BudgetStore::BudgetStore(const std::string& path, bool force, const model::Scenario& scenario)
     : file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
-  Hdf5Group root = file_.root();
+  records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "budget");
 }
 
 void BudgetStore::add(const Budget& budget) {
-  Hdf5Group group = file_.root().group(fmt::format("budget/{:03}", count_++));
-  const QuantitySpec& quantity = budget.quantity;
+  records::Hdf5Group group = file_.root().group(fmt::format("budget/{:03}", count_++));
+  const model::QuantitySpec& quantity = budget.quantity;
   group.attribute("case", quantity.cases.front());
   group.attribute("quantity", quantity.name);
   group.attribute("axis", std::string(1, quantity.axis));
@@ -46,7 +47,7 @@ void BudgetStore::add(const Budget& budget) {
   group.attribute("note", budget.note);
   if (!budget.note.empty()) return;
   group.attribute("place", budget.place_s);
-  Hdf5Dataset s =
+  records::Hdf5Dataset s =
       write(group, "s", budget.s, {"mm", "arc length on the path of the original program"});
   s.make_scale("s");
   write(group, "residual", budget.residual, "residual", s);
@@ -58,4 +59,4 @@ void BudgetStore::add(const Budget& budget) {
   write(group, "remainder", budget.remainder, "residual minus all parts", s);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

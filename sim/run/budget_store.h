@@ -7,7 +7,7 @@
 #include "sim/records/output_file.h"
 #include "sim/run/budget.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// A file of the kind "budget": /budget/NNN with s, residual, remainder and one signal for each
 /// cause that the case has; attributes case, quantity, axis, sections, base, place, and of each
@@ -15,13 +15,13 @@ namespace servomill::sim {
 /// @throws InputError if the file cannot be had under that name, SystemError
 class BudgetStore {
  public:
-  BudgetStore(const std::string& path, bool force, const Scenario& scenario);
+  BudgetStore(const std::string& path, bool force, const model::Scenario& scenario);
   void add(const Budget& budget);
   void commit() { file_.commit(); }
 
  private:
-  OutputFile file_;
+  records::OutputFile file_;
   std::size_t count_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// "0.1.0+3f9a2c41d07b": version and a checksum of all sources that results depend on (rooms plant,
 /// controllers, strategies, sim). Two builds that share it give the same bits on the same
@@ -15,4 +15,4 @@ std::string_view build_identity();
 /// are loaded (strategies/plugin_file.h).
 std::string result_identity();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -13,13 +13,13 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/residual_errors.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 // Nominal points this far from the mesh are reported: its facets stand in for curved faces.
 constexpr double kFacets = 1e-6;  // m
 
-const plant::MachineChain& chain_of(const PreparedParts& one) {
+const plant::MachineChain& chain_of(const preparation::PreparedParts& one) {
   return one.scenario.machine_of(one.spec).chain;
 }
 
@@ -28,7 +28,7 @@ std::string note_of(const Fault& warning) {
 }
 
 // The strategy of a case that displaces its feedback.
-std::string_view displacing_strategy(const PreparedParts& one) {
+std::string_view displacing_strategy(const preparation::PreparedParts& one) {
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {
     if (one.strategies[k]->displaces_feedback()) return one.spec.strategies[k].entry->name;
   }
@@ -41,7 +41,7 @@ std::string quoted_cases(const std::vector<std::string>& names) {
 }
 
 // The largest feed along the path (m/s) with its override; 0: the program feeds no linear axis.
-double largest_feed(const PreparedParts& one) {
+double largest_feed(const preparation::PreparedParts& one) {
   double largest = 0.0;
   for (const Move& move : one.program.moves) {
     const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
@@ -52,10 +52,10 @@ double largest_feed(const PreparedParts& one) {
 }
 
 // Cases that the feedback hardware delays beside others that it does not.
-std::optional<std::string> uneven_hardware(const PreparedParts& noted) {
+std::optional<std::string> uneven_hardware(const preparation::PreparedParts& noted) {
   std::vector<std::string> with, without;
   double delay = 0.0;
-  for (const CaseSpec& one : noted.scenario.cases) {
+  for (const model::CaseSpec& one : noted.scenario.cases) {
     const auto its = noted.scenario.signal_delay_of(one);
     if (!its) continue;
     delay = std::max(delay, *its);
@@ -74,7 +74,7 @@ std::optional<std::string> uneven_hardware(const PreparedParts& noted) {
 }
 
 // "part.ngc:12: warning: case one: strategy feedback: virtual displacement of Y saturated ..."
-std::string note_of(const PreparedParts& one, const strategies::Saturation& held) {
+std::string note_of(const preparation::PreparedParts& one, const strategies::Saturation& held) {
   controllers::Trajectory::Cursor cursor{};
   const int line = one.motion.trajectory.at(held.first, cursor).line;
   const bool linear = held.joint < kLinearJoints;
@@ -89,7 +89,7 @@ std::string note_of(const PreparedParts& one, const strategies::Saturation& held
 }
 
 // Probes and stock stay where the work_offset has them, whatever the program does to its zero.
-std::optional<Fault> shifted_program(const PreparedParts& one) {
+std::optional<Fault> shifted_program(const preparation::PreparedParts& one) {
   const std::optional<Move> move = one.program.first_shifted_feed();
   std::vector<std::string_view> unshifted;
   if (!one.scenario.probes.empty()) unshifted.push_back("[[probe]]");
@@ -103,7 +103,7 @@ std::optional<Fault> shifted_program(const PreparedParts& one) {
 
 }  // namespace
 
-std::vector<std::string> notes_of_run(const PreparedParts& one,
+std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
                                       std::span<const strategies::Saturation> held) {
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
@@ -117,7 +117,7 @@ std::vector<std::string> notes_of_run(const PreparedParts& one,
     out.push_back(note_of(
         {{one.scenario.program.file, slowed.line}, to_string(slowed, chain_of(one).layout)}));
   }
-  for (const std::string& value : implausible_values(one.scenario.machine_of(one.spec))) {
+  for (const std::string& value : input::implausible_values(one.scenario.machine_of(one.spec))) {
     out.push_back("warning: " + value);
   }
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
@@ -125,7 +125,7 @@ std::vector<std::string> notes_of_run(const PreparedParts& one,
   return out;
 }
 
-std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one) {
+std::vector<std::string> notes_of_uncorrectable(const preparation::PreparedParts& one) {
   const plant::InverseKinematics inverse(chain_of(one));
   std::vector<std::string> out;
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {
@@ -151,7 +151,7 @@ std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one) {
   return out;
 }
 
-std::vector<std::string> notes_of_left_tables(const PreparedParts& one) {
+std::vector<std::string> notes_of_left_tables(const preparation::PreparedParts& one) {
   const JointLayout& layout = chain_of(one).layout;
   std::vector<std::string> out;
   for (std::size_t k = 0; k < one.strategies.size(); ++k) {
@@ -167,11 +167,13 @@ std::vector<std::string> notes_of_left_tables(const PreparedParts& one) {
   return out;
 }
 
-std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
-                                      double distance, std::span<const ProbedFeature> probes,
-                                      std::vector<std::string>& notes) {
-  auto found = fit_part(probes, *part.mesh);
-  if (const NoFit* none = std::get_if<NoFit>(&found)) {
+std::optional<evaluation::PartFit> lay_on_nominal(const std::string& case_name,
+                                                  const evaluation::NominalPart& part,
+                                                  double distance,
+                                                  std::span<const evaluation::ProbedFeature> probes,
+                                                  std::vector<std::string>& notes) {
+  auto found = evaluation::fit_part(probes, *part.mesh);
+  if (const metrology::NoFit* none = std::get_if<metrology::NoFit>(&found)) {
     notes.push_back(
         fmt::format("warning: case {}: best fit to '{}': {}", case_name, part.file, none->why));
     return std::nullopt;
@@ -182,7 +184,7 @@ std::optional<PartFit> lay_on_nominal(const std::string& case_name, const Nomina
         "(facets in place of curved faces, or another part); distances after best fit hold that",
         case_name, distance / um, part.file));
   }
-  return std::get<PartFit>(std::move(found));
+  return std::get<evaluation::PartFit>(std::move(found));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -12,25 +12,27 @@
 #include "sim/preparation/prepared_case.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// Notes on what the NC corrected or could not do as programmed.
 /// @param held  displacements that strategies could not make in full
-std::vector<std::string> notes_of_run(const PreparedParts& one,
+std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
                                       std::span<const strategies::Saturation> held);
 
 /// Errors that the strategies of this case cannot correct, one line for each
 /// (sim/run/residual_errors.h).
-std::vector<std::string> notes_of_uncorrectable(const PreparedParts& one);
+std::vector<std::string> notes_of_uncorrectable(const preparation::PreparedParts& one);
 
 /// Places at which the program leaves the points of compensation tables, one line for each end.
-std::vector<std::string> notes_of_left_tables(const PreparedParts& one);
+std::vector<std::string> notes_of_left_tables(const preparation::PreparedParts& one);
 
 /// Lays what was probed on the nominal part.
 /// @param distance  largest_distance of the plan
 /// @param notes  takes why that cannot be done, or how uncertain it is
-std::optional<PartFit> lay_on_nominal(const std::string& case_name, const NominalPart& part,
-                                      double distance, std::span<const ProbedFeature> probes,
-                                      std::vector<std::string>& notes);
+std::optional<evaluation::PartFit> lay_on_nominal(const std::string& case_name,
+                                                  const evaluation::NominalPart& part,
+                                                  double distance,
+                                                  std::span<const evaluation::ProbedFeature> probes,
+                                                  std::vector<std::string>& notes);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

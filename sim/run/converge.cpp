@@ -13,7 +13,7 @@
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr std::array<RefinementInfo, kRefinements> kInfos = {{
@@ -35,11 +35,11 @@ bool is_of_blocks(const ParameterSpec& spec) {
 }
 
 // Names of the parameters of blocks that have not their defaults.
-std::vector<std::string_view> set_for_blocks(const StrategySpec& strategy) {
+std::vector<std::string_view> set_for_blocks(const model::StrategySpec& strategy) {
   std::vector<std::string_view> out;
   for (const ParameterSpec& spec : strategy.entry->parameters) {
     if (!is_of_blocks(spec)) continue;
-    const ParsedUnit unit = parse_unit(spec.unit);
+    const config::ParsedUnit unit = config::parse_unit(spec.unit);
     const double by_default =
         std::stod(std::string(spec.default_text)) * (unit.unit ? unit.unit->factor : 1.0);
     const double value = strategy.parameters.number(spec.name);
@@ -50,7 +50,7 @@ std::vector<std::string_view> set_for_blocks(const StrategySpec& strategy) {
 
 // Lengths and tolerances of the blocks that strategies write, where none of them is an input: a
 // finer tolerance would shorten blocks of an identified length, too.
-std::vector<std::string> halved_blocks(const Scenario& scenario) {
+std::vector<std::string> halved_blocks(const model::Scenario& scenario) {
   std::vector<std::string> out;
   for (std::size_t c = 0; c < scenario.cases.size(); ++c) {
     const auto& strategies = scenario.cases[c].strategies;
@@ -60,8 +60,8 @@ std::vector<std::string> halved_blocks(const Scenario& scenario) {
         if (!is_of_blocks(spec)) continue;
         const bool is_length = spec.shortcoming == Shortcoming::block_length;
         const double share = is_length ? 0.5 : 0.25;
-        const ParsedUnit unit = parse_unit(spec.unit);
-        const bool is_angle = unit.unit && unit.unit->quantity == kAngle;
+        const config::ParsedUnit unit = config::parse_unit(spec.unit);
+        const bool is_angle = unit.unit && unit.unit->quantity == config::kAngle;
         out.push_back(assignment(fmt::format("case[{}].strategy[{}].{}", c, k, spec.name),
                                  share * strategies[k].parameters.number(spec.name),
                                  is_angle ? "rad" : "m"));
@@ -72,15 +72,15 @@ std::vector<std::string> halved_blocks(const Scenario& scenario) {
 }
 
 // The tolerance, where any drive is solved for and not propagated.
-std::vector<std::string> halved_solver(const Scenario& scenario) {
-  const auto solves = [](const MachineSettings& machine) {
+std::vector<std::string> halved_solver(const model::Scenario& scenario) {
+  const auto solves = [](const model::MachineSettings& machine) {
     return std::any_of(machine.drives.begin(), machine.drives.end(), [&](const auto& drive) {
-      return machine.integrator == Integrator::cvode || !drive.is_linear();
+      return machine.integrator == model::Integrator::cvode || !drive.is_linear();
     });
   };
   const bool any =
-      std::any_of(scenario.cases.begin(), scenario.cases.end(), [&](const CaseSpec& one) {
-        return one.servo != ServoModel::ideal && solves(scenario.machine_of(one));
+      std::any_of(scenario.cases.begin(), scenario.cases.end(), [&](const model::CaseSpec& one) {
+        return one.servo != model::ServoModel::ideal && solves(scenario.machine_of(one));
       });
   if (!any) return {};
   const double tolerance = scenario.machine.drives.front().solver_tolerance;
@@ -89,11 +89,11 @@ std::vector<std::string> halved_solver(const Scenario& scenario) {
 
 // The scenario with a step halved, or why it cannot be.
 struct Halved {
-  std::optional<Scenario> scenario;
+  std::optional<model::Scenario> scenario;
   std::string why_not;
 };
 
-Halved halve(const ScenarioSource& source, const std::vector<std::string>& changes) {
+Halved halve(const input::ScenarioSource& source, const std::vector<std::string>& changes) {
   try {
     Halved out{source.at(changes), ""};
     check_scenario(*out.scenario);
@@ -114,12 +114,12 @@ std::string number(double value) {
 // from the residual, which is evaluated with it.
 constexpr std::string_view kForShares = "for shares";  // kind of a quantity that is not printed
 
-void add_residuals_of_shares(Scenario& scenario) {
-  const std::vector<QuantitySpec> given = scenario.quantities;
-  for (const QuantitySpec& spec : given) {
-    const QuantityEntry& share = quantity_entry(spec.name);
+void add_residuals_of_shares(model::Scenario& scenario) {
+  const std::vector<model::QuantitySpec> given = scenario.quantities;
+  for (const model::QuantitySpec& spec : given) {
+    const evaluation::QuantityEntry& share = evaluation::quantity_entry(spec.name);
     if (share.derived_from.empty() || share.unit != "%") continue;
-    QuantitySpec& residual = scenario.quantities.emplace_back(spec);
+    model::QuantitySpec& residual = scenario.quantities.emplace_back(spec);
     residual.name = share.derived_from;
     residual.statistic = "max";
     residual.basis = kForShares;
@@ -127,10 +127,10 @@ void add_residuals_of_shares(Scenario& scenario) {
 }
 
 // Resolution in % of a share, in the order of comparison rows: r / (residual / (1 - share)).
-double resolution_of_share(const Scenario& scenario, const ComparisonRow& share,
-                           std::span<const ComparisonRow> rows) {
+double resolution_of_share(const model::Scenario& scenario, const evaluation::ComparisonRow& share,
+                           std::span<const evaluation::ComparisonRow> rows) {
   constexpr double kPercent = 100.0;
-  for (const ComparisonRow& residual : rows) {
+  for (const evaluation::ComparisonRow& residual : rows) {
     if (residual.basis != kForShares || residual.case_name != share.case_name ||
         residual.axis != share.axis || residual.sections != share.sections) {
       continue;
@@ -181,14 +181,14 @@ std::string ConvergedRow::stable() const {
   return fmt::format("{:.0f}", std::round(row.value / unit) * unit);
 }
 
-double resolution_of(const Scenario& scenario, const ComparisonRow& row) {
+double resolution_of(const model::Scenario& scenario, const evaluation::ComparisonRow& row) {
   const bool is_linear = row.unit == "um";
   if (!is_linear && row.unit != "urad") return 0.0;
   const double unit = is_linear ? um : urad;
   double largest = scenario.record.format.resolution;  // angles are rounded as seen from 1 m
-  for (const CaseSpec& one : scenario.cases) {
-    if (one.name != row.case_name || one.servo == ServoModel::ideal) continue;
-    const MachineSettings& machine = scenario.machine_of(one);
+  for (const model::CaseSpec& one : scenario.cases) {
+    if (one.name != row.case_name || one.servo == model::ServoModel::ideal) continue;
+    const model::MachineSettings& machine = scenario.machine_of(one);
     const auto joints = machine.joints();
     const auto is_named = [&](int j) {
       return row.axis == std::string(1, machine.chain.layout.letter_of(j));
@@ -202,10 +202,10 @@ double resolution_of(const Scenario& scenario, const ComparisonRow& row) {
   return largest / unit;
 }
 
-std::vector<std::string> blocks_as_inputs(const Scenario& scenario) {
+std::vector<std::string> blocks_as_inputs(const model::Scenario& scenario) {
   std::vector<std::string> out;
-  for (const CaseSpec& one : scenario.cases) {
-    for (const StrategySpec& strategy : one.strategies) {
+  for (const model::CaseSpec& one : scenario.cases) {
+    for (const model::StrategySpec& strategy : one.strategies) {
       const auto set = set_for_blocks(strategy);
       if (set.empty()) continue;
       out.push_back(fmt::format("case {}: strategy {}: {}", one.name, strategy.entry->name,
@@ -215,8 +215,8 @@ std::vector<std::string> blocks_as_inputs(const Scenario& scenario) {
   return out;
 }
 
-std::vector<std::string> halved(Refinement refinement, const Scenario& scenario) {
-  const LoopPeriods& periods = scenario.machine.nc.periods;
+std::vector<std::string> halved(Refinement refinement, const model::Scenario& scenario) {
+  const model::LoopPeriods& periods = scenario.machine.nc.periods;
   switch (refinement) {
     case Refinement::recording:
       return {assignment("record.period_ms", 0.5 * periods.seconds(scenario.record_period), "s")};
@@ -230,12 +230,12 @@ std::vector<std::string> halved(Refinement refinement, const Scenario& scenario)
   return {};
 }
 
-std::optional<Convergence> find_convergence(const ScenarioSource& source,
+std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
-  Scenario base = source.at();
+  model::Scenario base = source.at();
   add_residuals_of_shares(base);
-  PreparationCache cache;
+  preparation::PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());
   double done = 0.0;
   RunControl run;
@@ -250,11 +250,11 @@ std::optional<Convergence> find_convergence(const ScenarioSource& source,
   Convergence out;
   const RunOutput as_it_is = run_scenario(base, run);
   for (const CaseOutput& one : as_it_is.cases) {
-    const Outcome& outcome = one.result.outcome;
+    const engine::Outcome& outcome = one.result.outcome;
     if (!outcome.finished)
       out.stopped.push_back(fmt::format("case {}: {}", one.name, outcome.reason));
   }
-  for (const ComparisonRow& row : as_it_is.comparison) {
+  for (const evaluation::ComparisonRow& row : as_it_is.comparison) {
     if (row.basis == kForShares) continue;
     const double resolution = row.unit == "%" ? resolution_of_share(base, row, as_it_is.comparison)
                                               : resolution_of(base, row);
@@ -269,7 +269,7 @@ std::optional<Convergence> find_convergence(const ScenarioSource& source,
     if (changes.empty()) continue;  // nothing to halve, nothing changes
     const Halved finer = halve(source, changes);
     out.why_not[index] = finer.why_not;
-    std::vector<ComparisonRow> rows;
+    std::vector<evaluation::ComparisonRow> rows;
     if (finer.scenario) rows = run_scenario(*finer.scenario, run).comparison;
     for (std::size_t n = 0; n < out.rows.size(); ++n) {
       const double before = out.rows[n].row.value;
@@ -286,7 +286,7 @@ std::string format_table(const Convergence& found) {
   for (const RefinementInfo& info : kInfos) lines[0].emplace_back(info.name);
   for (const char* heading : {"digits", "stable", "unit"}) lines[0].emplace_back(heading);
   for (const ConvergedRow& one : found.rows) {
-    const ComparisonRow& row = one.row;
+    const evaluation::ComparisonRow& row = one.row;
     std::vector<std::string>& line = lines.emplace_back();
     line = {row.quantity,  row.axis,
             row.statistic, row.sections,
@@ -296,7 +296,7 @@ std::string format_table(const Convergence& found) {
     line.push_back(one.stable());
     line.push_back(row.unit == "1" ? "" : row.unit);
   }
-  std::string out = text_table(std::move(lines), 4, {5, 6, 7, 8, 9, 10, 11});
+  std::string out = system::text_table(std::move(lines), 4, {5, 6, 7, 8, 9, 10, 11});
   if (std::any_of(found.rows.begin(), found.rows.end(),
                   [](const ConvergedRow& one) { return one.is_limited_by_resolution(); })) {
     out += "r: limited by the resolution of the recording or of the scales, not by a step\n";
@@ -312,11 +312,11 @@ std::string format_table(const Convergence& found) {
 }
 
 std::string to_json(const ConvergedRow& one) {
-  JsonObject changes;
+  system::JsonObject changes;
   for (std::size_t n = 0; n < kRefinements; ++n) changes.number(kInfos[n].name, one.change[n]);
-  const std::string row = to_json(one.row);
+  const std::string row = evaluation::to_json(one.row);
   const int digits = one.digits();
-  const std::string more = JsonObject()
+  const std::string more = system::JsonObject()
                                .raw("changes", changes.line())
                                .number("resolution", one.resolution)
                                .integer("digits", digits)
@@ -326,4 +326,4 @@ std::string to_json(const ConvergedRow& one) {
                      std::string_view(more).substr(1));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

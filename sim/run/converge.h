@@ -15,7 +15,7 @@
 #include "sim/input/scenario_source.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// A step that can be halved.
 enum class Refinement : std::uint8_t {
@@ -34,7 +34,7 @@ const RefinementInfo& info_of(Refinement refinement);
 
 /// One line of the comparison and what becomes of it.
 struct ConvergedRow {
-  ComparisonRow row;                          // of the scenario unchanged
+  evaluation::ComparisonRow row;              // of the scenario unchanged
   std::array<double, kRefinements> change{};  // with the step halved, minus `row`; NaN: not known
   double resolution = 0.0;                    // of what it is computed from, in the unit of `row`
 
@@ -65,7 +65,7 @@ struct Convergence {
 
 struct ConvergeControl {
   unsigned threads = 0;  // 0: one a core
-  const StopFlag* stop = nullptr;
+  const engine::StopFlag* stop = nullptr;
   std::function<void(double)> progress;  // share done, 0 to 1
 };
 
@@ -73,19 +73,19 @@ struct ConvergeControl {
 /// find_convergence has it) of what a row is computed from: the larger
 /// of the rounding of recorded values and, if the case has servo loops, the measuring step of its
 /// scales, of one axis or the largest of its kind.
-double resolution_of(const Scenario& scenario, const ComparisonRow& row);
+double resolution_of(const model::Scenario& scenario, const evaluation::ComparisonRow& row);
 
 /// Lengths and tolerances of blocks to which the scenario gives other values than the defaults,
 /// such as one that is identified: they are inputs, not steps of the computation.
-std::vector<std::string> blocks_as_inputs(const Scenario& scenario);
+std::vector<std::string> blocks_as_inputs(const model::Scenario& scenario);
 
 /// The keys of a scenario, as --set takes them, that halve one of its steps; empty: it has none.
-std::vector<std::string> halved(Refinement refinement, const Scenario& scenario);
+std::vector<std::string> halved(Refinement refinement, const model::Scenario& scenario);
 
 /// Runs a scenario unchanged and once with each of these steps halved.
 /// @return nullopt if it was stopped
 /// @throws InputError before anything is simulated
-std::optional<Convergence> find_convergence(const ScenarioSource& source,
+std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control = {});
 
@@ -96,4 +96,4 @@ std::string format_table(const Convergence& found);
 /// digits and stable (null without digits).
 std::string to_json(const ConvergedRow& row);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -14,7 +14,7 @@
 #include "sim/run/result_stream.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{20};  // an interrupt waits for it, too
@@ -25,59 +25,61 @@ std::shared_ptr<std::atomic<float>> in_shared_memory() {
   void* const place =
       ::mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (place == MAP_FAILED) {
-    throw SystemError("--isolate", "no memory to share", std::strerror(errno));
+    throw system::SystemError("--isolate", "no memory to share", std::strerror(errno));
   }
   return {new (place) Progress(0.0F), [](Progress* one) { ::munmap(one, sizeof(Progress)); }};
 }
 
 // The plug-ins of a case: "strategy ramp (libramp.so)".
-std::string plugins_of(const CaseSpec& spec) {
+std::string plugins_of(const model::CaseSpec& spec) {
   std::vector<std::string_view> out;
-  for (const StrategySpec& strategy : spec.strategies) {
+  for (const model::StrategySpec& strategy : spec.strategies) {
     if (!strategy.entry->plugin.empty()) out.push_back(strategy.entry->plugin);
   }
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
 // In the child.
-strategies::PluginChild::Result simulated(const PreparedCase& prepared, const std::string& folder,
-                                          std::atomic<float>& progress) {
-  static const StopFlag kNever = false;
-  CaseInputs inputs = prepared.inputs(folder);
-  const auto result = std::make_shared<CaseResult>(sim::simulate(inputs, kNever, progress));
+strategies::PluginChild::Result simulated(const preparation::PreparedCase& prepared,
+                                          const std::string& folder, std::atomic<float>& progress) {
+  static const engine::StopFlag kNever = false;
+  engine::CaseInputs inputs = prepared.inputs(folder);
+  const auto result =
+      std::make_shared<engine::CaseResult>(sim::engine::simulate(inputs, kNever, progress));
   return [result](strategies::ProcessPipe& to) { write_result(*result, to); };
 }
 
 }  // namespace
 
-bool uses_plugin(const CaseSpec& spec) {
+bool uses_plugin(const model::CaseSpec& spec) {
   return std::any_of(spec.strategies.begin(), spec.strategies.end(),
-                     [](const StrategySpec& one) { return !one.entry->plugin.empty(); });
+                     [](const model::StrategySpec& one) { return !one.entry->plugin.empty(); });
 }
 
-IsolatedCase::IsolatedCase(const PreparedCase& prepared, std::string scratch_folder)
+IsolatedCase::IsolatedCase(const preparation::PreparedCase& prepared, std::string scratch_folder)
     : prepared_(prepared),
       scratch_folder_(std::move(scratch_folder)),
       progress_(in_shared_memory()),
       child_(plugins_of(prepared.spec()),
              [this] { return simulated(prepared_, scratch_folder_, *progress_); }) {}
 
-CaseResult IsolatedCase::simulate(const StopFlag& stop, std::atomic<float>& progress) {
+engine::CaseResult IsolatedCase::simulate(const engine::StopFlag& stop,
+                                          std::atomic<float>& progress) {
   const auto begin = std::chrono::steady_clock::now();
   child_.begin();
-  CaseResult result = wait(stop, progress);
+  engine::CaseResult result = wait(stop, progress);
   result.wall_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 
-CaseResult IsolatedCase::wait(const StopFlag& stop, std::atomic<float>& progress) {
+engine::CaseResult IsolatedCase::wait(const engine::StopFlag& stop, std::atomic<float>& progress) {
   try {
     while (!child_.wait(kLookPeriod)) {
       progress = progress_->load();
       if (!stop) continue;
-      CaseResult result = stopped("interrupted");
-      result.outcome = interrupted(0.0);
+      engine::CaseResult result = stopped("interrupted");
+      result.outcome = engine::interrupted(0.0);
       return result;
     }
     return read_result(child_, prepared_.inputs(scratch_folder_).keeping);
@@ -87,15 +89,15 @@ CaseResult IsolatedCase::wait(const StopFlag& stop, std::atomic<float>& progress
 }
 
 // The result of a case that stops where it begins.
-CaseResult IsolatedCase::stopped(std::string why) const {
-  static const StopFlag kNever = false;
+engine::CaseResult IsolatedCase::stopped(std::string why) const {
+  static const engine::StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
-  CaseInputs inputs = prepared_.inputs(scratch_folder_);
+  engine::CaseInputs inputs = prepared_.inputs(scratch_folder_);
   inputs.setpoints.clear();
   inputs.feedback = nullptr;
   inputs.position_loop_terms.clear();
   inputs.stops_with = std::move(why);
-  return sim::simulate(inputs, kNever, progress);
+  return sim::engine::simulate(inputs, kNever, progress);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -9,10 +9,10 @@
 #include "sim/preparation/prepared_case.h"
 #include "strategies/plugin_child.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// True if a strategy of the case comes from a shared library.
-bool uses_plugin(const CaseSpec& spec);
+bool uses_plugin(const model::CaseSpec& spec);
 
 /// A child process that waits until its case is to be simulated. The result is that of simulate(),
 /// bit for bit. Where a plug-in crashes, calls exit() or does not return, the case has stopped for
@@ -21,21 +21,21 @@ class IsolatedCase {
  public:
   /// @param prepared        must outlive this; uses_plugin() holds
   /// @param scratch_folder  of recordings that are long; empty: that of temporary files
-  IsolatedCase(const PreparedCase& prepared, std::string scratch_folder);
+  IsolatedCase(const preparation::PreparedCase& prepared, std::string scratch_folder);
 
   /// Simulates, on any thread; once.
-  CaseResult simulate(const StopFlag& stop, std::atomic<float>& progress);
+  engine::CaseResult simulate(const engine::StopFlag& stop, std::atomic<float>& progress);
 
  private:
   using Progress = std::atomic<float>;  // in memory of both processes
 
-  CaseResult wait(const StopFlag& stop, std::atomic<float>& progress);
-  CaseResult stopped(std::string why) const;
+  engine::CaseResult wait(const engine::StopFlag& stop, std::atomic<float>& progress);
+  engine::CaseResult stopped(std::string why) const;
 
-  const PreparedCase& prepared_;
+  const preparation::PreparedCase& prepared_;
   std::string scratch_folder_;
   std::shared_ptr<Progress> progress_;
   strategies::PluginChild child_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

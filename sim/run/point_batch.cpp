@@ -13,7 +13,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/system/memory_limit.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr double kRowBytes = 500.0;
@@ -35,10 +35,10 @@ BatchResult failure(std::exception_ptr error) {
 
 // A point with its cases on the way to their results.
 struct Point {
-  const Scenario* scenario;
-  std::vector<PreparedCase> cases;
-  std::vector<std::optional<CaseInputs>> inputs;
-  std::vector<CaseResult> results;
+  const model::Scenario* scenario;
+  std::vector<preparation::PreparedCase> cases;
+  std::vector<std::optional<engine::CaseInputs>> inputs;
+  std::vector<engine::CaseResult> results;
   std::exception_ptr error;
   std::size_t left = 0;      // of the cases, to be run
   bool interrupted = false;  // half a point is none
@@ -53,12 +53,12 @@ struct Point {
   }
 };
 
-Point prepared(const Scenario& scenario, PreparationCache* cache) {
+Point prepared(const model::Scenario& scenario, preparation::PreparationCache* cache) {
   Point point{&scenario, {}, {}, {}, nullptr, 0, false};
   try {
-    point.cases = prepare_cases(scenario, cache);
+    point.cases = preparation::prepare_cases(scenario, cache);
     point.inputs.reserve(point.cases.size());
-    for (const PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
+    for (const preparation::PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
     point.results.resize(point.cases.size());
     point.left = point.cases.size();
   } catch (const Interrupted&) {
@@ -74,7 +74,7 @@ struct Run {
   Point* point;
   std::size_t number;
 
-  CaseInputs& inputs() const { return *point->inputs[number]; }
+  engine::CaseInputs& inputs() const { return *point->inputs[number]; }
 };
 
 // Runs that share lanes, at most eight; point after point, so that runs of one program and feed are
@@ -86,7 +86,8 @@ std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
     for (std::size_t number = 0; !point.error && number < point.inputs.size(); ++number) {
       const Run run{&point, number};
       const auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-        return group.size() < kLaneWidth && share_lanes(group.front().inputs(), run.inputs());
+        return group.size() < kLaneWidth &&
+               engine::share_lanes(group.front().inputs(), run.inputs());
       });
       if (open == groups.end()) {
         groups.push_back({run});
@@ -105,13 +106,13 @@ std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
   return groups;
 }
 
-void simulate_group(std::span<const Run> group, const StopFlag& stop, std::atomic<float>& progress,
-                    PreparationCache* cache) {
-  std::vector<CaseInputs*> together;
+void simulate_group(std::span<const Run> group, const engine::StopFlag& stop,
+                    std::atomic<float>& progress, preparation::PreparationCache* cache) {
+  std::vector<engine::CaseInputs*> together;
   for (const Run& run : group) together.push_back(&run.inputs());
   try {
-    std::vector<CaseResult> results =
-        simulate(together, stop, progress, cache != nullptr ? &cache->drives : nullptr);
+    std::vector<engine::CaseResult> results =
+        engine::simulate(together, stop, progress, cache != nullptr ? &cache->drives : nullptr);
     for (std::size_t k = 0; k < group.size(); ++k) {
       group[k].point->results[group[k].number] = std::move(results[k]);
     }
@@ -135,16 +136,16 @@ BatchResult compared(Point& point, Keep keep) {
   for (std::size_t k = 0; k < point.cases.size(); ++k) {
     outputs.push_back(output_of(point.cases[k], std::move(point.results[k])));
   }
-  std::vector<CaseData> data;
+  std::vector<evaluation::CaseData> data;
   std::vector<std::string> stopped;
   for (const CaseOutput& output : outputs) {
     data.push_back(output.data());
-    const Outcome& outcome = output.result.outcome;
+    const engine::Outcome& outcome = output.result.outcome;
     if (outcome.finished) continue;
     stopped.push_back(fmt::format("case {} stopped: {}", output.name, outcome.reason));
   }
   BatchResult result;
-  result.rows = compare(point.scenario->quantities, data);
+  result.rows = evaluation::compare(point.scenario->quantities, data);
   result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
   result.reason = fmt::format("{}", fmt::join(stopped, "; "));
   if (keep == Keep::series) result.cases = std::move(outputs);
@@ -180,11 +181,12 @@ std::string in_one_line(const InputError& error) {
 }
 
 double rows_at_once(unsigned threads) {
-  return std::min(kMostRows,
-                  kMemoryShare * memory_of_process() / (kRowBytes * static_cast<double>(threads)));
+  return std::min(kMostRows, kMemoryShare * system::memory_of_process() /
+                                 (kRowBytes * static_cast<double>(threads)));
 }
 
-void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+void run_batch(std::span<const model::Scenario> points, const engine::StopFlag& stop,
+               std::atomic<float>& progress,
                const std::function<void(std::vector<EndedPoint>&&)>& ended,
                const BatchControl& control) {
   for (std::size_t next = 0; next < points.size() && !stop;) {
@@ -212,7 +214,7 @@ void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atom
       simulate_group(groups[g], stop, share, control.cache);
       for (const Run& run : groups[g]) {
         --run.point->left;
-        const CaseResult& result = run.point->results[run.number];
+        const engine::CaseResult& result = run.point->results[run.number];
         run.point->interrupted |= result.outcome.interrupted;
       }
       tell_ended();
@@ -224,4 +226,4 @@ void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atom
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -13,7 +13,7 @@
 #include "sim/model/scenario.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// How a point of a sweep ended. The numbers stand in result files.
 enum class PointStatus : std::uint8_t {
@@ -31,9 +31,9 @@ std::string_view name_of(PointStatus status);
 /// Result of one point.
 struct BatchResult {
   PointStatus status = PointStatus::not_run;
-  std::string reason;                  // why it is not `done`, in one line
-  std::vector<ComparisonRow> rows;     // of what ran: `done` or `stopped`
-  std::vector<CaseOutput> cases = {};  // with their signals, where they are kept
+  std::string reason;                           // why it is not `done`, in one line
+  std::vector<evaluation::ComparisonRow> rows;  // of what ran: `done` or `stopped`
+  std::vector<CaseOutput> cases = {};           // with their signals, where they are kept
 };
 
 /// Data to keep of the cases of a batch.
@@ -53,8 +53,9 @@ inline constexpr double kMostRows = 4e6;
 
 struct BatchControl {
   Keep keep = Keep::comparison;
-  PreparationCache* cache = nullptr;  // what preparing points shares, with other batches too
-  double rows = kMostRows;            // that may be held; one point is always run
+  preparation::PreparationCache* cache =
+      nullptr;              // what preparing points shares, with other batches too
+  double rows = kMostRows;  // that may be held; one point is always run
 };
 
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
@@ -63,11 +64,12 @@ struct BatchControl {
 /// @param stop      points that have not ended when it is set are never reported
 /// @param progress  set to the share done of the batch, 0 to 1
 /// @param ended     called on this thread with points as soon as they have ended, each once
-void run_batch(std::span<const Scenario> points, const StopFlag& stop, std::atomic<float>& progress,
+void run_batch(std::span<const model::Scenario> points, const engine::StopFlag& stop,
+               std::atomic<float>& progress,
                const std::function<void(std::vector<EndedPoint>&&)>& ended,
                const BatchControl& control = {});
 
 /// All faults in one line; without their places where these are keys of a sweep.
 std::string in_one_line(const InputError& error);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

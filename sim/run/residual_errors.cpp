@@ -5,14 +5,14 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr double kWay = 5.0 * mm, kTurn = 1.0 * deg;  // between two looks, about
 constexpr double kMostOnALine = 360.0;
 constexpr std::size_t kMost = 4000;  // in all: they shall take no time beside the run
 
-std::size_t looks_of(const ProgramPath::Piece& piece) {
+std::size_t looks_of(const engine::ProgramPath::Piece& piece) {
   if (piece.rapid) return 0;
   const double turn = (piece.end - piece.begin).tail<3>().cwiseAbs().maxCoeff();
   const double looks = std::max((piece.s_end - piece.s_begin) / kWay, turn / kTurn);
@@ -26,13 +26,13 @@ bool is_worse(const strategies::Residual& a, const strategies::Residual& b) {
 
 // Calls visit(piece, Q) at places of the feed motion, as long as it returns true.
 template <class Visit>
-void look_along(const ProgramPath& path, const JointLayout& layout, Visit visit) {
+void look_along(const engine::ProgramPath& path, const JointLayout& layout, Visit visit) {
   std::size_t total = 0;
   for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n));
   const std::size_t stride = total / kMost + 1;
   std::size_t look = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
-    const ProgramPath::Piece piece = path.piece(n);
+    const engine::ProgramPath::Piece piece = path.piece(n);
     const std::size_t looks = looks_of(piece);
     if (looks == 0) continue;
     const bool has_begin = n == 0 || path.is_rapid(n - 1);  // otherwise the end of the last one
@@ -49,21 +49,22 @@ void look_along(const ProgramPath& path, const JointLayout& layout, Visit visit)
 
 }  // namespace
 
-std::optional<ResidualErrors> residual_errors(const ProgramPath& path,
+std::optional<ResidualErrors> residual_errors(const engine::ProgramPath& path,
                                               const strategies::Strategy& strategy,
                                               const plant::InverseKinematics& inverse,
                                               const Eigen::Vector3d& p_ST) {
   ResidualErrors worst;
   Joints worst_at = Joints::Zero();
-  look_along(path, inverse.chain().layout, [&](const ProgramPath::Piece& piece, const Joints& Q) {
-    const auto left = strategy.uncorrectable(Q);
-    if (!left) return false;
-    if (is_worse(*left, worst.left)) {
-      worst = {piece.line, *left, 0.0};
-      worst_at = Q;
-    }
-    return true;
-  });
+  look_along(path, inverse.chain().layout,
+             [&](const engine::ProgramPath::Piece& piece, const Joints& Q) {
+               const auto left = strategy.uncorrectable(Q);
+               if (!left) return false;
+               if (is_worse(*left, worst.left)) {
+                 worst = {piece.line, *left, 0.0};
+                 worst_at = Q;
+               }
+               return true;
+             });
   if (worst.left.tip <= kUncorrected.tip && worst.left.axis <= kUncorrected.axis) {
     return std::nullopt;
   }
@@ -72,10 +73,11 @@ std::optional<ResidualErrors> residual_errors(const ProgramPath& path,
   return worst;
 }
 
-std::vector<LeftTable> left_tables(const ProgramPath& path, const strategies::Strategy& strategy,
+std::vector<LeftTable> left_tables(const engine::ProgramPath& path,
+                                   const strategies::Strategy& strategy,
                                    const JointLayout& layout) {
   std::vector<LeftTable> out;
-  look_along(path, layout, [&](const ProgramPath::Piece& piece, const Joints& Q) {
+  look_along(path, layout, [&](const engine::ProgramPath::Piece& piece, const Joints& Q) {
     for (const strategies::BeyondTable& end : strategy.beyond_tables(Q)) {
       const double q = Q[end.joint];
       auto known = std::find_if(out.begin(), out.end(), [&](const LeftTable& one) {
@@ -89,4 +91,4 @@ std::vector<LeftTable> left_tables(const ProgramPath& path, const strategies::St
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -8,7 +8,7 @@
 #include "sim/engine/program_path.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 struct ResidualErrors {
   int line = 0;
@@ -25,7 +25,7 @@ inline constexpr strategies::Residual kUncorrected = {.tip = 0.1e-6, .axis = 1e-
 /// @param inverse  of the ideal machine
 /// @param p_ST     of the tool with which the model is identified (3; m)
 /// @return nothing if the strategy corrects nothing, or all
-std::optional<ResidualErrors> residual_errors(const ProgramPath& path,
+std::optional<ResidualErrors> residual_errors(const engine::ProgramPath& path,
                                               const strategies::Strategy& strategy,
                                               const plant::InverseKinematics& inverse,
                                               const Eigen::Vector3d& p_ST);
@@ -39,7 +39,7 @@ struct LeftTable {
 
 /// The ends of tables that feed motion leaves, looked for at the same places.
 /// @param layout  of the machine's joints
-std::vector<LeftTable> left_tables(const ProgramPath& path, const strategies::Strategy& strategy,
-                                   const JointLayout& layout);
+std::vector<LeftTable> left_tables(const engine::ProgramPath& path,
+                                   const strategies::Strategy& strategy, const JointLayout& layout);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

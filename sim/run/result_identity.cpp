@@ -6,7 +6,7 @@
 #include "sim/run/build_identity.h"
 #include "strategies/plugin_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 std::string result_identity() {
   std::vector<std::string> plugins;
@@ -18,4 +18,4 @@ std::string result_identity() {
   return fmt::format("{} with {}", build_identity(), fmt::join(plugins, ", "));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 using strategies::PluginChild;
@@ -29,7 +29,7 @@ std::string read_text(PluginChild& from) {
   return text;
 }
 
-void write(ProcessPipe& to, const Signal& one) {
+void write(ProcessPipe& to, const records::Signal& one) {
   for (const std::string& text : {one.name, one.units, one.long_name, one.labels, one.scale}) {
     write(to, text);
   }
@@ -37,19 +37,19 @@ void write(ProcessPipe& to, const Signal& one) {
   write(to, one.quantum);
 }
 
-Signal read_signal(PluginChild& from) {
-  Signal one;
+records::Signal read_signal(PluginChild& from) {
+  records::Signal one;
   for (std::string* text : {&one.name, &one.units, &one.long_name, &one.labels, &one.scale}) {
     *text = read_text(from);
   }
-  one.storage = from.read<Storage>();
+  one.storage = from.read<records::Storage>();
   one.quantum = from.read<double>();
   return one;
 }
 
-void write(ProcessPipe& to, const Series& series) {
+void write(ProcessPipe& to, const records::Series& series) {
   write(to, series.signals().size());
-  for (const Signal& one : series.signals()) write(to, one);
+  for (const records::Signal& one : series.signals()) write(to, one);
   write(to, series.rows());
   std::vector<double> rows;
   for (std::size_t first = 0; first < series.rows(); first += kRowsAtOnce) {
@@ -62,12 +62,12 @@ void write(ProcessPipe& to, const Series& series) {
   }
 }
 
-Series read_series(PluginChild& from, const RowKeeping& keeping) {
-  std::vector<Signal> signals(from.read<std::size_t>());
-  for (Signal& one : signals) one = read_signal(from);
-  const std::size_t width = Series(signals).width();
+records::Series read_series(PluginChild& from, const records::RowKeeping& keeping) {
+  std::vector<records::Signal> signals(from.read<std::size_t>());
+  for (records::Signal& one : signals) one = read_signal(from);
+  const std::size_t width = records::Series(signals).width();
   const auto count = from.read<std::size_t>();
-  RowKeeper keeper(signals, keeping, count);
+  records::RowKeeper keeper(signals, keeping, count);
   std::vector<double> rows;
   for (std::size_t first = 0; first < count; first += kRowsAtOnce) {
     rows.resize(std::min(kRowsAtOnce, count - first) * width);
@@ -79,7 +79,7 @@ Series read_series(PluginChild& from, const RowKeeping& keeping) {
 
 }  // namespace
 
-void write_result(const CaseResult& result, ProcessPipe& to) {
+void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   const auto& [finished, interrupted, reason, axis, time] = result.outcome;
   write(to, finished);
   write(to, interrupted);
@@ -93,9 +93,9 @@ void write_result(const CaseResult& result, ProcessPipe& to) {
   write(to, result.simulated_time);
 }
 
-CaseResult read_result(PluginChild& from, RowKeeping keeping) {
+engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   keeping.thinning.reset();
-  CaseResult result;
+  engine::CaseResult result;
   auto& [finished, interrupted, reason, axis, time] = result.outcome;
   finished = from.read<bool>();
   interrupted = from.read<bool>();
@@ -110,4 +110,4 @@ CaseResult read_result(PluginChild& from, RowKeeping keeping) {
   return result;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

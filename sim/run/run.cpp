@@ -15,7 +15,7 @@
 #include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
@@ -31,8 +31,8 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt
 }
 
 // Processes for the cases with plug-ins, where these are isolated; nullptr for the others.
-std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(std::span<const PreparedCase> prepared,
-                                                          const RunControl& control) {
+std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(
+    std::span<const preparation::PreparedCase> prepared, const RunControl& control) {
   std::vector<std::unique_ptr<IsolatedCase>> out(prepared.size());
   if (!strategies::plugins_are_isolated()) return out;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
@@ -43,47 +43,50 @@ std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(std::span<const Prepar
 }
 
 // @param isolated  process of the case; nullptr: it runs in this one
-CaseOutput run_one(const PreparedCase& prepared, std::unique_ptr<IsolatedCase> isolated,
-                   const RunControl& control, const StopFlag& stop, std::atomic<float>& progress) {
+CaseOutput run_one(const preparation::PreparedCase& prepared,
+                   std::unique_ptr<IsolatedCase> isolated, const RunControl& control,
+                   const engine::StopFlag& stop, std::atomic<float>& progress) {
   if (isolated == nullptr) return run_case(prepared, stop, progress, control.scratch_folder);
   CaseOutput out = noted_output_of(prepared, isolated->simulate(stop, progress));
   progress = 1.0F;
   return out;
 }
 
-RunOutput with_comparison(const Scenario& scenario, std::vector<CaseOutput> outputs) {
+RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutput> outputs) {
   RunOutput out;
-  std::vector<CaseData> data;
+  std::vector<evaluation::CaseData> data;
   for (const CaseOutput& output : outputs) data.push_back(output.data());
-  out.comparison = compare(scenario.quantities, data);
+  out.comparison = evaluation::compare(scenario.quantities, data);
   out.cases = std::move(outputs);
   return out;
 }
 
 }  // namespace
 
-RunEstimate check_scenario(const Scenario& scenario) {
-  const std::vector<PreparedCase> prepared = prepare_cases(scenario);
+preparation::RunEstimate check_scenario(const model::Scenario& scenario) {
+  const std::vector<preparation::PreparedCase> prepared = preparation::prepare_cases(scenario);
   std::vector<Fault> faults;
-  for (const PreparedCase& one : prepared) {
+  for (const preparation::PreparedCase& one : prepared) {
     if (one.stops_with().empty()) continue;
     faults.push_back({one.spec().strategies.front().place,
                       fmt::format("case {}: {}", one.spec().name, one.stops_with())});
   }
   if (!faults.empty()) throw InputError(std::move(faults));
-  return estimate(scenario, prepared, 1);
+  return preparation::estimate(scenario, prepared, 1);
 }
 
-void check_machine(const MachineSettings& machine) {
-  check_stability(machine, machine.scale_delay, nullptr);
+void check_machine(const model::MachineSettings& machine) {
+  preparation::check_stability(machine, machine.scale_delay, nullptr);
 }
 
-RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
+RunOutput run_scenario(const model::Scenario& scenario, const RunControl& control) {
   const auto begin = std::chrono::steady_clock::now();
-  static const StopFlag kNever = false;
-  const StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
-  std::vector<PreparedCase> prepared = prepare_cases(scenario, control.cache);
-  if (control.prepared) control.prepared(estimate(scenario, prepared, control.threads));
+  static const engine::StopFlag kNever = false;
+  const engine::StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
+  std::vector<preparation::PreparedCase> prepared =
+      preparation::prepare_cases(scenario, control.cache);
+  if (control.prepared)
+    control.prepared(preparation::estimate(scenario, prepared, control.threads));
 
   const std::size_t count = prepared.size();  // independent: any thread may run any of them
   // before there are threads that hold locks
@@ -103,7 +106,7 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
       done[i] = true;
     }
   };
-  const unsigned threads = thread_count(control.threads);
+  const unsigned threads = system::thread_count(control.threads);
   const strategies::PluginRescue rescue;  // before a plug-in can fail
   std::vector<std::jthread> pool;
   for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
@@ -137,4 +140,4 @@ RunOutput run_scenario(const Scenario& scenario, const RunControl& control) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -9,16 +9,16 @@
 #include "sim/preparation/prepared_case.h"
 #include "sim/run/run_case.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 struct RunControl {
   unsigned threads = 0;  // 0: as many as there are cores
-  const StopFlag* stop = nullptr;
-  PreparationCache* cache = nullptr;  // shared with other runs, may be null
-  std::string scratch_folder;         // of long recordings until they are compared; empty: that of
-                                      // temporary files
+  const engine::StopFlag* stop = nullptr;
+  preparation::PreparationCache* cache = nullptr;  // shared with other runs, may be null
+  std::string scratch_folder;  // of long recordings until they are compared; empty: that of
+                               // temporary files
   // every fault of the input is found, and what the run takes is known; called once
-  std::function<void(const RunEstimate&)> prepared;
+  std::function<void(const preparation::RunEstimate&)> prepared;
   std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
   std::function<void(const CaseOutput&)>
       case_done;  // called from one thread, in order of the cases
@@ -26,19 +26,19 @@ struct RunControl {
 
 struct RunOutput {
   std::vector<CaseOutput> cases;
-  std::vector<ComparisonRow> comparison;
+  std::vector<evaluation::ComparisonRow> comparison;
   double wall_time = 0.0;  // s
 };
 
 /// @throws InputError before anything is simulated
-RunOutput run_scenario(const Scenario& scenario, const RunControl& control);
+RunOutput run_scenario(const model::Scenario& scenario, const RunControl& control);
 
 /// Prepares every case as for a run, and returns what it would take on one thread.
 /// @throws InputError with the faults of all cases
-RunEstimate check_scenario(const Scenario& scenario);
+preparation::RunEstimate check_scenario(const model::Scenario& scenario);
 
 /// Checks what reading a machine leaves open: whether its loops are stable.
 /// @throws InputError
-void check_machine(const MachineSettings& machine);
+void check_machine(const model::MachineSettings& machine);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

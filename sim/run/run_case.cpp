@@ -5,15 +5,15 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
-void probe(const PreparedParts& p, CaseOutput& out) {
-  ProbedPart part =
-      probe_part({p.spec.name, out.result.servo, p.program.path, p.scenario.program.cutters,
-                  p.program.tips, out.chain, p.scenario.program.work_offset + p.spec.work_offset,
-                  p.imposed, p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
-                 p.scenario.probes, p.scenario.cmm);
+void probe(const preparation::PreparedParts& p, CaseOutput& out) {
+  evaluation::ProbedPart part = evaluation::probe_part(
+      {p.spec.name, out.result.servo, p.program.path, p.scenario.program.cutters, p.program.tips,
+       out.chain, p.scenario.program.work_offset + p.spec.work_offset, p.imposed,
+       p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
+      p.scenario.probes, p.scenario.cmm);
   out.probes = std::move(part.features);
   out.notes = std::move(part.notes);
   if (!p.scenario.part) return;
@@ -23,14 +23,14 @@ void probe(const PreparedParts& p, CaseOutput& out) {
 
 }  // namespace
 
-CaseData CaseOutput::data() const {
+evaluation::CaseData CaseOutput::data() const {
   return {name,        &result.servo,           sections, duration,
           blocks,      result.outcome.finished, chain,    probes.empty() ? nullptr : &probes,
           signal_delay};
 }
 
-CaseOutput output_of(const PreparedCase& prepared, CaseResult result) {
-  const PreparedParts p = prepared.parts();
+CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {
+  const preparation::PreparedParts p = prepared.parts();
   CaseOutput out;
   out.name = p.spec.name;
   out.result = std::move(result);
@@ -47,20 +47,20 @@ CaseOutput output_of(const PreparedCase& prepared, CaseResult result) {
   return out;
 }
 
-CaseOutput noted_output_of(const PreparedCase& prepared, CaseResult result) {
+CaseOutput noted_output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {
   CaseOutput out = output_of(prepared, std::move(result));
-  const PreparedParts parts = prepared.parts();
+  const preparation::PreparedParts parts = prepared.parts();
   for (std::string& note : notes_of_uncorrectable(parts)) out.notes.push_back(std::move(note));
   for (std::string& note : notes_of_left_tables(parts)) out.notes.push_back(std::move(note));
   return out;
 }
 
-CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
+CaseOutput run_case(const preparation::PreparedCase& prepared, const engine::StopFlag& stop,
                     std::atomic<float>& progress, const std::string& scratch_folder) {
-  CaseInputs given = prepared.inputs(scratch_folder);
-  CaseOutput out = noted_output_of(prepared, simulate(given, stop, progress));
+  engine::CaseInputs given = prepared.inputs(scratch_folder);
+  CaseOutput out = noted_output_of(prepared, engine::simulate(given, stop, progress));
   progress = 1.0F;
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

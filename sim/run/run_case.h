@@ -12,11 +12,11 @@
 #include "sim/evaluation/probed_part.h"
 #include "sim/preparation/prepared_case.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 struct CaseOutput {
   std::string name;
-  CaseResult result;
+  engine::CaseResult result;
   std::string program;    // the rewritten program; empty: the original one ran
   double duration = 0.0;  // s, of the program that the NC ran
   double blocks = 0.0;
@@ -24,20 +24,20 @@ struct CaseOutput {
   std::vector<std::string> sections;
   plant::MachineChain chain;           // the ideal machine
   std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
-  std::vector<ProbedFeature> probes;   // empty: nothing is probed, or the case stopped
-  std::optional<PartFit> part_fit;     // of them, where there is a nominal part
-  CaseData data() const;
+  std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
+  std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
+  evaluation::CaseData data() const;
 };
 
 /// Probes the part that a run of `prepared.inputs()` has cut, and notes what the NC put right.
-CaseOutput output_of(const PreparedCase& prepared, CaseResult result);
+CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result);
 
 /// output_of() with all notes of sim/run/case_warnings.h.
-CaseOutput noted_output_of(const PreparedCase& prepared, CaseResult result);
+CaseOutput noted_output_of(const preparation::PreparedCase& prepared, engine::CaseResult result);
 
 /// Runs a case on this thread: noted_output_of() of its simulation.
 /// @param scratch_folder  of recordings that are long; empty: that of temporary files
-CaseOutput run_case(const PreparedCase& prepared, const StopFlag& stop,
+CaseOutput run_case(const preparation::PreparedCase& prepared, const engine::StopFlag& stop,
                     std::atomic<float>& progress, const std::string& scratch_folder = {});
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

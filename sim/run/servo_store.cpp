@@ -9,27 +9,27 @@
 #include "plant/vocabulary/units.h"
 #include "sim/run/store.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 bool is_linear_axis(char axis) { return axis == 'X' || axis == 'Y' || axis == 'Z'; }
 
-double travel_per_radian(const MachineSettings& machine, char letter) {
+double travel_per_radian(const model::MachineSettings& machine, char letter) {
   const auto joint = machine.chain.layout.joint_of(*axis_of(letter));
   return machine.drives[static_cast<std::size_t>(*joint)].r;
 }
 
-std::vector<double> magnitudes(const std::vector<Complex>& y, double unit) {
+std::vector<double> magnitudes(const std::vector<frequency::Complex>& y, double unit) {
   std::vector<double> out;
-  for (const Complex& one : y) out.push_back(std::abs(one) / unit);
+  for (const frequency::Complex& one : y) out.push_back(std::abs(one) / unit);
   return out;
 }
 
 // Continuous along the frequency.
-std::vector<double> phases(const std::vector<Complex>& y) {
+std::vector<double> phases(const std::vector<frequency::Complex>& y) {
   std::vector<double> out;
   double last = std::numeric_limits<double>::quiet_NaN();
-  for (const Complex& one : y) {
+  for (const frequency::Complex& one : y) {
     double phase = std::arg(one);
     if (std::isfinite(last)) phase = last + std::remainder(phase - last, 2.0 * std::numbers::pi);
     if (std::isfinite(phase)) last = phase;
@@ -38,7 +38,8 @@ std::vector<double> phases(const std::vector<Complex>& y) {
   return out;
 }
 
-void write_curve(Hdf5Group group, const BodeCurve& curve, const Meaning& magnitude, double unit) {
+void write_curve(records::Hdf5Group group, const frequency::BodeCurve& curve,
+                 const records::Meaning& magnitude, double unit) {
   group.attribute("long_name", curve.long_name);
   group.list("frequency", curve.exact.f, {"Hz", "frequency"});
   group.list("magnitude", magnitudes(curve.exact.y, unit), magnitude, "frequency");
@@ -53,46 +54,47 @@ void write_curve(Hdf5Group group, const BodeCurve& curve, const Meaning& magnitu
 
 }  // namespace
 
-std::string name_of(BodeLoop loop) {
+std::string name_of(frequency::BodeLoop loop) {
   switch (loop) {
-    case BodeLoop::position:
+    case frequency::BodeLoop::position:
       return "position";
-    case BodeLoop::velocity:
+    case frequency::BodeLoop::velocity:
       return "velocity";
-    case BodeLoop::compliance:
+    case frequency::BodeLoop::compliance:
       break;
   }
   return "compliance";
 }
 
-std::string name_of(StepKind kind) {
+std::string name_of(frequency::StepKind kind) {
   switch (kind) {
-    case StepKind::position:
+    case frequency::StepKind::position:
       return "position";
-    case StepKind::velocity:
+    case frequency::StepKind::velocity:
       return "velocity";
-    case StepKind::load:
+    case frequency::StepKind::load:
       break;
   }
   return "load";
 }
 
-BodeStore::BodeStore(const std::string& path, bool force, const Scenario& scenario)
+BodeStore::BodeStore(const std::string& path, bool force, const model::Scenario& scenario)
     : file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
-  Hdf5Group root = file_.root();
+  records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "bode");
 }
 
-void BodeStore::add(char axis, const BodeResult& result) {
-  Hdf5Group of_axis = file_.root().group(fmt::format("bode/{}", axis));
-  const bool compliance = result.loop == BodeLoop::compliance;
+void BodeStore::add(char axis, const frequency::BodeResult& result) {
+  records::Hdf5Group of_axis = file_.root().group(fmt::format("bode/{}", axis));
+  const bool compliance = result.loop == frequency::BodeLoop::compliance;
   const bool linear = is_linear_axis(axis);
-  const Meaning magnitude = {compliance ? (linear ? "um N-1" : "urad N-1 m-1") : "1", "magnitude"};
-  for (const BodeCurve& curve : result.curves) {
+  const records::Meaning magnitude = {compliance ? (linear ? "um N-1" : "urad N-1 m-1") : "1",
+                                      "magnitude"};
+  for (const frequency::BodeCurve& curve : result.curves) {
     write_curve(of_axis.group(curve.name), curve, magnitude, compliance ? um : 1.0);
   }
-  Hdf5Group loop = of_axis.group(name_of(result.loop) + "_loop");
+  records::Hdf5Group loop = of_axis.group(name_of(result.loop) + "_loop");
   loop.attribute("stable", result.stable ? 1 : 0);
   loop.attribute("slowest_time_constant_s", result.time_constant);
   loop.attribute("nyquist_Hz", result.nyquist);
@@ -110,7 +112,7 @@ void BodeStore::add(char axis, const BodeResult& result) {
     loop.attribute("resonance_Hz", result.closed.peak_frequency);
   }
   if (result.measured) {
-    loop.attribute("method", result.method == Method::sine ? "sine" : "multisine");
+    loop.attribute("method", result.method == frequency::Method::sine ? "sine" : "multisine");
     loop.attribute("amplitude_SI", result.amplitude);
     loop.attribute("velocity_SI", result.velocity);
     loop.attribute("crest_factor", result.crest_factor);
@@ -118,15 +120,17 @@ void BodeStore::add(char axis, const BodeResult& result) {
   }
 }
 
-StepStore::StepStore(const std::string& path, bool force, const Scenario& scenario)
+StepStore::StepStore(const std::string& path, bool force, const model::Scenario& scenario)
     : machine_(scenario.machine), file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
-  Hdf5Group root = file_.root();
+  records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "step");
 }
 
-void StepStore::add(char axis, const StepSettings& settings, const StepResponse& response) {
-  Hdf5Group group = file_.root().group(fmt::format("step/{}/{}", axis, name_of(settings.kind)));
+void StepStore::add(char axis, const frequency::StepSettings& settings,
+                    const frequency::StepResponse& response) {
+  records::Hdf5Group group =
+      file_.root().group(fmt::format("step/{}/{}", axis, name_of(settings.kind)));
   const bool linear = is_linear_axis(axis);
   const std::string length = linear ? "mm" : "deg";
   const double unit = linear ? mm : deg;
@@ -135,32 +139,33 @@ void StepStore::add(char axis, const StepSettings& settings, const StepResponse&
       .attribute("travel_per_radian", travel_per_radian(machine_, axis) / unit);
   struct Column {
     const char* name;
-    AxisSignal signal;
+    frequency::AxisSignal signal;
     std::string units;
     const char* long_name;
     double unit;
   };
   const Column columns[] = {
-      {"position", AxisSignal::position, length, "position of the slide or table", unit},
-      {"velocity", AxisSignal::velocity, length + " s-1", "velocity of the slide or table", unit},
-      {"motor_speed", AxisSignal::motor_speed, "rad s-1", "motor speed", 1.0},
-      {"current", AxisSignal::current, "A", "torque-forming current", 1.0},
-      {"reading", AxisSignal::reading, length, "what the position loop reads", unit},
+      {"position", frequency::AxisSignal::position, length, "position of the slide or table", unit},
+      {"velocity", frequency::AxisSignal::velocity, length + " s-1",
+       "velocity of the slide or table", unit},
+      {"motor_speed", frequency::AxisSignal::motor_speed, "rad s-1", "motor speed", 1.0},
+      {"current", frequency::AxisSignal::current, "A", "torque-forming current", 1.0},
+      {"reading", frequency::AxisSignal::reading, length, "what the position loop reads", unit},
   };
   group.list("time", response.time, {"s", "time since the step"});
   for (const Column& column : columns) {
     std::vector<double> values;
-    for (const AxisSignals& row : response.signals) {
-      values.push_back(row[index_of(column.signal)] / column.unit);
+    for (const frequency::AxisSignals& row : response.signals) {
+      values.push_back(row[frequency::index_of(column.signal)] / column.unit);
     }
     group.list(column.name, values, {column.units, column.long_name}, "time");
   }
-  const bool load = settings.kind == StepKind::load;
-  const StepFigures& f = response.figures;
+  const bool load = settings.kind == frequency::StepKind::load;
+  const frequency::StepFigures& f = response.figures;
   group.attribute("amplitude", settings.amplitude / (load ? 1.0 : unit));
-  group.attribute(
-      "amplitude_units",
-      load ? (linear ? "N" : "N m") : length + (settings.kind == StepKind::velocity ? " s-1" : ""));
+  group.attribute("amplitude_units",
+                  load ? (linear ? "N" : "N m")
+                       : length + (settings.kind == frequency::StepKind::velocity ? " s-1" : ""));
   group.attribute("band", settings.band);
   group.attribute("overshoot", f.overshoot);
   group.attribute("rise_time_s", f.rise_time);
@@ -171,4 +176,4 @@ void StepStore::add(char axis, const StepSettings& settings, const StepResponse&
   group.attribute("peak_current_A", response.peak_current);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -10,19 +10,19 @@
 #include "sim/model/scenario.h"
 #include "sim/records/output_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// A file of the kind "bode": /bode/AXIS/CURVE with frequency, magnitude, phase of the exact
 /// response, measured_* where it was measured; margins are attributes of /bode/AXIS/LOOP_loop.
 /// @throws InputError if the file cannot be had under that name, SystemError
 class BodeStore {
  public:
-  BodeStore(const std::string& path, bool force, const Scenario& scenario);
-  void add(char axis, const BodeResult& result);
+  BodeStore(const std::string& path, bool force, const model::Scenario& scenario);
+  void add(char axis, const frequency::BodeResult& result);
   void commit() { file_.commit(); }
 
  private:
-  OutputFile file_;
+  records::OutputFile file_;
 };
 
 /// A file of the kind "step": /step/AXIS/KIND with time and all signals; figures of merit are
@@ -30,17 +30,18 @@ class BodeStore {
 /// @throws InputError if the file cannot be had under that name, SystemError
 class StepStore {
  public:
-  StepStore(const std::string& path, bool force, const Scenario& scenario);
-  void add(char axis, const StepSettings& settings, const StepResponse& response);
+  StepStore(const std::string& path, bool force, const model::Scenario& scenario);
+  void add(char axis, const frequency::StepSettings& settings,
+           const frequency::StepResponse& response);
   void commit() { file_.commit(); }
 
  private:
-  MachineSettings machine_;
-  OutputFile file_;
+  model::MachineSettings machine_;
+  records::OutputFile file_;
 };
 
 /// "position", "velocity", "compliance"; "position", "velocity", "load".
-std::string name_of(BodeLoop loop);
-std::string name_of(StepKind kind);
+std::string name_of(frequency::BodeLoop loop);
+std::string name_of(frequency::StepKind kind);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "plant/vocabulary/simd.h"
+#include "sim/input/read_scenario.h"
 #include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
@@ -20,23 +21,24 @@
 #include "sim/system/output_name.h"
 #include "sim/version.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 
-SeriesLayout layout_of(const Series& series, const std::string& index) {
-  SeriesLayout layout;
+records::SeriesLayout layout_of(const records::Series& series, const std::string& index) {
+  records::SeriesLayout layout;
   layout.index = index;
-  layout.chunk_rows = even_chunk_rows(series.rows());
-  for (const Signal& signal : series.signals()) {
+  layout.chunk_rows = records::even_chunk_rows(series.rows());
+  for (const records::Signal& signal : series.signals()) {
     if (signal.name == index) {
       layout.index_meaning = {signal.units, signal.long_name};
       continue;
     }
-    if (!signal.labels.empty() &&
-        std::none_of(layout.labels.begin(), layout.labels.end(),
-                     [&](const ColumnLabels& known) { return known.name == signal.scale; })) {
+    if (!signal.labels.empty() && std::none_of(layout.labels.begin(), layout.labels.end(),
+                                               [&](const records::ColumnLabels& known) {
+                                                 return known.name == signal.scale;
+                                               })) {
       layout.labels.push_back({signal.scale, signal.labels, signal.scale});
     }
     layout.channels.push_back(
@@ -45,7 +47,7 @@ SeriesLayout layout_of(const Series& series, const std::string& index) {
   return layout;
 }
 
-void write_row(Hdf5Group& group, const ComparisonRow& row) {
+void write_row(records::Hdf5Group& group, const evaluation::ComparisonRow& row) {
   group.attribute("case", row.case_name);
   group.attribute("quantity", row.quantity);
   group.attribute("axis", row.axis);
@@ -57,12 +59,12 @@ void write_row(Hdf5Group& group, const ComparisonRow& row) {
 }
 
 // Recorded signals in a file, read when they are asked for.
-class StoredPages final : public ColumnPages {
+class StoredPages final : public records::ColumnPages {
  public:
-  StoredPages(std::shared_ptr<const InputFile> file, const std::string& group,
-              const std::vector<Signal>& signals, std::size_t rows)
+  StoredPages(std::shared_ptr<const records::InputFile> file, const std::string& group,
+              const std::vector<records::Signal>& signals, std::size_t rows)
       : file_(std::move(file)), rows_(rows) {
-    for (const Signal& signal : signals) {
+    for (const records::Signal& signal : signals) {
       for (std::size_t c = 0; c < signal.columns(); ++c) {
         columns_.push_back({group + "/" + signal.name, c});
       }
@@ -81,18 +83,18 @@ class StoredPages final : public ColumnPages {
 
  private:
   static constexpr std::size_t kPageRows = 16384;
-  std::shared_ptr<const InputFile> file_;
+  std::shared_ptr<const records::InputFile> file_;
   std::size_t rows_;
   std::vector<std::pair<std::string, std::size_t>> columns_;
 };
 
 struct StoredSignals {
-  std::vector<Signal> signals;
+  std::vector<records::Signal> signals;
   std::size_t rows = 0;
 };
 
 // Signals of one group, in the order in which they were written.
-StoredSignals signals_of(const InputFile& file, const std::string& group) {
+StoredSignals signals_of(const records::InputFile& file, const std::string& group) {
   StoredSignals out;
   auto& [signals, rows] = out;
   for (const std::string& name : file.datasets(group)) {
@@ -112,17 +114,18 @@ StoredSignals signals_of(const InputFile& file, const std::string& group) {
 }
 
 // Columns of one group read back; of long recordings when they are asked for.
-std::unique_ptr<Series> read_series(const std::shared_ptr<const InputFile>& file,
-                                    const std::string& group) {
+std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records::InputFile>& file,
+                                             const std::string& group) {
   auto [signals, rows] = signals_of(*file, group);
-  auto series = std::make_unique<Series>(signals);
+  auto series = std::make_unique<records::Series>(signals);
   const auto size = static_cast<double>(rows * series->width() * sizeof(double));
-  if (size > RowKeeping().most_in_memory) {
+  if (size > records::RowKeeping().most_in_memory) {
     auto pages = std::make_shared<StoredPages>(file, group, series->signals(), rows);
-    return std::make_unique<Series>(std::move(signals), std::move(pages));
+    return std::make_unique<records::Series>(std::move(signals), std::move(pages));
   }
   std::vector<std::vector<double>> columns;
-  for (const Signal& signal : signals) columns.push_back(file->values(group + "/" + signal.name));
+  for (const records::Signal& signal : signals)
+    columns.push_back(file->values(group + "/" + signal.name));
   series->reserve(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     double* to = series->add_row();
@@ -138,17 +141,18 @@ std::unique_ptr<Series> read_series(const std::shared_ptr<const InputFile>& file
 constexpr std::array<std::string_view, 2> kOfCutting = {"cutting_force", "structural_deflection"};
 
 // Checks that a group has the signals that every comparison needs, and those of the other cases.
-void check_signals(const InputFile& file, const std::string& group, const Series& series,
-                   const Series& first) {
+void check_signals(const records::InputFile& file, const std::string& group,
+                   const records::Series& series, const records::Series& first) {
   std::vector<std::string> needed = {"s", "rapid", "section"};
-  for (const Signal& signal : first.signals()) {
+  for (const records::Signal& signal : first.signals()) {
     const bool may_miss =
         std::find(kOfCutting.begin(), kOfCutting.end(), signal.name) != kOfCutting.end();
     if (!may_miss) needed.push_back(signal.name);
   }
   for (const std::string& name : needed) {
     const auto& has = series.signals();
-    if (std::any_of(has.begin(), has.end(), [&](const Signal& one) { return one.name == name; })) {
+    if (std::any_of(has.begin(), has.end(),
+                    [&](const records::Signal& one) { return one.name == name; })) {
       continue;
     }
     throw InputError({file.path()}, fmt::format("has no '{}/{}'", group, name));
@@ -156,18 +160,19 @@ void check_signals(const InputFile& file, const std::string& group, const Series
 }
 
 // Chain of the ideal machine of a case.
-plant::MachineChain chain_of(const Scenario& scenario, const std::string& name) {
-  const CaseSpec* one = scenario.find_case(name);
+plant::MachineChain chain_of(const model::Scenario& scenario, const std::string& name) {
+  const model::CaseSpec* one = scenario.find_case(name);
   return (one != nullptr ? scenario.machine_of(*one) : scenario.machine).chain;
 }
 
 // Delay by the feedback hardware of a case.
-std::optional<double> signal_delay_of(const Scenario& scenario, const std::string& name) {
-  const CaseSpec* one = scenario.find_case(name);
+std::optional<double> signal_delay_of(const model::Scenario& scenario, const std::string& name) {
+  const model::CaseSpec* one = scenario.find_case(name);
   return one != nullptr ? scenario.signal_delay_of(*one) : std::nullopt;
 }
 
-void check_schema(const InputFile& file, const std::string& path, const std::string& kind) {
+void check_schema(const records::InputFile& file, const std::string& path,
+                  const std::string& kind) {
   if (!file.has_attribute("/", "schema_version")) {
     throw InputError({path}, "is not a result file of servomill");
   }
@@ -195,18 +200,19 @@ std::vector<std::string> split_lines(const std::string& text) {
   return lines;
 }
 
-void write_build(Hdf5Group& root) {
+void write_build(records::Hdf5Group& root) {
   root.attribute("servomill_version", kVersion);
   root.attribute("servomill_build", result_identity());
 }
 
-std::string build_of(const InputFile& file) {
+std::string build_of(const records::InputFile& file) {
   const char* name =
       file.has_attribute("/", "servomill_build") ? "servomill_build" : "servomill_version";
   return file.text("/", name);
 }
 
-void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind) {
+void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario,
+                  std::string_view kind) {
   root.attribute("Conventions", "CF-1.8");
   write_build(root);
   root.attribute("schema_version", kSchemaVersion);
@@ -215,33 +221,35 @@ void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view ki
   root.attribute("scenario", scenario.name);
   root.attribute("title", scenario.title);
   root.attribute("source", scenario.source);
-  Hdf5Group inputs = root.group("inputs");
+  records::Hdf5Group inputs = root.group("inputs");
   inputs.attribute("scenario", scenario.text);
   inputs.attribute("machine", scenario.machine_text);
   inputs.attribute("program", scenario.program.text());
   inputs.attribute("resolved", scenario.resolved);
 }
 
-RunStore::RunStore(const std::string& path, bool force, const Scenario& scenario, unsigned threads)
+RunStore::RunStore(const std::string& path, bool force, const model::Scenario& scenario,
+                   unsigned threads)
     : file_(writable_name(path, force), force),
       compression_(scenario.record.compression),
       threads_(threads) {
-  Hdf5Group root = file_.root();
+  records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run");
   write_errors(root, scenario);
   std::size_t longest_name = 0;
-  for (const CaseSpec& one : scenario.cases) longest_name = std::max(longest_name, one.name.size());
+  for (const model::CaseSpec& one : scenario.cases)
+    longest_name = std::max(longest_name, one.name.size());
   root.group_with_room("cases", scenario.cases.size(), longest_name);
   root.group_with_room(kUnfinished, 1, longest_name);
   root.flush_file();
 }
 
-void RunStore::write_series(Hdf5Group group, const Series& series) const {
-  SeriesLayout layout = layout_of(series, "time");
+void RunStore::write_series(records::Hdf5Group group, const records::Series& series) const {
+  records::SeriesLayout layout = layout_of(series, "time");
   layout.compression = compression_;
   layout.threads = threads_;
   if (series.pages() != nullptr) return write_pages(std::move(group), std::move(layout), series);
-  SeriesWriter writer(std::move(group), std::move(layout));
+  records::SeriesWriter writer(std::move(group), std::move(layout));
   for (std::size_t row = 0; row < series.rows(); ++row) {
     writer.append({series.row(row), series.width()});
   }
@@ -249,11 +257,12 @@ void RunStore::write_series(Hdf5Group group, const Series& series) const {
 }
 
 // The pages of a recording on the disk are chunks of the file as they are.
-void RunStore::write_pages(Hdf5Group group, SeriesLayout layout, const Series& series) {
-  const ColumnPages& pages = *series.pages();
+void RunStore::write_pages(records::Hdf5Group group, records::SeriesLayout layout,
+                           const records::Series& series) {
+  const records::ColumnPages& pages = *series.pages();
   layout.chunk_rows = pages.page_rows();
   layout.is_encoded = true;
-  SeriesWriter writer(std::move(group), std::move(layout));
+  records::SeriesWriter writer(std::move(group), std::move(layout));
   std::vector<std::vector<std::uint8_t>> chunks(series.width());
   for (std::size_t first = 0; first < pages.rows(); first += pages.page_rows()) {
     for (std::size_t column = 0; column < chunks.size(); ++column) {
@@ -267,9 +276,9 @@ void RunStore::write_pages(Hdf5Group group, SeriesLayout layout, const Series& s
 }
 
 void RunStore::add(const CaseOutput& one) {
-  Hdf5Group root = file_.root();
+  records::Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
-  Hdf5Group group = root.group(unfinished);
+  records::Hdf5Group group = root.group(unfinished);
   write_series(group.group("servo"), one.result.servo);
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks);
@@ -287,11 +296,11 @@ void RunStore::add(const CaseOutput& one) {
   root.flush_file();
 }
 
-void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
+void RunStore::commit(const std::vector<evaluation::ComparisonRow>& comparison) {
   file_.root().remove(kUnfinished);
-  Hdf5Group table = file_.root().group("comparison");
+  records::Hdf5Group table = file_.root().group("comparison");
   for (std::size_t i = 0; i < comparison.size(); ++i) {
-    Hdf5Group group = table.group(fmt::format("{:03}", i));
+    records::Hdf5Group group = table.group(fmt::format("{:03}", i));
     write_row(group, comparison[i]);
     group.scalar("value", comparison[i].value, {comparison[i].unit, comparison[i].quantity});
   }
@@ -299,14 +308,14 @@ void RunStore::commit(const std::vector<ComparisonRow>& comparison) {
 }
 
 StoredRun read_run(const std::string& path) {
-  const auto opened = std::make_shared<const InputFile>(path);
-  const InputFile& file = *opened;
+  const auto opened = std::make_shared<const records::InputFile>(path);
+  const records::InputFile& file = *opened;
   check_schema(file, path, "run");
   StoredRun run;
   run.scenario_name = file.text("/", "scenario");
   run.title = file.text("/", "title");
-  const Scenario scenario =
-      read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
+  const model::Scenario scenario =
+      input::read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
   run.quantities = scenario.quantities;
   for (const std::string& name : file.groups("/cases")) {
     const std::string group = "/cases/" + name;
@@ -314,9 +323,9 @@ StoredRun read_run(const std::string& path) {
     if (!file.has("/comparison") && !file.has_attribute(group, "finished")) continue;
     run.series.push_back(read_series(opened, group + "/servo"));
     check_signals(file, group + "/servo", *run.series.back(), *run.series.front());
-    run.probes.push_back(std::make_unique<std::vector<ProbedFeature>>(
+    run.probes.push_back(std::make_unique<std::vector<evaluation::ProbedFeature>>(
         read_probed(file, group + "/probes", scenario.probes)));
-    const std::vector<ProbedFeature>& probes = *run.probes.back();
+    const std::vector<evaluation::ProbedFeature>& probes = *run.probes.back();
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0, chain_of(scenario, name),
@@ -336,10 +345,10 @@ bool is_hdf5(const std::string& path) {
 std::string writable_name(const std::string& path, bool force) {
   namespace fs = std::filesystem;
   if (path.empty()) throw InputError({"--output"}, "the name of the result file is empty");
-  std::string target = output_target(path, existing_of(force));
+  std::string target = system::output_target(path, system::existing_of(force));
   std::error_code ignored;
   const std::string partial = target + ".partial";
-  if (!force) refuse_partial(partial);
+  if (!force) system::refuse_partial(partial);
   for (const std::string& name : {target, partial}) {
     if (!fs::exists(name, ignored) || fs::is_empty(name, ignored) || is_hdf5(name)) continue;
     throw InputError({name}, "exists and is no result file; --force does not overwrite others");
@@ -347,4 +356,4 @@ std::string writable_name(const std::string& path, bool force) {
   return target;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

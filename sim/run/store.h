@@ -10,21 +10,23 @@
 #include "sim/records/output_file.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
-
+namespace servomill::sim::records {
 struct SeriesLayout;
+}  // namespace servomill::sim::records
+
+namespace servomill::sim::run {
 
 /// Version of the layout of result files; a file of another one is refused.
 inline constexpr int kSchemaVersion = 1;
 
 /// Says which program writes a file: version and build (sim/run/build_identity.h).
-void write_build(Hdf5Group& root);
+void write_build(records::Hdf5Group& root);
 /// The build that wrote it; only its version if it is older than that.
-std::string build_of(const InputFile& file);
+std::string build_of(const records::InputFile& file);
 
 /// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
-void write_inputs(Hdf5Group& root, const Scenario& scenario, std::string_view kind);
+void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std::string_view kind);
 
 /// Writes a run case by case, so that complete cases can be read even if it ends early. Layout:
 /// README, section "The result file".
@@ -32,18 +34,20 @@ class RunStore {
  public:
   /// @param threads  that compress; 0: one a core; the file does not depend on it
   /// @throws InputError if the file exists and `force` is not set, SystemError
-  RunStore(const std::string& path, bool force, const Scenario& scenario, unsigned threads = 0);
+  RunStore(const std::string& path, bool force, const model::Scenario& scenario,
+           unsigned threads = 0);
   void add(const CaseOutput& one);
   /// Writes the comparison and gives the file its final name.
-  void commit(const std::vector<ComparisonRow>& comparison);
+  void commit(const std::vector<evaluation::ComparisonRow>& comparison);
   /// Name under which complete cases are kept when there is no commit.
   const std::string& partial_path() const { return file_.partial_path(); }
 
  private:
-  void write_series(Hdf5Group group, const Series& series) const;
-  static void write_pages(Hdf5Group group, SeriesLayout layout, const Series& series);
+  void write_series(records::Hdf5Group group, const records::Series& series) const;
+  static void write_pages(records::Hdf5Group group, records::SeriesLayout layout,
+                          const records::Series& series);
 
-  OutputFile file_;
+  records::OutputFile file_;
   int compression_;
   unsigned threads_;
 };
@@ -51,10 +55,10 @@ class RunStore {
 /// A run read back.
 struct StoredRun {
   std::string scenario_name, title;
-  std::vector<std::unique_ptr<Series>> series;
-  std::vector<std::unique_ptr<std::vector<ProbedFeature>>> probes;
-  std::vector<CaseData> cases;           // point into `series` and `probes`
-  std::vector<QuantitySpec> quantities;  // of the stored scenario
+  std::vector<std::unique_ptr<records::Series>> series;
+  std::vector<std::unique_ptr<std::vector<evaluation::ProbedFeature>>> probes;
+  std::vector<evaluation::CaseData> cases;      // point into `series` and `probes`
+  std::vector<model::QuantitySpec> quantities;  // of the stored scenario
 };
 
 /// @throws InputError if the file is none of ours or of another schema version
@@ -72,4 +76,4 @@ bool is_hdf5(const std::string& path);
 /// @throws InputError, SystemError while another process writes it
 std::string writable_name(const std::string& path, bool force);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

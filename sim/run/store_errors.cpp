@@ -7,7 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr std::size_t kLeastSamples = 1601, kMostSamples = 8001;
@@ -21,7 +21,7 @@ struct Range {
 };
 
 // All of the travel, one turn of a rotary axis: that around zero where it has it.
-Range range_of(const NcSettings& nc, int joint) {
+Range range_of(const model::NcSettings& nc, int joint) {
   const double lower = nc.lower[joint], upper = nc.upper[joint];
   if (joint >= kLinearJoints) {
     const double begin = std::clamp(-0.5 * kTurn, lower, std::max(lower, upper - kTurn));
@@ -44,14 +44,15 @@ std::vector<double> places_in(const Range& range, bool linear) {
   return out;
 }
 
-void write_components(Hdf5Group& root, const std::string& path, const plant::ErrorModel& model,
-                      Axis axis, const NcSettings& nc, int joint) {
+void write_components(records::Hdf5Group& root, const std::string& path,
+                      const plant::ErrorModel& model, Axis axis, const model::NcSettings& nc,
+                      int joint) {
   const auto& components = model.components[static_cast<std::size_t>(index_of(axis))];
   if (std::all_of(components.begin(), components.end(),
                   [](const auto& f) { return f.is_zero(); })) {
     return;
   }
-  Hdf5Group group = root.group(fmt::format("{}/{}", path, letter(axis)));
+  records::Hdf5Group group = root.group(fmt::format("{}/{}", path, letter(axis)));
   const std::vector<double> q = places_in(range_of(nc, joint), is_linear(axis));
   const auto over_axis = [&](auto value_at, double unit) {
     std::vector<double> values(q.size());
@@ -74,7 +75,8 @@ void write_components(Hdf5Group& root, const std::string& path, const plant::Err
   }
 }
 
-void write_locations(Hdf5Group& root, const std::string& path, const plant::ErrorModel& model) {
+void write_locations(records::Hdf5Group& root, const std::string& path,
+                     const plant::ErrorModel& model) {
   for (const Axis axis : kAllAxes) {
     for (const Axis direction : kAllAxes) {
       const plant::ErrorName name{direction, axis, true};
@@ -89,7 +91,7 @@ void write_locations(Hdf5Group& root, const std::string& path, const plant::Erro
 
 }  // namespace
 
-void write_errors(Hdf5Group& root, const Scenario& scenario) {
+void write_errors(records::Hdf5Group& root, const model::Scenario& scenario) {
   const JointLayout& layout = scenario.machine.chain.layout;
   for (const auto& [name, model] : scenario.errors) {
     const std::string path = "errors/" + name;
@@ -101,4 +103,4 @@ void write_errors(Hdf5Group& root, const Scenario& scenario) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -4,11 +4,11 @@
 #include "sim/model/scenario.h"
 #include "sim/records/hdf5_group.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// Writes all error models of a scenario below /errors: MODEL/AXIS/ has the component errors of an
 /// axis over its travel, MODEL/locations/ the location errors, each by its name of ISO 230-1. What
 /// is zero is left out.
-void write_errors(Hdf5Group& root, const Scenario& scenario);
+void write_errors(records::Hdf5Group& root, const model::Scenario& scenario);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

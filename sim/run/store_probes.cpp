@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 std::vector<double> in_um(std::vector<double> values) {
@@ -25,9 +25,9 @@ std::vector<double> counted(std::size_t count) {
   return out;
 }
 
-void write_fit(Hdf5Group& group, std::span<const Arrow> arrows) {
+void write_fit(records::Hdf5Group& group, std::span<const metrology::Arrow> arrows) {
   std::vector<double> places, deviations;
-  for (const Arrow& arrow : arrows) {
+  for (const metrology::Arrow& arrow : arrows) {
     for (int i = 0; i < 3; ++i) places.push_back(arrow.place[i] / mm);
     for (int i = 0; i < 3; ++i) deviations.push_back(arrow.deviation[i] / um);
   }
@@ -38,7 +38,7 @@ void write_fit(Hdf5Group& group, std::span<const Arrow> arrows) {
               {"um", "probed point minus nominal part after best fit"}, "point", "xyz");
 }
 
-void write_motion(Hdf5Group& group, const BestFit& fit) {
+void write_motion(records::Hdf5Group& group, const metrology::BestFit& fit) {
   const Eigen::AngleAxisd turn(fit.motion.linear());
   const Eigen::Vector3d shift = fit.motion.translation() / um;
   const Eigen::Vector3d rotation = turn.angle() / urad * turn.axis();
@@ -47,8 +47,8 @@ void write_motion(Hdf5Group& group, const BestFit& fit) {
   group.attribute("alignment_rms_um", fit.rms / um);
 }
 
-void write_feature(Hdf5Group& group, const ProbedFeature& found) {
-  group.attribute("kind", name_of(found.feature.kind));
+void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& found) {
+  group.attribute("kind", metrology::name_of(found.feature.kind));
   group.list("point", counted(found.deviation.size()), {"1", "number of the point"});
   group.list("repetition", counted(found.measured.size()), {"1", "number of the repetition"});
   group.labels("xyz", "XYZ", "xyz");
@@ -68,16 +68,17 @@ void write_feature(Hdf5Group& group, const ProbedFeature& found) {
              {"um", "surface minus nominal along the normal, without error of the CMM"}, "point");
   group.table("measured", found.deviation.size(), in_um(std::move(measured)),
               {"um", "probed minus nominal along the normal"}, "repetition", "point");
-  group.list("sigma", in_um(standard_deviation_of(found.measured)),
+  group.list("sigma", in_um(metrology::standard_deviation_of(found.measured)),
              {"um", "standard deviation of the repetitions"}, "point");
   if (found.imposed.empty()) return;
   group.list("imposed", in_um(found.imposed),
              {"um", "displacement along the normal that the imposed errors ask for"}, "point");
 }
 
-ProbedFeature read_feature(const InputFile& file, const std::string& group,
-                           const ProbeSpec& probe) {
-  ProbedFeature out{probe.name, probe.feature, from_um(file.values(group + "/deviation")), {}, {}};
+evaluation::ProbedFeature read_feature(const records::InputFile& file, const std::string& group,
+                                       const metrology::ProbeSpec& probe) {
+  evaluation::ProbedFeature out{
+      probe.name, probe.feature, from_um(file.values(group + "/deviation")), {}, {}};
   const std::size_t points = probe.feature.targets.size();
   const auto shape = file.shape(group + "/measured");
   if (out.deviation.size() != points || shape.size() != 2 || shape[0] == 0 || shape[1] != points) {
@@ -98,24 +99,25 @@ ProbedFeature read_feature(const InputFile& file, const std::string& group,
 
 }  // namespace
 
-void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
-                  const std::optional<PartFit>& fit) {
+void write_probes(records::Hdf5Group group, std::span<const evaluation::ProbedFeature> features,
+                  const std::optional<evaluation::PartFit>& fit) {
   if (fit) write_motion(group, fit->fit);
   for (std::size_t i = 0; i < features.size(); ++i) {
-    Hdf5Group of_feature = group.group(features[i].name);
+    records::Hdf5Group of_feature = group.group(features[i].name);
     write_feature(of_feature, features[i]);
     if (fit) write_fit(of_feature, fit->arrows[i]);
   }
 }
 
-std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,
-                                       std::span<const ProbeSpec> plan) {
-  std::vector<ProbedFeature> out;
+std::vector<evaluation::ProbedFeature> read_probed(const records::InputFile& file,
+                                                   const std::string& group,
+                                                   std::span<const metrology::ProbeSpec> plan) {
+  std::vector<evaluation::ProbedFeature> out;
   if (!file.has(group)) return out;
-  for (const ProbeSpec& probe : plan) {
+  for (const metrology::ProbeSpec& probe : plan) {
     out.push_back(read_feature(file, group + "/" + probe.name, probe));
   }
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -11,7 +11,7 @@
 #include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 
 /// A group for each feature:
 ///
@@ -30,12 +30,13 @@ namespace servomill::sim {
 /// and the attribute `kind`. Attributes of the group itself, of the best fit (measured -> nominal):
 /// `alignment_shift_um` (of the work zero), `alignment_rotation_urad` (rotation vector),
 /// `alignment_rms_um`.
-void write_probes(Hdf5Group group, std::span<const ProbedFeature> features,
-                  const std::optional<PartFit>& fit);
+void write_probes(records::Hdf5Group group, std::span<const evaluation::ProbedFeature> features,
+                  const std::optional<evaluation::PartFit>& fit);
 
 /// Reads them back, in the order of the plan; nothing if there is no such group.
 /// @throws InputError if what is there does not fit the plan
-std::vector<ProbedFeature> read_probed(const InputFile& file, const std::string& group,
-                                       std::span<const ProbeSpec> plan);
+std::vector<evaluation::ProbedFeature> read_probed(const records::InputFile& file,
+                                                   const std::string& group,
+                                                   std::span<const metrology::ProbeSpec> plan);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -9,7 +9,7 @@
 #include "sim/run/build_identity.h"
 #include "sim/run/store.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
@@ -22,11 +22,11 @@ struct Shard {
 };
 
 Shard read_shard(const std::string& path) {
-  const InputFile file(path);
+  const records::InputFile file(path);
   const SweepHeader header = read_sweep_header(file);
   const auto statuses = file.values("/sweep/status", 0, header.selection.size());
   return {path,
-          build_of(file),
+          run::build_of(file),
           header.base.resolved,
           header.base.swept_files,
           header.selection,
@@ -44,10 +44,10 @@ void refuse_other(const Shard& one, const Shard& first) {
                                  "differ; run these shards again by one build",
                                  one.build, first.path, first.build));
   }
-  if (one.build != result_identity()) {
+  if (one.build != run::result_identity()) {
     throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which would "
                                              "say that it wrote all of it: merge with that build",
-                                             one.build, result_identity()));
+                                             one.build, run::result_identity()));
   }
   if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {
@@ -148,9 +148,9 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
 
   std::optional<SweepTable> table;
   for (const Shard& shard : shards) {
-    const InputFile file(shard.path);
+    const records::InputFile file(shard.path);
     if (!table) {
-      table.emplace(writable_name(out, force), force, read_sweep_header(file).base,
+      table.emplace(run::writable_name(out, force), force, read_sweep_header(file).base,
                     columns_of(file), whole);
       table->remove_unless_committed();
     }
@@ -162,4 +162,4 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
   return merged;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -6,7 +6,7 @@
 
 #include "sim/sweep/table.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// Result of a merge.
 struct Merged {
@@ -23,4 +23,4 @@ struct Merged {
 Merged merge_sweeps(const std::vector<std::string>& shards, const std::string& out, bool force,
                     bool partial);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

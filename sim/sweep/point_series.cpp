@@ -9,7 +9,7 @@
 #include "sim/run/store.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 std::string series_folder(const std::string& path) {
   return (path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path) + ".series";
@@ -28,8 +28,8 @@ bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return false;
   try {
-    const InputFile file(path);
-    return build_of(file) == result_identity() &&
+    const records::InputFile file(path);
+    return run::build_of(file) == run::result_identity() &&
            file.text("/inputs", "resolved") == sweep.at(point).resolved;
   } catch (const InputError&) {
     return false;  // something else
@@ -40,10 +40,10 @@ void write_point_series(const std::string& folder, const Sweep& sweep, const Swe
   if (point.result.cases.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw SystemError(folder, "cannot be made", error.message());
-  RunStore store(series_name(folder, point.index), true, sweep.at(point.index));
-  for (const CaseOutput& one : point.result.cases) store.add(one);
+  if (error) throw system::SystemError(folder, "cannot be made", error.message());
+  run::RunStore store(series_name(folder, point.index), true, sweep.at(point.index));
+  for (const run::CaseOutput& one : point.result.cases) store.add(one);
   store.commit(point.result.rows);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

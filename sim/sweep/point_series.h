@@ -6,7 +6,7 @@
 
 #include "sim/sweep/run_sweep.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// "OUT.series" for "OUT.h5": where the points' files lie.
 std::string series_folder(const std::string& path);
@@ -19,4 +19,4 @@ bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64
 /// @throws SystemError
 void write_point_series(const std::string& folder, const Sweep& sweep, const SweepPoint& point);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -17,7 +17,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/system/worker_thread.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
@@ -86,7 +86,7 @@ class Results {
   bool closed_ = false;
 };
 
-bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
+bool same_question(const evaluation::ComparisonRow& a, const evaluation::ComparisonRow& b) {
   return a.case_name == b.case_name && a.quantity == b.quantity && a.axis == b.axis &&
          a.statistic == b.statistic && a.sections == b.sections && a.unit == b.unit;
 }
@@ -94,7 +94,7 @@ bool same_question(const ComparisonRow& a, const ComparisonRow& b) {
 // The points of one batch that can be read, and what they run.
 struct ReadPoints {
   std::vector<SweepPoint> points;
-  std::vector<Scenario> scenarios;
+  std::vector<model::Scenario> scenarios;
 };
 
 // Reads the points of one batch; those that are refused are results at once.
@@ -109,11 +109,11 @@ ReadPoints read_points(const Sweep& sweep, const std::vector<std::uint64_t>& poi
       read.points.push_back(std::move(one));
       continue;
     } catch (const InputError& error) {
-      one.result = {PointStatus::refused, in_one_line(error), {}};
+      one.result = {run::PointStatus::refused, run::in_one_line(error), {}};
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception& error) {
-      one.result = {PointStatus::failed, error.what(), {}};
+      one.result = {run::PointStatus::failed, error.what(), {}};
     }
     refused.push_back(std::move(one));
   }
@@ -122,17 +122,18 @@ ReadPoints read_points(const Sweep& sweep, const std::vector<std::uint64_t>& poi
 }
 
 // Runs the points of one batch together.
-void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points, const StopFlag& stop,
-                std::atomic<float>& progress, const BatchControl& control, Results& results) {
+void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points,
+                const engine::StopFlag& stop, std::atomic<float>& progress,
+                const run::BatchControl& control, Results& results) {
   ReadPoints read = read_points(sweep, points, results);
-  const std::vector<ComparisonRow> wanted = sweep.quantities();
-  const auto put = [&](std::vector<EndedPoint>&& batch) {
+  const std::vector<evaluation::ComparisonRow> wanted = sweep.quantities();
+  const auto put = [&](std::vector<run::EndedPoint>&& batch) {
     std::vector<SweepPoint> ended;
-    for (EndedPoint& one : batch) {
+    for (run::EndedPoint& one : batch) {
       const auto& rows = one.result.rows;
       if (!rows.empty() &&
           !std::equal(wanted.begin(), wanted.end(), rows.begin(), rows.end(), same_question)) {
-        one.result = {PointStatus::refused,
+        one.result = {run::PointStatus::refused,
                       "asks for other quantities or cases than the scenario without its sweep",
                       {}};
       }
@@ -141,10 +142,10 @@ void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points, co
     }
     results.put(std::move(ended));
   };
-  run_batch(read.scenarios, stop, progress, put, control);
+  run::run_batch(read.scenarios, stop, progress, put, control);
 }
 
-const StopFlag kNever = false;
+const engine::StopFlag kNever = false;
 
 // Threads that run batches, and the calling one, which takes their results.
 class SweepRun {
@@ -157,11 +158,11 @@ class SweepRun {
         queue_(selection, done),
         count_(queue_.count()),
         threads_(static_cast<unsigned>(std::clamp<std::uint64_t>(
-            thread_count(control.threads), 1, std::max<std::uint64_t>(count_, 1)))),
+            system::thread_count(control.threads), 1, std::max<std::uint64_t>(count_, 1)))),
         batch_(std::clamp<std::size_t>(count_ / (kBatchesPerThread * threads_), 1, control.batch)),
-        batch_control_{control.keep, &cache_, rows_at_once(threads_)},
+        batch_control_{control.keep, &cache_, run::rows_at_once(threads_)},
         // signals are large: those of few points wait
-        results_(control.keep == Keep::series ? 1 : kWaitingPerThread * threads_),
+        results_(control.keep == run::Keep::series ? 1 : kWaitingPerThread * threads_),
         shares_(threads_),
         running_(threads_),
         failures_(threads_) {}
@@ -227,13 +228,13 @@ class SweepRun {
 
   const Sweep& sweep_;
   const SweepControl& control_;
-  const StopFlag& stop_;
+  const engine::StopFlag& stop_;
   WorkQueue queue_;
   std::uint64_t count_;
   unsigned threads_;
   std::size_t batch_;
-  PreparationCache cache_;
-  BatchControl batch_control_;
+  preparation::PreparationCache cache_;
+  run::BatchControl batch_control_;
   Results results_;
   std::vector<std::atomic<float>> shares_;  // of the batches in work
   std::atomic<std::uint64_t> ended_ = 0;    // points of batches that ended
@@ -249,4 +250,4 @@ void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector
   SweepRun(sweep, selection, done, control).run();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -11,13 +11,13 @@
 #include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// One point that was run.
 struct SweepPoint {
   std::uint64_t index = 0;          // counted from 0
   std::vector<std::string> values;  // TOML, for each key
-  BatchResult result;
+  run::BatchResult result;
 };
 
 /// Most points that are run together.
@@ -26,8 +26,8 @@ inline constexpr std::size_t kBatchPoints = 16;
 struct SweepControl {
   unsigned threads = 0;              // 0: as many as there are cores
   std::size_t batch = kBatchPoints;  // at least 1
-  const StopFlag* stop = nullptr;
-  Keep keep = Keep::comparison;
+  const engine::StopFlag* stop = nullptr;
+  run::Keep keep = run::Keep::comparison;
   std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
   /// Points that ended, as soon and in the order in which they do; called from one thread. What it
   /// throws ends the sweep.
@@ -41,4 +41,4 @@ struct SweepControl {
 void run_sweep(const Sweep& sweep, const Selection& selection, const std::vector<bool>& done,
                const SweepControl& control);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

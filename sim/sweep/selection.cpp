@@ -11,7 +11,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr std::uint64_t kLongestBlock = 16;
@@ -96,4 +96,4 @@ std::string shard_name(const std::string& path, const Selection& selection) {
                      selection.shards, ending);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

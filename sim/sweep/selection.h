@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// Points first ... last - 1 of a sweep (counted from 0), or one shard of them. Shards take turns
 /// in blocks of neighbours, at most 16 points long: neighbours have most in common, and no shard
@@ -35,4 +35,4 @@ Selection read_selection(std::uint64_t points, const std::string& range, const s
 /// "OUT.h5" as shard 2 of 8 calls it: "OUT.2-of-8.h5".
 std::string shard_name(const std::string& path, const Selection& selection);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -14,7 +14,7 @@
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr std::uint64_t kProbes = 8;         // points tried before all are given up
@@ -39,17 +39,17 @@ std::vector<std::uint64_t> spread(std::uint64_t size, std::uint64_t count) {
 
 // The nearest of the names that the scenario has beside a key that it does not know.
 std::string near_key(const std::string& resolved, const std::string& key) {
-  const Document document = Document::from_text(resolved, "");
-  const Value* table = &document.root();
+  const config::Document document = config::Document::from_text(resolved, "");
+  const config::Value* table = &document.root();
   std::size_t begin = 0;
   for (std::size_t dot = key.find('.'); dot != std::string::npos && table != nullptr;
        dot = key.find('.', begin)) {
     table = table->find(key.substr(begin, dot - begin));
     begin = dot + 1;
   }
-  if (table == nullptr || table->type != Value::Type::table) return {};
+  if (table == nullptr || table->type != config::Value::Type::table) return {};
   std::vector<std::string_view> names;
-  for (const Value& entry : table->children) names.push_back(entry.key);
+  for (const config::Value& entry : table->children) names.push_back(entry.key);
   return did_you_mean(key.substr(begin), names);
 }
 
@@ -70,10 +70,11 @@ std::string key_of(const std::string& change) {
 }
 
 // Tells if a value of the key is gone once `later` is set: keys have several spellings.
-bool is_replaced(const Document& document, const std::string& key, const std::string& later) {
+bool is_replaced(const config::Document& document, const std::string& key,
+                 const std::string& later) {
   if (key != later && later == "machine") return false;  // its keys are set after the file is read
   const auto with = [&](const char* value) {
-    Document changed = document;
+    config::Document changed = document;
     changed.set(key + "=" + value);
     changed.set(later + "=0");
     return changed.to_toml();
@@ -86,12 +87,12 @@ bool is_replaced(const Document& document, const std::string& key, const std::st
 }
 
 // A value for a key that the sweep varies would never be used.
-void refuse_swept(const std::vector<std::string>& changes, const Scenario& base) {
+void refuse_swept(const std::vector<std::string>& changes, const model::Scenario& base) {
   if (changes.empty()) return;
-  const Document document = Document::from_text(base.resolved, "");
+  const config::Document document = config::Document::from_text(base.resolved, "");
   std::vector<Fault> faults;
   for (const std::string& change : changes) {
-    for (const SweepKey& varied : base.sweep.keys) {
+    for (const model::SweepKey& varied : base.sweep.keys) {
       if (!is_replaced(document, key_of(change), varied.key)) continue;
       faults.push_back({{"--set " + change},
                         fmt::format("the sweep varies {} ({}); this value would never be used",
@@ -125,21 +126,21 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
 
 // The file that a value of a key names, seen from the folder in which the user is.
 std::optional<std::string> Sweep::named_file(std::size_t key, const std::string& value) const {
-  const SweepKey& one = design().keys[key];
+  const model::SweepKey& one = design().keys[key];
   const bool quoted = value.size() >= 2 && (value.front() == '"' || value.front() == '\'');
   if (!quoted || !names_a_file(one.key)) return std::nullopt;
-  return beside(one.place, unquoted(value));
+  return input::beside(one.place, unquoted(value));
 }
 
 std::string Sweep::assignment(std::size_t key, const std::string& value) const {
   const auto file = named_file(key, value);
-  return design().keys[key].key + "=" + (file ? quoted_text(*file) : value);
+  return design().keys[key].key + "=" + (file ? config::quoted_text(*file) : value);
 }
 
 std::string Sweep::swept_files() const {
   std::set<std::string> lines;
   for (std::size_t key = 0; key < design().keys.size(); ++key) {
-    const auto* values = std::get_if<ValueTexts>(&design().keys[key].values);
+    const auto* values = std::get_if<model::ValueTexts>(&design().keys[key].values);
     if (values == nullptr) continue;
     for (const std::string& value : *values) {
       const auto file = named_file(key, value);
@@ -159,7 +160,7 @@ InputError Sweep::at_the_list(const InputError& error,
   for (Fault& fault : faults) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (fault.place.file != "--set " + assignment(k, values[k])) continue;
-      const SweepKey& key = design().keys[k];
+      const model::SweepKey& key = design().keys[k];
       if (fault.message.ends_with("is not known")) {
         fault.message += near_key(base_.resolved, key.key);
       }
@@ -170,7 +171,7 @@ InputError Sweep::at_the_list(const InputError& error,
   return InputError(std::move(faults));
 }
 
-Scenario Sweep::at(std::uint64_t point) const {
+model::Scenario Sweep::at(std::uint64_t point) const {
   const std::vector<std::string> values = design().point(point);
   std::vector<std::string> changes;
   for (std::size_t k = 0; k < values.size(); ++k) changes.push_back(assignment(k, values[k]));
@@ -181,18 +182,20 @@ Scenario Sweep::at(std::uint64_t point) const {
   }
 }
 
-std::vector<ComparisonRow> Sweep::quantities() const { return compare(base_.quantities, {}); }
+std::vector<evaluation::ComparisonRow> Sweep::quantities() const {
+  return evaluation::compare(base_.quantities, {});
+}
 
-std::optional<RunEstimate> Sweep::refuse_hopeless() const {
+std::optional<preparation::RunEstimate> Sweep::refuse_hopeless() const {
   const auto probes = spread(design().size(), kProbes);
   std::vector<Fault> common;  // faults of all probes so far
   std::optional<InputError> first;
   for (const std::uint64_t point : probes) {
     const std::vector<std::string> values = design().point(point);
     try {
-      const Scenario scenario = at(point);
+      const model::Scenario scenario = at(point);
       try {
-        return check_scenario(scenario);
+        return run::check_scenario(scenario);
       } catch (const InputError& error) {
         throw at_the_list(error, values);
       }
@@ -222,13 +225,13 @@ std::optional<RunEstimate> Sweep::refuse_hopeless() const {
 
 void Sweep::check() const {
   for (const std::uint64_t point : spread(design().size(), kMostChecked)) {
-    const Scenario scenario = at(point);
+    const model::Scenario scenario = at(point);
     try {
-      check_scenario(scenario);
+      run::check_scenario(scenario);
     } catch (const InputError& error) {
       throw at_the_list(error, design().point(point));
     }
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

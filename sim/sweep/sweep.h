@@ -12,7 +12,7 @@
 #include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// A scenario with a sweep. Constant: threads may share it.
 class Sweep {
@@ -24,23 +24,23 @@ class Sweep {
   /// The scenario as it is without its sweep. Its `swept_files` are those that values of the sweep
   /// name, one line each: "CHECKSUM NAME", or "unreadable NAME"; sorted. They belong to what the
   /// sweep is: a table of it is not gone on with when they have changed.
-  const Scenario& base() const { return base_; }
-  const SweepDesign& design() const { return base_.sweep; }
+  const model::Scenario& base() const { return base_; }
+  const model::SweepDesign& design() const { return base_.sweep; }
 
   /// Reads the scenario with the values of a point set as --set would. Names of files among the
   /// values are relative to the scenario that holds the list.
   /// @throws InputError at the values that are refused
-  Scenario at(std::uint64_t point) const;
+  model::Scenario at(std::uint64_t point) const;
 
   /// The rows of the comparison at any point, without their values.
-  std::vector<ComparisonRow> quantities() const;
+  std::vector<evaluation::ComparisonRow> quantities() const;
 
   /// Refuses what is wrong at every point, such as a key that there is not: points are read and
   /// prepared, from the first to the last in equal steps, until one is found right. A point at
   /// which the system fails is not wrong.
   /// @throws InputError
   /// @return what the first right point takes on one thread, where one was found
-  std::optional<RunEstimate> refuse_hopeless() const;
+  std::optional<preparation::RunEstimate> refuse_hopeless() const;
 
   /// Reads and prepares all points, of more than 256 so many in equal steps.
   /// @throws InputError at the first point that is refused
@@ -54,8 +54,8 @@ class Sweep {
 
   std::string path_;
   std::vector<std::string> changes_;
-  ScenarioSource source_;
-  Scenario base_;
+  input::ScenarioSource source_;
+  model::Scenario base_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -23,7 +23,7 @@
 #include "sim/sweep/table_header.h"
 #include "sim/system/output_name.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,22 +55,22 @@ bool begins_empty(const std::string& path) {
 // A table that was begun but got no row.
 bool is_unborn(const std::string& path) {
   if (begins_empty(path)) return true;
-  if (!is_hdf5(path)) return false;
-  const InputFile file(path);
+  if (!run::is_hdf5(path)) return false;
+  const records::InputFile file(path);
   return file.has_attribute("/", "kind") && file.text("/", "kind") == "sweep" &&
          (!file.has(kSweepGroup) || !file.has_attribute(kSweepGroup, "points"));
 }
 
 }  // namespace
 
-SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base,
+SweepTable::SweepTable(const std::string& path, bool force, const model::Scenario& base,
                        std::vector<TableColumn> columns, const Selection& selection)
     : path_(path),
       selection_(selection),
       columns_(std::move(columns)),
-      statuses_(selection.size(), PointStatus::not_run) {
+      statuses_(selection.size(), run::PointStatus::not_run) {
   std::error_code ignored;
-  if (fs::is_directory(path_, ignored)) writable_name(path_, force);
+  if (fs::is_directory(path_, ignored)) run::writable_name(path_, force);
   bool replace = force;
   if (!replace && exists(path_)) {
     take_over(path_, base);
@@ -85,11 +85,12 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
   if (!replace && !unborn && exists(partial_path())) take_over(partial_path(), base);
   refuse_foreign_csv(csv_name(path_), force);
   if (exists(partial_path()) && !replace && !unborn) {
-    file_.emplace(OutputFile::resumed(path_, force));
+    file_.emplace(records::OutputFile::resumed(path_, force));
     return;
   }
-  file_.emplace(unborn ? path_ : writable_name(path_, replace), replace || unborn);
-  TemporaryFile empty = TemporaryFile::existing(partial_path());  // until its rows are there
+  file_.emplace(unborn ? path_ : run::writable_name(path_, replace), replace || unborn);
+  system::TemporaryFile empty =
+      system::TemporaryFile::existing(partial_path());  // until its rows are there
   try {
     make(base);
   } catch (...) {
@@ -101,10 +102,10 @@ SweepTable::SweepTable(const std::string& path, bool force, const Scenario& base
 
 namespace {
 
-Hdf5Dataset make_points(Hdf5Group& group, const Selection& selection) {
+records::Hdf5Dataset make_points(records::Hdf5Group& group, const Selection& selection) {
   const std::size_t rows = selection.size();
-  Hdf5Dataset point =
-      group.fixed("point", rows, Storage::int32, 0.0, {"1", "number of the point, counted from 1"});
+  records::Hdf5Dataset point = group.fixed("point", rows, records::Storage::int32, 0.0,
+                                           {"1", "number of the point, counted from 1"});
   point.make_scale("point");
   std::vector<double> numbers;
   for (std::size_t row = 0; row < rows; row += numbers.size()) {
@@ -125,20 +126,23 @@ struct Flags {
 
 Flags flags_of_status() {
   Flags flags{"status", "how it ended", {}};
-  for (std::size_t i = 0; i < kPointStatuses; ++i) {
-    flags.meanings.push_back(name_of(static_cast<PointStatus>(i)));
+  for (std::size_t i = 0; i < run::kPointStatuses; ++i) {
+    flags.meanings.push_back(run::name_of(static_cast<run::PointStatus>(i)));
   }
   return flags;
 }
 
 Flags flags_of_level() {
-  Flags flags{"simd_level", "instructions that computed it", {name_of(PointStatus::not_run)}};
+  Flags flags{
+      "simd_level", "instructions that computed it", {run::name_of(run::PointStatus::not_run)}};
   for (const SimdLevel level : kSimdLevels) flags.meanings.push_back(name_of(level));
   return flags;
 }
 
-void make_flags(Hdf5Group& group, Hdf5Dataset& point, std::size_t rows, const Flags& flags) {
-  Hdf5Dataset dataset = group.fixed(flags.name, rows, Storage::int32, 0.0, {"1", flags.about});
+void make_flags(records::Hdf5Group& group, records::Hdf5Dataset& point, std::size_t rows,
+                const Flags& flags) {
+  records::Hdf5Dataset dataset =
+      group.fixed(flags.name, rows, records::Storage::int32, 0.0, {"1", flags.about});
   std::vector<double> values(flags.meanings.size());
   std::iota(values.begin(), values.end(), 0.0);
   dataset.attribute("flag_values", values);
@@ -146,11 +150,13 @@ void make_flags(Hdf5Group& group, Hdf5Dataset& point, std::size_t rows, const Fl
   dataset.attach_scale(point, 0);
 }
 
-void make_reasons(Hdf5Group& group, Hdf5Dataset& point, std::size_t rows) {
-  Hdf5Dataset reason = group.fixed_texts("reason", rows, kReasonBytes, "why it is not done");
+void make_reasons(records::Hdf5Group& group, records::Hdf5Dataset& point, std::size_t rows) {
+  records::Hdf5Dataset reason =
+      group.fixed_texts("reason", rows, kReasonBytes, "why it is not done");
   reason.attach_scale(point, 0);
-  Hdf5Dataset character = group.fixed("character", kReasonBytes, Storage::int32, 0.0,
-                                      {"1", "place of a character in a text, counted from 1"});
+  records::Hdf5Dataset character =
+      group.fixed("character", kReasonBytes, records::Storage::int32, 0.0,
+                  {"1", "place of a character in a text, counted from 1"});
   // netCDF's name of a dimension without a variable: readers then join the characters to a text,
   // and a table of the points has one row a point, not one a character
   character.make_scale(
@@ -161,7 +167,7 @@ void make_reasons(Hdf5Group& group, Hdf5Dataset& point, std::size_t rows) {
   reason.attach_scale(character, 1);
 }
 
-void write_selection(Hdf5Group& group, const Selection& selection) {
+void write_selection(records::Hdf5Group& group, const Selection& selection) {
   group.attribute("first", static_cast<std::int64_t>(selection.first + 1));
   group.attribute("last", static_cast<std::int64_t>(selection.last));
   group.attribute("shard", static_cast<std::int64_t>(selection.shard));
@@ -170,21 +176,21 @@ void write_selection(Hdf5Group& group, const Selection& selection) {
 
 }  // namespace
 
-void SweepTable::make(const Scenario& base) {
-  Hdf5Group root = file_->root();
-  write_inputs(root, base, "sweep");
+void SweepTable::make(const model::Scenario& base) {
+  records::Hdf5Group root = file_->root();
+  run::write_inputs(root, base, "sweep");
   root.group("inputs").attribute("swept_files", base.swept_files);
   root.attribute("schema_version", kSweepSchemaVersion);
   root.flush_file();
 
-  Hdf5Group group = root.group("sweep");
+  records::Hdf5Group group = root.group("sweep");
   const std::size_t rows = selection_.size();
-  Hdf5Dataset point = make_points(group, selection_);
+  records::Hdf5Dataset point = make_points(group, selection_);
   make_flags(group, point, rows, flags_of_status());
   make_flags(group, point, rows, flags_of_level());
   make_reasons(group, point, rows);
   for (const TableColumn& column : columns_) {
-    Hdf5Dataset dataset =
+    records::Hdf5Dataset dataset =
         group.fixed(column.name, rows, column.storage, column.fill, column.meaning);
     for (const auto& [name, text] : column.attributes) dataset.attribute(name, text);
     dataset.attach_scale(point, 0);
@@ -198,21 +204,21 @@ void SweepTable::make(const Scenario& base) {
 }
 
 // Takes over the points that a file holds already. A file that is not of this sweep is refused.
-void SweepTable::take_over(const std::string& name, const Scenario& base) {
+void SweepTable::take_over(const std::string& name, const model::Scenario& base) {
   std::optional<SweepHeader> header;
   try {
-    header = read_sweep_header(InputFile(name));
+    header = read_sweep_header(records::InputFile(name));
   } catch (const InputError&) {
-    writable_name(path_, false);  // says that it exists
+    run::writable_name(path_, false);  // says that it exists
     throw;
   }
-  const InputFile file(name);
-  if (const std::string build = build_of(file); build != result_identity()) {
+  const records::InputFile file(name);
+  if (const std::string build = run::build_of(file); build != run::result_identity()) {
     throw InputError(
         {name}, fmt::format("was written by servomill {}, this is {}: points of two builds may "
                             "differ; go on with that build, name another --output or use --force "
                             "to run all of it again",
-                            build, result_identity()));
+                            build, run::result_identity()));
   }
   const std::string why = why_other(*header, base, selection_);
   if (!why.empty()) throw InputError({name}, why + "; use --force to overwrite");
@@ -221,48 +227,50 @@ void SweepTable::take_over(const std::string& name, const Scenario& base) {
 
 namespace {
 
-bool is_status(double value) { return value >= 0.0 && value < static_cast<double>(kPointStatuses); }
+bool is_status(double value) {
+  return value >= 0.0 && value < static_cast<double>(run::kPointStatuses);
+}
 // Instructions matter where there are numbers.
 bool has_numbers(double status) {
-  return status == static_cast<double>(PointStatus::done) ||
-         status == static_cast<double>(PointStatus::stopped);
+  return status == static_cast<double>(run::PointStatus::done) ||
+         status == static_cast<double>(run::PointStatus::stopped);
 }
 
 }  // namespace
 
-void SweepTable::take_statuses(const InputFile& file) {
+void SweepTable::take_statuses(const records::InputFile& file) {
   counts_ = {statuses_.size()};
   for (std::size_t row = 0; row < statuses_.size(); row += kSweepBlockRows) {
     const std::size_t count = std::min(kSweepBlockRows, statuses_.size() - row);
     const auto values = file.values(kSweepGroup + "/status", row, count);
     const auto levels = file.values(kSweepGroup + "/simd_level", row, count);
     for (std::size_t i = 0; i < count; ++i) {
-      set_status(row + i, static_cast<PointStatus>(is_status(values[i]) ? values[i] : 0.0));
+      set_status(row + i, static_cast<run::PointStatus>(is_status(values[i]) ? values[i] : 0.0));
       if (has_numbers(values[i])) add_level(levels_, levels[i]);
     }
   }
 }
 
-void SweepTable::set_status(std::uint64_t row, PointStatus status) {
+void SweepTable::set_status(std::uint64_t row, run::PointStatus status) {
   --counts_[static_cast<std::size_t>(statuses_[row])];
   ++counts_[static_cast<std::size_t>(status)];
   statuses_[row] = status;
 }
 
-void SweepTable::forget(PointStatus status) {
+void SweepTable::forget(run::PointStatus status) {
   if (counts_[static_cast<std::size_t>(status)] == 0) return;
   if (!file_) {
     refuse_foreign_csv(csv_name(path_), true);
     fs::remove(csv_name(path_));
-    file_.emplace(OutputFile::reopened(path_));
+    file_.emplace(records::OutputFile::reopened(path_));
   }
-  Hdf5Group group = file_->root().group("sweep");
-  Hdf5Dataset statuses = group.dataset("status"), reasons = group.dataset("reason");
+  records::Hdf5Group group = file_->root().group("sweep");
+  records::Hdf5Dataset statuses = group.dataset("status"), reasons = group.dataset("reason");
   for (std::size_t row = 0; row < statuses_.size(); ++row) {
     if (statuses_[row] != status) continue;
     statuses.write(row, std::array{0.0});
     reasons.write_text(row, "");
-    set_status(row, PointStatus::not_run);
+    set_status(row, run::PointStatus::not_run);
   }
   group.flush_file();
 }
@@ -270,7 +278,7 @@ void SweepTable::forget(PointStatus status) {
 std::vector<SimdLevel> SweepTable::simd_levels() const { return {levels_.begin(), levels_.end()}; }
 
 // Rows that follow each other are written at once.
-void SweepTable::write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to,
+void SweepTable::write_runs(std::span<const std::uint64_t> rows, records::Hdf5Dataset& to,
                             std::span<const double> values) {
   for (std::size_t begin = 0; begin < rows.size();) {
     std::size_t end = begin + 1;
@@ -288,7 +296,7 @@ double value_in(const TableColumn& column, std::size_t c, const SweepPoint& poin
     const std::size_t q = c - point.values.size();
     return q < point.result.rows.size() ? point.result.rows[q].value : kNoNumber;
   }
-  if (column.texts.empty()) return number_of(point.values[c]);
+  if (column.texts.empty()) return model::number_of(point.values[c]);
   const auto text = std::find(column.texts.begin(), column.texts.end(), point.values[c]);
   assert(text != column.texts.end());
   return static_cast<double>(text - column.texts.begin());
@@ -298,20 +306,20 @@ double value_in(const TableColumn& column, std::size_t c, const SweepPoint& poin
 
 void SweepTable::write(std::span<const SweepPoint> points) {
   assert(file_);
-  Hdf5Group group = file_->root().group("sweep");
+  records::Hdf5Group group = file_->root().group("sweep");
   std::vector<std::uint64_t> rows;
   for (const SweepPoint& point : points) rows.push_back(selection_.place(point.index));
   std::vector<double> values(points.size());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = value_in(columns_[c], c, points[i]);
-    Hdf5Dataset dataset = group.dataset(columns_[c].name);
+    records::Hdf5Dataset dataset = group.dataset(columns_[c].name);
     write_runs(rows, dataset, values);
   }
   std::fill(values.begin(), values.end(), number_of_level(simd_level()));
-  Hdf5Dataset levels = group.dataset("simd_level");
+  records::Hdf5Dataset levels = group.dataset("simd_level");
   write_runs(rows, levels, values);
   levels_.insert(simd_level());
-  Hdf5Dataset reasons = group.dataset("reason");
+  records::Hdf5Dataset reasons = group.dataset("reason");
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].result.reason.empty()) reasons.write_text(rows[i], points[i].result.reason);
   }
@@ -321,14 +329,14 @@ void SweepTable::write(std::span<const SweepPoint> points) {
     values[i] = static_cast<double>(points[i].result.status);
     set_status(rows[i], points[i].result.status);
   }
-  Hdf5Dataset statuses = group.dataset("status");
+  records::Hdf5Dataset statuses = group.dataset("status");
   write_runs(rows, statuses, values);
   group.flush_file();
 }
 
-void SweepTable::copy(const InputFile& from) {
+void SweepTable::copy(const records::InputFile& from) {
   assert(file_);
-  Hdf5Group group = file_->root().group("sweep");
+  records::Hdf5Group group = file_->root().group("sweep");
   const std::size_t length = from.shape(kSweepGroup + "/point").at(0);
   for (std::size_t begin = 0; begin < length; begin += kSweepBlockRows) {
     throw_if_interrupted();
@@ -346,21 +354,21 @@ void SweepTable::copy(const InputFile& from) {
       }
       taken.push_back(i);
       rows.push_back(selection_.place(static_cast<std::uint64_t>(numbers[i]) - 1));
-      set_status(rows.back(), static_cast<PointStatus>(statuses[i]));
+      set_status(rows.back(), static_cast<run::PointStatus>(statuses[i]));
       if (has_numbers(statuses[i])) add_level(levels_, levels[i]);
     }
     const auto take = [&](const std::string& name) {
       const auto all = from.values(kSweepGroup + "/" + name, begin, count);
       std::vector<double> some;
       for (const std::size_t i : taken) some.push_back(all[i]);
-      Hdf5Dataset dataset = group.dataset(name);
+      records::Hdf5Dataset dataset = group.dataset(name);
       write_runs(rows, dataset, some);
     };
     for (const TableColumn& column : columns_) take(column.name);
     take("status");
     take("simd_level");
     const auto reasons = from.texts(kSweepGroup + "/reason", begin, count);
-    Hdf5Dataset to = group.dataset("reason");
+    records::Hdf5Dataset to = group.dataset("reason");
     for (std::size_t i = 0; i < taken.size(); ++i) {
       if (!reasons[taken[i]].empty()) to.write_text(rows[i], reasons[taken[i]]);
     }
@@ -374,4 +382,4 @@ void SweepTable::commit() {
   write_csv(path_, csv_name(path_));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

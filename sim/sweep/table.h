@@ -17,10 +17,10 @@
 #include "sim/sweep/selection.h"
 #include "sim/sweep/table_columns.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// Number of points of each status.
-using StatusCounts = std::array<std::uint64_t, kPointStatuses>;
+using StatusCounts = std::array<std::uint64_t, run::kPointStatuses>;
 
 /// The table under construction. Layout of the file: README, section "Sweeps".
 ///
@@ -33,22 +33,22 @@ class SweepTable {
   /// it, or finds it complete.
   /// @throws InputError if there are files that are none of that and `force` does not allow to
   /// replace them
-  SweepTable(const std::string& path, bool force, const Scenario& base,
+  SweepTable(const std::string& path, bool force, const model::Scenario& base,
              std::vector<TableColumn> columns, const Selection& selection);
 
   /// How points ended, by place in the selection.
-  const std::vector<PointStatus>& statuses() const { return statuses_; }
+  const std::vector<run::PointStatus>& statuses() const { return statuses_; }
   const StatusCounts& counts() const { return counts_; }
   /// The file has its final name and nothing is left to be done.
   bool is_complete() const { return !file_; }
 
   /// Forgets points of a status, so that they are not_run; a complete table with such points is
   /// one under construction again.
-  void forget(PointStatus status);
+  void forget(run::PointStatus status);
   /// Adds points that were not run. @pre !is_complete()
   void write(std::span<const SweepPoint> points);
   /// Copies rows of another table of the same scenario, those with a status. @pre !is_complete()
-  void copy(const InputFile& from);
+  void copy(const records::InputFile& from);
   /// Gives the file its final name and writes the CSV file beside it. @pre !is_complete()
   void commit();
   /// From here on nothing stays without a commit.
@@ -61,20 +61,20 @@ class SweepTable {
   std::vector<SimdLevel> simd_levels() const;
 
  private:
-  void make(const Scenario& base);
-  void take_over(const std::string& name, const Scenario& base);
-  void take_statuses(const InputFile& file);
-  void set_status(std::uint64_t row, PointStatus status);
-  void write_runs(std::span<const std::uint64_t> rows, Hdf5Dataset& to,
+  void make(const model::Scenario& base);
+  void take_over(const std::string& name, const model::Scenario& base);
+  void take_statuses(const records::InputFile& file);
+  void set_status(std::uint64_t row, run::PointStatus status);
+  void write_runs(std::span<const std::uint64_t> rows, records::Hdf5Dataset& to,
                   std::span<const double> values);
 
   std::string path_;
   Selection selection_;
   std::vector<TableColumn> columns_;
-  std::vector<PointStatus> statuses_;
+  std::vector<run::PointStatus> statuses_;
   StatusCounts counts_{};
   std::set<SimdLevel> levels_;
-  std::optional<OutputFile> file_;
+  std::optional<records::OutputFile> file_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

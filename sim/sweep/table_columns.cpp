@@ -7,7 +7,7 @@
 #include "sim/evaluation/comparison.h"
 #include "sim/run/store.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr double kNoText = -1.0;
@@ -47,15 +47,15 @@ std::string unquoted(const std::string& toml) {
   return is_text ? toml.substr(1, toml.size() - 2) : toml;
 }
 
-TableColumn key_column(const SweepDesign& design, std::size_t key, Names& names) {
-  const SweepColumn column = design.column(key);
+TableColumn key_column(const model::SweepDesign& design, std::size_t key, Names& names) {
+  const model::SweepColumn column = design.column(key);
   const std::string& full = design.keys[key].key;
   TableColumn out;
   out.name = names.unique(plain_name(full));
   out.meaning = {column.unit.empty() ? "1" : column.unit, full};
   out.attributes = {{"role", "parameter"}, {"key", full}};
   if (!column.numeric) {
-    out.storage = Storage::int32;
+    out.storage = records::Storage::int32;
     out.texts = column.texts;
     std::vector<std::string> shown;
     for (const std::string& text : column.texts) shown.push_back(unquoted(text));
@@ -65,7 +65,7 @@ TableColumn key_column(const SweepDesign& design, std::size_t key, Names& names)
   return out;
 }
 
-TableColumn quantity_column(const ComparisonRow& row, Names& names) {
+TableColumn quantity_column(const evaluation::ComparisonRow& row, Names& names) {
   TableColumn out;
   out.name = names.unique(plain_name(fmt::format("{} {} {} {} {}", row.case_name, row.quantity,
                                                  row.axis, row.statistic, row.sections)));
@@ -84,19 +84,19 @@ TableColumn quantity_column(const ComparisonRow& row, Names& names) {
 
 }  // namespace
 
-std::vector<TableColumn> columns_of(const Scenario& base) {
+std::vector<TableColumn> columns_of(const model::Scenario& base) {
   Names names;
   std::vector<TableColumn> columns;
   for (std::size_t key = 0; key < base.sweep.keys.size(); ++key) {
     columns.push_back(key_column(base.sweep, key, names));
   }
-  for (const ComparisonRow& row : compare(base.quantities, {})) {
+  for (const evaluation::ComparisonRow& row : evaluation::compare(base.quantities, {})) {
     columns.push_back(quantity_column(row, names));
   }
   return columns;
 }
 
-std::vector<TableColumn> columns_of(const InputFile& file) {
+std::vector<TableColumn> columns_of(const records::InputFile& file) {
   std::vector<TableColumn> columns;
   for (const std::string& name : file.datasets(kSweepGroup)) {
     const std::string path = kSweepGroup + "/" + name;
@@ -111,13 +111,13 @@ std::vector<TableColumn> columns_of(const InputFile& file) {
       if (!file.has_attribute(path, attribute)) continue;
       column.attributes.emplace_back(attribute, file.text(path, attribute));
       if (attribute != "values") continue;
-      column.storage = Storage::int32;
+      column.storage = records::Storage::int32;
       column.fill = kNoText;
-      column.texts = split_lines(column.attributes.back().second);
+      column.texts = run::split_lines(column.attributes.back().second);
     }
     columns.push_back(std::move(column));
   }
   return columns;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -11,7 +11,7 @@
 #include "sim/records/hdf5_dataset.h"
 #include "sim/records/input_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// Group of the table in a sweep file.
 inline const std::string kSweepGroup = "/sweep";
@@ -25,8 +25,8 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 /// One column of numbers.
 struct TableColumn {
   std::string name;  // of the dataset: letters, digits and '_'
-  Meaning meaning;
-  Storage storage = Storage::float64;
+  records::Meaning meaning;
+  records::Storage storage = records::Storage::float64;
   double fill = 0.0;                                            // where a point was not run
   std::vector<std::pair<std::string, std::string>> attributes;  // what it is a column of
   std::vector<std::string> texts;                               // of a column of their places
@@ -34,9 +34,9 @@ struct TableColumn {
 
 /// Columns of a sweep table beside point, status, reason and the instructions that computed it: a
 /// column for each key of the sweep, then one for each line of the comparison.
-std::vector<TableColumn> columns_of(const Scenario& base);
+std::vector<TableColumn> columns_of(const model::Scenario& base);
 
 /// The same of a file that is there. @throws InputError
-std::vector<TableColumn> columns_of(const InputFile& file);
+std::vector<TableColumn> columns_of(const records::InputFile& file);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

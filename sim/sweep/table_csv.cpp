@@ -18,7 +18,7 @@
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 namespace {
 
 constexpr std::string_view kCsvBegin = "point,status,";
@@ -53,25 +53,25 @@ std::string csv_header(const std::vector<TableColumn>& columns) {
 class CsvFile {
  public:
   explicit CsvFile(const std::string& path)
-      : path_(output_target(path, Existing::replaced)),
+      : path_(system::output_target(path, system::Existing::replaced)),
         partial_(path_),
         file_(std::fopen(partial_.name().c_str(), "wbx")) {
-    if (file_ == nullptr) throw SystemError(path_, "cannot be made", std::strerror(errno));
+    if (file_ == nullptr) throw system::SystemError(path_, "cannot be made", std::strerror(errno));
   }
   void write(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
   }
   void commit() {
     if (std::fclose(file_.release()) != 0) fail();
-    give_name(partial_.name(), path_, Existing::replaced);
+    system::give_name(partial_.name(), path_, system::Existing::replaced);
   }
 
  private:
   [[noreturn]] void fail() const {
-    throw SystemError(path_, "cannot be written", std::strerror(errno));
+    throw system::SystemError(path_, "cannot be written", std::strerror(errno));
   }
   std::string path_;
-  TemporaryFile partial_;
+  system::TemporaryFile partial_;
   OpenFile file_;
 };
 
@@ -82,7 +82,7 @@ std::string csv_name(const std::string& path) {
 }
 
 void refuse_foreign_csv(const std::string& path, bool force) {
-  output_target(path, Existing::replaced);
+  system::output_target(path, system::Existing::replaced);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return;
   if (!force) throw InputError({path}, "exists; use --force to overwrite");
@@ -94,7 +94,7 @@ void refuse_foreign_csv(const std::string& path, bool force) {
 }
 
 void write_csv(const std::string& table, const std::string& csv) {
-  const InputFile file(table);
+  const records::InputFile file(table);
   const std::vector<TableColumn> columns = columns_of(file);
   CsvFile out(csv);
   out.write(csv_header(columns));
@@ -111,7 +111,8 @@ void write_csv(const std::string& table, const std::string& csv) {
     }
     std::string text;
     for (std::size_t i = 0; i < count; ++i) {
-      text += fmt::format("{},{},", points[i], name_of(static_cast<PointStatus>(statuses[i])));
+      text += fmt::format("{},{},", points[i],
+                          run::name_of(static_cast<run::PointStatus>(statuses[i])));
       for (std::size_t c = 0; c < columns.size(); ++c) {
         text += csv_number(columns[c], values[c][i]) + ",";
       }
@@ -122,4 +123,4 @@ void write_csv(const std::string& table, const std::string& csv) {
   out.commit();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

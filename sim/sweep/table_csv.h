@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// "OUT.csv" for "OUT.h5".
 std::string csv_name(const std::string& path);
@@ -17,4 +17,4 @@ void write_csv(const std::string& table, const std::string& csv);
 /// @throws InputError
 void refuse_foreign_csv(const std::string& path, bool force);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/input/read_scenario.h"
 #include "sim/run/store.h"
 #include "sim/sweep/table_columns.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
-std::string why_other(const SweepHeader& header, const Scenario& base, const Selection& selection) {
+std::string why_other(const SweepHeader& header, const model::Scenario& base,
+                      const Selection& selection) {
   if (header.base.resolved != base.resolved) {
     return header.base.name == base.name
                ? "holds a sweep of this scenario as it was before it changed"
@@ -33,15 +35,15 @@ std::string why_other(const SweepHeader& header, const Scenario& base, const Sel
 
 std::string changed_file(const std::string& before, const std::string& after) {
   if (before == after) return {};
-  const std::vector<std::string> others = split_lines(before);
-  for (const std::string& line : split_lines(after)) {
+  const std::vector<std::string> others = run::split_lines(before);
+  for (const std::string& line : run::split_lines(after)) {
     if (std::find(others.begin(), others.end(), line) != others.end()) continue;
     return line.substr(line.find(' ') + 1);
   }
   return {};
 }
 
-SweepHeader read_sweep_header(const InputFile& file) {
+SweepHeader read_sweep_header(const records::InputFile& file) {
   const std::string& path = file.path();
   if (!file.has_attribute("/", "schema_version")) {
     throw InputError({path}, "is not a result file of servomill");
@@ -60,7 +62,7 @@ SweepHeader read_sweep_header(const InputFile& file) {
   }
   SweepHeader header;
   const std::string resolved = file.text("/inputs", "resolved");
-  header.base = read_resolved_scenario(resolved, path + ":/inputs");
+  header.base = input::read_resolved_scenario(resolved, path + ":/inputs");
   header.base.name = file.text("/", "scenario");
   header.base.text = file.text("/inputs", "scenario");
   header.base.machine_text = file.text("/inputs", "machine");
@@ -76,4 +78,4 @@ SweepHeader read_sweep_header(const InputFile& file) {
   return header;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

@@ -8,7 +8,7 @@
 #include "sim/records/input_file.h"
 #include "sim/sweep/selection.h"
 
-namespace servomill::sim {
+namespace servomill::sim::sweep {
 
 /// Version of the layout of sweep files; a file of another one is refused.
 inline constexpr int kSweepSchemaVersion = 3;
@@ -19,15 +19,16 @@ std::string changed_file(const std::string& before, const std::string& after);
 
 /// Content of the header.
 struct SweepHeader {
-  Scenario base;  // as stored; the keys of its sweep may stand in another order
+  model::Scenario base;  // as stored; the keys of its sweep may stand in another order
   std::uint64_t points = 0;
   Selection selection;
 };
 
 /// @throws InputError if the file is no table of a sweep of this version
-SweepHeader read_sweep_header(const InputFile& file);
+SweepHeader read_sweep_header(const records::InputFile& file);
 
 /// Why a file is not the table of this sweep; empty: it is.
-std::string why_other(const SweepHeader& header, const Scenario& base, const Selection& selection);
+std::string why_other(const SweepHeader& header, const model::Scenario& base,
+                      const Selection& selection);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::sweep

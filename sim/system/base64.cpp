@@ -5,7 +5,7 @@
 #include <boost/archive/iterators/binary_from_base64.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 namespace {
 
 using namespace boost::archive::iterators;
@@ -40,4 +40,4 @@ std::optional<std::string> from_base64(std::string_view text) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 std::string json_text(std::string_view text) {
   std::string out = "\"";
@@ -56,4 +56,4 @@ JsonObject& JsonObject::boolean(std::string_view key, bool value) {
   return raw(key, value ? "true" : "false");
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// A text between quotes.
 std::string json_text(std::string_view text);
@@ -46,4 +46,4 @@ class JsonObject {
   std::string members_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

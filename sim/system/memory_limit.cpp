@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -68,4 +68,4 @@ double memory_of_process() {
   return std::min(memory, memory_of_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// Bytes that this process may use: those of the machine, or fewer where the shell (ulimit -v), a
 /// container or a job allows less.
@@ -22,4 +22,4 @@ void return_large_blocks();
 /// @param root    where the groups are mounted (/sys/fs/cgroup)
 double memory_of_groups(const std::filesystem::path& groups, const std::filesystem::path& root);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

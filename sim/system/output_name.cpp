@@ -19,7 +19,7 @@
 #include "plant/vocabulary/user_file.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +209,4 @@ void refuse_partial(const std::string& partial) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

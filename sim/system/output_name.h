@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// A file that must not stay if the program ends before it has got its final name, by a signal,
 /// too.
@@ -61,4 +61,4 @@ Writer writer_of(const std::string& partial);
 ///     while another process writes it
 void refuse_partial(const std::string& partial);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

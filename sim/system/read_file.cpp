@@ -4,7 +4,7 @@
 
 #include "plant/vocabulary/byte_order_mark.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
                       std::uintmax_t most) {
@@ -20,4 +20,4 @@ std::string read_file(const std::string& path, const Place& at, std::string_view
   return text;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

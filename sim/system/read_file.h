@@ -8,7 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// The bytes of a file, without a byte-order mark (UTF-8).
 /// @param at    where the file was named; without a file name: the file itself
@@ -18,4 +18,4 @@ namespace servomill::sim {
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
                       std::uintmax_t most = kMostBytesOfFile);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

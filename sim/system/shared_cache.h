@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// All that a result depends on, byte for byte: where keys are equal, so are the results. Numbers
 /// count by their bits (-0.0 is not 0.0), texts and lists with their length.
@@ -146,4 +146,4 @@ class SharedCache {
   std::size_t weight_ = 0, made_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -1,6 +1,6 @@
 #include "sim/system/shared_texts.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 SharedTexts::Text SharedTexts::shared(const Text& text) {
   const std::scoped_lock lock(mutex_);
@@ -12,4 +12,4 @@ SharedTexts::Text SharedTexts::shared(const Text& text) {
   return text;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

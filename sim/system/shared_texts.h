@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// Equal texts become one object, whose address then stands for the text (MemoKey::add_shared).
 /// Holds none of them itself. For any number of threads.
@@ -22,4 +22,4 @@ class SharedTexts {
   std::vector<std::weak_ptr<const std::string>> known_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

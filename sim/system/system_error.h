@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// what() is "PATH: error: ACTION: REASON", such as "out.h5.partial: error: cannot be written: No
 /// space left on device".
@@ -16,4 +16,4 @@ class SystemError : public std::runtime_error {
             std::string(path).append(": error: ").append(action).append(": ").append(reason)) {}
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 std::string text_table(std::vector<std::vector<std::string>> lines, std::size_t grouped,
                        const std::set<std::size_t>& right) {
@@ -35,4 +35,4 @@ std::string text_table(std::vector<std::vector<std::string>> lines, std::size_t 
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// Lines of equally many cells in columns, the first line underlined as their heading.
 /// @param grouped  so many first columns are said once where they stay the same
@@ -14,4 +14,4 @@ namespace servomill::sim {
 std::string text_table(std::vector<std::vector<std::string>> lines, std::size_t grouped,
                        const std::set<std::size_t>& right);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -1,6 +1,6 @@
 #include "sim/system/utf8.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 namespace {
 
 // Bytes 10xxxxxx follow the first one of a character.
@@ -31,4 +31,4 @@ std::size_t utf8_start(std::string_view text, std::size_t index) {
   return index;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

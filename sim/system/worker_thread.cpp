@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 WorkerThread::~WorkerThread() {
   {
@@ -76,4 +76,4 @@ void for_each_index(std::size_t count, unsigned threads,
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

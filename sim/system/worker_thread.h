@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// A thread of its own that does one job after the other, in the order in which they were given.
 /// None waits in a queue, so that what jobs hold stays bounded. For one poster.
@@ -46,4 +46,4 @@ unsigned thread_count(unsigned wanted);
 void for_each_index(std::size_t count, unsigned threads,
                     const std::function<void(std::size_t)>& do_item);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -11,7 +11,7 @@
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 namespace {
 
 void write_all(const std::string& partial, std::string_view text, const std::string& path) {
@@ -38,4 +38,4 @@ void write_text_file(const std::string& path, std::string_view text, bool force)
   give_name(partial.name(), target, existing);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
 /// @throws InputError if no text may be written there: to be asked before the work
 void refuse_unwritable_text(const std::string& path, bool force);
@@ -15,4 +15,4 @@ void refuse_unwritable_text(const std::string& path, bool force);
 /// be written
 void write_text_file(const std::string& path, std::string_view text, bool force);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::system

@@ -11,7 +11,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
@@ -252,4 +252,4 @@ std::vector<CompensationTable> component_tables_of(const TableSource& source,
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

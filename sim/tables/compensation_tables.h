@@ -9,7 +9,7 @@
 #include "sim/tables/line_correction.h"
 #include "sim/tables/table_format.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 /// The positions of one axis over which tables run.
 struct TableLine {
@@ -76,4 +76,4 @@ std::vector<CompensationTable> component_tables_of(const TableSource& source,
                                                    const std::vector<TableLine>& lines,
                                                    const FormatRules& rules);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

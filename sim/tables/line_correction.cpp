@@ -6,7 +6,7 @@
 #include "plant/geometry/travelling_errors.h"
 #include "strategies/axis_displacement.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 bool is_rotary_positioning(const plant::ErrorName& name) {
@@ -94,4 +94,4 @@ Joints LineCorrection::over(int joint, double q, int direction) const {
   return d;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -9,7 +9,7 @@
 #include "plant/kinematics/chain.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 /// A machine, its errors, and the point from which the lines of all tables start, one along each
 /// axis.
@@ -61,4 +61,4 @@ class LineCorrection {
   Joints base_ = Joints::Zero();
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 std::optional<double> finite(double limit) {
@@ -19,7 +19,8 @@ std::optional<double> finite(double limit) {
 double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
 const char* unit_name_of(int joint) { return joint < kLinearJoints ? "mm" : "deg"; }
 
-std::vector<TableLine> lines_of(const MachineSettings& machine, const TableRequest& request) {
+std::vector<TableLine> lines_of(const model::MachineSettings& machine,
+                                const TableRequest& request) {
   const FormatRules& rules = rules_of(request.format);
   std::vector<TableLine> lines;
   for (const int j : machine.joints()) {
@@ -140,8 +141,7 @@ std::string directions_in(const TableExport& e, const TableLine& line) {
     list += fmt::format("{}{}", list.empty() ? "" : ", ", title_of(e, table));
   }
   if (both.empty()) return "the tables hold the mean";
-  const std::string out = fmt::format("both directions are held by {}", both);
-  return mean.empty() ? out : fmt::format("{}; the mean by {}", out, mean);
+  return "both directions are held by " + both + (mean.empty() ? "" : "; the mean by " + mean);
 }
 
 void add_omitted(const TableExport& e, std::vector<std::string>& out) {
@@ -339,7 +339,7 @@ void refuse_harm(const TableExport& e) {
 
 }  // namespace
 
-TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
+TableExport export_tables(const model::MachineSettings& machine, const plant::ErrorModel& errors,
                           const TableRequest& request) {
   TableExport e;
   e.request = request;
@@ -397,4 +397,4 @@ std::vector<std::string> report(const TableExport& e) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

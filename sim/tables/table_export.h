@@ -9,7 +9,7 @@
 #include "sim/tables/compensation_tables.h"
 #include "sim/tables/table_residuals.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 struct TableRequest {
   struct AxisRequest {
@@ -45,10 +45,10 @@ struct TableExport {
 
 /// @throws InputError if points are too many, an axis has no travel, the reference lies outside it,
 ///         or the format can hold nothing of this model
-TableExport export_tables(const MachineSettings& machine, const plant::ErrorModel& errors,
+TableExport export_tables(const model::MachineSettings& machine, const plant::ErrorModel& errors,
                           const TableRequest& request);
 
 /// Report of what the tables correct and leave uncorrected: lines of text without line ends.
 std::vector<std::string> report(const TableExport& tables);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 double unit_of(int joint) { return joint < kLinearJoints ? mm : deg; }
@@ -329,4 +329,4 @@ std::vector<TextFile> table_files(const TableExport& e) {
   return csv_files(e);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

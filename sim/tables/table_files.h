@@ -15,7 +15,7 @@
 
 #include "sim/tables/table_export.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 struct TextFile {
   std::string name;  // without folder
@@ -26,4 +26,4 @@ struct TextFile {
 /// comments, otherwise in a file notes.txt of its own.
 std::vector<TextFile> table_files(const TableExport& tables);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -2,7 +2,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 const FormatRules& rules_of(TableFormat format) {
   static const std::array<FormatRules, kTableFormats.size()> kRules = {{
@@ -51,4 +51,4 @@ const FormatRules& rules_of(TableFormat format) {
   return kRules[static_cast<std::size_t>(format)];
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

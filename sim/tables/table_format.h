@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 enum class TableFormat : std::uint8_t { linuxcnc, heidenhain, siemens, csv };
 
@@ -40,4 +40,4 @@ inline std::string_view name_of(TableFormat format) {
 inline constexpr double kGridStep = 0.1e-6;  // m
 inline constexpr double kGridSteps = 64.0;
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

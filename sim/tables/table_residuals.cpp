@@ -6,7 +6,7 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 // Places of one axis that are looked at, with the displacements of the tables there.
@@ -163,4 +163,4 @@ Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -6,7 +6,7 @@
 
 #include "sim/tables/compensation_tables.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 /// One error that tables leave in part or as a whole. Interpolation is not counted here.
 struct TableResidual {
@@ -42,4 +42,4 @@ Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
 
 inline constexpr double kNothing = 1e-9;  // m, rad
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

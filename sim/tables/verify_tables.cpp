@@ -17,7 +17,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 namespace {
 
 using controllers::ControlTable;
@@ -380,4 +380,4 @@ std::string to_string(const TableVerification& v) {
   return text;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

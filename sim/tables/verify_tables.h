@@ -7,7 +7,7 @@
 
 #include "sim/tables/table_files.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 /// Result of a verification without a fault.
 struct TableVerification {
@@ -32,4 +32,4 @@ TableVerification verify_tables(const TableExport& tables, const std::vector<Tex
 /// "verified: 6000 positions, largest difference to the error model 0.0012 um"
 std::string to_string(const TableVerification& verification);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -7,26 +7,27 @@
 
 #include "plant/drives/drive_bank.h"
 #include "plant/geometry/volumetric.h"
+#include "sim/input/read_scenario.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {
 namespace {
 
-const Scenario& experiment1() {
-  static const Scenario kScenario =
-      read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/guevel2025/experiment1.toml");
+const model::Scenario& experiment1() {
+  static const model::Scenario kScenario =
+      input::read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/guevel2025/experiment1.toml");
   return kScenario;
 }
 
 // One case of experiment 1: CC424, 10 us base tick, recorded at 1 ms.
 void BM_Case(benchmark::State& state, const char* name) {
-  const CaseSpec& spec = *experiment1().find_case(name);
-  const StopFlag stop = false;
+  const model::CaseSpec& spec = *experiment1().find_case(name);
+  const engine::StopFlag stop = false;
   double simulated = 0.0;
   for (auto _ : state) {
-    PreparedCase prepared(experiment1(), spec);
+    preparation::PreparedCase prepared(experiment1(), spec);
     std::atomic<float> progress = 0.0F;
-    simulated += run_case(prepared, stop, progress).result.simulated_time;
+    simulated += run::run_case(prepared, stop, progress).result.simulated_time;
   }
   state.counters["x_real_time"] = benchmark::Counter(simulated, benchmark::Counter::kIsRate);
 }
@@ -39,14 +40,15 @@ BENCHMARK_CAPTURE(BM_Case, gcode, "gcode")->Unit(benchmark::kMillisecond);
 // Reading, rewriting, printing, reading again and planning, without the simulation.
 void BM_Prepare(benchmark::State& state) {
   for (auto _ : state) {
-    benchmark::DoNotOptimize(PreparedCase(experiment1(), *experiment1().find_case("gcode")));
+    benchmark::DoNotOptimize(
+        preparation::PreparedCase(experiment1(), *experiment1().find_case("gcode")));
   }
 }
 BENCHMARK(BM_Prepare)->Unit(benchmark::kMillisecond);
 
 // All five drives over one instant of the schedule.
 void BM_DriveBank(benchmark::State& state) {
-  const MachineSettings& machine = experiment1().machine;
+  const model::MachineSettings& machine = experiment1().machine;
   const std::vector<Tick> steps = {4};
   const plant::DriveBank bank(machine.drives, 10e-6, steps);
   plant::DriveState drives = bank.at_rest(std::vector<double>(kJoints, 0.1));
@@ -61,7 +63,7 @@ BENCHMARK(BM_DriveBank);
 
 // The same joints with friction, in motion: one step of 100 us. `speed` is in mm/s (100 mrad/s).
 void BM_DriveBankWithFriction(benchmark::State& state, plant::FrictionKind kind, double speed) {
-  const MachineSettings& machine = experiment1().machine;
+  const model::MachineSettings& machine = experiment1().machine;
   auto params = machine.drives;
   for (plant::FeedDriveParams& p : params) {
     p.friction = {.kind = kind,

@@ -50,8 +50,8 @@ const std::vector<double>& rows() {
   return kAll;
 }
 
-SeriesLayout layout(int compression, Storage storage) {
-  SeriesLayout out;
+records::SeriesLayout layout(int compression, records::Storage storage) {
+  records::SeriesLayout out;
   out.compression = compression;
   for (std::size_t c = 1; c < kSignals; ++c) {
     out.channels.push_back({"signal" + std::to_string(c), {"mm", "signal"}, "", storage});
@@ -59,13 +59,13 @@ SeriesLayout layout(int compression, Storage storage) {
   return out;
 }
 
-void BM_Record(benchmark::State& state, int compression, Storage storage) {
+void BM_Record(benchmark::State& state, int compression, records::Storage storage) {
   const std::vector<double>& all = rows();
   const std::string path = std::filesystem::temp_directory_path() / "servomill_recorder_bench.h5";
   double caller = 0.0, process = 0.0, wall = 0.0;
   for (auto _ : state) {
-    OutputFile file(path, true);
-    SeriesWriter writer(file.root().group("servo"), layout(compression, storage));
+    records::OutputFile file(path, true);
+    records::SeriesWriter writer(file.root().group("servo"), layout(compression, storage));
     caller -= seconds(CLOCK_THREAD_CPUTIME_ID);
     process -= seconds(CLOCK_PROCESS_CPUTIME_ID);
     wall -= seconds(CLOCK_MONOTONIC);
@@ -85,11 +85,13 @@ void BM_Record(benchmark::State& state, int compression, Storage storage) {
       static_cast<double>(std::filesystem::file_size(path + ".partial")) / kRows;
   std::filesystem::remove(path + ".partial");
 }
-BENCHMARK_CAPTURE(BM_Record, uncompressed, kNoCompression, Storage::float64)
+BENCHMARK_CAPTURE(BM_Record, uncompressed, records::kNoCompression, records::Storage::float64)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Record, compressed_1, 1, Storage::float64)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Record, compressed_6, 6, Storage::float64)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Record, compressed_1_float32, 1, Storage::float32)
+BENCHMARK_CAPTURE(BM_Record, compressed_1, 1, records::Storage::float64)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Record, compressed_6, 6, records::Storage::float64)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Record, compressed_1_float32, 1, records::Storage::float32)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

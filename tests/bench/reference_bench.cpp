@@ -21,7 +21,7 @@ struct PlainProblem {
 };
 
 PlainProblem read_plain(const std::string& name, bool friction) {
-  const sim::MachineSettings machine = read_machine(name, friction);
+  const sim::model::MachineSettings machine = read_machine(name, friction);
   PlainProblem problem;
   for (std::size_t j = 0; j < kJoints; ++j) {
     const plant::FeedDriveParams& d = machine.drives[j];
@@ -97,8 +97,8 @@ void BM_Plain(benchmark::State& state, const char* file, bool friction) {
 }
 
 // Forty signals a row, as the plain loop takes them.
-void take_row(std::size_t run, const sim::AxisSetpoint& set, const sim::ServoAxes& axes,
-              double* row) {
+void take_row(std::size_t run, const sim::engine::AxisSetpoint& set,
+              const sim::engine::ServoAxes& axes, double* row) {
   Joints::Map(row) = set.Q_cmd;
   Joints::Map(row + 5) = axes.Q_fb(run);
   Joints::Map(row + 10) = axes.Q_true(run);
@@ -111,8 +111,8 @@ void take_row(std::size_t run, const sim::AxisSetpoint& set, const sim::ServoAxe
 
 void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
   const auto runs = static_cast<std::size_t>(state.range(0));
-  std::vector<sim::MachineSettings> machines(runs, read_machine(file, friction));
-  std::vector<const sim::MachineSettings*> all;
+  std::vector<sim::model::MachineSettings> machines(runs, read_machine(file, friction));
+  std::vector<const sim::model::MachineSettings*> all;
   for (std::size_t m = 0; m < runs; ++m) {  // no two alike, as in a sweep
     for (auto& cascade : machines[m].nc.cascade) cascade.Kv *= 1.0 + 1e-3 * static_cast<double>(m);
     all.push_back(&machines[m]);
@@ -123,7 +123,8 @@ void BM_Servomill(benchmark::State& state, const char* file, bool friction) {
     Problem run(all);
     state.ResumeTiming();
     double* row = log.data();
-    run.until(kTicks, [&](std::size_t n, const sim::AxisSetpoint& set, const sim::ServoAxes& axes) {
+    run.until(kTicks, [&](std::size_t n, const sim::engine::AxisSetpoint& set,
+                          const sim::engine::ServoAxes& axes) {
       take_row(n, set, axes, row);
       row += PLAIN_SIGNALS;
     });

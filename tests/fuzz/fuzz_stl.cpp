@@ -15,7 +15,7 @@ constexpr std::size_t kMostCorners = 50;
 
 void run(std::string_view text) {
   try {
-    const auto mesh = sim::TriangleMesh::parse(text, "part.stl");
+    const auto mesh = sim::metrology::TriangleMesh::parse(text, "part.stl");
     require(std::isfinite(mesh.volume()) && mesh.volume() > 0.0, "a body has a volume");
     double size = 0.0;
     for (const auto& corner : mesh.triangles().corners) size = std::max(size, corner.norm());

@@ -11,6 +11,7 @@
 
 #include "sim/config/reader.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "sim/system/read_file.h"
 #include "tests/fuzz/fuzz.h"
@@ -60,20 +61,20 @@ void require_own_places(const InputError& error, std::string_view text) {
 }
 
 void read_machine(std::string_view text) {
-  const auto parsed = sim::Document::from_text(text, std::string(kDocument));
-  sim::Reader root(parsed);
-  sim::read_machine(root);
+  const auto parsed = sim::config::Document::from_text(text, std::string(kDocument));
+  sim::config::Reader root(parsed);
+  sim::input::read_machine(root);
   root.finish();
   const std::string written = parsed.to_toml();
-  require(sim::Document::from_text(written, "written.toml").to_toml() == written,
+  require(sim::config::Document::from_text(written, "written.toml").to_toml() == written,
           "what was written reads to the same", written);
 }
 
 void read_scenario(std::string_view text) {
-  const auto scenario = sim::read_scenario(std::string(kDocument), changes_in(text));
+  const auto scenario = sim::input::read_scenario(std::string(kDocument), changes_in(text));
   std::string again;
   try {
-    again = sim::read_resolved_scenario(scenario.resolved, "resolved.toml").resolved;
+    again = sim::input::read_resolved_scenario(scenario.resolved, "resolved.toml").resolved;
   } catch (const InputError& error) {
     require(false, "a resolved scenario is accepted", error.what() + ("\n" + scenario.resolved));
   }
@@ -82,7 +83,8 @@ void read_scenario(std::string_view text) {
 }
 
 bool is_machine(std::string_view text) {
-  return sim::Document::from_text(text, std::string(kDocument)).root().find("structure") != nullptr;
+  return sim::config::Document::from_text(text, std::string(kDocument)).root().find("structure") !=
+         nullptr;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr double kLead = 0.5 * kTv;
 constexpr double kFormTol = 2e-3;  // share: higher powers of w / Kv, stiffness of the drive
 
 // Two circles about zero at constant feed (mm/min), the second of them recorded as `circle`.
-Scenario circle(double feed, const std::string& toml) {
+model::Scenario circle(double feed, const std::string& toml) {
   return small_scenario(fmt::format("G17\nG64 P0.001\nG0 X50\nG3 X50 Y0 I-50 F{0}\n(MSG, circle)\n"
                                     "G3 X50 Y0 I-50 F{0}\n(MSG, out)\nG3 X50 Y0 I-50 F{0}\nM30\n",
                                     feed),
@@ -35,9 +35,9 @@ struct Harmonics {
 };
 
 // Radius over the angle of the second circle, as a Fourier series in the angle of the setpoint.
-Harmonics radius_of(const Scenario& scenario, const char* signal = "true_linear") {
-  const CaseOutput out = run_case(scenario, "alone");
-  const Series& s = out.result.servo;
+Harmonics radius_of(const model::Scenario& scenario, const char* signal = "true_linear") {
+  const run::CaseOutput out = run_named_case(scenario, "alone");
+  const records::Series& s = out.result.servo;
   const auto name = std::find(out.sections.begin(), out.sections.end(), "circle");
   const auto index = static_cast<double>(name - out.sections.begin());
   const std::size_t section = *s.column("section"), x = *s.column(signal, 'X'),
@@ -139,7 +139,7 @@ TEST(Circle, IsAnEllipseWithUnequalKv) {
 TEST(Circle, OnAMachineOutOfSquareIsAnEllipseAtFortyFiveDegrees) {
   // 1/2 R gamma sin 2 theta: the diagonals differ by 2 R gamma
   constexpr double kGamma = 50e-6;
-  const Scenario scenario = circle(
+  const model::Scenario scenario = circle(
       2000.0,
       "machine_errors = \"machine\"\n[errors.machine]\nEC0Y = { um_per_m = 50.0 }\n" + loops(""));
   const Harmonics ideal = radius_of(circle(2000.0, loops("")));
@@ -151,10 +151,10 @@ TEST(Circle, OnAMachineOutOfSquareIsAnEllipseAtFortyFiveDegrees) {
 TEST(Line, WithUnequalKvRunsBesideItself) {
   // (v / 2) sin 2 alpha (1 / Kv_x - 1 / Kv_y)
   const double other = 60.0, alpha = std::atan2(30.0, 60.0);
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       "G0 X-30 Y-15\nG1 X30 Y15 F2000\nM30\n",
       loops(kLagMode) + fmt::format("Kv = \"{} 1/s\"\n", other) + "\n[[case]]\nname = \"alone\"\n");
-  const CaseOutput out = run_case(scenario, "alone");
+  const run::CaseOutput out = run_named_case(scenario, "alone");
   const auto rows = rows_within(out.result.servo, 10.0, 20.0);
   const double v = 2000.0 / 60.0 * 1000.0;  // um/s
   const double expected = 0.5 * v * std::sin(2.0 * alpha) * std::abs(1.0 / kKv - 1.0 / other);

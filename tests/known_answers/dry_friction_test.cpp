@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/axis_test_bench.h"
+#include "sim/input/read_scenario.h"
 #include "sim/metrology/circular_test.h"
 #include "tests/sim/small_scenario.h"
 
@@ -16,7 +17,7 @@ namespace {
 constexpr double kRadius = 50.0;  // mm
 
 // One turn from diagonal to diagonal, counter-clockwise, with a run-in and a run-out of 30 deg.
-Scenario circle(double feed, const std::string& axes) {
+model::Scenario circle(double feed, const std::string& axes) {
   const auto at = [](double degrees) {
     return fmt::format("X{:.9f} Y{:.9f}", kRadius * std::cos(degrees * deg),
                        kRadius * std::sin(degrees * deg));
@@ -33,9 +34,9 @@ Scenario circle(double feed, const std::string& axes) {
       axes + "\n[[case]]\nname = \"alone\"\n");
 }
 
-CircularTurn turn_of(const Scenario& scenario) {
-  const CaseOutput out = run_case(scenario, "alone");
-  const Series& s = out.result.servo;
+metrology::CircularTurn turn_of(const model::Scenario& scenario) {
+  const run::CaseOutput out = run_named_case(scenario, "alone");
+  const records::Series& s = out.result.servo;
   const auto name = std::find(out.sections.begin(), out.sections.end(), "circle");
   const auto index = static_cast<double>(name - out.sections.begin());
   const std::size_t section = *s.column("section"), x = *s.column("true_linear", 'X'),
@@ -44,9 +45,9 @@ CircularTurn turn_of(const Scenario& scenario) {
   for (std::size_t n = 0; n < s.rows(); ++n) {
     if (s.at(n, section) == index) points.emplace_back(s.at(n, x) * mm, s.at(n, y) * mm);
   }
-  const Circle nominal = {{0.0, 0.0}, kRadius * mm};
-  EXPECT_EQ(why_no_turn(points, nominal), std::nullopt);
-  return evaluate_turn(points, nominal);
+  const metrology::Circle nominal = {{0.0, 0.0}, kRadius * mm};
+  EXPECT_EQ(metrology::why_no_turn(points, nominal), std::nullopt);
+  return metrology::evaluate_turn(points, nominal);
 }
 
 std::string friction(const std::string& model, const std::string& more = "") {
@@ -64,8 +65,8 @@ constexpr double kGlitchTol = 0.02;  // asked for 0.10; a model with steps of 20
 
 // 2 Fc r^2 / (Kp Kv): all of the reversal's torque made up by position error alone.
 double upper_bound(int joint) {
-  const MachineSettings machine =
-      read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+  const model::MachineSettings machine =
+      input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
   const auto& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   const auto& f = machine.drives[static_cast<std::size_t>(joint)].friction;
   return 2.0 * f.Fc_positive * c.r * c.r / (c.Kp * c.Kv);
@@ -74,11 +75,11 @@ double upper_bound(int joint) {
 TEST(QuadrantGlitch, OfLugreFrictionIsThatOfTheDomainTable) {
   EXPECT_NEAR(upper_bound(0), 31.8 * um, 0.05 * um);
   for (std::size_t n = 0; n < kFeeds.size(); ++n) {
-    const CircularTurn turn = turn_of(circle(kFeeds[n], friction("lugre")));
+    const metrology::CircularTurn turn = turn_of(circle(kFeeds[n], friction("lugre")));
     RecordProperty(fmt::format("glitch_um_F{:.0f}", kFeeds[n]),
                    fmt::format("{:.3f}", turn.G_least_squares / um));
     EXPECT_NEAR(turn.G_least_squares / um, kGlitch[n], kGlitchTol * kGlitch[n]) << kFeeds[n];
-    for (const Reversal& reversal : turn.reversals) {
+    for (const metrology::Reversal& reversal : turn.reversals) {
       EXPECT_GT(reversal.spike, 0.0) << "the axis stays behind: outward";
       EXPECT_LT(reversal.spike, upper_bound(reversal.axis)) << kFeeds[n];
     }
@@ -88,11 +89,11 @@ TEST(QuadrantGlitch, OfLugreFrictionIsThatOfTheDomainTable) {
 // Without presliding the axis stands still until it breaks away: more than with bristles.
 TEST(QuadrantGlitch, OfSetValuedFrictionIsLargerAndBelowTheBoundToo) {
   for (std::size_t n = 0; n < kFeeds.size(); ++n) {
-    const CircularTurn turn = turn_of(circle(kFeeds[n], friction("set_valued")));
+    const metrology::CircularTurn turn = turn_of(circle(kFeeds[n], friction("set_valued")));
     RecordProperty(fmt::format("glitch_um_F{:.0f}", kFeeds[n]),
                    fmt::format("{:.3f}", turn.G_least_squares / um));
     EXPECT_GT(turn.G_least_squares / um, kGlitch[n]) << kFeeds[n];
-    for (const Reversal& reversal : turn.reversals) {
+    for (const metrology::Reversal& reversal : turn.reversals) {
       EXPECT_LT(reversal.spike, upper_bound(reversal.axis)) << kFeeds[n];
     }
   }
@@ -133,9 +134,9 @@ TEST(FrictionCompensation, ThatTurnsOverWithSpeedSuitsOneFeed) {
 }
 
 // X alone, ideal encoders.
-MachineSettings machine_with(plant::FrictionKind kind, double Fs, double vs) {
-  MachineSettings machine =
-      read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+model::MachineSettings machine_with(plant::FrictionKind kind, double Fs, double vs) {
+  model::MachineSettings machine =
+      input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
   machine.scale.fill({});
   machine.motor.fill({});
   auto& friction = machine.drives[0].friction;
@@ -150,12 +151,12 @@ constexpr double kBase = 10e-6;  // s
 // Motion of the slide after a move of 100 um at 1 mm/s, seen at its target.
 class AfterMove {
  public:
-  AfterMove(const MachineSettings& machine, double seconds) {
-    AxisTestBench stand(machine, 0, 0, PositionLoop::closed);
+  AfterMove(const model::MachineSettings& machine, double seconds) {
+    frequency::AxisTestBench stand(machine, 0, 0, frequency::PositionLoop::closed);
     stand.settle(0.0);
     const auto end = static_cast<Tick>(std::lround(seconds / kBase));
     for (Tick n = 0; n < end; n += stand.hyperperiod()) {
-      stand.run(n, move, [&](Tick, std::uint8_t, const AxisSignals& s) { look(s); });
+      stand.run(n, move, [&](Tick, std::uint8_t, const frequency::AxisSignals& s) { look(s); });
     }
   }
   struct Span {
@@ -169,16 +170,16 @@ class AfterMove {
 
  private:
   static constexpr double kTravel = 100e-6, kSpeed = 1e-3;
-  static StandInput move(Tick n) {
+  static frequency::StandInput move(Tick n) {
     const double t = static_cast<double>(n) * kBase;
-    StandInput in;
+    frequency::StandInput in;
     in.q = std::min(kSpeed * t, kTravel);
     in.dq = t < kTravel / kSpeed ? kSpeed : 0.0;
     return in;
   }
-  void look(const AxisSignals& s) {
-    const double x = s[index_of(AxisSignal::position)] - kTravel;
-    const double v = s[index_of(AxisSignal::velocity)];
+  void look(const frequency::AxisSignals& s) {
+    const double x = s[frequency::index_of(frequency::AxisSignal::position)] - kTravel;
+    const double v = s[frequency::index_of(frequency::AxisSignal::velocity)];
     if (v_ != 0.0 && v == 0.0) stops.push_back(x);
     v_ = v;
     const auto second = static_cast<std::size_t>(static_cast<double>(count_++) * kBase);
@@ -223,7 +224,7 @@ TEST(Hunting, ShowsWithTheBreakawayForceOfTheTableToo) {
   }
 }
 
-void expect_rest(const MachineSettings& machine) {
+void expect_rest(const model::MachineSettings& machine) {
   const AfterMove axis(machine, 4.0);
   for (const std::size_t second : {2U, 3U}) {
     EXPECT_LT(axis.spans[second].width(), kStill) << second;
@@ -239,7 +240,7 @@ TEST(Hunting, IsNotThereWithCoulombFrictionAlone) {
 // The table's Stribeck velocity of 2 mm/s: friction falls with at most 0.858 (Fs - Fc) / vs, which
 // the velocity loop's Kp / r^2 outweighs, so that breaking away is no jump.
 TEST(Hunting, IsNotThereWhereTheVelocityLoopDampsMoreThanTheStribeckCurveFalls) {
-  const MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
+  const model::MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
   const auto& c = machine.nc.cascade[0];
   const auto& f = machine.drives[0].friction;
   const double fall = std::sqrt(2.0 / std::numbers::e) * (f.Fs_positive - f.Fc_positive) / f.vs;
@@ -255,26 +256,27 @@ TEST(Hunting, IsNotThereWithPresliding) {
 
 // Position of the slide after a long time under `input`.
 template <class Input>
-double rests_at(const MachineSettings& machine, double seconds, const Input& input) {
-  AxisTestBench stand(machine, 0, 0, PositionLoop::closed);
+double rests_at(const model::MachineSettings& machine, double seconds, const Input& input) {
+  frequency::AxisTestBench stand(machine, 0, 0, frequency::PositionLoop::closed);
   stand.settle(0.0);
   double x = 0.0;
   const auto end = static_cast<Tick>(std::lround(seconds / kBase));
   for (Tick n = 0; n < end; n += stand.hyperperiod()) {
-    stand.run(n, input, [&](Tick, std::uint8_t, const AxisSignals& s) {
-      x = s[index_of(AxisSignal::position)];
+    stand.run(n, input, [&](Tick, std::uint8_t, const frequency::AxisSignals& s) {
+      x = s[frequency::index_of(frequency::AxisSignal::position)];
     });
   }
   return x;
 }
 
-double under_load(const MachineSettings& machine, double force) {
-  return rests_at(machine, 2.0, [&](Tick) { return StandInput{.added = {.force = force}}; });
+double under_load(const model::MachineSettings& machine, double force) {
+  return rests_at(machine, 2.0,
+                  [&](Tick) { return frequency::StandInput{.added = {.force = force}}; });
 }
 
 // No error, hence no current: friction carries the load alone, and not a bit changes.
 TEST(Standing, AnAxisInControlDoesNotMoveBelowBreakaway) {
-  const MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
+  const model::MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
   EXPECT_EQ(under_load(machine, 0.80 * 560.0), 0.0);
   EXPECT_EQ(under_load(machine, -0.999 * 560.0), 0.0);
   EXPECT_NE(under_load(machine, 1.001 * 560.0), 0.0);
@@ -282,14 +284,15 @@ TEST(Standing, AnAxisInControlDoesNotMoveBelowBreakaway) {
 
 // Without integral part the motor holds a position error with Kp Kv e / r^2.
 TEST(Standing, TheDeadBandOfAProportionalLoopIsBreakawayOverItsStiffness) {
-  MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
+  model::MachineSettings machine = machine_with(FrictionKind::set_valued, 560.0, 2e-3);
   auto& c = machine.nc.cascade[0];
   c.Ki = 0.0;
   const double band = 560.0 * c.r * c.r / (c.Kp * c.Kv);
   EXPECT_NEAR(band, 19.8 * um, 0.05 * um);
   const auto moved = [&](double share) {
     return rests_at(machine, 1.0, [&](Tick n) {  // so slowly that nothing swings
-      return StandInput{.q = share * band * std::min(1.0, static_cast<double>(n) * kBase / 0.5)};
+      return frequency::StandInput{.q = share * band *
+                                        std::min(1.0, static_cast<double>(n) * kBase / 0.5)};
     });
   };
   EXPECT_EQ(moved(0.99), 0.0);

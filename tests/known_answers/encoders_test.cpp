@@ -14,24 +14,24 @@ namespace {
 constexpr double kKv = 500.0 / 6.0;  // 1/s, of the machine file
 
 // X with a scale and a motor encoder that have no steps, and what `axis` says.
-Scenario with_axis(const std::string& program, const std::string& axis,
-                   const std::string& more = "[[case]]\nname = \"alone\"\n") {
+model::Scenario with_axis(const std::string& program, const std::string& axis,
+                          const std::string& more = "[[case]]\nname = \"alone\"\n") {
   return small_scenario(program + "M30\n",
                         "record = { settle_ms = 500.0 }\n[machine_override.axis.X]\n"
                         "scale_step = 0.0\nmotor_step = 0.0\n" +
                             axis + more);
 }
 
-Series run(const Scenario& scenario, const std::string& name = "alone") {
-  return run_case(scenario, name).result.servo;
+records::Series run(const model::Scenario& scenario, const std::string& name = "alone") {
+  return run_named_case(scenario, name).result.servo;
 }
 
-double last(const Series& series, const std::string& name) {  // mm, of X
+double last(const records::Series& series, const std::string& name) {  // mm, of X
   return series.at(series.rows() - 1, *series.column(name, 'X'));
 }
 
 // Half the range (um) of true minus interpolated position of X.
-double ripple(const Series& series, double from, double to) {
+double ripple(const records::Series& series, double from, double to) {
   const std::size_t ref = *series.column("ref_linear", 'X'),
                     actual = *series.column("true_linear", 'X');
   double low = 1e9, high = -1e9;
@@ -62,7 +62,7 @@ TEST(PeriodError, HardlyMovesAFastSlide) {
   EXPECT_LT(got, 0.1 * amplitude);
 }
 
-Scenario noisy(int seed) {
+model::Scenario noisy(int seed) {
   std::string cases;
   for (int n = 0; n < 4; ++n) cases += fmt::format("[[case]]\nname = \"{}\"\n", n);
   return small_scenario(
@@ -74,10 +74,10 @@ Scenario noisy(int seed) {
 
 TEST(EncoderNoise, IsThatOfItsSeedForAnyNumberOfThreads) {
   const auto data = [](int seed, unsigned threads) {
-    RunControl control;
+    run::RunControl control;
     control.threads = threads;
     std::vector<std::vector<double>> out;
-    for (const CaseOutput& one : run_scenario(noisy(seed), control).cases) {
+    for (const run::CaseOutput& one : run::run_scenario(noisy(seed), control).cases) {
       out.push_back(one.result.servo.data());
     }
     return out;
@@ -94,8 +94,8 @@ constexpr const char* kLead =
     "screw.lead_error.harmonic = { amplitude_um = 8.0, period_mm = 40.0 }\n";
 
 // um, by which the slide stands beside its setpoint in the end
-double offset(const Scenario& scenario, const std::string& name = "alone") {
-  const Series series = run(scenario, name);
+double offset(const model::Scenario& scenario, const std::string& name = "alone") {
+  const records::Series series = run(scenario, name);
   return (last(series, "true_linear") - last(series, "cmd_linear")) * 1e3;
 }
 
@@ -122,7 +122,7 @@ constexpr double kGrown = 11.5e-6 * 10.0 * 0.4e6;  // um
 constexpr double kWarmingTol = 0.01;               // um, what the loops leave of a ramp that decays
 
 void expect_offset(const std::string& axis, double (*expected)(double t)) {
-  const Series series = run(with_axis(kDwell, axis));
+  const records::Series series = run(with_axis(kDwell, axis));
   const std::size_t actual = *series.column("true_linear", 'X'),
                     cmd = *series.column("cmd_linear", 'X'), time = *series.column("time");
   for (const std::size_t row : {200U, 500U, 1000U, 1900U}) {
@@ -164,16 +164,17 @@ TEST(Backlash, IsLostWithMotorFeedbackUnlessTheNcAddsIt) {
 }
 
 // Why the NC stopped the only case.
-std::string stopped(const Scenario& scenario) {
-  static const StopFlag kNever = false;
+std::string stopped(const model::Scenario& scenario) {
+  static const engine::StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
-  const Outcome outcome =
-      run_case(PreparedCase(scenario, scenario.cases.front()), kNever, progress).result.outcome;
+  const engine::Outcome outcome =
+      run::run_case(preparation::PreparedCase(scenario, scenario.cases.front()), kNever, progress)
+          .result.outcome;
   EXPECT_EQ(outcome.finished, outcome.reason.empty());
   return outcome.reason;
 }
 
-Scenario displaced(const std::string& amplitude) {
+model::Scenario displaced(const std::string& amplitude) {
   return with_axis("G1 X60 F3000\n",
                    "[machine_override.axis.X.scale]\nperiod = \"20 um\"\n"
                    "[machine_override.axis.X.marks]\nincrement = 1000\n",
@@ -223,7 +224,7 @@ TEST(Standstill, BesideTheTargetStopsTheMachine) {
       "friction.model = \"set_valued\"\nvelocity_reset_time_ms = 0.0\nstandstill_limit = ";
   const std::string program = "G1 X1 F600\n";
   const std::string reason = stopped(with_axis(program, axis + "\"1 um\"\n"));
-  const double end = run_case(with_axis(program, axis + "\"25 um\"\n"), "alone").duration;
+  const double end = run_named_case(with_axis(program, axis + "\"25 um\"\n"), "alone").duration;
   const std::string expected = "axis X: position at standstill beyond 0.001 mm at ";
   ASSERT_EQ(reason.substr(0, expected.size()), expected);
   EXPECT_NEAR(std::stod(reason.substr(expected.size())), end + 0.1, 1e-3);

@@ -30,8 +30,8 @@ constexpr double kLeft = 0.1;              // share of the lag that the lead may
 
 const std::string kAll = "axes = \"all\"\n";
 
-const Scenario& s_part() {
-  static const Scenario kScenario = trunnion_scenario(
+const model::Scenario& s_part() {
+  static const model::Scenario kScenario = trunnion_scenario(
       s_shaped_program(kFeed),
       "[[case]]\nname = \"perfect\"\nmachine_errors = \"\"\n[[case]]\nname = \"uncompensated\"\n"
       "servo = \"ideal\"\n" +
@@ -43,17 +43,17 @@ const Scenario& s_part() {
 }
 
 TEST(FiveAxisFeedback, LeavesLessThanATenthOfAMicrometreOnIdealAxes) {
-  const Deviation before = deviation_in(run_case(s_part(), "uncompensated"), "flank");
+  const Deviation before = deviation_in(run_named_case(s_part(), "uncompensated"), "flank");
   EXPECT_GT(before.tip, 20.0);
   EXPECT_GT(before.axis, 20.0);
-  const Deviation left = deviation_in(run_case(s_part(), "ideal"), "flank");
+  const Deviation left = deviation_in(run_named_case(s_part(), "ideal"), "flank");
   EXPECT_LT(left.tip, kIdealTip);
   EXPECT_LT(left.axis, kIdealAxis);
 }
 
 // Rows of the flank from 0.2 s after its begin: entering it is a corner.
-std::vector<std::size_t> flank(const CaseOutput& out) {
-  const Series& series = out.result.servo;
+std::vector<std::size_t> flank(const run::CaseOutput& out) {
+  const records::Series& series = out.result.servo;
   const std::size_t section = *series.column("section"), time = *series.column("time");
   std::vector<std::size_t> rows;
   double begin = -1.0;
@@ -65,7 +65,7 @@ std::vector<std::size_t> flank(const CaseOutput& out) {
   return rows;
 }
 
-Joints reference(const Series& series, std::size_t row) {
+Joints reference(const records::Series& series, std::size_t row) {
   Joints Q;
   const std::size_t linear = *series.column("ref_linear", 'X');
   const std::size_t rotary = *series.column("ref_rotary", 'A');
@@ -74,13 +74,14 @@ Joints reference(const Series& series, std::size_t row) {
   return Q;
 }
 
-Vector3d vector(const Series& series, const std::string& name, char first, std::size_t row) {
+Vector3d vector(const records::Series& series, const std::string& name, char first,
+                std::size_t row) {
   const std::size_t column = *series.column(name, first);
   return {series.at(row, column), series.at(row, column + 1), series.at(row, column + 2)};
 }
 
 // e + tau_h dd/dt of equation (2) for every row; d is taken to change evenly from row to row.
-std::vector<Joints> behind_by_closed_form(const Series& series,
+std::vector<Joints> behind_by_closed_form(const records::Series& series,
                                           const strategies::PoseCompensation& compensation,
                                           const Joints& Kv) {
   const std::size_t time = *series.column("time");
@@ -109,8 +110,8 @@ struct Rms {
 
 // Difference between two cases of one motion, less the predicted one.
 template <class Predict>
-Rms difference(const CaseOutput& one, const CaseOutput& other, Predict predict) {
-  const Series &a = one.result.servo, &b = other.result.servo;
+Rms difference(const run::CaseOutput& one, const run::CaseOutput& other, Predict predict) {
+  const records::Series &a = one.result.servo, &b = other.result.servo;
   const std::vector<std::size_t> rows = flank(one);
   EXPECT_EQ(rows, flank(other));
   Rms sum;
@@ -127,10 +128,11 @@ Rms difference(const CaseOutput& one, const CaseOutput& other, Predict predict) 
 }
 
 TEST(FiveAxisFeedback, LagsAsTheClosedFormSaysAndIsLed) {
-  const Scenario& scenario = s_part();
-  const CaseOutput perfect = run_case(scenario, "perfect"),
-                   feedback = run_case(scenario, "feedback"), lead = run_case(scenario, "lead");
-  const MachineSettings& machine = scenario.machine;
+  const model::Scenario& scenario = s_part();
+  const run::CaseOutput perfect = run_named_case(scenario, "perfect"),
+                        feedback = run_named_case(scenario, "feedback"),
+                        lead = run_named_case(scenario, "lead");
+  const model::MachineSettings& machine = scenario.machine;
   strategies::IdentifiedMachine identified{
       machine.chain.layout, plant::VolumetricModel(machine.chain, scenario.errors.at("machine"))};
   identified.p_ST = Vector3d(0.0, 0.0, -120.0 * mm);
@@ -141,11 +143,11 @@ TEST(FiveAxisFeedback, LagsAsTheClosedFormSaysAndIsLed) {
     Kv[j] = machine.nc.cascade[static_cast<std::size_t>(j)].Kv;
   }
   const std::vector<Joints> behind = behind_by_closed_form(perfect.result.servo, compensation, Kv);
-  const auto closed_form = [&](const Series& series, std::size_t n) {
+  const auto closed_form = [&](const records::Series& series, std::size_t n) {
     const auto J = plant::jacobian(machine.chain, reference(series, n), identified.p_ST);
     return std::pair<Vector3d, Vector3d>(J.J_pQ * behind[n], J.J_kQ * behind[n]);
   };
-  const auto nothing = [](const Series&, std::size_t) {
+  const auto nothing = [](const records::Series&, std::size_t) {
     return std::pair<Vector3d, Vector3d>(Vector3d::Zero(), Vector3d::Zero());
   };
   const Rms lag = difference(feedback, perfect, nothing);

@@ -26,12 +26,12 @@ void expect_agreement(const std::array<std::string, 3>& axes) {
     toml += fmt::format("[machine_override.axis.{}]\nscale_step = 0.0\nmotor_step = 0.0\n{}",
                         "XYZ"[j], axes[j]);
   }
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario(kProgram, toml +
                                    "[[case]]\nname = \"exact\"\n[[case]]\nname = \"cvode\"\n"
                                    "machine_override.integrator = \"cvode\"\n");
-  const Series one = run_case(scenario, "exact").result.servo;
-  const Series other = run_case(scenario, "cvode").result.servo;
+  const records::Series one = run_named_case(scenario, "exact").result.servo;
+  const records::Series other = run_named_case(scenario, "cvode").result.servo;
   ASSERT_EQ(one.rows(), other.rows());
   ASSERT_GT(one.rows(), 500U);
   for (const char letter : {'X', 'Y', 'Z'}) {
@@ -66,16 +66,16 @@ TEST(ExactAndCvode, AgreeWithRegularisedFrictionBacklashAndAWinding) {
 // Both tell where the drives are at each evaluation of the error model.
 TEST(ExactAndCvode, AgreeOnAVirtualEncoder) {
   const auto with = [](const std::string& integrator, const std::string& strategy) {
-    const Scenario scenario = small_scenario(
+    const model::Scenario scenario = small_scenario(
         "G1 X1 F3000\nM30\n",
         "[errors.model]\nEYX = { harmonic = { amplitude_um = 50.0, period_mm = 2.0 } }\n"
         "[[case]]\nname = \"one\"\nmachine_override.integrator = \"" +
             integrator + "\"\n" + strategy);
-    return run_case(scenario, "one").result.servo;
+    return run_named_case(scenario, "one").result.servo;
   };
   const std::string feedback = "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"model\"\n";
-  const Series exact = with("exact", feedback), cvode = with("cvode", feedback),
-               none = with("exact", "");
+  const records::Series exact = with("exact", feedback), cvode = with("cvode", feedback),
+                        none = with("exact", "");
   ASSERT_EQ(exact.rows(), cvode.rows());
   ASSERT_EQ(exact.rows(), none.rows());
   const std::size_t y = exact.column("true_linear", 'Y').value();

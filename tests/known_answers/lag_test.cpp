@@ -33,7 +33,7 @@ std::string table(const std::string& name, const std::string& more) {
   return a_case(name, "table", "base_axis = \"X\"\nfrom_mm = -60.0\nto_mm = 60.0\n" + more);
 }
 
-Scenario ramp(double feed, const std::string& nc = "") {
+model::Scenario ramp(double feed, const std::string& nc = "") {
   return small_scenario(
       fmt::format("G0 X-30\nG1 X30 F{}\nM30\n", feed),
       "imposed = \"imposed\"\n[machine_override.nc]\nKv = \"60 1/s\"\n" + nc +
@@ -48,9 +48,9 @@ Scenario ramp(double feed, const std::string& nc = "") {
 }
 
 // ms by which Y runs behind the imposed ramp, once everything has settled
-double lag_of(const Scenario& scenario, const std::string& name, double feed) {
-  const CaseOutput out = run_case(scenario, name);
-  const Series& series = out.result.servo;
+double lag_of(const model::Scenario& scenario, const std::string& name, double feed) {
+  const run::CaseOutput out = run_named_case(scenario, name);
+  const records::Series& series = out.result.servo;
   const auto rows = rows_within(series, 20.0, 28.0);
   const double residual = 1000.0 * mean_of(series, "true_linear", 'Y', rows) -
                           mean_of(series, "imposed_linear", 'Y', rows);
@@ -64,7 +64,7 @@ double lag_of(const Scenario& scenario, const std::string& name, double feed) {
   EXPECT_NEAR(lag_of(scenario, name, 1394.0), wanted, kLagTol*(wanted)) << name
 
 TEST(Lag, OfATableIsOneOverKvPlusItsOwnDelays) {
-  const Scenario scenario = ramp(1394.0);
+  const model::Scenario scenario = ramp(1394.0);
   EXPECT_LAG(kFollowing, "table");
   EXPECT_LAG(kFollowing + response(40.0), "response");
   EXPECT_LAG(kFollowing + 10.0, "dead");
@@ -74,12 +74,12 @@ TEST(Lag, OfATableIsOneOverKvPlusItsOwnDelays) {
 // Readings are one tick old; the model's are 8, 10 or 12 when it acts, 10 in the mean. The lead of
 // X itself by one tick makes it 8 ticks in all.
 TEST(Lag, OfFeedbackIsOneOverKvPlusItsHardware) {
-  const Scenario scenario = ramp(1394.0);
+  const model::Scenario scenario = ramp(1394.0);
   EXPECT_LAG(kFollowing + 8.0 * kTick, "feedback");
 }
 
 TEST(Lag, IsGoneWhereTheFeedForwardSeesTheCorrection) {
-  const Scenario scenario = ramp(1394.0);
+  const model::Scenario scenario = ramp(1394.0);
   EXPECT_NEAR(lag_of(scenario, "fed_forward", 1394.0), 0.0, kNoLag);
   EXPECT_NEAR(lag_of(scenario, "before_filter", 1394.0), 0.0, kNoLag);
   EXPECT_NEAR(lag_of(scenario, "gcode", 1394.0), 0.0, kNoLag);
@@ -88,7 +88,8 @@ TEST(Lag, IsGoneWhereTheFeedForwardSeesTheCorrection) {
 
 // Before the filter, a correction has the delay of everything else: none along the path.
 TEST(Lag, OfATableBeforeTheNominalFilterIsThatOfTheReference) {
-  const Scenario scenario = ramp(1394.0, "nominal_filter = \"mean\"\nnominal_filter_ms = 20.0\n");
+  const model::Scenario scenario =
+      ramp(1394.0, "nominal_filter = \"mean\"\nnominal_filter_ms = 20.0\n");
   EXPECT_NEAR(lag_of(scenario, "before_filter", 1394.0), 0.0, kNoLag);
   EXPECT_NEAR(lag_of(scenario, "fed_forward", 1394.0), 0.0, kNoLag);
   EXPECT_LAG(kFollowing, "table");
@@ -96,7 +97,7 @@ TEST(Lag, OfATableBeforeTheNominalFilterIsThatOfTheReference) {
 
 TEST(Lag, IsAConstantTimeWhateverTheFeed) {
   for (const double feed : {700.0, 2800.0}) {
-    const Scenario scenario = ramp(feed);
+    const model::Scenario scenario = ramp(feed);
     EXPECT_NEAR(lag_of(scenario, "response", feed), kFollowing + response(40.0),
                 kLagTol * (kFollowing + response(40.0)));
     EXPECT_NEAR(lag_of(scenario, "feedback", feed), kFollowing + 8.0 * kTick, kLagTol * kFollowing);
@@ -105,7 +106,7 @@ TEST(Lag, IsAConstantTimeWhateverTheFeed) {
 
 // The lag of feedback is predictable, so the model is evaluated ahead.
 TEST(Lag, OfFeedbackIsTakenAwayByItsLead) {
-  const Scenario scenario = ramp(1394.0);
+  const model::Scenario scenario = ramp(1394.0);
   const double without = lag_of(scenario, "feedback", 1394.0);
   const double with = lag_of(scenario, "lead", 1394.0);
   EXPECT_LT(std::abs(with), without / 20.0);
@@ -116,12 +117,12 @@ TEST(Lag, OfFeedbackIsTakenAwayByItsLead) {
 TEST(LagMode, LeavesTheFollowingErrorOfAFirstOrderLoop) {
   const double feed = 3000.0, v = feed / 60.0;  // mm/s
   for (const double ff : {0.0, 1.0}) {
-    const Scenario scenario = small_scenario(
+    const model::Scenario scenario = small_scenario(
         fmt::format("G1 X60 F{}\nM30\n", feed),
         fmt::format("[machine_override.nc]\nKv = \"60 1/s\"\nvelocity_feed_forward = {}\n"
                     "[[case]]\nname = \"one\"\n",
                     ff));
-    const Series series = run_case(scenario, "one").result.servo;
+    const records::Series series = run_named_case(scenario, "one").result.servo;
     const auto rows = rows_within(series, 40.0, 55.0);
     const double behind =
         mean_of(series, "ref_linear", 'X', rows) - mean_of(series, "true_linear", 'X', rows);  // mm
@@ -133,12 +134,13 @@ TEST(LagMode, LeavesTheFollowingErrorOfAFirstOrderLoop) {
 // The reading is 10 us old when the NC gets it, and the NC holds the reading where the program is:
 // the axis itself is ahead by v x 10 us.
 TEST(SignalDelay, MakesTheTrueAxisLead) {
-  const Scenario scenario = small_scenario("G0 X-100\nG1 X100 F10000\nM30\n",
-                                           "[feedback_hardware]\nsignal_delay_us = 10.0\n"
-                                           "[[case]]\nname = \"off\"\nfeedback_hardware = false\n"
-                                           "[[case]]\nname = \"on\"\nfeedback_hardware = true\n");
-  const Series off = run_case(scenario, "off").result.servo;
-  const Series on = run_case(scenario, "on").result.servo;
+  const model::Scenario scenario =
+      small_scenario("G0 X-100\nG1 X100 F10000\nM30\n",
+                     "[feedback_hardware]\nsignal_delay_us = 10.0\n"
+                     "[[case]]\nname = \"off\"\nfeedback_hardware = false\n"
+                     "[[case]]\nname = \"on\"\nfeedback_hardware = true\n");
+  const records::Series off = run_named_case(scenario, "off").result.servo;
+  const records::Series on = run_named_case(scenario, "on").result.servo;
   const auto rows = rows_within(on, 40.0, 80.0);
   ASSERT_EQ(rows, rows_within(off, 40.0, 80.0));
   const double lead =

@@ -53,9 +53,9 @@ inline std::vector<Joints> read_reference(const std::string& name) {
 }
 
 // The machine of a file: drives, loops and limits; encoders are ideal.
-inline sim::MachineSettings read_machine(const std::string& name, bool with_friction) {
+inline sim::model::MachineSettings read_machine(const std::string& name, bool with_friction) {
   const auto rows = read_rows(name);
-  sim::MachineSettings machine;
+  sim::model::MachineSettings machine;
   machine.nc.periods = {kTick, kPosition, kVelocity, kCurrent};
   for (std::size_t j = 0; j < kJoints; ++j) {
     std::size_t next = 0;
@@ -169,13 +169,13 @@ class Setpoint {
 class Problem {
  public:
   /// @param machines  one a run; must outlive this
-  explicit Problem(const std::vector<const sim::MachineSettings*>& machines)
-      : schedule_(sim::make_schedule({{sim::kErrorModel, kVolumetric, 0},
-                                      {sim::kFeedbackSample, kPosition, 0},
-                                      {sim::kPositionLoop, kPosition, 0},
-                                      {sim::kVelocityLoop, kVelocity, 0},
-                                      {sim::kCurrentLoop, kCurrent, 0},
-                                      {sim::kRecord, kRecord, 0}})),
+  explicit Problem(const std::vector<const sim::model::MachineSettings*>& machines)
+      : schedule_(sim::model::make_schedule({{sim::model::kErrorModel, kVolumetric, 0},
+                                             {sim::model::kFeedbackSample, kPosition, 0},
+                                             {sim::model::kPositionLoop, kPosition, 0},
+                                             {sim::model::kVelocityLoop, kVelocity, 0},
+                                             {sim::model::kCurrentLoop, kCurrent, 0},
+                                             {sim::model::kRecord, kRecord, 0}})),
         axes_(machines, {0, 1, 2, 3, 4}, schedule_) {
     for (std::size_t run = 0; run < machines.size(); ++run) {
       if (run % kLaneWidth == 0) feedbacks_.emplace_back(axes_, run);
@@ -188,9 +188,9 @@ class Problem {
   template <class Record>
   void until(Tick end, const Record& record) {
     for (Tick n = 0;;) {
-      for (const sim::Instant& instant : schedule_) {
+      for (const sim::model::Instant& instant : schedule_) {
         visit(instant.due, n);
-        if (instant.due & sim::kRecord) {
+        if (instant.due & sim::model::kRecord) {
           for (std::size_t run = 0; run < axes_.runs(); ++run) record(run, set_, axes_);
         }
         if (n == end) return;
@@ -202,36 +202,37 @@ class Problem {
 
  private:
   void advance_feedback() {
-    for (sim::FeedbackLanes& feedback : feedbacks_) feedback.evaluate_error_models();
+    for (sim::engine::FeedbackLanes& feedback : feedbacks_) feedback.evaluate_error_models();
   }
 
   // The velocity loop before the current loop, which uses its result at once.
   void visit(std::uint8_t due, Tick n) {
-    if (due & sim::kErrorModel) {
+    if (due & sim::model::kErrorModel) {
       axes_.read_scales();
       advance_feedback();
     }
-    if (due & sim::kPositionLoop) {
+    if (due & sim::model::kPositionLoop) {
       setpoint_.take(reference_trajectory(static_cast<double>(n) * kTick));
       set_.Q_ref = set_.Q_cmd = setpoint_.Q();
       set_.dQ_ff = setpoint_.dQ();
       set_.ddQ_ff = setpoint_.ddQ();
       for (std::size_t run = 0; run < axes_.runs(); ++run) axes_.follow(set_, run);
-      for (sim::FeedbackLanes& feedback : feedbacks_) feedback.apply_virtual_displacements();
+      for (sim::engine::FeedbackLanes& feedback : feedbacks_)
+        feedback.apply_virtual_displacements();
       axes_.sample_position_feedback();
       axes_.compensate_backlash();
       axes_.close_position_loops();
     }
-    if (due & sim::kVelocityLoop) axes_.close_velocity_loops();
-    if (due & sim::kCurrentLoop) axes_.latch_current_commands();
+    if (due & sim::model::kVelocityLoop) axes_.close_velocity_loops();
+    if (due & sim::model::kCurrentLoop) axes_.latch_current_commands();
   }
 
-  std::vector<sim::Instant> schedule_;
-  sim::ServoAxes axes_;
+  std::vector<sim::model::Instant> schedule_;
+  sim::engine::ServoAxes axes_;
   std::unique_ptr<strategies::Strategy> virtual_encoder_ = make_virtual_encoder();
-  std::vector<sim::FeedbackLanes> feedbacks_;  // of eight runs each
+  std::vector<sim::engine::FeedbackLanes> feedbacks_;  // of eight runs each
   Setpoint setpoint_;
-  sim::AxisSetpoint set_;
+  sim::engine::AxisSetpoint set_;
 };
 
 }  // namespace servomill::reference_problem

@@ -14,18 +14,19 @@ constexpr double kLinearTol = 1e-3;
 constexpr double kFrictionTol = 0.05;  // nm, asked for; the exact step adds 2e-4
 
 // Largest |x - x_ref| (nm) over all axes and rows.
-double largest_error(const sim::MachineSettings& machine, const std::string& reference) {
+double largest_error(const sim::model::MachineSettings& machine, const std::string& reference) {
   const auto x_ref = read_reference(reference);
   Problem run({&machine});
   double largest = 0.0;
   std::size_t row = 0;
-  run.until(kEnd, [&](std::size_t, const sim::AxisSetpoint&, const sim::ServoAxes& axes) {
-    largest = std::max(largest, (axes.Q_true() - x_ref.at(row++)).cwiseAbs().maxCoeff());
-  });
+  run.until(kEnd,
+            [&](std::size_t, const sim::engine::AxisSetpoint&, const sim::engine::ServoAxes& axes) {
+              largest = std::max(largest, (axes.Q_true() - x_ref.at(row++)).cwiseAbs().maxCoeff());
+            });
   return 1e9 * largest;
 }
 
-void expect_reference(const sim::MachineSettings& machine, const std::string& reference,
+void expect_reference(const sim::model::MachineSettings& machine, const std::string& reference,
                       double tolerance) {
   const double error = largest_error(machine, reference);
   testing::Test::RecordProperty("error_nm", fmt::format("{:.3g}", error));
@@ -47,7 +48,7 @@ TEST(ReferenceProblem, FrictionTenTimesSharper) {
 // Eight machines with gains and friction of their own, in lockstep.
 TEST(ReferenceProblem, GivesTheSameBitsAloneAndAmongOthers) {
   constexpr Tick kShort = 40'000;
-  std::vector<sim::MachineSettings> machines(8, read_machine("axes.csv", true));
+  std::vector<sim::model::MachineSettings> machines(8, read_machine("axes.csv", true));
   for (std::size_t m = 0; m < machines.size(); ++m) {
     const double share = 1.0 + 0.03 * static_cast<double>(m);
     for (std::size_t j = 0; j < kJoints; ++j) {
@@ -56,7 +57,7 @@ TEST(ReferenceProblem, GivesTheSameBitsAloneAndAmongOthers) {
       machines[m].drives[j].friction.Fc_negative /= share;
     }
   }
-  std::vector<const sim::MachineSettings*> all;
+  std::vector<const sim::model::MachineSettings*> all;
   for (const auto& machine : machines) all.push_back(&machine);
   std::vector<std::vector<Joints>> together(machines.size());
   Problem(all).until(kShort, [&](std::size_t run, const auto&, const auto& axes) {

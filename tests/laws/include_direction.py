@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Rooms include only what stands below them: tools -> sim -> {controllers, strategies} -> plant, and
 the rooms of sim/ one another as listed, without circles; the library of a room is linked with those
-and no others."""
+and no others; what a room defines is in its namespace."""
 import pathlib
 import re
 import sys
@@ -69,6 +69,10 @@ for room, seen in SIM_ROOMS.items():
         faults.append(f"sim/{room}/CMakeLists.txt: its library must be linked with {' '.join(seen)}")
 folders = {path.name for path in (root / "sim").iterdir() if path.is_dir()}
 faults += [f"sim/{folder}: is no room of the law" for folder in sorted(folders ^ set(SIM_ROOMS))]
+for room in SIM_ROOMS:
+    for path in sorted((root / "sim" / room).rglob("*")):
+        if path.suffix in (".h", ".cpp") and f"\nnamespace servomill::sim::{room} {{" not in path.read_text():
+            faults.append(f"{path.relative_to(root)}: is not in namespace servomill::sim::{room}")
 files = 0
 for room, allowed in MAY_SEE.items():
     for path in sorted((root / room).rglob("*")):

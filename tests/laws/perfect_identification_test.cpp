@@ -58,7 +58,8 @@ std::string spatial_case(const std::string& strategy, const std::string& action,
 struct Residual {
   double largest = 0.0, error = 0.0;
 };
-Residual residual_of(const Scenario& scenario, const Series& series, const std::string& action) {
+Residual residual_of(const model::Scenario& scenario, const records::Series& series,
+                     const std::string& action) {
   Residual out;
   Joints Q = Joints::Zero();
   Q.tail<2>() << 20.0 * deg, 30.0 * deg;
@@ -80,16 +81,16 @@ Residual residual_of(const Scenario& scenario, const Series& series, const std::
   return out;
 }
 
-Series run(const Scenario& scenario) {
-  RunControl control;
+records::Series run(const model::Scenario& scenario) {
+  run::RunControl control;
   control.threads = 1;
-  RunOutput out = run_scenario(scenario, control);
+  run::RunOutput out = run::run_scenario(scenario, control);
   return std::move(out.cases.at(0).result.servo);
 }
 
 Residual residual_of(const std::string& program, const std::string& strategy,
                      const std::string& action, const std::string& more) {
-  const Scenario scenario = small_scenario(program, spatial_case(strategy, action, more));
+  const model::Scenario scenario = small_scenario(program, spatial_case(strategy, action, more));
   return residual_of(scenario, run(scenario), action);
 }
 
@@ -150,7 +151,7 @@ TEST(PerfectIdentification, TableLeavesItsInterpolationError) {
           "from_mm = -100.0\nto_mm = 100.0\nspacing_mm = {}\n",
           action == "compensate" ? "machine_errors = \"machine\"\n" : "", kAmplitude, kPeriod,
           action, h);
-      const Series series = run(small_scenario("G0 X-40\nG1 X40 F6000\nM30\n", toml));
+      const records::Series series = run(small_scenario("G0 X-40\nG1 X40 F6000\nM30\n", toml));
       const auto rows = rows_within(series, -40.0, 40.0);
       double largest = 0.0;
       for (const std::size_t n : rows) {

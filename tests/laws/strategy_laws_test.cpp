@@ -88,7 +88,7 @@ TEST(EveryStrategy, HasDefaultsThatKeepItsOwnRules) {
     for (const ParameterSpec& spec : entry.parameters) {
       const std::string where = std::string(entry.name) + "." + std::string(spec.name);
       EXPECT_FALSE(spec.help.empty()) << where;
-      EXPECT_TRUE(sim::parse_unit(spec.unit).unit || spec.unit.empty()) << where;
+      EXPECT_TRUE(sim::config::parse_unit(spec.unit).unit || spec.unit.empty()) << where;
       if (std::find(spec.words.begin(), spec.words.end(), spec.default_text) != spec.words.end()) {
         continue;
       }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "sim/input/read_scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim {
@@ -50,8 +51,8 @@ inline std::string s_shaped_program(double feed) {
 }
 
 /// @param toml  cases
-inline Scenario trunnion_scenario(const std::string& program, const std::string& toml) {
-  return read_resolved_scenario(
+inline model::Scenario trunnion_scenario(const std::string& program, const std::string& toml) {
+  return input::read_resolved_scenario(
       "machine = \"machines/generic_trunnion_ac.toml\"\nmachine_errors = \"machine\"\n"
       "[machine_override.nc]\nrotary_tolerance_urad = 0.5\n[feedback_hardware]\nconnected = true\n"
       "[record]\nperiod_ms = 2.0\nresolution_nm = 0.0\n" +
@@ -74,15 +75,15 @@ inline std::string corrected_case(const std::string& name, const std::string& se
 struct Deviation {
   double tip = 0.0, axis = 0.0;
 };
-inline Deviation deviation_in(const CaseOutput& out, const std::string& section) {
+inline Deviation deviation_in(const run::CaseOutput& out, const std::string& section) {
   const auto largest = [&](const char* name) {
-    QuantitySpec spec;
+    model::QuantitySpec spec;
     spec.name = name;
     spec.statistic = "max";
     spec.cases = {out.name};
     spec.sections = {section};
-    const CaseData data = out.data();
-    const double value = compare({&spec, 1}, {&data, 1}).front().value;
+    const evaluation::CaseData data = out.data();
+    const double value = evaluation::compare({&spec, 1}, {&data, 1}).front().value;
     testing::Test::RecordProperty(out.name + "_" + section + "_" + name,
                                   fmt::format("{:.6g}", value));
     return value;

@@ -8,32 +8,34 @@
 #include <string>
 #include <vector>
 
+#include "sim/input/read_scenario.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {
 
 /// @param program  G-code; its axes start at machine zero
 /// @param toml     what the scenario says beside machine and program; keys of the root first
-inline Scenario small_scenario(const std::string& program, const std::string& toml) {
-  return read_resolved_scenario("machine = \"machines/hsm600u.toml\"\n" + toml +
-                                    "\n[program]\nfile = \"small.ngc\"\ntext = '''\n" + program +
-                                    "'''\n",
-                                SERVOMILL_SOURCE_DIR "/scenarios/small.toml");
+inline model::Scenario small_scenario(const std::string& program, const std::string& toml) {
+  return input::read_resolved_scenario("machine = \"machines/hsm600u.toml\"\n" + toml +
+                                           "\n[program]\nfile = \"small.ngc\"\ntext = '''\n" +
+                                           program + "'''\n",
+                                       SERVOMILL_SOURCE_DIR "/scenarios/small.toml");
 }
 
 /// Runs one case alone, in this thread; that it ends is taken for granted.
-inline CaseOutput run_case(const Scenario& scenario, const std::string& name) {
-  static const StopFlag kNever = false;
+inline run::CaseOutput run_named_case(const model::Scenario& scenario, const std::string& name) {
+  static const engine::StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
-  const CaseSpec* spec = scenario.find_case(name);
+  const model::CaseSpec* spec = scenario.find_case(name);
   if (spec == nullptr) throw std::logic_error("no case " + name);
-  CaseOutput output = run_case(PreparedCase(scenario, *spec), kNever, progress);
+  run::CaseOutput output =
+      run::run_case(preparation::PreparedCase(scenario, *spec), kNever, progress);
   EXPECT_TRUE(output.result.outcome.finished) << name << ": " << output.result.outcome.reason;
   return output;
 }
 
 /// Rows of feed motion at whose reference the axis X stands within [from, to] (mm).
-inline std::vector<std::size_t> rows_within(const Series& series, double from, double to) {
+inline std::vector<std::size_t> rows_within(const records::Series& series, double from, double to) {
   const std::size_t x = *series.column("ref_linear", 'X'), rapid = *series.column("rapid");
   std::vector<std::size_t> rows;
   for (std::size_t n = 0; n < series.rows(); ++n) {
@@ -44,7 +46,7 @@ inline std::vector<std::size_t> rows_within(const Series& series, double from, d
 }
 
 /// Mean of a column over some rows. @pre there are rows
-inline double mean_of(const Series& series, const std::string& name, char label,
+inline double mean_of(const records::Series& series, const std::string& name, char label,
                       const std::vector<std::size_t>& rows) {
   const std::size_t column = series.column(name, label).value();
   EXPECT_FALSE(rows.empty());
@@ -54,7 +56,7 @@ inline double mean_of(const Series& series, const std::string& name, char label,
 }
 
 /// Largest magnitude of a column over some rows.
-inline double largest_of(const Series& series, const std::string& name, char label,
+inline double largest_of(const records::Series& series, const std::string& name, char label,
                          const std::vector<std::size_t>& rows) {
   const std::size_t column = series.column(name, label).value();
   EXPECT_FALSE(rows.empty());

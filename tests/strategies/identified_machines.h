@@ -38,7 +38,7 @@ inline Parameters default_parameters(const Entry& entry) {
     if (is_word || !spec.is_number) {
       out.set(spec.name, is_word ? std::string_view(text) : spec.words.front());
     } else {
-      const auto unit = sim::parse_unit(spec.unit).unit;
+      const auto unit = sim::config::parse_unit(spec.unit).unit;
       out.set(spec.name, std::stod(text) * (unit ? unit->factor : 1.0));
     }
   }

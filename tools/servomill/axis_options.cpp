@@ -11,6 +11,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/option_value.h"
+#include "sim/input/read_scenario.h"
 
 namespace servomill::tools {
 
@@ -27,25 +28,25 @@ void add_axis_options(Options& options) {
                 "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
 }
 
-sim::Scenario scenario_for_axes(const Options& options) {
+sim::model::Scenario scenario_for_axes(const Options& options) {
   load_plugins(options);
-  sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
   if (!options.has("case")) return scenario;
   const auto& name = options.get<std::string>("case");
-  const sim::CaseSpec* found = scenario.find_case(name);
+  const sim::model::CaseSpec* found = scenario.find_case(name);
   if (found == nullptr) {
     std::vector<std::string_view> names;
-    for (const sim::CaseSpec& one : scenario.cases) names.push_back(one.name);
+    for (const sim::model::CaseSpec& one : scenario.cases) names.push_back(one.name);
     throw InputError({"--case"}, fmt::format("the scenario has no case '{}'{}; it has {}", name,
                                              did_you_mean(name, names), fmt::join(names, ", ")));
   }
-  const sim::CaseSpec one = *found;
+  const sim::model::CaseSpec one = *found;
   scenario.machine = scenario.machine_of(one);
   scenario.cases = {one};
   return scenario;
 }
 
-std::vector<int> chosen_joints(const Options& options, const sim::MachineSettings& machine) {
+std::vector<int> chosen_joints(const Options& options, const sim::model::MachineSettings& machine) {
   const JointLayout& layout = machine.chain.layout;
   std::vector<std::string> letters;
   for (const int j : machine.joints()) letters.emplace_back(1, layout.letter_of(j));
@@ -73,16 +74,16 @@ std::vector<int> chosen_joints(const Options& options, const sim::MachineSetting
 }
 
 std::optional<double> quantity_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity, std::string_view bare_unit) {
+                                      sim::config::Quantity quantity, std::string_view bare_unit) {
   if (!options.has(name)) return std::nullopt;
   const auto& text = options.get<std::string>(name);
-  const sim::ScaledText scaled = sim::scale_option(text, quantity, bare_unit);
+  const sim::config::ScaledText scaled = sim::config::scale_option(text, quantity, bare_unit);
   if (scaled.complaint.empty()) return scaled.si;
   throw InputError({"--" + name}, fmt::format("'{}' {}", text, scaled.complaint));
 }
 
 std::optional<double> positive_option(const Options& options, const std::string& name,
-                                      sim::Quantity quantity, std::string_view bare_unit) {
+                                      sim::config::Quantity quantity, std::string_view bare_unit) {
   const auto value = quantity_option(options, name, quantity, bare_unit);
   if (value && !(*value > 0.0)) {
     throw InputError({"--" + name},
@@ -96,20 +97,21 @@ std::optional<double> retract_option(const Options& options) {
   const auto& text = options.get<std::string>("retract");
   const bool names_Z = text.size() > 2 && (text[0] == 'Z' || text[0] == 'z') && text[1] == '=';
   if (names_Z) {
-    const sim::ScaledText scaled = sim::scale_option(text.substr(2), sim::kLength, "mm");
+    const sim::config::ScaledText scaled =
+        sim::config::scale_option(text.substr(2), sim::config::kLength, "mm");
     if (scaled.complaint.empty()) return scaled.si;
   }
   throw InputError({"--retract " + text},
                    "must be Z=NUMBER, a machine coordinate, such as Z=-5 (in mm) or \"Z=-5 mm\"");
 }
 
-std::string_view bare_unit(sim::Quantity quantity) {
-  if (quantity == sim::kLength) return "mm";
-  if (quantity == sim::kVelocity) return "mm/s";
-  if (quantity == sim::kForce) return "N";
-  if (quantity == sim::kAngle) return "deg";
-  if (quantity == sim::kAngularVelocity) return "deg/s";
-  assert(quantity == sim::kTorque);
+std::string_view bare_unit(sim::config::Quantity quantity) {
+  if (quantity == sim::config::kLength) return "mm";
+  if (quantity == sim::config::kVelocity) return "mm/s";
+  if (quantity == sim::config::kForce) return "N";
+  if (quantity == sim::config::kAngle) return "deg";
+  if (quantity == sim::config::kAngularVelocity) return "deg/s";
+  assert(quantity == sim::config::kTorque);
   return "Nm";
 }
 
@@ -124,7 +126,7 @@ double decibel_option(const Options& options, const std::string& name) {
   std::string_view number = text;
   if (number.ends_with("dB")) number.remove_suffix(2);
   while (number.ends_with(' ')) number.remove_suffix(1);
-  const auto value = sim::plain_number(number);
+  const auto value = sim::config::plain_number(number);
   if (value && *value > 0.0) return *value;
   throw InputError({"--" + name},
                    fmt::format("'{}' must be a ratio > 0 dB such as \"8 dB\"", text));
@@ -139,8 +141,9 @@ std::size_t choice_option(const Options& options, const std::string& name,
                                               fmt::join(words, ", "), did_you_mean(word, words)));
 }
 
-std::string axis_headline(const sim::MachineSettings& machine, int joint, Tick reading_delay) {
-  const sim::LoopPeriods& p = machine.nc.periods;
+std::string axis_headline(const sim::model::MachineSettings& machine, int joint,
+                          Tick reading_delay) {
+  const sim::model::LoopPeriods& p = machine.nc.periods;
   const auto ms_of = [&](Tick ticks) { return p.seconds(ticks) / ms; };
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   std::string out = fmt::format(

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/input/read_scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_store.h"
@@ -22,8 +23,8 @@ std::string causes_help() {
   std::string out =
       "Splits the residuals of a scenario's cases into what each cause has of them, by running\n"
       "each case again without it, and compares the signals at equal arc length. Causes:\n";
-  for (std::size_t c = 0; c < sim::kCauses; ++c) {
-    const sim::CauseInfo& info = sim::info_of(static_cast<sim::Cause>(c));
+  for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
+    const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
     out += fmt::format("  {:<15}{}\n", info.name, info.help);
   }
   out +=
@@ -54,11 +55,12 @@ void must_be_among(const std::string& name, const Names& names, const char* opti
 }
 
 // Quantities of the scenario that the options choose.
-std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Options& options) {
+std::vector<sim::model::QuantitySpec> chosen(const sim::model::Scenario& scenario,
+                                             const Options& options) {
   std::vector<std::string> also = options.list("quantity");
-  std::erase_if(also, [](const std::string& name) { return !sim::is_of_any_case(name); });
-  std::vector<sim::QuantitySpec> all =
-      sim::budget_quantities(scenario, also, options.list("section"));
+  std::erase_if(also, [](const std::string& name) { return !sim::run::is_of_any_case(name); });
+  std::vector<sim::model::QuantitySpec> all =
+      sim::run::budget_quantities(scenario, also, options.list("section"));
   if (all.empty()) {
     throw InputError({options.word()},
                      "has no quantity with a budget (imposed_error_residual, realised_ratio, "
@@ -66,7 +68,7 @@ std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Optio
                      "ask for --quantity tool_deviation or following_error, which each case has");
   }
   if (options.has("section")) {
-    for (sim::QuantitySpec& one : all) one.sections_place = {"--section"};
+    for (sim::model::QuantitySpec& one : all) one.sections_place = {"--section"};
   }
   const auto keep = [&](const char* option, const char* what, auto name_of) {
     const std::vector<std::string> wanted = options.list(option);
@@ -90,7 +92,7 @@ std::vector<sim::QuantitySpec> chosen(const sim::Scenario& scenario, const Optio
   return all;
 }
 
-std::string title_of(const sim::QuantitySpec& quantity) {
+std::string title_of(const sim::model::QuantitySpec& quantity) {
   return fmt::format(
       "{}: {} of {}{}{}", quantity.cases.front(), quantity.name, quantity.axis,
       quantity.sections.empty() ? "" : fmt::format(", {}", fmt::join(quantity.sections, ", ")),
@@ -116,7 +118,7 @@ void print_line(std::string_view name, double at_place, double share, double rms
              percent(share), micrometres(rms), help);
 }
 
-void print_budget(const sim::Budget& budget) {
+void print_budget(const sim::run::Budget& budget) {
   fmt::print("\n{}\n", title_of(budget.quantity));
   if (!budget.note.empty()) {
     fmt::print("  none: {}\n", budget.note);
@@ -126,15 +128,15 @@ void print_budget(const sim::Budget& budget) {
   const auto share = [&](double part) { return whole != 0.0 ? part / whole : 0.0; };
   fmt::print("  {:<15} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
              "share", "rms");
-  for (const sim::BudgetPart& part : budget.parts) {
+  for (const sim::run::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
-    const sim::CauseInfo& info = sim::info_of(part.cause);
+    const sim::run::CauseInfo& info = sim::run::info_of(part.cause);
     print_line(info.name, part.at_place, share(part.at_place), part.rms, info.help);
   }
   std::string absent;
-  for (const sim::BudgetPart& part : budget.parts) {
+  for (const sim::run::BudgetPart& part : budget.parts) {
     if (part.present) continue;
-    absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::info_of(part.cause).name);
+    absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::run::info_of(part.cause).name);
   }
   const double sum = budget.sum_at_place();
   fmt::print("  {:<15} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
@@ -144,9 +146,9 @@ void print_budget(const sim::Budget& budget) {
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
 
-void print_json(const sim::Budget& budget) {
-  const sim::QuantitySpec& q = budget.quantity;
-  sim::JsonObject out;
+void print_json(const sim::run::Budget& budget) {
+  const sim::model::QuantitySpec& q = budget.quantity;
+  sim::system::JsonObject out;
   out.text("case", q.cases.front()).text("quantity", q.name);
   out.text_or_null("axis", q.axis == '\0' ? "" : std::string(1, q.axis));
   out.text("sections", fmt::format("{}", fmt::join(q.sections, ", "))).text("baseline", q.baseline);
@@ -156,11 +158,12 @@ void print_json(const sim::Budget& budget) {
   }
   out.text("unit", "um").number("s_mm", budget.place_s);
   out.number("residual", budget.residual.at_place).number("residual_rms", budget.residual.rms);
-  sim::JsonObject parts;
-  for (const sim::BudgetPart& part : budget.parts) {
+  sim::system::JsonObject parts;
+  for (const sim::run::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
-    parts.raw(sim::info_of(part.cause).name,
-              sim::JsonObject().number("at_place", part.at_place).number("rms", part.rms).line());
+    parts.raw(
+        sim::run::info_of(part.cause).name,
+        sim::system::JsonObject().number("at_place", part.at_place).number("rms", part.rms).line());
   }
   out.raw("parts", parts.line()).number("sum", budget.sum_at_place());
   out.number("remainder", budget.remainder.at_place);
@@ -195,32 +198,34 @@ int budget_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
-  const std::vector<sim::QuantitySpec> quantities = chosen(scenario, options);
-  std::optional<sim::BudgetStore> store;
+  const sim::model::Scenario scenario =
+      sim::input::read_scenario(options.word(), options.list("set"));
+  const std::vector<sim::model::QuantitySpec> quantities = chosen(scenario, options);
+  std::optional<sim::run::BudgetStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
   }
   const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet") || options.has("json"));
-  sim::BudgetControl control;
+  sim::run::BudgetControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
-  control.prepared = [&](const sim::RunEstimate& takes) {
-    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(takes));
-    if (sim::is_worth_telling(takes)) {
+  control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
+    if (sim::preparation::is_worth_telling(takes)) {
       const std::string folder = control.scratch_folder.empty()
                                      ? std::filesystem::temp_directory_path().string()
                                      : control.scratch_folder;
-      sim::refuse_full_disk(scenario, takes, folder, sim::kCopiesOfBudget);
+      sim::preparation::refuse_full_disk(scenario, takes, folder, sim::run::kCopiesOfBudget);
     }
   };
   if (store) {
     const auto path = std::filesystem::absolute(options.get<std::string>("output"));
     control.scratch_folder = path.parent_path().string();
   }
-  const std::vector<sim::Budget> budgets = sim::find_budgets(scenario, quantities, control);
+  const std::vector<sim::run::Budget> budgets =
+      sim::run::find_budgets(scenario, quantities, control);
   bar.clear();
   if (budgets.empty()) {
     print_interrupted("");
@@ -228,7 +233,7 @@ int budget_command(const Arguments& arguments) {
   }
   if (!options.has("json")) fmt::print("{}\n", scenario.title);
   bool all = true;
-  for (const sim::Budget& budget : budgets) {
+  for (const sim::run::Budget& budget : budgets) {
     options.has("json") ? print_json(budget) : print_budget(budget);
     if (store) store->add(budget);
     all &= budget.note.empty();

@@ -22,7 +22,7 @@ int canon_command(const Arguments& arguments) {
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
-  const auto warnings = sim::canon(
+  const auto warnings = sim::programs::canon(
       options.word(), program_inputs(options),
       [](std::string_view lines) { std::fwrite(lines.data(), 1, lines.size(), stdout); });
   for (const Fault& warning : warnings) {

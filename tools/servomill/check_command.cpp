@@ -35,33 +35,34 @@ void declare(Options& options) {
 std::string to_json(const std::vector<Fault>& faults) {
   std::vector<std::string> out;
   for (const Fault& fault : faults) {
-    out.push_back(sim::JsonObject()
+    out.push_back(sim::system::JsonObject()
                       .text("file", fault.place.file)
                       .integer("line", fault.place.line)
                       .integer("column", fault.place.column)
                       .text("message", fault.message)
                       .line());
   }
-  return sim::json_list(out);
+  return sim::system::json_list(out);
 }
 
 // @return number of faults
-std::size_t check(const std::string& path, const Options& options, sim::ProgramInputs inputs) {
+std::size_t check(const std::string& path, const Options& options,
+                  sim::programs::ProgramInputs inputs) {
   inputs.trials = std::make_shared<controllers::SharedTrials>();
   std::vector<Fault> warnings;
-  const auto faults = sim::check_file(path, options.list("set"), inputs, &warnings);
+  const auto faults = sim::programs::check_file(path, options.list("set"), inputs, &warnings);
   const bool json = options.has("json");
-  std::optional<sim::ProgramSurvey> survey;
-  if (sim::is_program(path) && !options.has("quiet")) {
-    survey = sim::survey_program(
+  std::optional<sim::programs::ProgramSurvey> survey;
+  if (sim::programs::is_program(path) && !options.has("quiet")) {
+    survey = sim::programs::survey_program(
         {path, inputs, options.list("work-offset"), options.list("tool-length")});
   }
   if (json) {
-    fmt::print("{}\n", sim::JsonObject()
+    fmt::print("{}\n", sim::system::JsonObject()
                            .text("file", path)
                            .raw("faults", to_json(faults))
                            .raw("warnings", to_json(warnings))
-                           .raw("program", survey ? sim::to_json(*survey) : "null")
+                           .raw("program", survey ? sim::programs::to_json(*survey) : "null")
                            .line());
     return faults.size();
   }
@@ -71,7 +72,7 @@ std::size_t check(const std::string& path, const Options& options, sim::ProgramI
   for (const Fault& fault : faults) fmt::print(stderr, "{}\n", to_string(fault));
   if (options.has("quiet")) return faults.size();
   if (faults.empty()) fmt::print("{}: no faults\n", path);
-  if (survey) fmt::print("{}", sim::to_text(*survey));
+  if (survey) fmt::print("{}", sim::programs::to_text(*survey));
   return faults.size();
 }
 
@@ -96,7 +97,7 @@ int check_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
-  const sim::ProgramInputs inputs = program_inputs(options);
+  const sim::programs::ProgramInputs inputs = program_inputs(options);
   std::size_t faults = 0;
   for (const std::string& path : options.words()) faults += check(path, options, inputs);
   return faults == 0 ? kDone : kInputWrong;

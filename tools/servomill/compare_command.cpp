@@ -20,12 +20,12 @@ int compare_command(const Arguments& arguments) {
     throw InputError({"servomill compare"}, "needs at least one OUT.h5; see --help");
   }
   for (const std::string& path : options.words()) {
-    const sim::StoredRun run = sim::read_run(path);
-    const auto rows = sim::compare(run.quantities, run.cases);
+    const sim::run::StoredRun run = sim::run::read_run(path);
+    const auto rows = sim::evaluation::compare(run.quantities, run.cases);
     if (options.has("json")) {
-      for (const auto& row : rows) fmt::print("{}\n", sim::to_json(row));
+      for (const auto& row : rows) fmt::print("{}\n", sim::evaluation::to_json(row));
     } else {
-      fmt::print("{}: {}\n\n{}\n", path, run.title, sim::format_table(rows));
+      fmt::print("{}: {}\n\n{}\n", path, run.title, sim::evaluation::format_table(rows));
     }
   }
   return kDone;

@@ -20,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-sim::Dialect dialect_of(const Options& options) {
-  return static_cast<sim::Dialect>(choice_option(options, "dialect", sim::kDialects));
+sim::programs::Dialect dialect_of(const Options& options) {
+  return static_cast<sim::programs::Dialect>(
+      choice_option(options, "dialect", sim::programs::kDialects));
 }
 
 // As programs are called on each control; of LinuxCNC as the one that was read.
@@ -61,12 +62,12 @@ int program_number(const Options& options) {
 std::string output_name(const Options& options) {
   if (options.has("output")) return options.get<std::string>("output");
   const fs::path path(options.word());
-  const sim::Dialect dialect = dialect_of(options);
+  const sim::programs::Dialect dialect = dialect_of(options);
   const std::string extension(kExtensions[static_cast<std::size_t>(dialect)]);
   std::string name = path.stem().string() + ".compensated" + path.extension().string();
-  if (dialect == sim::Dialect::fanuc && program_number(options) > 0) {
+  if (dialect == sim::programs::Dialect::fanuc && program_number(options) > 0) {
     name = fmt::format("O{:04}{}", program_number(options), extension);
-  } else if (dialect != sim::Dialect::linuxcnc) {
+  } else if (dialect != sim::programs::Dialect::linuxcnc) {
     name = plain_name(path.stem().string()) + "_compensated" + extension;
   }
   return (path.parent_path() / name).string();
@@ -78,7 +79,7 @@ std::string program_name(const Options& options) {
   const bool is_file = output != "-";
   const std::string stem = fs::path(is_file ? output : options.word()).stem().string();
   const std::string name = plain_name(stem);
-  if (is_file && name != stem && dialect_of(options) == sim::Dialect::heidenhain) {
+  if (is_file && name != stem && dialect_of(options) == sim::programs::Dialect::heidenhain) {
     throw InputError({"--output " + output},
                      "must be called by letters, digits and '_', as the program in it is");
   }
@@ -88,7 +89,7 @@ std::string program_name(const Options& options) {
 // A power of ten in mm, so that positions have whole digits.
 double resolution_of(const Options& options) {
   const double resolution =
-      positive_option(options, "resolution", sim::kLength, "um").value_or(0.0);
+      positive_option(options, "resolution", sim::config::kLength, "um").value_or(0.0);
   if (resolution == 0.0) return 0.0;
   const double digits = -std::log10(resolution / mm);
   if (std::abs(digits - std::round(digits)) < 1e-6 && digits > 1.5 && digits < 6.5) {
@@ -100,7 +101,7 @@ double resolution_of(const Options& options) {
 std::optional<int> preset_of(const Options& options) {
   if (!options.has("preset")) return std::nullopt;
   const auto& text = options.get<std::string>("preset");
-  const double number = sim::number_of(text);
+  const double number = sim::model::number_of(text);
   if (number >= 0.0 && number <= 9999.0 && number == std::floor(number)) {
     return static_cast<int>(number);
   }
@@ -112,7 +113,8 @@ std::vector<std::string> absent_functions(const Options& options) {
   std::vector<std::string> out;
   if (!options.has("without")) return out;
   std::vector<std::string_view> names;
-  for (const sim::FanucFunction& one : sim::kFanucFunctions) names.push_back(one.name);
+  for (const sim::programs::FanucFunction& one : sim::programs::kFanucFunctions)
+    names.push_back(one.name);
   std::string_view rest = options.get<std::string>("without");
   while (true) {
     const std::size_t end = std::min(rest.find(','), rest.size());
@@ -132,24 +134,25 @@ std::string text_of(const Options& options, const std::string& name) {
   return options.has(name) ? options.get<std::string>(name) : std::string();
 }
 
-sim::CompensateRequest request_of(const Options& options) {
+sim::programs::CompensateRequest request_of(const Options& options) {
   constexpr std::array<std::string_view, 2> kAxes = {"linear", "all"};
   if (!options.has("machine")) {
     throw InputError({"servomill compensate"}, "needs --machine M.toml; see --help");
   }
-  sim::CompensateRequest request;
+  sim::programs::CompensateRequest request;
   request.program_file = options.word();
   request.machine_file = options.get<std::string>("machine");
   request.error_file = text_of(options, "errors");
   request.model = text_of(options, "model");
   request.changes = options.list("set");
-  request.tolerance = *positive_option(options, "tolerance", sim::kLength, "um");
+  request.tolerance = *positive_option(options, "tolerance", sim::config::kLength, "um");
   constexpr double kLeast = 1e-9;  // m; control and machine know nothing of less
   if (request.tolerance < kLeast * (1.0 - 1e-9)) {
     throw InputError({"--tolerance"}, fmt::format("'{}' must be >= 0.001 um",
                                                   options.get<std::string>("tolerance")));
   }
-  request.max_block = positive_option(options, "max-block", sim::kLength, "mm").value_or(0.0);
+  request.max_block =
+      positive_option(options, "max-block", sim::config::kLength, "mm").value_or(0.0);
   request.corrects_rapids = options.has("correct-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
   request.dialect = dialect_of(options);
@@ -162,7 +165,8 @@ sim::CompensateRequest request_of(const Options& options) {
   request.program_number = program_number(options);
   request.resolution = resolution_of(options);
   request.retract_Z = retract_option(options);
-  request.smoothing = positive_option(options, "smoothing", sim::kLength, "um").value_or(0.0);
+  request.smoothing =
+      positive_option(options, "smoothing", sim::config::kLength, "um").value_or(0.0);
   request.preset = preset_of(options);
   request.without = absent_functions(options);
   request.records = options.has("record");
@@ -172,11 +176,11 @@ sim::CompensateRequest request_of(const Options& options) {
 // Before the work: what cannot be written afterwards.
 void refuse_outputs(const Options& options, const std::string& name) {
   const bool force = options.has("force"), to_stdout = name == "-";
-  if (!to_stdout) sim::refuse_unwritable_text(name, force);
+  if (!to_stdout) sim::system::refuse_unwritable_text(name, force);
   if (!options.has("record")) return;
   const auto& record = options.get<std::string>("record");
-  sim::writable_name(record, force);
-  if (!to_stdout) sim::refuse_same_output(record, name, "--record", "the program");
+  sim::run::writable_name(record, force);
+  if (!to_stdout) sim::system::refuse_same_output(record, name, "--record", "the program");
 }
 
 }  // namespace
@@ -261,10 +265,10 @@ int compensate_command(const Arguments& arguments) {
 
   const std::string name = output_name(options);
   const bool to_stdout = name == "-", force = options.has("force");
-  const sim::CompensateRequest request = request_of(options);
+  const sim::programs::CompensateRequest request = request_of(options);
   refuse_outputs(options, name);
-  const sim::Compensated done = sim::compensate(request);
-  if (!to_stdout) sim::write_text_file(name, done.program, force);
+  const sim::programs::Compensated done = sim::programs::compensate(request);
+  if (!to_stdout) sim::system::write_text_file(name, done.program, force);
   if (options.has("record")) {
     done.record.write(options.get<std::string>("record"), force,
                       fs::path(options.word()).filename().string(), done.machine);

@@ -17,8 +17,8 @@ std::string summary() {
   std::string out =
       "Runs a scenario unchanged and once with each of these steps halved, and prints how\n"
       "each line of its comparison changes:\n";
-  for (std::size_t n = 0; n < sim::kRefinements; ++n) {
-    const sim::RefinementInfo& info = sim::info_of(static_cast<sim::Refinement>(n));
+  for (std::size_t n = 0; n < sim::run::kRefinements; ++n) {
+    const sim::run::RefinementInfo& info = sim::run::info_of(static_cast<sim::run::Refinement>(n));
     out += fmt::format("  {:<11}{}\n", info.name, info.help);
   }
   out +=
@@ -35,12 +35,12 @@ std::string summary() {
   return out;
 }
 
-std::set<sim::Refinement> chosen(const Options& options) {
-  std::array<std::string_view, sim::kRefinements> names;
-  std::set<sim::Refinement> all, out;
-  for (std::size_t n = 0; n < sim::kRefinements; ++n) {
-    names[n] = sim::info_of(static_cast<sim::Refinement>(n)).name;
-    all.insert(static_cast<sim::Refinement>(n));
+std::set<sim::run::Refinement> chosen(const Options& options) {
+  std::array<std::string_view, sim::run::kRefinements> names;
+  std::set<sim::run::Refinement> all, out;
+  for (std::size_t n = 0; n < sim::run::kRefinements; ++n) {
+    names[n] = sim::run::info_of(static_cast<sim::run::Refinement>(n)).name;
+    all.insert(static_cast<sim::run::Refinement>(n));
   }
   for (const std::string& name : options.list("halve")) {
     const auto found = std::find(names.begin(), names.end(), name);
@@ -51,7 +51,7 @@ std::set<sim::Refinement> chosen(const Options& options) {
                                                                            fmt::join(names, ", "))
                                                              : near));
     }
-    out.insert(static_cast<sim::Refinement>(found - names.begin()));
+    out.insert(static_cast<sim::run::Refinement>(found - names.begin()));
   }
   return out.empty() ? all : out;
 }
@@ -74,16 +74,16 @@ int converge_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
-  const std::set<sim::Refinement> refinements = chosen(options);
-  const sim::ScenarioSource source(options.word(), options.list("set"));
+  const std::set<sim::run::Refinement> refinements = chosen(options);
+  const sim::input::ScenarioSource source(options.word(), options.list("set"));
   const bool json = options.has("json");
   const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet") || json);
-  sim::ConvergeControl control;
+  sim::run::ConvergeControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
   control.progress = [&](double share) { bar.show(share); };
-  const auto found = sim::find_convergence(source, refinements, control);
+  const auto found = sim::run::find_convergence(source, refinements, control);
   bar.clear();
   if (!found) {
     print_interrupted("");
@@ -91,9 +91,10 @@ int converge_command(const Arguments& arguments) {
   }
   for (const std::string& stopped : found->stopped) fmt::print(stderr, "stopped: {}\n", stopped);
   if (json) {
-    for (const sim::ConvergedRow& row : found->rows) fmt::print("{}\n", sim::to_json(row));
+    for (const sim::run::ConvergedRow& row : found->rows)
+      fmt::print("{}\n", sim::run::to_json(row));
   } else {
-    fmt::print("{}", sim::format_table(*found));
+    fmt::print("{}", sim::run::format_table(*found));
   }
   return found->stopped.empty() ? kDone : kMachineStopped;
 }

@@ -47,7 +47,7 @@ void on_signal(int signal) {
 
 // Neither closes nor flushes: the main thread may hold locks, and what it writes is incomplete.
 [[noreturn]] void end_process() {
-  sim::TemporaryFile::remove_all();
+  sim::system::TemporaryFile::remove_all();
   const std::scoped_lock lock(kept_mutex);
   print_interrupted(what_is_kept ? what_is_kept() : "");
   ::_exit(kInterrupted);
@@ -55,7 +55,7 @@ void on_signal(int signal) {
 
 // The same for a plug-in that does not return or has crashed.
 [[noreturn]] void end_after_plugin(const std::string& why) {
-  sim::TemporaryFile::remove_all();
+  sim::system::TemporaryFile::remove_all();
   const std::scoped_lock lock(kept_mutex);
   const std::string kept = what_is_kept ? what_is_kept() : "";
   write_to_stderr(why + (kept.empty() ? "\n" : "\n" + kept + "\n"));
@@ -74,7 +74,7 @@ void watch() {
 const std::atomic<bool>& stop_on_interrupt() {
   static const bool installed = [] {
     sem_init(&wanted, 0, 0);
-    sim::on_plugin_failure(end_after_plugin);
+    sim::input::on_plugin_failure(end_after_plugin);
     std::thread(watch).detach();
     // system calls go on: a full pipe is no fault
     struct sigaction action {};

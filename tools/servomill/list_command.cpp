@@ -26,7 +26,7 @@ void list_files(const std::string& folder, bool machines) {
     }
   }
   std::sort(files.begin(), files.end());
-  for (const std::string& file : files) fmt::print("{:<50} {}\n", file, sim::title_of(file));
+  for (const std::string& file : files) fmt::print("{:<50} {}\n", file, sim::input::title_of(file));
 }
 
 void list_keys_of(const Options& options) {
@@ -38,10 +38,11 @@ void list_keys_of(const Options& options) {
   if (options.has("json") && options.has("markdown")) {
     throw InputError({"--json"}, "does not go with --markdown");
   }
-  const std::vector<sim::KeyEntry> keys = sim::keys_of(words.size() == 2 ? words[1] : "");
-  fmt::print("{}", options.has("json")       ? sim::as_json(keys)
-                   : options.has("markdown") ? sim::as_markdown(keys)
-                                             : sim::as_text(keys));
+  const std::vector<sim::input::KeyEntry> keys =
+      sim::input::keys_of(words.size() == 2 ? words[1] : "");
+  fmt::print("{}", options.has("json")       ? sim::input::as_json(keys)
+                   : options.has("markdown") ? sim::input::as_markdown(keys)
+                                             : sim::input::as_text(keys));
 }
 
 }  // namespace
@@ -73,11 +74,11 @@ int list_command(const Arguments& arguments) {
     if (options.has(form)) throw InputError({std::string("--") + form}, "goes with keys only");
   }
   if (what == "strategies") {
-    fmt::print("{}", sim::describe_strategies());
+    fmt::print("{}", sim::input::describe_strategies());
   } else if (what == "quantities") {
-    fmt::print("{}", sim::describe_quantities());
+    fmt::print("{}", sim::input::describe_quantities());
   } else if (what == "rules") {
-    fmt::print("{}", sim::describe_reader_rules());
+    fmt::print("{}", sim::input::describe_reader_rules());
   } else if (what == "machines" || what == "scenarios") {
     list_files(options.get<std::string>("folder"), what == "machines");
   } else {

@@ -78,7 +78,7 @@ int dispatch(const Arguments& arguments) {
     return kDone;
   }
   if (name == "--version") {
-    fmt::print("servomill {}\n", sim::build_identity());
+    fmt::print("servomill {}\n", sim::run::build_identity());
     return kDone;
   }
   const auto command = std::find_if(kCommands.begin(), kCommands.end(),
@@ -108,7 +108,7 @@ int guarded(const servomill::tools::Arguments& arguments) {
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return tools::kInputWrong;
-  } catch (const sim::SystemError& error) {
+  } catch (const sim::system::SystemError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return tools::kSystemFailed;
   } catch (const Interrupted&) {
@@ -133,7 +133,7 @@ int guarded(const servomill::tools::Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  servomill::sim::return_large_blocks();
+  servomill::sim::system::return_large_blocks();
   const int status = guarded({argv + 1, argv + argc});
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   fmt::print(stderr, "standard output: cannot be written: {}\n", std::strerror(errno));

@@ -27,9 +27,9 @@ int merge_command(const Arguments& arguments) {
   if (!options.has("output")) throw InputError(place, "needs the name of the result: -o OUT.h5");
 
   const auto out = options.get<std::string>("output");
-  sim::writable_name(out, options.has("force"));
-  const sim::Merged merged =
-      sim::merge_sweeps(options.words(), out, options.has("force"), options.has("partial"));
+  sim::run::writable_name(out, options.has("force"));
+  const sim::sweep::Merged merged =
+      sim::sweep::merge_sweeps(options.words(), out, options.has("force"), options.has("partial"));
   for (const std::string& missing : merged.missing) fmt::print(stderr, "{}: {}\n", out, missing);
   tell_mixed_levels(out, merged.simd_levels);
   if (!options.has("quiet")) {

@@ -131,7 +131,7 @@ void add_plugin_option(Options& options) {
 }
 
 void load_plugins(const Options& options) {
-  for (const std::string& file : options.list("plugin")) sim::load_plugin(file);
+  for (const std::string& file : options.list("plugin")) sim::input::load_plugin(file);
 }
 
 unsigned thread_count(const Options& options) {

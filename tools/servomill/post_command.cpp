@@ -23,24 +23,25 @@ int whole_option(const Options& options, const std::string& name, int min, int m
 }
 
 // A quantity from 0.001 to 1e9 of its unit.
-double bounded_option(const Options& options, const std::string& name, sim::Quantity quantity,
-                      std::string_view unit) {
+double bounded_option(const Options& options, const std::string& name,
+                      sim::config::Quantity quantity, std::string_view unit) {
   constexpr double kMin = 1e-3, kMax = 1e9;
   const double value = *quantity_option(options, name, quantity, unit);
-  const double in_unit = value / sim::parse_unit(unit).unit->factor;
+  const double in_unit = value / sim::config::parse_unit(unit).unit->factor;
   if (in_unit >= kMin && in_unit <= kMax) return value;
   throw InputError({"--" + name}, fmt::format("'{}' must be >= {:g} and <= {:g} {}",
                                               options.get<std::string>(name), kMin, kMax, unit));
 }
 
 // "110 mm" of every tool, "1=50" of one.
-void take_tool_lengths(const Options& options, sim::PostRequest& request) {
+void take_tool_lengths(const Options& options, sim::programs::PostRequest& request) {
   for (const std::string& text : options.list("tool-length")) {
     if (text.find('=') != std::string::npos) {
       request.tool_lengths.push_back(text);
       continue;
     }
-    const sim::ScaledText length = sim::scale_option(text, sim::kLength, "mm");
+    const sim::config::ScaledText length =
+        sim::config::scale_option(text, sim::config::kLength, "mm");
     const std::string fault = !length.complaint.empty() ? length.complaint
                               : length.si < 0.0         ? "must be >= 0"
                                                         : "";
@@ -57,8 +58,8 @@ Eigen::Vector3d part_zero_of(const std::string& text) {
   std::size_t from = 0, n = 0;
   for (; n < values.size() && from <= text.size(); ++n) {
     const std::size_t end = std::min(text.find(',', from), text.size());
-    const auto value =
-        sim::scale_option(std::string_view(text).substr(from, end - from), sim::kLength, "mm");
+    const auto value = sim::config::scale_option(std::string_view(text).substr(from, end - from),
+                                                 sim::config::kLength, "mm");
     if (!value.complaint.empty()) break;
     values[n] = value.si;
     from = end + 1;
@@ -82,10 +83,10 @@ void tell(const std::vector<controllers::Warning>& warnings) {
 }
 
 // Odd things explain faults.
-sim::PostProcessedFile post(sim::PostRequest request) {
+sim::programs::PostProcessedFile post(sim::programs::PostRequest request) {
   std::vector<controllers::Warning> warnings;
   try {
-    return sim::post_file(std::move(request), &warnings);
+    return sim::programs::post_file(std::move(request), &warnings);
   } catch (const InputError&) {
     tell(warnings);
     throw;
@@ -110,7 +111,7 @@ void refuse_contradictions(const Options& options) {
   }
 }
 
-void read_approach(const Options& options, sim::PostRequest& request) {
+void read_approach(const Options& options, sim::programs::PostRequest& request) {
   constexpr std::array<std::string_view, 2> kApproaches = {"safe", "direct"};
   request.options.approach =
       static_cast<controllers::Approach>(choice_option(options, "approach", kApproaches));
@@ -121,14 +122,15 @@ void read_approach(const Options& options, sim::PostRequest& request) {
     }
   }
   if (options.has("clearance")) {
-    request.options.safe.clearance = bounded_option(options, "clearance", sim::kLength, "mm");
+    request.options.safe.clearance =
+        bounded_option(options, "clearance", sim::config::kLength, "mm");
   }
   request.retract_Z = retract_option(options);
 }
 
-sim::PostRequest request_of(const Options& options) {
+sim::programs::PostRequest request_of(const Options& options) {
   refuse_contradictions(options);
-  sim::PostRequest request;
+  sim::programs::PostRequest request;
   request.cl_file = options.word();
   request.machine_file = options.get<std::string>("machine");
   request.changes = options.list("set");
@@ -139,12 +141,13 @@ sim::PostRequest request_of(const Options& options) {
   post.mode = options.has("tcp")         ? controllers::PostMode::tip
               : options.has("classical") ? controllers::PostMode::locations
                                          : controllers::PostMode::joints;
-  post.tolerance.tip = bounded_option(options, "tolerance", sim::kLength, "um");
-  post.tolerance.axis = bounded_option(options, "axis-tolerance", sim::kAngle, "urad");
+  post.tolerance.tip = bounded_option(options, "tolerance", sim::config::kLength, "um");
+  post.tolerance.axis = bounded_option(options, "axis-tolerance", sim::config::kAngle, "urad");
   if (options.has("feed")) {
-    post.feed = bounded_option(options, "feed", sim::kVelocity, "mm/min");
+    post.feed = bounded_option(options, "feed", sim::config::kVelocity, "mm/min");
   }
-  post.rotary_rate = bounded_option(options, "rotary-feed", sim::kAngularVelocity, "deg/min");
+  post.rotary_rate =
+      bounded_option(options, "rotary-feed", sim::config::kAngularVelocity, "deg/min");
   if (options.has("work-offset")) {
     request.work_offset = part_zero_of(options.get<std::string>("work-offset"));
   }
@@ -228,14 +231,14 @@ int post_command(const Arguments& arguments) {
 
   const std::string name = program_name(options);
   const bool to_stdout = name == "-";
-  sim::PostRequest request = request_of(options);
-  if (!to_stdout) sim::refuse_unwritable_text(name, options.has("force"));
-  const sim::PostProcessedFile post_processed = post(std::move(request));
+  sim::programs::PostRequest request = request_of(options);
+  if (!to_stdout) sim::system::refuse_unwritable_text(name, options.has("force"));
+  const sim::programs::PostProcessedFile post_processed = post(std::move(request));
   tell(post_processed.warnings);
   if (to_stdout) {
     std::fwrite(post_processed.program.data(), 1, post_processed.program.size(), stdout);
   } else {
-    sim::write_text_file(name, post_processed.program, options.has("force"));
+    sim::system::write_text_file(name, post_processed.program, options.has("force"));
   }
   if (!options.has("quiet")) {
     fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n{}\n", name,

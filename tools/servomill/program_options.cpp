@@ -46,11 +46,11 @@ void add_machine_option(Options& options) {
                 "machine that runs it: G43.5, G53.1, and G43.4 or G68.2 with turned axes need it");
 }
 
-sim::ProgramInputs program_inputs(const Options& options) {
+sim::programs::ProgramInputs program_inputs(const Options& options) {
   const auto text = [&](const char* name) {
     return options.has(name) ? options.get<std::string>(name) : std::string();
   };
-  sim::ProgramInputs inputs;
+  sim::programs::ProgramInputs inputs;
   inputs.tool_table = text("tools");
   inputs.parameters = options.list("parameter");
   inputs.machine = text("machine");
@@ -59,7 +59,7 @@ sim::ProgramInputs program_inputs(const Options& options) {
   if (options.has("reader")) inputs.reader = text("reader");
   if (options.has("decimal-point")) inputs.decimal_point = text("decimal-point");
   if (options.has("feed")) {
-    inputs.feed = *quantity_option(options, "feed", sim::kVelocity, "mm/min");
+    inputs.feed = *quantity_option(options, "feed", sim::config::kVelocity, "mm/min");
     if (!(*inputs.feed > 0.0)) throw InputError({"--feed"}, "must be > 0");
   }
   inputs.additional_offsets = options.list("additional-offset");

@@ -11,6 +11,6 @@ void add_program_options(Options& options);
 void add_machine_option(Options& options);
 
 /// Reads these options.
-sim::ProgramInputs program_inputs(const Options& options);
+sim::programs::ProgramInputs program_inputs(const Options& options);
 
 }  // namespace servomill::tools

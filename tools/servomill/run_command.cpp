@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/plugins.h"
+#include "sim/input/read_scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
@@ -22,18 +23,18 @@ namespace {
 namespace po = boost::program_options;
 
 // Notes on what the NC corrected or could not do as programmed, once for all cases.
-void print_notes(const sim::RunOutput& output) {
+void print_notes(const sim::run::RunOutput& output) {
   std::set<std::string> said;
-  for (const sim::CaseOutput& one : output.cases) {
+  for (const sim::run::CaseOutput& one : output.cases) {
     for (const std::string& note : one.notes) {
       if (said.insert(note).second) fmt::print(stderr, "{}\n", note);
     }
   }
 }
 
-void print_outcomes(const sim::RunOutput& output) {
-  for (const sim::CaseOutput& one : output.cases) {
-    const sim::CaseResult& result = one.result;
+void print_outcomes(const sim::run::RunOutput& output) {
+  for (const sim::run::CaseOutput& one : output.cases) {
+    const sim::engine::CaseResult& result = one.result;
     if (result.outcome.finished) {
       fmt::print("{:<12} {:8.2f} s of motion in {:6.2f} s ({:.0f} x real time), {:.0f} blocks\n",
                  one.name, result.simulated_time, result.wall_time,
@@ -47,14 +48,14 @@ void print_outcomes(const sim::RunOutput& output) {
 // Output that a run leaves behind when it does not end. For any thread.
 class Kept {
  public:
-  explicit Kept(const sim::Scenario& scenario) {
-    for (const sim::CaseSpec& one : scenario.cases) incomplete_.push_back(one.name);
+  explicit Kept(const sim::model::Scenario& scenario) {
+    for (const sim::model::CaseSpec& one : scenario.cases) incomplete_.push_back(one.name);
   }
   void in(const std::string& partial_path) {
     const std::scoped_lock lock(mutex_);
     partial_path_ = partial_path;
   }
-  void add(const sim::CaseOutput& one) {
+  void add(const sim::run::CaseOutput& one) {
     const std::scoped_lock lock(mutex_);
     if (one.result.outcome.interrupted) return;
     std::erase(incomplete_, one.name);
@@ -108,43 +109,45 @@ int run_command(const Arguments& arguments) {
                 "calls exit() or does not return within 10 s ends its case, not the command");
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
-  if (options.has("isolate")) sim::isolate_plugins();
+  if (options.has("isolate")) sim::input::isolate_plugins();
 
-  const sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+  const sim::model::Scenario scenario =
+      sim::input::read_scenario(options.word(), options.list("set"));
   const std::string path =
-      sim::writable_name(output_name(options, scenario.name, ""), options.has("force"));
+      sim::run::writable_name(output_name(options, scenario.name, ""), options.has("force"));
   const bool json = options.has("json"), quiet = options.has("quiet");
   const auto& stop = stop_on_interrupt();
-  std::optional<sim::RunStore> store;
+  std::optional<sim::run::RunStore> store;
   ProgressBar bar(quiet);
-  sim::RunControl control;
+  sim::run::RunControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
   control.progress = [&](double share) { bar.show(share); };
   Kept kept(scenario);
   const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
-  control.case_done = [&](const sim::CaseOutput& one) {
+  control.case_done = [&](const sim::run::CaseOutput& one) {
     store->add(one);
     kept.add(one);
   };
-  control.prepared = [&](const sim::RunEstimate& takes) {
-    if (sim::is_worth_telling(takes)) fmt::print(stderr, "estimate: {}\n", to_string(takes));
-    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::thinning_message(takes));
-    sim::refuse_full_disk(scenario, takes, control.scratch_folder);
+  control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+    if (sim::preparation::is_worth_telling(takes))
+      fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
+    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
+    sim::preparation::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
   };
-  sim::RunOutput output;
+  sim::run::RunOutput output;
   try {
-    output = sim::run_scenario(scenario, control);
+    output = sim::run::run_scenario(scenario, control);
     bar.clear();
     if (!kept.all_complete()) {
       print_interrupted(kept.said());
       return kInterrupted;
     }
     store->commit(output.comparison);
-  } catch (const sim::SystemError& error) {
+  } catch (const sim::system::SystemError& error) {
     bar.clear();
     fmt::print(stderr, "{}\n", error.what());
     if (const std::string said = kept.said(); !said.empty()) fmt::print(stderr, "{}\n", said);
@@ -156,17 +159,17 @@ int run_command(const Arguments& arguments) {
   }
 
   bool finished = true;
-  for (const sim::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
+  for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
   print_notes(output);
   if (json) {
-    for (const auto& row : output.comparison) fmt::print("{}\n", sim::to_json(row));
+    for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
   } else if (!quiet) {
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
-    fmt::print("\n{}\nwritten to {}\n", sim::format_table(output.comparison), path);
+    fmt::print("\n{}\nwritten to {}\n", sim::evaluation::format_table(output.comparison), path);
   }
   if (!finished && (json || quiet)) {
-    for (const sim::CaseOutput& one : output.cases) {
+    for (const sim::run::CaseOutput& one : output.cases) {
       if (one.result.outcome.finished) continue;
       fmt::print(stderr, "case {} stopped: {}\n", one.name, one.result.outcome.reason);
     }

@@ -23,37 +23,39 @@ constexpr Tick kMostRows = 20'000;          // of a response, about
 constexpr double kLeastOvershoot = 5e-5;    // less is none
 constexpr double kLongestDuration = 100.0;  // s
 
-std::vector<sim::StepKind> kinds_of(const Options& options) {
+std::vector<sim::frequency::StepKind> kinds_of(const Options& options) {
   const std::size_t chosen = choice_option(options, "kind", kKinds);
-  if (chosen < 3) return {static_cast<sim::StepKind>(chosen)};
-  return {sim::StepKind::position, sim::StepKind::velocity, sim::StepKind::load};
+  if (chosen < 3) return {static_cast<sim::frequency::StepKind>(chosen)};
+  return {sim::frequency::StepKind::position, sim::frequency::StepKind::velocity,
+          sim::frequency::StepKind::load};
 }
 
 struct Units {
   const char *amplitude, *value;  // of what steps, of what answers
   double amplitude_unit, value_unit;
-  sim::Quantity quantity;
+  sim::config::Quantity quantity;
   double default_amplitude;
 };
 
-Units units_of(sim::StepKind kind, int joint) {
+Units units_of(sim::frequency::StepKind kind, int joint) {
   const bool linear = joint < kLinearJoints;
   switch (kind) {
-    case sim::StepKind::position:
-      return linear ? Units{"mm", "um", mm, um, sim::kLength, 0.1 * mm}
-                    : Units{"deg", "urad", deg, urad, sim::kAngle, 0.02 * deg};
-    case sim::StepKind::velocity:
-      return linear ? Units{"mm/s", "mm/s", mm, mm, sim::kVelocity, 10.0 * mm}
-                    : Units{"deg/s", "deg/s", deg, deg, sim::kAngularVelocity, 1.0 * deg};
-    case sim::StepKind::load:
+    case sim::frequency::StepKind::position:
+      return linear ? Units{"mm", "um", mm, um, sim::config::kLength, 0.1 * mm}
+                    : Units{"deg", "urad", deg, urad, sim::config::kAngle, 0.02 * deg};
+    case sim::frequency::StepKind::velocity:
+      return linear ? Units{"mm/s", "mm/s", mm, mm, sim::config::kVelocity, 10.0 * mm}
+                    : Units{"deg/s", "deg/s", deg, deg, sim::config::kAngularVelocity, 1.0 * deg};
+    case sim::frequency::StepKind::load:
       break;
   }
-  return linear ? Units{"N", "um", 1.0, um, sim::kForce, 500.0}
-                : Units{"Nm", "urad", 1.0, urad, sim::kTorque, 50.0};
+  return linear ? Units{"N", "um", 1.0, um, sim::config::kForce, 500.0}
+                : Units{"Nm", "urad", 1.0, urad, sim::config::kTorque, 50.0};
 }
 
-sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int joint) {
-  sim::StepSettings settings;
+sim::frequency::StepSettings settings_of(const Options& options, sim::frequency::StepKind kind,
+                                         int joint) {
+  sim::frequency::StepSettings settings;
   settings.kind = kind;
   const Units units = units_of(kind, joint);
   settings.amplitude =
@@ -63,12 +65,12 @@ sim::StepSettings settings_of(const Options& options, sim::StepKind kind, int jo
     throw InputError({"--amplitude"},
                      fmt::format("'{}' must not be 0", options.get<std::string>("amplitude")));
   }
-  settings.band = *positive_option(options, "band", sim::kNumber, "%");
+  settings.band = *positive_option(options, "band", sim::config::kNumber, "%");
   if (settings.band >= 1.0) {
     throw InputError({"--band"},
                      fmt::format("'{}' must be < 100 %", options.get<std::string>("band")));
   }
-  settings.duration = positive_option(options, "duration", sim::kTime, "s").value_or(0.0);
+  settings.duration = positive_option(options, "duration", sim::config::kTime, "s").value_or(0.0);
   if (settings.duration > kLongestDuration) {
     throw InputError({"--duration"},
                      fmt::format("'{}' must be <= {:g} s", options.get<std::string>("duration"),
@@ -81,15 +83,15 @@ std::string milliseconds(double seconds) {
   return std::isfinite(seconds) ? fmt::format("{:.2f} ms", seconds / ms) : "never";
 }
 
-void print_figures(const sim::StepSettings& settings, const sim::StepResponse& response, int joint,
-                   double i_max) {
+void print_figures(const sim::frequency::StepSettings& settings,
+                   const sim::frequency::StepResponse& response, int joint, double i_max) {
   const Units u = units_of(settings.kind, joint);
-  const sim::StepFigures& f = response.figures;
-  fmt::print("\n{} step of {:g} {}, {:.3g} s\n", name_of(settings.kind),
+  const sim::frequency::StepFigures& f = response.figures;
+  fmt::print("\n{} step of {:g} {}, {:.3g} s\n", sim::run::name_of(settings.kind),
              settings.amplitude / u.amplitude_unit, u.amplitude, response.time.back());
-  if (settings.kind == sim::StepKind::load && f.peak == 0.0) {
+  if (settings.kind == sim::frequency::StepKind::load && f.peak == 0.0) {
     fmt::print("  holds still: friction bears the force\n");
-  } else if (settings.kind == sim::StepKind::load) {
+  } else if (settings.kind == sim::frequency::StepKind::load) {
     fmt::print("  peak deviation  {:.4g} {} after {}\n", f.peak / u.value_unit, u.value,
                milliseconds(f.peak_time));
     fmt::print("  back within     {:g} % of it: {}\n", 100.0 * settings.band,
@@ -110,10 +112,11 @@ void print_figures(const sim::StepSettings& settings, const sim::StepResponse& r
   fmt::print("  largest current {:.3g} A of {:g} A\n", response.peak_current, i_max);
 }
 
-void print_json(const sim::StepSettings& settings, const sim::StepResponse& response, char axis) {
-  const sim::StepFigures& f = response.figures;
-  sim::JsonObject out;
-  out.text("axis", std::string(1, axis)).text("step", name_of(settings.kind));
+void print_json(const sim::frequency::StepSettings& settings,
+                const sim::frequency::StepResponse& response, char axis) {
+  const sim::frequency::StepFigures& f = response.figures;
+  sim::system::JsonObject out;
+  out.text("axis", std::string(1, axis)).text("step", sim::run::name_of(settings.kind));
   out.number("amplitude_SI", settings.amplitude).number("overshoot", f.overshoot);
   out.number("rise_time_s", f.rise_time).number("settling_time_s", f.settling_time);
   out.number("band", settings.band).number("steady_error_SI", f.steady_error);
@@ -152,46 +155,48 @@ int step_command(const Arguments& arguments) {
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
 
-  const sim::Scenario scenario = scenario_for_axes(options);
+  const sim::model::Scenario scenario = scenario_for_axes(options);
   const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
   if (kinds.size() > 1 && options.has("amplitude")) {
     throw InputError({"--amplitude"}, "needs one --kind: its unit is that of what steps");
   }
   for (const int joint : joints) {
-    for (const sim::StepKind kind : kinds) settings_of(options, kind, joint);
+    for (const sim::frequency::StepKind kind : kinds) settings_of(options, kind, joint);
   }
-  std::optional<sim::StepStore> store;
+  std::optional<sim::run::StepStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
   }
-  const sim::MachineSettings machine =
-      options.has("linear") ? sim::linearised(scenario.machine) : scenario.machine;
+  const sim::model::MachineSettings machine =
+      options.has("linear") ? sim::frequency::linearised(scenario.machine) : scenario.machine;
   const bool silent = options.has("quiet"), json = options.has("json");
-  const Tick delay = sim::reading_delay_of(scenario);
+  const Tick delay = sim::frequency::reading_delay_of(scenario);
   bool stable = true;
   for (const int joint : joints) {
     const char axis = machine.chain.layout.letter_of(joint);
     if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
-    for (const sim::StepKind kind : kinds) {
-      sim::StepSettings settings = settings_of(options, kind, joint);
-      const double slowest = sim::slowest_time_constant(
+    for (const sim::frequency::StepKind kind : kinds) {
+      sim::frequency::StepSettings settings = settings_of(options, kind, joint);
+      const double slowest = sim::frequency::slowest_time_constant(
           machine, joint, delay,
-          kind == sim::StepKind::velocity ? sim::PositionLoop::open : sim::PositionLoop::closed);
+          kind == sim::frequency::StepKind::velocity ? sim::frequency::PositionLoop::open
+                                                     : sim::frequency::PositionLoop::closed);
       stable &= std::isfinite(slowest);
       if (!std::isfinite(slowest)) {
         fmt::print(stderr, "axis {}: the {} loop is unstable; no step is simulated\n", axis,
-                   kind == sim::StepKind::velocity ? "velocity" : "position");
+                   kind == sim::frequency::StepKind::velocity ? "velocity" : "position");
         continue;
       }
       if (settings.duration == 0.0) {
         settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
       }
       const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
-      const sim::StepResponse response =
-          sim::step_response(machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
+      const sim::frequency::StepResponse response = sim::frequency::step_response(
+          machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
       if (response.fault) {
-        fmt::print(stderr, "axis {}, {} step: {}\n", axis, name_of(kind), *response.fault);
+        fmt::print(stderr, "axis {}, {} step: {}\n", axis, sim::run::name_of(kind),
+                   *response.fault);
         stable = false;
         continue;
       }

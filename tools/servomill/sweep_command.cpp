@@ -52,26 +52,28 @@ void add_options(Options& options) {
   options.add()("quiet,q", "prints nothing but faults");
 }
 
-sim::Selection selection_of(const Options& options, const sim::Sweep& sweep) {
-  return sim::read_selection(sweep.design().size(), options.get<std::string>("points"),
-                             options.has("shard") ? options.get<std::string>("shard") : "");
+sim::sweep::Selection selection_of(const Options& options, const sim::sweep::Sweep& sweep) {
+  return sim::sweep::read_selection(sweep.design().size(), options.get<std::string>("points"),
+                                    options.has("shard") ? options.get<std::string>("shard") : "");
 }
 
 // Points that need not be run. What has a row needs its signals, too, if they are asked for.
-std::vector<bool> points_done(const sim::SweepTable& table, const sim::Selection& selection,
-                              const sim::Sweep& sweep, const std::string& signals) {
+std::vector<bool> points_done(const sim::sweep::SweepTable& table,
+                              const sim::sweep::Selection& selection,
+                              const sim::sweep::Sweep& sweep, const std::string& signals) {
   std::vector<bool> done;
-  for (const sim::PointStatus status : table.statuses()) {
-    const bool ran = status == sim::PointStatus::done || status == sim::PointStatus::stopped;
-    done.push_back(status != sim::PointStatus::not_run &&
+  for (const sim::run::PointStatus status : table.statuses()) {
+    const bool ran =
+        status == sim::run::PointStatus::done || status == sim::run::PointStatus::stopped;
+    done.push_back(status != sim::run::PointStatus::not_run &&
                    (signals.empty() || !ran ||
-                    sim::has_point_series(signals, sweep, selection.point(done.size()))));
+                    sim::sweep::has_point_series(signals, sweep, selection.point(done.size()))));
   }
   return done;
 }
 
-SweepLines lines_of(const Options& options, const sim::Sweep& sweep,
-                    const sim::Selection& selection, const std::vector<bool>& done) {
+SweepLines lines_of(const Options& options, const sim::sweep::Sweep& sweep,
+                    const sim::sweep::Selection& selection, const std::vector<bool>& done) {
   using Form = SweepLines::Form;
   const bool quiet = options.has("quiet") || options.has("csv");
   const Form form = options.has("json") ? Form::json : quiet ? Form::none : Form::table;
@@ -85,7 +87,7 @@ void print_file(const std::string& path) {
 
 // SIMD levels of its points; if signals are kept also that of this process, which may have added
 // signals to rows of another one.
-std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string& signals) {
+std::vector<SimdLevel> levels_of(const sim::sweep::SweepTable& table, const std::string& signals) {
   std::vector<SimdLevel> levels = table.simd_levels();
   const bool is_new = std::find(levels.begin(), levels.end(), simd_level()) == levels.end();
   if (!signals.empty() && is_new) levels.push_back(simd_level());
@@ -95,25 +97,28 @@ std::vector<SimdLevel> levels_of(const sim::SweepTable& table, const std::string
 
 // Prints the estimate for the remaining points, if they are like the first: on standard error, and
 // only if it is long or large.
-void tell_estimate(sim::RunEstimate takes, std::uint64_t points, unsigned threads, bool series) {
+void tell_estimate(sim::preparation::RunEstimate takes, std::uint64_t points, unsigned threads,
+                   bool series) {
   const auto n = static_cast<double>(points);
-  if (points > 0 && takes.is_thinned) fmt::print(stderr, "{}\n", thinning_message(takes));
+  if (points > 0 && takes.is_thinned)
+    fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
   takes.motion *= n;
   takes.rows *= n;
-  takes.computing *= n / std::min(n, static_cast<double>(sim::thread_count(threads)));
+  takes.computing *= n / std::min(n, static_cast<double>(sim::system::thread_count(threads)));
   takes.size *= series ? n : 0.0;
   takes.file *= series ? n : 0.0;
-  if (points == 0 || !sim::is_worth_telling(takes)) return;
-  fmt::print(stderr, "estimate: {} points like the first: {}\n", points, to_string(takes));
+  if (points == 0 || !sim::preparation::is_worth_telling(takes)) return;
+  fmt::print(stderr, "estimate: {} points like the first: {}\n", points,
+             sim::preparation::to_string(takes));
 }
 
-int status_of(const sim::StatusCounts& counts) {
-  const auto count = [&](sim::PointStatus status) {
+int status_of(const sim::sweep::StatusCounts& counts) {
+  const auto count = [&](sim::run::PointStatus status) {
     return counts[static_cast<std::size_t>(status)];
   };
-  const bool all_done = count(sim::PointStatus::stopped) == 0 &&
-                        count(sim::PointStatus::refused) == 0 &&
-                        count(sim::PointStatus::failed) == 0;
+  const bool all_done = count(sim::run::PointStatus::stopped) == 0 &&
+                        count(sim::run::PointStatus::refused) == 0 &&
+                        count(sim::run::PointStatus::failed) == 0;
   return all_done ? kDone : kMachineStopped;
 }
 
@@ -131,15 +136,16 @@ int sweep_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
-  const sim::Sweep sweep(options.word(), options.list("set"));
-  const sim::Selection selection = selection_of(options, sweep);
+  const sim::sweep::Sweep sweep(options.word(), options.list("set"));
+  const sim::sweep::Selection selection = selection_of(options, sweep);
   std::string out = output_name(options, sweep.base().name, "_sweep");
-  const std::string signals = options.has("keep-signals") ? sim::series_folder(out) : "";
-  if (options.has("shard")) out = sim::shard_name(out, selection);
+  const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
+  if (options.has("shard")) out = sim::sweep::shard_name(out, selection);
   const unsigned threads = thread_count(options);
   const bool force = options.has("force");
-  out = sim::output_target(out, force ? sim::Existing::replaced : sim::Existing::resumed);
-  sim::output_target(sim::csv_name(out), sim::Existing::replaced);
+  out = sim::system::output_target(
+      out, force ? sim::system::Existing::replaced : sim::system::Existing::resumed);
+  sim::system::output_target(sim::sweep::csv_name(out), sim::system::Existing::replaced);
   const auto of_a_point = sweep.refuse_hopeless();
 
   constexpr std::int64_t kNotCounted = -1;
@@ -152,9 +158,10 @@ int sweep_command(const Arguments& arguments) {
                                        : fmt::format("{} complete points of {}", all - left, all));
   };
   const KeptWhenInterrupted when_interrupted(said);
-  sim::SweepTable table(out, force, sweep.base(), sim::columns_of(sweep.base()), selection);
+  sim::sweep::SweepTable table(out, force, sweep.base(), sim::sweep::columns_of(sweep.base()),
+                               selection);
   is_complete = table.is_complete();
-  if (options.has("retry-failed")) table.forget(sim::PointStatus::failed);
+  if (options.has("retry-failed")) table.forget(sim::run::PointStatus::failed);
   const std::vector<bool> done = points_done(table, selection, sweep, signals);
   left = std::count(done.begin(), done.end(), false);
   const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
@@ -176,30 +183,30 @@ int sweep_command(const Arguments& arguments) {
   const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet"));
   SweepLines lines = lines_of(options, sweep, selection, done);
-  sim::SweepControl control;
+  sim::sweep::SweepControl control;
   control.threads = threads;
   control.stop = &stop;
-  control.keep = signals.empty() ? sim::Keep::comparison : sim::Keep::series;
+  control.keep = signals.empty() ? sim::run::Keep::comparison : sim::run::Keep::series;
   control.progress = [&](double share) { bar.show(share); };
   std::uint64_t still_without_signals = 0;
-  control.batch_done = [&](std::vector<sim::SweepPoint>&& points) {
-    for (const sim::SweepPoint& point : points) {
+  control.batch_done = [&](std::vector<sim::sweep::SweepPoint>&& points) {
+    for (const sim::sweep::SweepPoint& point : points) {
       if (signals.empty()) continue;
-      sim::write_point_series(signals, sweep, point);
+      sim::sweep::write_point_series(signals, sweep, point);
       if (point.result.cases.empty()) ++still_without_signals;
     }
     // a row that is there stays: the same point gives the same bits
-    const auto rows =
-        std::stable_partition(points.begin(), points.end(), [&](const sim::SweepPoint& point) {
-          return table.statuses()[selection.place(point.index)] == sim::PointStatus::not_run;
+    const auto rows = std::stable_partition(
+        points.begin(), points.end(), [&](const sim::sweep::SweepPoint& point) {
+          return table.statuses()[selection.place(point.index)] == sim::run::PointStatus::not_run;
         });
     if (rows != points.begin()) table.write({points.begin(), rows});
     left -= static_cast<std::int64_t>(points.size());
     bar.clear();
-    for (const sim::SweepPoint& point : points) lines.add(point);
+    for (const sim::sweep::SweepPoint& point : points) lines.add(point);
   };
   try {
-    sim::run_sweep(sweep, selection, done, control);
+    sim::sweep::run_sweep(sweep, selection, done, control);
   } catch (const Interrupted&) {
     bar.clear();
     print_interrupted(said());
@@ -213,7 +220,7 @@ int sweep_command(const Arguments& arguments) {
     return kInterrupted;
   }
   if (!table.is_complete()) table.commit();
-  if (options.has("csv")) print_file(sim::csv_name(out));
+  if (options.has("csv")) print_file(sim::sweep::csv_name(out));
   if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
   if (still_without_signals > 0) {
     fmt::print(stderr, "{}: {} points gave no signals\n", signals, still_without_signals);

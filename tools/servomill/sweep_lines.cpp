@@ -24,9 +24,9 @@ std::size_t width_of(const std::string& heading) { return std::max(kLeastWidth, 
 
 }  // namespace
 
-SweepLines::SweepLines(Form form, const sim::SweepDesign& design,
-                       std::vector<sim::ComparisonRow> rows, const sim::Selection& selection,
-                       std::vector<bool> done)
+SweepLines::SweepLines(Form form, const sim::model::SweepDesign& design,
+                       std::vector<sim::evaluation::ComparisonRow> rows,
+                       const sim::sweep::Selection& selection, std::vector<bool> done)
     : form_(form),
       design_(design),
       rows_(std::move(rows)),
@@ -38,7 +38,7 @@ SweepLines::SweepLines(Form form, const sim::SweepDesign& design,
 std::string SweepLines::heading() const {
   std::string out;
   for (std::size_t n = 0; n < rows_.size(); ++n) {
-    const sim::ComparisonRow& row = rows_[n];
+    const sim::evaluation::ComparisonRow& row = rows_[n];
     out += fmt::format("{:<4} {}", label(n), row.quantity);
     for (const std::string& more : {row.axis, row.statistic, row.sections, row.case_name}) {
       if (!more.empty()) out += ", " + more;
@@ -47,7 +47,7 @@ std::string SweepLines::heading() const {
     out += '\n';
   }
   out += "\npoint";
-  for (const sim::SweepKey& key : design_.keys) {
+  for (const sim::model::SweepKey& key : design_.keys) {
     out += fmt::format("  {:>{}}", key.key, width_of(key.key));
   }
   for (std::size_t n = 0; n < rows_.size(); ++n)
@@ -55,32 +55,35 @@ std::string SweepLines::heading() const {
   return out + '\n';
 }
 
-std::string SweepLines::line_of(const sim::SweepPoint& point) const {
+std::string SweepLines::line_of(const sim::sweep::SweepPoint& point) const {
   std::string out = fmt::format("{:>5}", point.index + 1);
   for (std::size_t k = 0; k < point.values.size(); ++k) {
     out += fmt::format("  {:>{}}", point.values[k], width_of(design_.keys[k].key));
   }
-  for (const sim::ComparisonRow& row : point.result.rows) {
+  for (const sim::evaluation::ComparisonRow& row : point.result.rows) {
     out += fmt::format("  {:>{}}", number(row.value), kLeastWidth);
   }
   return out + '\n';
 }
 
-SweepLines::Said SweepLines::said_of(const sim::SweepPoint& point) const {
+SweepLines::Said SweepLines::said_of(const sim::sweep::SweepPoint& point) const {
   Said said;
   std::string where;
   for (std::size_t k = 0; k < point.values.size(); ++k) {
     where += fmt::format("{}{} = {}", k == 0 ? "" : ", ", design_.keys[k].key, point.values[k]);
   }
-  const sim::BatchResult& result = point.result;
+  const sim::run::BatchResult& result = point.result;
   if (!result.reason.empty()) {
     said.error = fmt::format("point {} ({}): {}: {}\n", point.index + 1, where,
-                             sim::name_of(result.status), result.reason);
+                             sim::run::name_of(result.status), result.reason);
   }
   if (form_ == Form::json) {
     for (const auto& row : result.rows) {
-      said.out +=
-          sim::JsonObject().text("point", where).raw("row", sim::to_json(row)).line() + '\n';
+      said.out += sim::system::JsonObject()
+                      .text("point", where)
+                      .raw("row", sim::evaluation::to_json(row))
+                      .line() +
+                  '\n';
     }
   } else if (form_ == Form::table && !result.rows.empty()) {
     said.out = line_of(point);
@@ -88,7 +91,7 @@ SweepLines::Said SweepLines::said_of(const sim::SweepPoint& point) const {
   return said;
 }
 
-void SweepLines::add(const sim::SweepPoint& point) {
+void SweepLines::add(const sim::sweep::SweepPoint& point) {
   waiting_.emplace(selection_.place(point.index), said_of(point));
   for (; next_ < selection_.size(); ++next_) {
     const auto first = waiting_.find(next_);
@@ -117,13 +120,13 @@ void SweepLines::print(const Said& said) {
   fmt::print("{}", said.out);
 }
 
-std::string points_by_status(const sim::StatusCounts& counts) {
+std::string points_by_status(const sim::sweep::StatusCounts& counts) {
   std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     // done first, then all others that there are
     const std::size_t status = i == 0 ? 1 : i == 1 ? 0 : i;
     if (status != 1 && counts[status] == 0) continue;
-    std::string name(sim::name_of(static_cast<sim::PointStatus>(status)));
+    std::string name(sim::run::name_of(static_cast<sim::run::PointStatus>(status)));
     std::replace(name.begin(), name.end(), '_', ' ');
     text += fmt::format("{}{} points {}", text.empty() ? "" : ", ", counts[status], name);
   }

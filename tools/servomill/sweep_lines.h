@@ -21,11 +21,12 @@ class SweepLines {
 
   /// @param rows  the comparison of each point (Sweep::quantities)
   /// @param done  places in the selection that are not run; empty: all are run
-  SweepLines(Form form, const sim::SweepDesign& design, std::vector<sim::ComparisonRow> rows,
-             const sim::Selection& selection, std::vector<bool> done);
+  SweepLines(Form form, const sim::model::SweepDesign& design,
+             std::vector<sim::evaluation::ComparisonRow> rows,
+             const sim::sweep::Selection& selection, std::vector<bool> done);
 
   /// Prints the points that no other holds up any more.
-  void add(const sim::SweepPoint& point);
+  void add(const sim::sweep::SweepPoint& point);
   /// Prints what still waits for points that were not run.
   void finish();
 
@@ -34,14 +35,14 @@ class SweepLines {
     std::string out, error;
   };
   std::string heading() const;
-  std::string line_of(const sim::SweepPoint& point) const;
-  Said said_of(const sim::SweepPoint& point) const;
+  std::string line_of(const sim::sweep::SweepPoint& point) const;
+  Said said_of(const sim::sweep::SweepPoint& point) const;
   void print(const Said& said);
 
   Form form_;
-  const sim::SweepDesign& design_;
-  std::vector<sim::ComparisonRow> rows_;
-  const sim::Selection& selection_;
+  const sim::model::SweepDesign& design_;
+  std::vector<sim::evaluation::ComparisonRow> rows_;
+  const sim::sweep::Selection& selection_;
   std::vector<bool> done_;
   std::map<std::uint64_t, Said> waiting_;  // by place in the selection
   std::uint64_t next_ = 0;                 // place
@@ -49,7 +50,7 @@ class SweepLines {
 };
 
 /// "98 points done, 2 points refused".
-std::string points_by_status(const sim::StatusCounts& counts);
+std::string points_by_status(const sim::sweep::StatusCounts& counts);
 
 /// Says on standard error if points of a table were computed at several levels of instructions.
 void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels);

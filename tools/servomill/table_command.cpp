@@ -10,6 +10,7 @@
 #include "sim/config/option_value.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/read_scenario.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
@@ -25,20 +26,20 @@ namespace fs = std::filesystem;
 // Machine and error models: a scenario's, or those of --machine and of a file of error models, by
 // default the machine's own.
 struct Inputs {
-  sim::MachineSettings machine;
+  sim::model::MachineSettings machine;
   std::map<std::string, plant::ErrorModel> models;
 };
 
 Inputs read_inputs(const Options& options) {
   if (!options.has("machine")) {
-    sim::Scenario scenario = sim::read_scenario(options.word(), options.list("set"));
+    sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
     return {std::move(scenario.machine), std::move(scenario.errors)};
   }
-  sim::MachineDescription described =
-      sim::read_machine_description(options.get<std::string>("machine"), options.list("set"));
+  sim::input::MachineDescription described = sim::input::read_machine_description(
+      options.get<std::string>("machine"), options.list("set"));
   Inputs inputs{std::move(described.machine), std::move(described.errors)};
   if (!options.words().empty()) {
-    inputs.models = sim::read_error_file(options.word(), inputs.machine.chain.layout);
+    inputs.models = sim::input::read_error_file(options.word(), inputs.machine.chain.layout);
   }
   return inputs;
 }
@@ -72,7 +73,7 @@ struct AxisWord {
 };
 
 AxisWord axis_word(const std::string& option, std::string_view text, std::string_view form,
-                   const sim::MachineSettings& machine) {
+                   const sim::model::MachineSettings& machine) {
   const bool named = text.size() > 2 && text[1] == '=';
   const auto axis = named ? axis_of(text.front()) : std::nullopt;
   const auto joint = axis ? machine.chain.layout.joint_of(*axis) : std::nullopt;
@@ -90,14 +91,14 @@ AxisWord axis_word(const std::string& option, std::string_view text, std::string
 double position_of(const char* option, const std::string& text, std::string_view position,
                    int joint) {
   const bool linear = joint < kLinearJoints;
-  const sim::ScaledText value =
-      sim::scale_option(position, linear ? sim::kLength : sim::kAngle, linear ? "mm" : "deg");
+  const sim::config::ScaledText value = sim::config::scale_option(
+      position, linear ? sim::config::kLength : sim::config::kAngle, linear ? "mm" : "deg");
   if (value.complaint.empty()) return value.si;
   throw InputError({option}, fmt::format("'{}': '{}' {}", text, position, value.complaint));
 }
 
-void read_axes(const Options& options, const sim::MachineSettings& machine,
-               sim::TableRequest& request) {
+void read_axes(const Options& options, const sim::model::MachineSettings& machine,
+               sim::tables::TableRequest& request) {
   const auto place_of = [&](int joint) -> auto& {
     return request.axes[static_cast<std::size_t>(joint)];
   };
@@ -125,9 +126,9 @@ void read_axes(const Options& options, const sim::MachineSettings& machine,
 }
 
 // Options that would do nothing.
-void refuse_idle_options(const Options& options, const sim::MachineSettings& machine,
-                         sim::TableFormat format) {
-  if (format == sim::TableFormat::csv) {
+void refuse_idle_options(const Options& options, const sim::model::MachineSettings& machine,
+                         sim::tables::TableFormat format) {
+  if (format == sim::tables::TableFormat::csv) {
     for (const char* name : {"at", "tool-length"}) {
       if (options.has(name)) {
         throw InputError({std::string("--") + name},
@@ -135,9 +136,9 @@ void refuse_idle_options(const Options& options, const sim::MachineSettings& mac
       }
     }
   }
-  if (format != sim::TableFormat::linuxcnc && options.has("comp-file-type")) {
+  if (format != sim::tables::TableFormat::linuxcnc && options.has("comp-file-type")) {
     throw InputError({"--comp-file-type"},
-                     fmt::format("means nothing to {}", sim::name_of(format)));
+                     fmt::format("means nothing to {}", sim::tables::name_of(format)));
   }
   const auto joints = machine.joints();
   if (options.has("rotary-spacing") && joints.back() < kLinearJoints) {
@@ -145,31 +146,33 @@ void refuse_idle_options(const Options& options, const sim::MachineSettings& mac
   }
 }
 
-sim::TableRequest request_of(const Options& options, const sim::MachineSettings& machine) {
-  sim::TableRequest request;
+sim::tables::TableRequest request_of(const Options& options,
+                                     const sim::model::MachineSettings& machine) {
+  sim::tables::TableRequest request;
   if (!options.has("format")) {
     throw InputError({"--format"}, fmt::format("is missing; it is one of {}",
-                                               fmt::join(sim::kTableFormats, ", ")));
+                                               fmt::join(sim::tables::kTableFormats, ", ")));
   }
-  request.format =
-      static_cast<sim::TableFormat>(choice_option(options, "format", sim::kTableFormats));
+  request.format = static_cast<sim::tables::TableFormat>(
+      choice_option(options, "format", sim::tables::kTableFormats));
   refuse_idle_options(options, machine, request.format);
-  request.tool_length = quantity_option(options, "tool-length", sim::kLength, "mm").value_or(0.0);
+  request.tool_length =
+      quantity_option(options, "tool-length", sim::config::kLength, "mm").value_or(0.0);
   if (request.tool_length < 0.0) {
     throw InputError({"--tool-length"},
                      fmt::format("'{}' must be >= 0", options.get<std::string>("tool-length")));
   }
-  request.spacing = positive_option(options, "spacing", sim::kLength, "mm");
-  request.rotary_spacing = positive_option(options, "rotary-spacing", sim::kAngle, "deg");
+  request.spacing = positive_option(options, "spacing", sim::config::kLength, "mm");
+  request.rotary_spacing = positive_option(options, "rotary-spacing", sim::config::kAngle, "deg");
   if (options.has("max-points")) {
     const int points = options.get<int>("max-points");
-    const std::size_t most = sim::rules_of(request.format).most_points;
-    const bool may_be_more = request.format == sim::TableFormat::siemens;
+    const std::size_t most = sim::tables::rules_of(request.format).most_points;
+    const bool may_be_more = request.format == sim::tables::TableFormat::siemens;
     constexpr int kMost = 10000;
     const int limit = may_be_more ? kMost : static_cast<int>(most);
     if (points < 2 || points > limit) {
       throw InputError({"--max-points"}, fmt::format("{}; must be >= 2 and <= {} for {}", points,
-                                                     limit, sim::name_of(request.format)));
+                                                     limit, sim::tables::name_of(request.format)));
     }
     request.most_points = static_cast<std::size_t>(points);
   }
@@ -185,21 +188,21 @@ sim::TableRequest request_of(const Options& options, const sim::MachineSettings&
 }
 
 // All or none: nothing is written before every name is known to be free.
-void write(const std::vector<sim::TextFile>& files, const std::string& folder, bool force) {
+void write(const std::vector<sim::tables::TextFile>& files, const std::string& folder, bool force) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
     throw InputError({folder}, "is no folder; name one for the tables");
   }
-  for (const sim::TextFile& file : files) {
+  for (const sim::tables::TextFile& file : files) {
     const std::string path = (fs::path(folder) / file.name).string();
     if (fs::exists(fs::symlink_status(path, error))) {
-      sim::output_target(path, sim::existing_of(force));
+      sim::system::output_target(path, sim::system::existing_of(force));
     }
   }
   fs::create_directories(folder, error);
-  if (error) throw sim::SystemError(folder, "cannot be made", error.message());
-  for (const sim::TextFile& file : files) {
-    sim::write_text_file((fs::path(folder) / file.name).string(), file.text, force);
+  if (error) throw sim::system::SystemError(folder, "cannot be made", error.message());
+  for (const sim::tables::TextFile& file : files) {
+    sim::system::write_text_file((fs::path(folder) / file.name).string(), file.text, force);
   }
 }
 
@@ -258,23 +261,23 @@ int table_command(const Arguments& arguments) {
   }
 
   const Inputs inputs = read_inputs(options);
-  sim::TableRequest request = request_of(options, inputs.machine);
+  sim::tables::TableRequest request = request_of(options, inputs.machine);
   const plant::ErrorModel& errors = model_of(inputs, options, request.model);
-  const sim::TableExport tables = [&] {
+  const sim::tables::TableExport tables = [&] {
     try {
-      return sim::export_tables(inputs.machine, errors, request);
+      return sim::tables::export_tables(inputs.machine, errors, request);
     } catch (const InputError& error) {  // knows what is wrong, not where
       throw InputError({error_file(options)}, error.faults().front().message);
     }
   }();
   const auto folder = options.get<std::string>("output");
-  const auto files = sim::table_files(tables);
-  const sim::TableVerification verified = sim::verify_tables(tables, files);
+  const auto files = sim::tables::table_files(tables);
+  const sim::tables::TableVerification verified = sim::tables::verify_tables(tables, files);
   write(files, folder, options.has("force"));
   if (options.has("quiet")) return kDone;
-  for (const std::string& line : sim::report(tables)) fmt::print("{}\n", line);
-  fmt::print("{}\nwritten:", to_string(verified));
-  for (const sim::TextFile& file : files)
+  for (const std::string& line : sim::tables::report(tables)) fmt::print("{}\n", line);
+  fmt::print("{}\nwritten:", sim::tables::to_string(verified));
+  for (const sim::tables::TextFile& file : files)
     fmt::print(" {}", (fs::path(folder) / file.name).string());
   fmt::print("\n");
   return kDone;

@@ -16,52 +16,53 @@ namespace {
 
 namespace po = boost::program_options;
 
-sim::TuneSettings settings_of(const Options& options) {
-  sim::TuneSettings settings;
+sim::frequency::TuneSettings settings_of(const Options& options) {
+  sim::frequency::TuneSettings settings;
   const auto refuse = [&](const char* name, std::string_view rule) {
     throw InputError({std::string("--") + name},
                      fmt::format("'{}' must be {}", options.get<std::string>(name), rule));
   };
   constexpr double kRight = 90.0 * deg;
-  settings.phase_margin = *positive_option(options, "phase-margin", sim::kAngle, "deg");
+  settings.phase_margin = *positive_option(options, "phase-margin", sim::config::kAngle, "deg");
   if (settings.phase_margin >= kRight) refuse("phase-margin", "< 90 deg");
   settings.gain_margin = std::pow(10.0, decibel_option(options, "gain-margin") / 20.0);
-  const double overshoot = *quantity_option(options, "overshoot", sim::kNumber, "%");
+  const double overshoot = *quantity_option(options, "overshoot", sim::config::kNumber, "%");
   if (!(overshoot >= 0.0 && overshoot < 1.0)) refuse("overshoot", ">= 0 and < 100 %");
   constexpr double kNone = 1e-4;
   settings.overshoot = std::max(overshoot, kNone);
-  if (const auto bandwidth = positive_option(options, "bandwidth", sim::kRate, "Hz"))
+  if (const auto bandwidth = positive_option(options, "bandwidth", sim::config::kRate, "Hz"))
     settings.bandwidth = *bandwidth;
-  settings.wv_most = positive_option(options, "velocity-bandwidth", sim::kAngularVelocity, "rad/s");
+  settings.wv_most =
+      positive_option(options, "velocity-bandwidth", sim::config::kAngularVelocity, "rad/s");
   settings.reset_ratio = positive_number(options, "reset-ratio");
   return settings;
 }
 
 std::string place(double frequency, const plant::FeedDriveParams& drive) {
-  const double resonance = sim::resonance_frequency(drive);
+  const double resonance = sim::frequency::resonance_frequency(drive);
   const bool near = resonance > 0.0 && std::abs(std::log(frequency / resonance)) < 0.3;
   return fmt::format("{:.4g} Hz{}", frequency,
                      near ? fmt::format(", near the resonance of {:.4g} Hz", resonance) : "");
 }
 
-std::string reason(const sim::Limit& limit, const sim::TuneSettings& wanted,
+std::string reason(const sim::frequency::Limit& limit, const sim::frequency::TuneSettings& wanted,
                    const plant::FeedDriveParams& drive, std::string_view loop) {
   switch (limit.kind) {
-    case sim::Limit::Kind::phase_margin:
+    case sim::frequency::Limit::Kind::phase_margin:
       return fmt::format("the {} loop's phase margin of {:g} deg at the crossover of {}", loop,
                          wanted.phase_margin / deg, place(limit.frequency, drive));
-    case sim::Limit::Kind::gain_margin:
+    case sim::frequency::Limit::Kind::gain_margin:
       return fmt::format("the {} loop's gain margin of {:g} dB at {}", loop,
                          std::round(1e3 * decibel(wanted.gain_margin)) / 1e3,
                          place(limit.frequency, drive));
-    case sim::Limit::Kind::overshoot:
+    case sim::frequency::Limit::Kind::overshoot:
       return fmt::format("the overshoot of {:g} % after a step of the setpoint",
                          100.0 * wanted.overshoot);
-    case sim::Limit::Kind::bandwidth:
+    case sim::frequency::Limit::Kind::bandwidth:
       return fmt::format("the requested bandwidth of {:g} Hz", limit.frequency);
-    case sim::Limit::Kind::most:
+    case sim::frequency::Limit::Kind::most:
       return "--velocity-bandwidth";
-    case sim::Limit::Kind::range:
+    case sim::frequency::Limit::Kind::range:
       break;
   }
   return "the range of gains that is searched";
@@ -71,17 +72,17 @@ void print_row(std::string_view name, const std::string& before, const std::stri
   fmt::print("  {:<34} {:>22} {:>22}\n", name, before, after);
 }
 
-void print_table(const sim::Tuning& t, int joint) {
+void print_table(const sim::frequency::Tuning& t, int joint) {
   const auto row = [&](std::string_view name, auto of) {
     print_row(name, of(t.before), of(t.after));
   };
-  using A = sim::Assessment;
-  const auto gain = [](const sim::Margins& m) {
+  using A = sim::frequency::Assessment;
+  const auto gain = [](const sim::frequency::Margins& m) {
     return std::isfinite(m.gain)
                ? fmt::format("{:.1f} dB, {:.4g} Hz", decibel(m.gain), m.gain_frequency)
                : std::string("none below Nyquist");
   };
-  const auto phase = [](const sim::Margins& m) {
+  const auto phase = [](const sim::frequency::Margins& m) {
     return std::isfinite(m.phase) ? fmt::format("{:.1f} deg, {:.4g} Hz", m.phase / deg, m.crossover)
                                   : std::string("no crossover");
   };
@@ -112,34 +113,37 @@ void print_table(const sim::Tuning& t, int joint) {
 
 // The margins as the whole axis shows them in the simulation, one sinusoid at each crossover.
 // Says why not and returns false if the simulation cannot be trusted.
-bool confirm(const sim::MachineSettings& machine, int joint, Tick delay, const sim::Assessment& a) {
+bool confirm(const sim::model::MachineSettings& machine, int joint, Tick delay,
+             const sim::frequency::Assessment& a) {
   struct Loop {
     const char* name;
-    sim::PositionLoop loop;
-    sim::Entry entry;
-    sim::AxisSignal output, input;
-    const sim::Margins& margins;
+    sim::frequency::PositionLoop loop;
+    sim::frequency::Entry entry;
+    sim::frequency::AxisSignal output, input;
+    const sim::frequency::Margins& margins;
   };
   const Loop loops[] = {
-      {"velocity", sim::PositionLoop::open, sim::Entry::velocity_command,
-       sim::AxisSignal::measured_speed, sim::AxisSignal::speed_error, a.velocity},
-      {"position", sim::PositionLoop::closed, sim::Entry::setpoint, sim::AxisSignal::reading,
-       sim::AxisSignal::position_error, a.position},
+      {"velocity", sim::frequency::PositionLoop::open, sim::frequency::Entry::velocity_command,
+       sim::frequency::AxisSignal::measured_speed, sim::frequency::AxisSignal::speed_error,
+       a.velocity},
+      {"position", sim::frequency::PositionLoop::closed, sim::frequency::Entry::setpoint,
+       sim::frequency::AxisSignal::reading, sim::frequency::AxisSignal::position_error, a.position},
   };
   for (const Loop& one : loops) {
     if (!std::isfinite(one.margins.phase)) continue;
-    sim::Measurement how;
+    sim::frequency::Measurement how;
     how.entry = one.entry;
-    how.amplitude = sim::default_amplitude(machine, joint, one.entry);
-    how.velocity = sim::default_velocity(machine, joint, one.entry, how.amplitude);
+    how.amplitude = sim::frequency::default_amplitude(machine, joint, one.entry);
+    how.velocity = sim::frequency::default_velocity(machine, joint, one.entry, how.amplitude);
     const auto measured =
-        sim::measure(machine, joint, delay, one.loop, how, {one.margins.crossover});
+        sim::frequency::measure(machine, joint, delay, one.loop, how, {one.margins.crossover});
     if (measured.fault) {
       fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n",
                  machine.chain.layout.letter_of(joint), one.name, *measured.fault);
       return false;
     }
-    const sim::Complex L = sim::ratio(measured.points.front().response, one.output, one.input);
+    const sim::frequency::Complex L =
+        sim::frequency::ratio(measured.points.front().response, one.output, one.input);
     fmt::print(
         "  measured in the simulation: {} loop at {:.4g} Hz has |L| = {:.3f} and a phase "
         "margin of {:.1f} deg\n",
@@ -153,15 +157,15 @@ bool confirm(const sim::MachineSettings& machine, int joint, Tick delay, const s
   return true;
 }
 
-void print_toml(char axis, const sim::Gains& gains) {
+void print_toml(char axis, const sim::frequency::Gains& gains) {
   fmt::print("\n[machine_override.axis.{}]\n", axis);
   fmt::print("Kv = \"{:.4g} 1/s\"\n", gains.Kv);
   fmt::print("velocity_bandwidth = \"{:.4g} rad/s\"\n", gains.wv);
   fmt::print("velocity_reset_time_ms = {:.4g}\n", gains.Tn / ms);
 }
 
-std::string to_json(const sim::Assessment& a) {
-  sim::JsonObject out;
+std::string to_json(const sim::frequency::Assessment& a) {
+  sim::system::JsonObject out;
   out.number("velocity_bandwidth_rad_per_s", a.gains.wv).number("reset_time_s", a.gains.Tn);
   out.number("Kv_per_s", a.gains.Kv).boolean("stable", a.stable);
   out.number("velocity_gain_margin", a.velocity.gain);
@@ -172,8 +176,8 @@ std::string to_json(const sim::Assessment& a) {
   return out.number("load_peak_SI", a.load_peak).line();
 }
 
-void print_json(char axis, const sim::Tuning& t, double common_Kv) {
-  sim::JsonObject out;
+void print_json(char axis, const sim::frequency::Tuning& t, double common_Kv) {
+  sim::system::JsonObject out;
   out.text("axis", std::string(1, axis));
   out.raw("before", to_json(t.before)).raw("after", to_json(t.after));
   out.number("Kv_limit_per_s", t.Kv_limit).number("common_Kv_per_s", common_Kv);
@@ -209,17 +213,19 @@ int tune_command(const Arguments& arguments) {
   options.add()("json", "prints one JSON object an axis");
   if (!options.parse(arguments)) return kDone;
 
-  const sim::TuneSettings wanted = settings_of(options);
-  const sim::Scenario scenario = scenario_for_axes(options);
-  const sim::MachineSettings& machine = scenario.machine;
+  const sim::frequency::TuneSettings wanted = settings_of(options);
+  const sim::model::Scenario scenario = scenario_for_axes(options);
+  const sim::model::MachineSettings& machine = scenario.machine;
   const auto joints = chosen_joints(options, machine);
-  const Tick delay = sim::reading_delay_of(scenario);
-  std::vector<sim::Tuning> tunings;
-  for (const int joint : joints) tunings.push_back(sim::tune(machine, joint, delay, wanted));
-  const auto slowest = std::min_element(tunings.begin(), tunings.end(),
-                                        [](const sim::Tuning& a, const sim::Tuning& b) {
-                                          return a.after.gains.Kv < b.after.gains.Kv;
-                                        });
+  const Tick delay = sim::frequency::reading_delay_of(scenario);
+  std::vector<sim::frequency::Tuning> tunings;
+  for (const int joint : joints)
+    tunings.push_back(sim::frequency::tune(machine, joint, delay, wanted));
+  const auto slowest =
+      std::min_element(tunings.begin(), tunings.end(),
+                       [](const sim::frequency::Tuning& a, const sim::frequency::Tuning& b) {
+                         return a.after.gains.Kv < b.after.gains.Kv;
+                       });
   const double common = slowest->after.gains.Kv;
   const char ruling =
       machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())]);
@@ -231,9 +237,9 @@ int tune_command(const Arguments& arguments) {
     const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
     const double own = tunings[k].after.gains.Kv;
     if (joints.size() > 1) {
-      tunings[k] = sim::with_common_Kv(machine, joint, delay, tunings[k], common);
+      tunings[k] = sim::frequency::with_common_Kv(machine, joint, delay, tunings[k], common);
     }
-    const sim::Tuning& t = tunings[k];
+    const sim::frequency::Tuning& t = tunings[k];
     if (!t.after.stable) throw std::logic_error("tuned gains are not stable");
     if (options.has("json")) {
       print_json(axis, t, common);
@@ -259,21 +265,22 @@ int tune_command(const Arguments& arguments) {
           "Kv = {:.3g} 1/s; see --velocity-bandwidth\n",
           t.calmer_wv, t.calmer_Kv);
     }
-    if (wanted.bandwidth && t.position.kind != sim::Limit::Kind::bandwidth) {
+    if (wanted.bandwidth && t.position.kind != sim::frequency::Limit::Kind::bandwidth) {
       fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
     }
     if (own > common) {
       fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: that of axis {}\n", common,
                  ruling);
     }
-    if (!sim::keeps(t.after, wanted)) {
+    if (!sim::frequency::keeps(t.after, wanted)) {
       fmt::print(
           "  With the common Kv the axis does NOT keep the requested margins: see the table.\n");
     }
     fmt::print("\n");
     print_table(t, joint);
     fmt::print("\n");
-    confirmed &= confirm(sim::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
+    confirmed &=
+        confirm(sim::frequency::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
   }
   if (options.has("json")) return kDone;
   for (std::size_t k = 0; k < joints.size(); ++k) {

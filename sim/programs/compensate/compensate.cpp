@@ -28,7 +28,7 @@
 #include "sim/programs/verification/verification.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::string_view kHeader = "(servomill compensate:";  // of corrected programs
@@ -67,7 +67,7 @@ int decimals_for(double tolerance) {
                     kMost);
 }
 
-WalkOptions walk_options(const CompensateRequest& request, const MachineSettings& machine,
+WalkOptions walk_options(const CompensateRequest& request, const model::MachineSettings& machine,
                          const controllers::ProgramSetup& setup) {
   constexpr double kLever = 0.1;  // m: what a turn is seen from
   WalkOptions options;
@@ -91,7 +91,7 @@ std::string header_line(const CompensateRequest& request, const std::string& mac
 }
 
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
-                                         const MachineDescription& described,
+                                         const input::MachineDescription& described,
                                          const controllers::ProgramSetup& setup,
                                          ProgramCorrector& corrector, Summary& summary) {
   if (request.dialect == Dialect::linuxcnc && request.smoothing > 0.0) {
@@ -120,14 +120,14 @@ std::string path_line(const CompensateRequest& request, const ProgramWriter& wri
 // Values of a request before its program is read.
 struct Preparation {
   explicit Preparation(const CompensateRequest& request)
-      : described(read_machine_description(request.machine_file, request.changes)),
+      : described(input::read_machine_description(request.machine_file, request.changes)),
         layout(described.machine.chain.layout),
         models(request.error_file.empty() ? described.errors
-                                          : read_error_file(request.error_file, layout)),
+                                          : input::read_error_file(request.error_file, layout)),
         correction(described.machine.chain, model_of(models, request, model), request.axes),
         known(read_work_knowledge(request, described.machine)),
         options(walk_options(request, described.machine, known.setup)) {
-    const NcSettings& nc = described.machine.nc;
+    const model::NcSettings& nc = described.machine.nc;
     known.depends_on_place = depends_on_place(correction, nc.lower, nc.upper);
     if (request.start.empty()) return;
     const AxisValues start = axis_values("--start", request.start, &layout, false);
@@ -137,7 +137,7 @@ struct Preparation {
     if (options.is_for_other_control) options.is_start_known[2] = false;
   }
 
-  MachineDescription described;
+  input::MachineDescription described;
   const JointLayout& layout;
   ErrorModels models;
   std::string model;
@@ -211,7 +211,7 @@ void refuse_too_many_blocks(const CompensateRequest& request,
 
 Compensated compensate(const CompensateRequest& request) {
   Preparation prepared(request);
-  const MachineSettings& machine = prepared.described.machine;
+  const model::MachineSettings& machine = prepared.described.machine;
   const JointLayout& layout = prepared.layout;
   Correction& correction = prepared.correction;
   WorkKnowledge& known = prepared.known;
@@ -286,4 +286,4 @@ VerificationReport verify_compensated(const CompensateRequest& request,
   return verify(request, prepared, written);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "sim/programs/compensate/summary.h"
 #include "strategies/axis_displacement.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct CompensateRequest {
   std::string program_file, machine_file;
@@ -58,4 +58,4 @@ struct VerificationReport;
 /// @throws InputError that shows the line of the original and that of the written program
 VerificationReport verify_compensated(const CompensateRequest& request, const std::string& written);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 #include "controllers/gcode/parameters.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kReportedTip = 0.1e-6, kReportedAxis = 1e-6;  // m, rad: of less nothing is said
@@ -74,4 +74,4 @@ std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& 
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -9,7 +9,7 @@
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/work_knowledge.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Assumptions that the result relies on: work offsets, tool lengths, the start of the machine.
 std::vector<std::string> assumptions(const CompensateRequest& request, const WorkKnowledge& known,
@@ -22,4 +22,4 @@ std::vector<std::string> unrolled_parts(const Summary& summary);
 std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& summary,
                                const JointLayout& layout);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using Eigen::Vector2d;
@@ -326,4 +326,4 @@ std::vector<FittedBlock> fit(const ProgrammedMove& move, const Correction& corre
   return Fitter(move, correction, begin, options).fit();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

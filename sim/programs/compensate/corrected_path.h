@@ -18,7 +18,7 @@
 #include "plant/vocabulary/axes.h"
 #include "sim/programs/compensate/correction.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Work coordinates in the machine: machine = R work + offset.
 struct WorkFrame {
@@ -64,4 +64,4 @@ std::vector<FittedBlock> fit(const ProgrammedMove& move, const Correction& corre
 /// c(t)
 AxisWords corrected(const ProgrammedMove& move, const Correction& correction, double t);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 const double kSingular = std::sin(1.0 * deg);  // the strategies' default
@@ -112,4 +112,4 @@ std::vector<double> shares_between_reversals(const Eigen::Vector3d& x, const Eig
   return shares;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

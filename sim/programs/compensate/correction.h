@@ -13,7 +13,7 @@
 #include "strategies/axis_displacement.h"
 #include "strategies/pose_compensation.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Directions of travel, one for each axis word: 1 up, -1 down, 0 unknown.
 using Directions = std::array<int, kAxisWords>;
@@ -75,4 +75,4 @@ std::vector<double> shares_between_reversals(const Eigen::Vector3d& x, const Eig
                                              double angle, double sweep,
                                              const std::array<bool, kAxisWords>& axes);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -5,7 +5,7 @@
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kResidualStep = 5e-3;  // m, between two looks, about
@@ -109,4 +109,4 @@ void ProgramCorrector::arrive(const Step& step, const AxisWords& machine) {
   out_ = machine;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

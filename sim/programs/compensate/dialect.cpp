@@ -8,7 +8,7 @@
 
 #include "controllers/gcode/number_text.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::size_t kLongestComment = 100;
@@ -113,4 +113,4 @@ std::unique_ptr<DialectPrinter> make_dialect(const DialectSettings& settings,
   return nullptr;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

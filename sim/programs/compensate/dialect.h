@@ -22,7 +22,7 @@
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 enum class Dialect : std::uint8_t { linuxcnc, heidenhain, fanuc, siemens };
 inline constexpr std::array<std::string_view, 4> kDialects = {"linuxcnc", "heidenhain", "fanuc",
@@ -195,4 +195,4 @@ std::unique_ptr<DialectPrinter> make_siemens(const DialectSettings& settings,
 std::unique_ptr<DialectPrinter> make_heidenhain(const DialectSettings& settings,
                                                 std::vector<std::string>& lines);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/dialect_writer.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::Group;
 
@@ -315,4 +315,4 @@ void DialectWriter::write_step(const Block& block, const Step& given) {
   corrector_.arrive(step, at + origin);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,10 +8,10 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/work_knowledge.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 std::optional<double> retract_of(const CompensateRequest& request,
-                                 const MachineDescription& described) {
+                                 const input::MachineDescription& described) {
   return request.retract_Z ? request.retract_Z : described.retract_Z;
 }
 
@@ -20,19 +20,19 @@ double resolution_of(const CompensateRequest& request) {
   return request.dialect == Dialect::siemens ? 10e-9 : 1e-6;
 }
 
-std::array<bool, 3> endless_axes(const MachineDescription& described) {
+std::array<bool, 3> endless_axes(const input::MachineDescription& described) {
   const JointLayout& layout = described.machine.chain.layout;
   std::array<bool, 3> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::optional<int> j = layout.joint_of(kAllAxes[kLinearJoints + i]);
-    const NcSettings& nc = described.machine.nc;
+    const model::NcSettings& nc = described.machine.nc;
     out[i] = j && (std::isinf(nc.lower[*j]) || std::isinf(nc.upper[*j]));
   }
   return out;
 }
 
 DialectSettings dialect_settings(const CompensateRequest& request,
-                                 const MachineDescription& described,
+                                 const input::MachineDescription& described,
                                  const controllers::ProgramSetup& setup) {
   if (request.corrects_rapids) {
     throw InputError({"--correct-rapids"},
@@ -58,7 +58,7 @@ DialectSettings dialect_settings(const CompensateRequest& request,
                      "is missing: programs for other controls retract before and after; --retract "
                      "Z=... in machine coordinates, or axis.Z.retract_mm of the machine file");
   }
-  const NcSettings& nc = described.machine.nc;
+  const model::NcSettings& nc = described.machine.nc;
   if (*retract < nc.lower[2] || *retract > nc.upper[2]) {
     throw InputError({fmt::format("--retract Z={:g}", *retract / mm)},
                      fmt::format("is outside the travel of Z, {:g} ... {:g} mm", nc.lower[2] / mm,
@@ -80,4 +80,4 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   return settings;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -14,7 +14,7 @@
 #include "sim/programs/compensate/line_tokens.h"
 #include "sim/programs/named_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::Code;
@@ -350,4 +350,4 @@ std::string DialectWriter::finish(const std::vector<std::string>& header) {
   return printer_->text();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

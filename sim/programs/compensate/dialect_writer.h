@@ -10,7 +10,7 @@
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/program_writer.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Absolute positions in the coordinates of the work system itself: rotation, G92, G52, increments
 /// and planes are in the numbers. Comments, tools, spindle, coolant, dwell, stops and work systems
@@ -114,4 +114,4 @@ class DialectWriter final : public ProgramWriter {
   bool has_overrides_ = false, moves_work_systems_ = false, has_pallets_ = false;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

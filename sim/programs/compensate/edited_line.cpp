@@ -9,7 +9,7 @@
 #include "controllers/gcode/number_text.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::Code;
 using controllers::ExecutedBlock;
@@ -265,4 +265,4 @@ void take_behind(EditedLine& line) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

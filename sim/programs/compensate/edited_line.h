@@ -13,7 +13,7 @@
 #include "sim/programs/compensate/line_tokens.h"
 #include "sim/programs/compensate/summary.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// A line with its pieces as they will be written, and the modes that its motion is written in.
 struct EditedLine {
@@ -82,4 +82,4 @@ void insert(EditedLine& line, std::string_view word);
 /// Replaces the words of motion of a line.
 void weave(EditedLine& line, MotionWords motion, bool needs_code);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

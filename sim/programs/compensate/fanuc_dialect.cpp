@@ -7,7 +7,7 @@
 #include "controllers/gcode/number_text.h"
 #include "sim/programs/compensate/iso_dialect.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::fixed_text;
@@ -296,4 +296,4 @@ std::unique_ptr<DialectPrinter> make_fanuc(const DialectSettings& settings,
   return std::make_unique<Fanuc>(settings, lines);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

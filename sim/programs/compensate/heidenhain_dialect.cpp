@@ -11,7 +11,7 @@
 #include "sim/programs/compensate/dialect.h"
 #include "sim/programs/compensate/iso_dialect.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::fixed_text;
@@ -278,4 +278,4 @@ std::unique_ptr<DialectPrinter> make_heidenhain(const DialectSettings& settings,
   return std::make_unique<Heidenhain>(settings, lines);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/program_corrector.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 void HighestZ::look(const controllers::ExecutedBlock& block) {
   const bool names_Z = block.request != nullptr && block.request->has('Z');
@@ -32,4 +32,4 @@ void HighestZ::refuse_above(double retract, const std::string& file) const {
                                Z_ / mm, retract / mm));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

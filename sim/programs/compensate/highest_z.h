@@ -6,7 +6,7 @@
 
 #include "controllers/gcode/interpreter.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 class HighestZ {
  public:
@@ -24,4 +24,4 @@ class HighestZ {
   double last_ = 0.0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

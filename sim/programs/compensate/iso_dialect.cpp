@@ -7,7 +7,7 @@
 
 #include "controllers/gcode/number_text.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::fixed_text;
 
@@ -126,4 +126,4 @@ std::string IsoDialect::motion_text(const DialectMotion& motion, std::string_vie
   return text;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 
 #include "sim/programs/compensate/dialect.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// LinuxCNC's G61 keeps to the path and stops where it must only; other controls stop at each end.
 inline constexpr std::string_view kExactPath =
@@ -65,4 +65,4 @@ class IsoDialect : public DialectPrinter {
 /// Adds a word behind a blank.
 void add_word(std::string& line, std::string_view word);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

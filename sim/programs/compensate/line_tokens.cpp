@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 bool has_slash(const controllers::ExecutedBlock& executed) {
   return executed.block != nullptr &&
@@ -34,4 +34,4 @@ std::vector<LineToken> line_tokens(const controllers::ExecutedBlock& executed) {
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 
 #include "controllers/gcode/interpreter.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::PieceKind;
 
@@ -27,4 +27,4 @@ bool has_slash(const controllers::ExecutedBlock& executed);
 /// Pieces that tile the line of a block; none of one that O-words skip.
 std::vector<LineToken> line_tokens(const controllers::ExecutedBlock& block);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -16,7 +16,7 @@
 #include "sim/programs/compensate/motion_printer.h"
 #include "sim/programs/compensate/timed_feed.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::Code;
 using controllers::ExecutedBlock;
@@ -369,4 +369,4 @@ std::string LinuxCncWriter::finish(const std::vector<std::string>& header) {
   return std::move(text_);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

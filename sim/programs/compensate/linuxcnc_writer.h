@@ -9,7 +9,7 @@
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/program_writer.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct EditedLine;
 
@@ -71,4 +71,4 @@ class LinuxCncWriter final : public ProgramWriter {
   std::deque<EditedLine> waiting_;                // lines whose motion may still come
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -5,7 +5,7 @@
 #include "controllers/gcode/number_text.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr int kDecimalsOfDegrees = 6;
@@ -75,4 +75,4 @@ void MotionPrinter::centre(const FittedBlock& block, const AxisWords& at) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -5,7 +5,7 @@
 #include "sim/programs/compensate/corrected_path.h"
 #include "sim/programs/compensate/edited_line.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 inline constexpr double kHalf = 0.5 + 1e-6;  // of a grid step
 
@@ -44,4 +44,4 @@ class MotionPrinter {
   AxisWords end_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

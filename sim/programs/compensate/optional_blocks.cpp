@@ -11,7 +11,7 @@
 #include "sim/programs/compensate/edited_line.h"
 #include "sim/programs/compensate/line_tokens.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::Group;
@@ -103,4 +103,4 @@ bool DialectWriter::rises(double height) const {
       "name Z in a rapid of its own before"};
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

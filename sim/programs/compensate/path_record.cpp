@@ -10,7 +10,7 @@
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/run/store.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kApart = 1e-3;      // m
@@ -48,16 +48,16 @@ void PathRecord::add(const Step& step, const Correction& correction) {
 
 void PathRecord::write(const std::string& path, bool force, const std::string& title,
                        const std::string& machine) const {
-  OutputFile file(writable_name(path, force), force);
+  records::OutputFile file(run::writable_name(path, force), force);
   file.remove_unless_committed();
-  Hdf5Group root = file.root();
+  records::Hdf5Group root = file.root();
   root.attribute("Conventions", "CF-1.8");
   root.attribute("title", title);
-  write_build(root);
-  root.attribute("schema_version", std::int64_t{kSchemaVersion});
+  run::write_build(root);
+  root.attribute("schema_version", std::int64_t{run::kSchemaVersion});
   root.attribute("kind", "compensate");
   root.attribute("machine", machine);
-  Hdf5Group group = root.group("compensate");
+  records::Hdf5Group group = root.group("compensate");
   group.list("s", s_, {"mm", "arc length on the programmed path"});
   group.list("line", line_, {"1", "line of the program"}, "s");
   group.list("block_end", block_end_, {"1", "whether a block of the corrected program ends here"},
@@ -74,4 +74,4 @@ void PathRecord::write(const std::string& path, bool force, const std::string& t
   file.commit();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

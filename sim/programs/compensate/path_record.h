@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 class Correction;
 struct Step;
@@ -29,4 +29,4 @@ class PathRecord {
   std::vector<double> position_[3], correction_[3];
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/named_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ExecutedBlock;
@@ -357,4 +357,4 @@ void ProgramCorrector::arrive_elsewhere(const Move& move) {
   programmed_[Z] = out_[Z] = move.end_machine[Z];
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -13,7 +13,7 @@
 #include "sim/programs/compensate/path_record.h"
 #include "sim/programs/compensate/summary.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// One flag for each axis word.
 using AxisFlags = std::array<bool, kAxisWords>;
@@ -122,4 +122,4 @@ bool is_skipped(const controllers::ExecutedBlock& block);
 /// True if the block moves to a machine position.
 bool is_place_of_machine(const controllers::ExecutedBlock& block);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -7,7 +7,7 @@
 
 #include "controllers/gcode/interpreter.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 class ProgramWriter {
  public:
@@ -25,4 +25,4 @@ class ProgramWriter {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "sim/programs/compensate/dialect_writer.h"
 #include "sim/programs/named_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kSamePlace = 1e-9;  // m: the same digits
@@ -144,4 +144,4 @@ void DialectWriter::write_rapid_back(const std::vector<Axis>& axes) {
   printer_->motion(motion);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

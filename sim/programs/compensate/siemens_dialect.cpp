@@ -6,7 +6,7 @@
 #include "controllers/gcode/number_text.h"
 #include "sim/programs/compensate/iso_dialect.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::fixed_text;
@@ -280,4 +280,4 @@ std::unique_ptr<DialectPrinter> make_siemens(const DialectSettings& settings,
   return std::make_unique<Siemens>(settings, lines);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

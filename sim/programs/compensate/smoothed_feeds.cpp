@@ -11,7 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/program_corrector.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::size_t kMostBlocks = 200'000;  // some hundred bytes each
@@ -31,7 +31,8 @@ double distance(const Eigen::Vector3d& p, const std::vector<MoveCurve>& curves, 
 
 }  // namespace
 
-SmoothedFeeds::SmoothedFeeds(const MachineSettings& machine, double smoothing, double tolerance)
+SmoothedFeeds::SmoothedFeeds(const model::MachineSettings& machine, double smoothing,
+                             double tolerance)
     : machine_(machine), smoothing_(smoothing), tolerance_(tolerance) {
   for (int j = 0; j < kJoints; ++j) {
     if (!machine.chain.layout.has(j)) continue;
@@ -125,4 +126,4 @@ std::string SmoothedFeeds::text() const {
                      smoothed_.distance / um, smoothed_.time, tolerance_ / um, held_.time);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/move.h"
 #include "sim/model/machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct Step;
 
@@ -18,7 +18,7 @@ struct Step;
 class SmoothedFeeds {
  public:
   /// @param machine  with v_max, a_max and j_max of every axis, if anything is to be simulated
-  SmoothedFeeds(const MachineSettings& machine, double smoothing, double tolerance);
+  SmoothedFeeds(const model::MachineSettings& machine, double smoothing, double tolerance);
 
   void add(const Step& step);
   void end_run();
@@ -32,7 +32,7 @@ class SmoothedFeeds {
   };
   Plan plan(double tolerance) const;
 
-  MachineSettings machine_;
+  model::MachineSettings machine_;
   double smoothing_, tolerance_;  // m
   bool has_limits_ = true;
   bool is_cut_short_ = false;  // the program is longer than what is simulated
@@ -42,4 +42,4 @@ class SmoothedFeeds {
   Plan smoothed_, held_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "sim/system/counted.h"
 #include "sim/system/json.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 std::string position(const AxisWords& words, const JointLayout& layout) {
@@ -27,11 +27,13 @@ double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 std::vector<std::string> Summary::report(const JointLayout& layout) const {
   std::vector<std::string> out;
-  out.push_back(fmt::format("{} of motion became {}: {} added", counted(blocks_before, "block"),
-                            blocks_after, counted(points_added, "point")));
+  out.push_back(fmt::format("{} of motion became {}: {} added",
+                            system::counted(blocks_before, "block"), blocks_after,
+                            system::counted(points_added, "point")));
   if (arcs_before > 0) {
     out.push_back(fmt::format("{}: {} kept as one arc, {} split into several, {} replaced by lines",
-                              counted(arcs_before, "arc"), arcs_kept, arcs_split, arcs_to_lines));
+                              system::counted(arcs_before, "arc"), arcs_kept, arcs_split,
+                              arcs_to_lines));
   }
   const double most = largest.correction.head<3>().norm();
   if (most > 0.0) {
@@ -46,7 +48,7 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
   if (reversals > 0) {
     out.push_back(fmt::format(
         "{} compensated; while each develops, over {:g} mm at most, up to {:.1f} um remain",
-        counted(reversals, "reversal"), reversal_distance / mm, reversal_width / um));
+        system::counted(reversals, "reversal"), reversal_distance / mm, reversal_width / um));
   }
   if (undirected) {
     out.push_back(fmt::format(
@@ -66,13 +68,13 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
 }
 
 std::string Summary::json(const JointLayout& layout) const {
-  const auto object = [] { return JsonObject(JsonSpacing::none); };
+  const auto object = [] { return system::JsonObject(system::JsonSpacing::none); };
   constexpr int kSmall = 4, kPath = 6;  // decimals of um and urad, of mm and s
   std::vector<std::string> xyz, assumptions;
   for (int i = 0; i < 3; ++i) {
     xyz.push_back(fmt::format("{:.{}f}", largest.correction[i] / um, kSmall));
   }
-  for (const std::string& one : assumed) assumptions.push_back(json_text(one));
+  for (const std::string& one : assumed) assumptions.push_back(system::json_text(one));
   return object()
       .integer("blocks_before", blocks_before)
       .integer("blocks_after", blocks_after)
@@ -82,7 +84,7 @@ std::string Summary::json(const JointLayout& layout) const {
       .integer("arcs_split", arcs_split)
       .integer("arcs_to_lines", arcs_to_lines)
       .fixed("largest_um", largest.correction.head<3>().norm() / um, kSmall)
-      .raw("largest_xyz_um", json_list(xyz, JsonSpacing::none))
+      .raw("largest_xyz_um", system::json_list(xyz, system::JsonSpacing::none))
       .raw("largest_at", object()
                              .integer("line", largest.line)
                              .text("machine", position(largest.machine, layout))
@@ -100,8 +102,8 @@ std::string Summary::json(const JointLayout& layout) const {
       .fixed("undirected_um", undirected_width / um, kSmall)
       .integer("ends_outside_travel", outside_count)
       .boolean("unrolled", unrolled)
-      .raw("assumed", json_list(assumptions, JsonSpacing::none))
+      .raw("assumed", system::json_list(assumptions, system::JsonSpacing::none))
       .line();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/axes.h"
 #include "strategies/strategy.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct Summary {
   struct At {
@@ -47,4 +47,4 @@ struct Summary {
   std::string json(const JointLayout& layout) const;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "controllers/gcode/number_text.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kStanding = 1e-12;      // m, rounding of offsets
@@ -71,4 +71,4 @@ std::string TimedFeed::restored() const {
   return fmt::format("{}F{}", only_turns_ ? "G94 " : "", F);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

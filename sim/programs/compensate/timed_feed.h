@@ -7,7 +7,7 @@
 #include "sim/programs/compensate/motion_printer.h"
 #include "sim/programs/compensate/program_corrector.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Corrected blocks have other ways in X, Y and Z than their share of a move on which rotary axes
 /// turn, and F counts that way as soon as there is one. Their F keeps the time: under G94 beside
@@ -39,4 +39,4 @@ class TimedFeed {
   bool is_changed_ = false;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

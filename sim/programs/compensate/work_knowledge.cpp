@@ -15,7 +15,7 @@
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/program_corrector.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using controllers::ProgramSetup;
 
@@ -34,8 +34,8 @@ AxisValues axis_values(const std::string& option, std::string_view text, const J
                        "must be positions, such as X=10,Y=-5.5 (in mm and deg) or \"X=10 mm\"");
     }
     const bool is_length = !is_rotation && is_linear(*axis);
-    const ScaledText value =
-        scale_option(item.substr(2), is_length ? kLength : kAngle, is_length ? "mm" : "deg");
+    const config::ScaledText value = config::scale_option(
+        item.substr(2), is_length ? config::kLength : config::kAngle, is_length ? "mm" : "deg");
     if (!value.complaint.empty()) {
       throw InputError(place, fmt::format("{}: {}", item, value.complaint));
     }
@@ -105,12 +105,14 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   const Place place{"--tool-length " + text};
   const std::size_t equals = text.find('=');
   const bool has_number = equals != std::string::npos;
-  const double number = has_number ? plain_number(text.substr(0, equals)).value_or(0.0) : 0.0;
+  const double number =
+      has_number ? config::plain_number(text.substr(0, equals)).value_or(0.0) : 0.0;
   constexpr double kMost = 99999.0;
   if (number < 1.0 || number > kMost || number != std::floor(number)) {
     throw InputError(place, "must be NUMBER=LENGTH of a tool, such as 1=50 (in mm) or \"1=50 mm\"");
   }
-  const ScaledText length = scale_option(std::string_view(text).substr(equals + 1), kLength, "mm");
+  const config::ScaledText length =
+      config::scale_option(std::string_view(text).substr(equals + 1), config::kLength, "mm");
   if (!length.complaint.empty()) throw InputError(place, "length " + length.complaint);
   controllers::ToolEntry tool;
   if (const auto* known = tools.find(static_cast<int>(number))) tool = *known;
@@ -120,12 +122,12 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
 }
 
 WorkKnowledge read_work_knowledge(const CompensateRequest& request,
-                                  const MachineSettings& machine) {
+                                  const model::MachineSettings& machine) {
   const JointLayout& layout = machine.chain.layout;
   WorkKnowledge known;
   known.setup = program_setup(request.inputs, request.program_file);
   choose_reader(request.inputs, machine.nc, known.setup);
-  known.setup.machine = tool_centre_point(machine);
+  known.setup.machine = preparation::tool_centre_point(machine);
   if (!request.inputs.parameter_file.empty()) {
     for (int system = 1; system <= controllers::kWorkSystems; ++system) {
       known.work_systems.insert(system);
@@ -217,4 +219,4 @@ bool depends_on_place(const Correction& correction, const Joints& lower, const J
   return false;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -13,7 +13,7 @@
 #include "sim/model/machine.h"
 #include "sim/programs/compensate/correction.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct CompensateRequest;
 
@@ -48,7 +48,8 @@ struct WorkKnowledge {
   bool depends_on_place = true;  // the errors are not the same everywhere
 };
 
-WorkKnowledge read_work_knowledge(const CompensateRequest& request, const MachineSettings& machine);
+WorkKnowledge read_work_knowledge(const CompensateRequest& request,
+                                  const model::MachineSettings& machine);
 
 /// Moves in a work system of unknown place would be corrected for another place. G10 makes a system
 /// known.
@@ -69,4 +70,4 @@ std::string words_text(const AxisWords& words, const JointLayout& layout);
 /// True if the correction differs between places of the travel.
 bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using Eigen::Vector3d;
@@ -108,4 +108,4 @@ double CorrectedCurve::turn(const AxisWords& position, double t) const {
   return (position - at(t)).tail<3>().cwiseAbs().maxCoeff();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -9,7 +9,7 @@
 #include "sim/programs/compensate/correction.h"
 #include "sim/programs/verification/original.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// c(t) = Q(t) + d(Q(t)): Q the programmed position at the share t of the move, d the correction.
 /// It knows nothing of how a writer divides moves into blocks.
@@ -52,4 +52,4 @@ class CorrectedCurve {
   AxisWords held_ = AxisWords::Zero();
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

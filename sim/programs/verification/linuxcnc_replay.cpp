@@ -1,6 +1,6 @@
 #include "sim/programs/verification/linuxcnc_replay.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ActionKind;
@@ -70,4 +70,4 @@ std::vector<MachineAction> replay_linuxcnc(const std::string& text, const std::s
   return out;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

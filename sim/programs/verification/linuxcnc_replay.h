@@ -8,7 +8,7 @@
 #include "controllers/gcode/program_setup.h"
 #include "sim/programs/verification/original.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Positions count from `setup.start`: LinuxCNC moves no axis that the program does not name.
 /// @throws InputError
@@ -17,4 +17,4 @@ std::vector<controllers::MachineAction> replay_linuxcnc(const std::string& text,
                                                         const controllers::ProgramSetup& setup,
                                                         const OriginalOptions& options);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/verification/replay_comparison.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kTimeRounding = 0.05;  // of the time of a block
@@ -219,4 +219,4 @@ void ReplayComparison::check_path_mode(const OriginalAction& action, const Actio
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -7,7 +7,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/programs/verification/replay_comparison.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ActionKind;
@@ -261,4 +261,4 @@ void ReplayComparison::match_reference(const OriginalAction& action) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "controllers/gcode/request.h"
 #include "sim/programs/named_axes.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ExecutedBlock;
@@ -185,4 +185,4 @@ void Original::take_other(const Move& move) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -12,7 +12,7 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using AxisFlags6 = std::array<bool, kAxisWords>;
 
@@ -87,4 +87,4 @@ class Original {
   int line_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

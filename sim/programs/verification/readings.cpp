@@ -9,7 +9,7 @@
 #include "controllers/dialects/siemens_reader.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 const std::string kFile = "written";
@@ -87,4 +87,4 @@ std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
   return heidenhain_readings(text, setup, options.has_rotary_axes);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

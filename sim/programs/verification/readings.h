@@ -9,7 +9,7 @@
 #include "controllers/dialects/machine_action.h"
 #include "sim/programs/compensate/compensate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct Reading {
   std::string settings;  // for messages
@@ -33,4 +33,4 @@ std::vector<Reading> readings_of(const std::string& text, Dialect dialect,
                                  const controllers::ControlSetup& setup,
                                  const ReadingOptions& options);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ActionKind;
@@ -290,4 +290,4 @@ void ReplayComparison::finish() {
     fail(fmt::format("{} comes behind the end of the original", name_of(one->kind)));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

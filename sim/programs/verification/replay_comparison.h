@@ -10,7 +10,7 @@
 #include "sim/programs/verification/corrected_curve.h"
 #include "sim/programs/verification/original.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// A block that moves nothing but Z.
 bool commands_only_Z(const controllers::MachineAction& action);
@@ -119,4 +119,4 @@ class ReplayComparison {
   std::size_t blocks_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -5,7 +5,7 @@
 
 #include "plant/vocabulary/arc_sweep.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kStill = 1e-12;    // m, rad: what rounding leaves of positions
@@ -63,4 +63,4 @@ void turn(Directions& directions, const OriginalAction& piece) {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 #include "sim/programs/compensate/correction.h"
 #include "sim/programs/verification/original.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// The action in pieces in which no axis turns whose errors depend on its direction: itself, unless
 /// it is an arc.
@@ -16,4 +16,4 @@ std::vector<OriginalAction> pieces_of(const OriginalAction& action, const Correc
 /// position has none.
 void turn(Directions& directions, const OriginalAction& piece);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -13,7 +13,7 @@
 #include "sim/programs/verification/linuxcnc_replay.h"
 #include "sim/programs/verification/readings.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::MachineAction;
@@ -247,4 +247,4 @@ VerificationReport verify_program(const std::string& written, const Verification
   return Verifier(written, request, correction).run();
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

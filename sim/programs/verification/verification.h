@@ -14,7 +14,7 @@
 #include "sim/programs/verification/original.h"
 #include "sim/programs/verification/replay_comparison.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 struct VerificationRequest {
   std::string original_file;
@@ -46,4 +46,4 @@ controllers::ControlSetup control_setup(const controllers::ProgramSetup& setup,
 VerificationReport verify_program(const std::string& written, const VerificationRequest& request,
                                   Correction& correction);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

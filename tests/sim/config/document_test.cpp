@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-namespace servomill::sim::document_test {
+namespace servomill::sim::config::document_test {
 namespace {
 
 constexpr std::string_view kScenario = R"(# a scenario
@@ -205,4 +205,4 @@ TEST(Merge, OfNothingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::document_test
+}  // namespace servomill::sim::config::document_test

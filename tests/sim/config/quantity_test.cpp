@@ -5,7 +5,7 @@
 #include <array>
 #include <numbers>
 
-namespace servomill::sim::quantity_test {
+namespace servomill::sim::config::quantity_test {
 namespace {
 
 constexpr double kRounding = 1e-15;  // relative, a few roundings of the factors
@@ -133,4 +133,4 @@ TEST(InUnit, PrintsUpToSixDigits) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::quantity_test
+}  // namespace servomill::sim::config::quantity_test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <iostream>
 
-namespace servomill::sim::reader_test {
+namespace servomill::sim::config::reader_test {
 namespace {
 
 constexpr std::array<std::string_view, 3> kStrategies = {"feedback", "gcode", "table"};
@@ -317,4 +317,4 @@ TEST(Gallery, LongValuesAreShortened) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::reader_test
+}  // namespace servomill::sim::config::reader_test

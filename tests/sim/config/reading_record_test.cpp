@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace servomill::sim::reading_record_test {
+namespace servomill::sim::config::reading_record_test {
 namespace {
 
 std::string errors_of(ReadingRecord& record) {
@@ -65,4 +65,4 @@ TEST(ReadingRecord, ADocumentWithoutErrorsEndsQuietly) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::reading_record_test
+}  // namespace servomill::sim::config::reading_record_test

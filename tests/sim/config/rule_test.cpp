@@ -6,7 +6,7 @@
 
 #include "sim/config/quantity.h"
 
-namespace servomill::sim::rule_test {
+namespace servomill::sim::config::rule_test {
 namespace {
 
 TEST(Rule, HoldsOnOneSideOfItsBound) {
@@ -38,4 +38,4 @@ TEST(Rule, RequirementIsInTheUnitOfTheUser) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::rule_test
+}  // namespace servomill::sim::config::rule_test

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-namespace servomill::sim::drive_steps_test {
+namespace servomill::sim::engine::drive_steps_test {
 namespace {
 
 // Instants at which the error model is due every `model` ticks, the current loop every `current`.
-std::vector<Instant> schedule_of(Tick current, Tick model) {
-  return make_schedule({{kCurrentLoop, current, 0}, {kErrorModel, model, 0}});
+std::vector<model::Instant> schedule_of(Tick current, Tick model) {
+  return model::make_schedule({{model::kCurrentLoop, current, 0}, {model::kErrorModel, model, 0}});
 }
 
 TEST(DriveSteps, LeadsPastInstantsOfTheErrorModelAlone) {
@@ -29,13 +29,15 @@ TEST(DriveSteps, LeadsPastInstantsOfTheErrorModelAlone) {
 }
 
 TEST(DriveSteps, StopsWhereAnythingElseIsDue) {
-  for (const Due due : {kFeedbackSample, kPositionLoop, kVelocityLoop, kCurrentLoop, kRecord}) {
-    const DriveSteps steps = drive_steps(make_schedule({{kErrorModel, 10, 0}, {due, 5, 0}}));
+  for (const model::Due due : {model::kFeedbackSample, model::kPositionLoop, model::kVelocityLoop,
+                               model::kCurrentLoop, model::kRecord}) {
+    const DriveSteps steps =
+        drive_steps(model::make_schedule({{model::kErrorModel, 10, 0}, {due, 5, 0}}));
     EXPECT_TRUE(steps.stretches.empty());
     EXPECT_EQ(steps.steps, (std::vector<Tick>{5, 5}));
   }
   // what nobody is due at may be looked at
-  EXPECT_TRUE(drive_steps({{kCurrentLoop, 5}, {0, 5}}).stretches.empty());
+  EXPECT_TRUE(drive_steps({{model::kCurrentLoop, 5}, {0, 5}}).stretches.empty());
 }
 
 TEST(DriveSteps, HasEightStopsOnAStretchAtMost) {
@@ -67,4 +69,4 @@ TEST(DriveSteps, HasThirtyTwoStretchesAtMost) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::drive_steps_test
+}  // namespace servomill::sim::engine::drive_steps_test

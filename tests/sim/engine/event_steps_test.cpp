@@ -6,17 +6,18 @@
 #include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/setpoint.h"
+#include "sim/input/read_scenario.h"
 #include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::event_steps_test {
+namespace servomill::sim::engine::event_steps_test {
 namespace {
 
 // A machine in five-axis motion with feedback hardware, tables and a strategy; encoders without
 // steps, so that a difference of rounding stays one.
 struct FiveAxisCase {
-  MachineSettings machine =
-      read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+  model::MachineSettings machine =
+      input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
   strategies::IdentifiedMachine identified{machine.chain.layout,
                                            plant::VolumetricModel(machine.chain, errors())};
   std::vector<Move> moves = controllers::interpret(
@@ -27,7 +28,7 @@ struct FiveAxisCase {
   ProgramPath path{moves, AxisWords::Zero()};
   std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
   std::unique_ptr<strategies::Strategy> strategy;
-  FeedbackHardware hardware{.connected = true, .signal_delay = 1, .model_period = 6};
+  model::FeedbackHardware hardware{.connected = true, .signal_delay = 1, .model_period = 6};
 
   FiveAxisCase(Tick delay, Tick model_period) {
     hardware.signal_delay = delay;
@@ -59,9 +60,19 @@ struct FiveAxisCase {
   }
 
   CaseInputs inputs() {
-    CaseInputs out = {
-        machine, identified.model, nullptr, trajectory, path, tips, ServoModel::cascade, hardware,
-        {},      strategy.get(),   {},      100,        0.02};
+    CaseInputs out = {machine,
+                      identified.model,
+                      nullptr,
+                      trajectory,
+                      path,
+                      tips,
+                      model::ServoModel::cascade,
+                      hardware,
+                      {},
+                      strategy.get(),
+                      {},
+                      100,
+                      0.02};
     out.pieces = path.pieces_of(moves);
     return out;
   }
@@ -69,7 +80,7 @@ struct FiveAxisCase {
 
 // The loop of DESIGN.md 4 as it is written there: every tick asks what is due.
 std::vector<Joints> stepped_every_tick(FiveAxisCase& c) {
-  const LoopPeriods& p = c.machine.nc.periods;
+  const model::LoopPeriods& p = c.machine.nc.periods;
   const std::array<Tick, 1> one = {1};
   const plant::DriveBank drives(c.machine.drives, p.base, one);
   Setpoint setpoint(c.machine.nc, c.trajectory, {});
@@ -140,7 +151,7 @@ TEST_P(Simulate, FromEventToEventIsWhatEveryTickGives) {
   std::atomic<float> progress = 0.0F;
   const CaseResult result = simulate(inputs, never, progress);
   ASSERT_TRUE(result.outcome.finished) << result.outcome.reason;
-  const Series& series = result.servo;
+  const records::Series& series = result.servo;
   ASSERT_EQ(series.rows(), wanted.size());
   ASSERT_GT(series.rows(), 200U);
   double largest = 0.0, way = 0.0;
@@ -164,4 +175,4 @@ INSTANTIATE_TEST_SUITE_P(DelayAndModelPeriod, Simulate,
                                          std::pair<Tick, Tick>{1, 1}, std::pair<Tick, Tick>{0, 7}));
 
 }  // namespace
-}  // namespace servomill::sim::event_steps_test
+}  // namespace servomill::sim::engine::event_steps_test

@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::program_path_test {
+namespace servomill::sim::engine::program_path_test {
 namespace {
 
 constexpr double kRounding = 1e-17;  // m, of coordinates of some 10 mm
@@ -122,4 +122,4 @@ TEST(ProgramPath, MeasuresTheDistanceToThePathNearby) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::program_path_test
+}  // namespace servomill::sim::engine::program_path_test

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::recorder_test {
+namespace servomill::sim::engine::recorder_test {
 namespace {
 
 // Several blocks of the recorder and a rest.
@@ -18,7 +18,7 @@ class Recording : public testing::Test {
  protected:
   Recording()
       : scenario_(small_scenario("G1 X10 Y5 F1000\nG1 X20\nM2\n", "[[case]]\nname = \"one\"\n")),
-        moves_(read_program(scenario_, scenario_.cases.front()).all()),
+        moves_(preparation::read_program(scenario_, scenario_.cases.front()).all()),
         path_(moves_, AxisWords::Zero()),
         truth_(scenario_.machine.chain, {}) {
     boost::random::mt19937 random(1);
@@ -37,7 +37,8 @@ class Recording : public testing::Test {
       snapshots_.push_back(now);
     }
   }
-  Series record(const RecordFormat& format = {}, const RowKeeping& keeping = {}) const {
+  records::Series record(const model::RecordFormat& format = {},
+                         const records::RowKeeping& keeping = {}) const {
     Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_, format, false, {}, false,
                       keeping);
     recorder.expect(kRows);
@@ -45,7 +46,7 @@ class Recording : public testing::Test {
     return recorder.take();
   }
 
-  const Scenario scenario_;
+  const model::Scenario scenario_;
   const std::vector<Move> moves_;
   const ProgramPath path_;
   const plant::VolumetricModel truth_;
@@ -54,8 +55,8 @@ class Recording : public testing::Test {
 };
 
 TEST_F(Recording, IsTheSameInMemoryAndOnTheDisk) {
-  const Series in_memory = record();
-  const Series on_disk = record({}, {.folder = testing::TempDir(), .most_in_memory = 0.0});
+  const records::Series in_memory = record();
+  const records::Series on_disk = record({}, {.folder = testing::TempDir(), .most_in_memory = 0.0});
   EXPECT_EQ(in_memory.pages(), nullptr);
   ASSERT_NE(on_disk.pages(), nullptr);
   ASSERT_EQ(on_disk.rows(), kRows);
@@ -67,7 +68,7 @@ TEST_F(Recording, IsTheSameInMemoryAndOnTheDisk) {
 }
 
 TEST_F(Recording, HasARowForEverySnapshotInOrder) {
-  const Series series = record();
+  const records::Series series = record();
   ASSERT_EQ(series.rows(), kRows);
   const std::size_t x = *series.column("true_linear", 'X');
   const std::size_t error = *series.column("following_error_linear", 'Y');
@@ -90,12 +91,12 @@ TEST_F(Recording, GivesUpItsRowsWhenDroppedEarly) {
 
 TEST_F(Recording, RoundsToAPowerOfTwoNotAboveTheResolution) {
   constexpr double kResolution = 1 * nm;
-  const Series exact = record(), rounded = record({.resolution = kResolution});
+  const records::Series exact = record(), rounded = record({.resolution = kResolution});
   // of what 1 nm is in each unit, the power of two below
   const std::map<std::string, double> quantum = {
       {"mm", 0x1p-20},    {"um", 0x1p-10}, {"deg", 0x1p-25}, {"mm/s", 0x1p-14},
       {"deg/s", 0x1p-18}, {"A", 0x1p-14},  {"N m", 0x1p-14}};
-  for (const Signal& signal : rounded.signals()) {
+  for (const records::Signal& signal : rounded.signals()) {
     if (signal.scale == "ijk") {
       EXPECT_EQ(signal.quantum, 0x1p-30) << signal.name;
     } else if (signal.units == "1" || signal.units == "s") {
@@ -121,18 +122,19 @@ TEST_F(Recording, LeavesAloneWhatIsTooLargeToRoundOrNoNumber) {
   snapshots_.resize(2);
   snapshots_[0].Q_true[0] = 1e30;
   snapshots_[1].Q_true[0] = std::nan("");
-  const Series series = record({.resolution = 1 * nm});
+  const records::Series series = record({.resolution = 1 * nm});
   const std::size_t x = *series.column("true_linear", 'X');
   EXPECT_EQ(series.at(0, x), 1e30 / mm);
   EXPECT_TRUE(std::isnan(series.at(1, x)));
 }
 
 TEST_F(Recording, KeepsInSinglePrecisionAllButPlaceAndCounts) {
-  const Series exact = record(), single = record({.storage = Storage::float32});
-  for (const Signal& signal : single.signals()) {
+  const records::Series exact = record(), single = record({.storage = records::Storage::float32});
+  for (const records::Signal& signal : single.signals()) {
     const bool exempt = signal.name == "time" || signal.name == "s" || signal.name == "line" ||
                         signal.name == "section" || signal.name == "rapid";
-    EXPECT_EQ(signal.storage, exempt ? Storage::float64 : Storage::float32) << signal.name;
+    EXPECT_EQ(signal.storage, exempt ? records::Storage::float64 : records::Storage::float32)
+        << signal.name;
     for (std::size_t n = 0; n < kRows; n += 100) {
       for (std::size_t c = signal.offset; c < signal.offset + signal.columns(); ++c) {
         const double before = exact.at(n, c);
@@ -145,4 +147,4 @@ TEST_F(Recording, KeepsInSinglePrecisionAllButPlaceAndCounts) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::recorder_test
+}  // namespace servomill::sim::engine::recorder_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::servo_axes_test {
+namespace servomill::sim::engine::servo_axes_test {
 namespace {
 
 constexpr double kStandTol = 1e-6;  // um, of an axis that stands where a formula says
@@ -20,9 +20,9 @@ const std::string kIdealEncoders =
     "X.scale_step = 0.0\nY.scale_step = 0.0\nZ.scale_step = 0.0\n";
 
 // Largest and smallest following error of an axis in um.
-std::pair<double, double> following_error(const Scenario& scenario, char axis) {
-  const CaseOutput out = run_case(scenario, "alone");
-  const Series& series = out.result.servo;
+std::pair<double, double> following_error(const model::Scenario& scenario, char axis) {
+  const run::CaseOutput out = run_named_case(scenario, "alone");
+  const records::Series& series = out.result.servo;
   const std::size_t column = series.column("following_error_linear", axis).value();
   double low = series.at(0, column), high = low;
   for (std::size_t n = 0; n < series.rows(); ++n) {
@@ -32,7 +32,7 @@ std::pair<double, double> following_error(const Scenario& scenario, char axis) {
   return {low, high};
 }
 
-Scenario standing(const std::string& axis_keys) {
+model::Scenario standing(const std::string& axis_keys) {
   return small_scenario(kStand, kIdealEncoders + axis_keys + "[[case]]\nname = \"alone\"\n");
 }
 
@@ -75,7 +75,7 @@ TEST(ServoAxes, CountACompensatedGapAsNoFollowingError) {
       "X.position_feedback = \"motor\"\nX.backlash = \"10 um\"\n"
       "X.backlash_compensation = { width = \"10 um\" }\n"
       "X.standstill_limit = \"1 um\"\nX.standstill_delay_ms = 200.0\n[[case]]\nname = \"alone\"\n";
-  EXPECT_TRUE(run_case(small_scenario(program, toml), "alone").result.outcome.finished);
+  EXPECT_TRUE(run_named_case(small_scenario(program, toml), "alone").result.outcome.finished);
 }
 
 TEST(ServoAxes, RunUnderCvodeWhatTheExactStepRefuses) {
@@ -86,7 +86,7 @@ TEST(ServoAxes, RunUnderCvodeWhatTheExactStepRefuses) {
                               "bristle_stiffness = \"1e15 N/m\"\n[[case]]\nname = \"alone\"\n");
   };
   EXPECT_THROW(with("exact"), InputError);
-  EXPECT_TRUE(run_case(with("cvode"), "alone").result.outcome.finished);
+  EXPECT_TRUE(run_named_case(with("cvode"), "alone").result.outcome.finished);
 }
 
 TEST(ServoAxes, TakeALinearDriveHoweverStiff) {
@@ -94,4 +94,4 @@ TEST(ServoAxes, TakeALinearDriveHoweverStiff) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::servo_axes_test
+}  // namespace servomill::sim::engine::servo_axes_test

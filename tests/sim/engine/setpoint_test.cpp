@@ -5,7 +5,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::setpoint_test {
+namespace servomill::sim::engine::setpoint_test {
 namespace {
 
 constexpr double kTp = 200e-6;  // s
@@ -51,8 +51,8 @@ std::vector<std::unique_ptr<strategies::SetpointPart>> one_part(EntryPoint where
   return parts;
 }
 
-NcSettings nc_with_filter(Tick length = 0) {
-  NcSettings nc;
+model::NcSettings nc_with_filter(Tick length = 0) {
+  model::NcSettings nc;
   nc.filter.length = length;
   return nc;
 }
@@ -162,4 +162,4 @@ TEST_F(SetpointOf, CorrectionsAddUp) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::setpoint_test
+}  // namespace servomill::sim::engine::setpoint_test

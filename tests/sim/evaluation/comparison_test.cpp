@@ -8,7 +8,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::comparison_test {
+namespace servomill::sim::evaluation::comparison_test {
 namespace {
 
 constexpr double kTol = 1e-9;  // um, %, ms: rounding of values of 100 that are stored in mm
@@ -17,16 +17,16 @@ struct Row {
   double time, s, section, rapid, y, imposed, following, deviation, contour;
 };
 
-Series series_of(const std::vector<Row>& rows) {
-  Series out({{"time", "s", "", "", ""},
-              {"s", "mm", "", "", ""},
-              {"section", "1", "", "", ""},
-              {"rapid", "1", "", "", ""},
-              {"meas_linear", "mm", "", "XYZ", "axis_linear"},
-              {"imposed_linear", "um", "", "XYZ", "axis_linear"},
-              {"following_error_linear", "um", "", "XYZ", "axis_linear"},
-              {"tool_deviation", "um", "", "XYZ", "xyz"},
-              {"contour_error", "um", "", "", ""}});
+records::Series series_of(const std::vector<Row>& rows) {
+  records::Series out({{"time", "s", "", "", ""},
+                       {"s", "mm", "", "", ""},
+                       {"section", "1", "", "", ""},
+                       {"rapid", "1", "", "", ""},
+                       {"meas_linear", "mm", "", "XYZ", "axis_linear"},
+                       {"imposed_linear", "um", "", "XYZ", "axis_linear"},
+                       {"following_error_linear", "um", "", "XYZ", "axis_linear"},
+                       {"tool_deviation", "um", "", "XYZ", "xyz"},
+                       {"contour_error", "um", "", "", ""}});
   for (const Row& row : rows) {
     double* to = out.add_row();
     const auto put = [&](const char* name, char label, double value) {
@@ -68,19 +68,19 @@ class Comparison : public testing::Test {
 
   double value(const std::string& name, const std::string& statistic,
                const std::vector<std::string>& sections = {}, const std::string& of = "one") {
-    QuantitySpec spec;
+    model::QuantitySpec spec;
     spec.name = name;
     spec.axis = quantity_entry(name).needs_axis() ? 'Y' : '\0';
     spec.statistic = statistic;
     spec.cases = {of};
     if (quantity_entry(name).needs_baseline) spec.baseline = "base";
     spec.sections = sections;
-    const auto rows = compare(std::vector<QuantitySpec>{spec}, cases_);
+    const auto rows = compare(std::vector<model::QuantitySpec>{spec}, cases_);
     EXPECT_EQ(rows.size(), 1U);
     return rows.front().value;
   }
 
-  Series base_, one_;
+  records::Series base_, one_;
   std::vector<CaseData> cases_;
 };
 
@@ -198,4 +198,4 @@ TEST(ToJson, IsOneObjectWithNullForWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::comparison_test
+}  // namespace servomill::sim::evaluation::comparison_test

@@ -8,11 +8,12 @@
 #include <filesystem>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_scenario.h"
 #include "sim/run/store.h"
 #include "sim/system/base64.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::nominal_part_test {
+namespace servomill::sim::evaluation::nominal_part_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -35,8 +36,8 @@ constexpr const char* kProbes =
     "[[probe]]\nname = \"plane\"\nplane = { corner_mm = [0.0, 1.0, 0.0], u_mm = [98.0, 0.0, 0.0], "
     "v_mm = [0.0, 5.0, 0.0], normal = [0, 0, 1], points = [11, 3] }\n";
 
-Triangles block(const Vector3d& from, const Vector3d& to) {
-  Triangles out;
+metrology::Triangles block(const Vector3d& from, const Vector3d& to) {
+  metrology::Triangles out;
   for (int i = 0; i < 8; ++i) {
     out.corners.emplace_back((i & 1) ? to.x() : from.x(), (i & 2) ? to.y() : from.y(),
                              (i & 4) ? to.z() : from.z());
@@ -46,28 +47,28 @@ Triangles block(const Vector3d& from, const Vector3d& to) {
   return out;
 }
 
-const Triangles& the_block() {
-  static const Triangles kBlock =
+const metrology::Triangles& the_block() {
+  static const metrology::Triangles kBlock =
       block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, 0.0) * mm);
   return kBlock;
 }
 
-std::string part(const Triangles& triangles) {
+std::string part(const metrology::Triangles& triangles) {
   return fmt::format("[part]\nstl = \"block.stl\"\nstl_base64 = \"{}\"\n",
-                     base64(binary_stl(triangles)));
+                     system::base64(metrology::binary_stl(triangles)));
 }
 
-Scenario milled(const std::string& errors, const std::string& part_and_more) {
+model::Scenario milled(const std::string& errors, const std::string& part_and_more) {
   return small_scenario(kProgram, "machine_errors = \"machine\"\n" + std::string(kTool) +
                                       "[errors.machine]\n" + errors + part_and_more +
                                       "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + kProbes +
                                       "[[quantity]]\nname = \"distortion\"\n");
 }
 
-RunOutput run(const Scenario& scenario) {
-  RunControl control;
+run::RunOutput run(const model::Scenario& scenario) {
+  run::RunControl control;
   control.threads = 1;
-  return run_scenario(scenario, control);
+  return run::run_scenario(scenario, control);
 }
 
 std::string faults(const std::string& errors, const std::string& part_and_more) {
@@ -83,10 +84,10 @@ TEST(NominalPart, IsFoundAgainWhereTheWholePartIsShiftedAndTurned) {
   // X reads 20 um too little everywhere, Z 7 um too much; Y leans by 100 urad with X
   const std::string shifted =
       "EXX = { polynomial_um = [20.0] }\nEZX = { polynomial_um = [-7.0] }\n";
-  const Scenario scenario = milled(shifted, part(the_block()));
-  const RunOutput output = run(scenario);
+  const model::Scenario scenario = milled(shifted, part(the_block()));
+  const run::RunOutput output = run(scenario);
   ASSERT_TRUE(output.cases[0].part_fit);
-  const BestFit& fit = output.cases[0].part_fit->fit;
+  const metrology::BestFit& fit = output.cases[0].part_fit->fit;
   EXPECT_LT(output.comparison[0].value, kPerfect);
   EXPECT_LT(fit.rms / um, kPerfect);
   EXPECT_LT((fit.motion.translation() / um - Vector3d(-20.0, 0.0, 7.0)).norm(), kPerfect);
@@ -97,7 +98,8 @@ TEST(NominalPart, IsFoundAgainWhereTheWholePartIsShiftedAndTurned) {
 // squareness of 100 urad that a motion shares out between sides of 98 and 50 mm.
 TEST(NominalPart, GivesTheDistortionOfItsFaces) {
   const std::string leaning = "EC0Y = \"100 urad\"\n";
-  const RunOutput mesh = run(milled(leaning, part(the_block()))), faces = run(milled(leaning, ""));
+  const run::RunOutput mesh = run(milled(leaning, part(the_block()))),
+                       faces = run(milled(leaning, ""));
   EXPECT_NEAR(mesh.comparison[0].value, faces.comparison[0].value, 0.01);
   // each line with 50 points: the sum of squares 98^2 a^2 + 50^2 b^2, a - b = 100 urad, is least
   // for b = -79.3 urad, and the ends of the line of 50 mm are off by half of that
@@ -106,23 +108,23 @@ TEST(NominalPart, GivesTheDistortionOfItsFaces) {
 }
 
 TEST(NominalPart, IsInTheResolvedScenarioAndTheResultFile) {
-  const Scenario scenario = milled("EC0Y = \"100 urad\"\n", part(the_block()));
-  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  const model::Scenario scenario = milled("EC0Y = \"100 urad\"\n", part(the_block()));
+  const model::Scenario again = input::read_resolved_scenario(scenario.resolved, "again");
   ASSERT_TRUE(again.part);
   EXPECT_EQ(again.part->file, "block.stl");
   EXPECT_EQ(again.part->bytes, scenario.part->bytes);
   EXPECT_EQ(again.resolved, scenario.resolved);
 
-  const RunOutput output = run(scenario);
+  const run::RunOutput output = run(scenario);
   const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("stl_{}", getpid());
   std::filesystem::create_directories(folder);
   const std::string path = folder / "part.h5";
-  RunStore store(path, false, scenario);
+  run::RunStore store(path, false, scenario);
   store.add(output.cases[0]);
   store.commit(output.comparison);
-  const StoredRun back = read_run(path);
+  const run::StoredRun back = run::read_run(path);
   EXPECT_NEAR(compare(back.quantities, back.cases)[0].value, output.comparison[0].value, 1e-6);
-  const InputFile file(path);
+  const records::InputFile file(path);
   const auto places = file.values("/cases/one/probes/side/aligned_position");
   const auto deviations = file.values("/cases/one/probes/side/aligned_deviation");
   std::filesystem::remove_all(folder);
@@ -137,8 +139,10 @@ TEST(NominalPart, IsInTheResolvedScenarioAndTheResultFile) {
 }
 
 TEST(NominalPart, MustHaveTheProbesOnIt) {
-  const Triangles low = block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.12) * mm);
-  const Triangles just = block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.09) * mm);
+  const metrology::Triangles low =
+      block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.12) * mm);
+  const metrology::Triangles just =
+      block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.09) * mm);
   const std::string file = SERVOMILL_SOURCE_DIR "/scenarios/small.toml";
   const std::string found = faults("", part(low));
   EXPECT_NE(found.find("probe 'plane': 33 of 33 points are not on the part 'block.stl', the first, "
@@ -180,8 +184,9 @@ TEST(NominalPart, NeedsAProbeToBeOfAnyUse) {
 }
 
 TEST(NominalPart, SaysHowFarItsFacetsAreOff) {
-  const Triangles low = block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.005) * mm);
-  const RunOutput output = run(milled("", part(low)));
+  const metrology::Triangles low =
+      block(Vector3d(-20.0, 0.0, -10.0) * mm, Vector3d(100.0, 70.0, -0.005) * mm);
+  const run::RunOutput output = run(milled("", part(low)));
   ASSERT_FALSE(output.cases[0].notes.empty());
   EXPECT_EQ(
       output.cases[0].notes.back(),
@@ -190,10 +195,10 @@ TEST(NominalPart, SaysHowFarItsFacetsAreOff) {
 }
 
 TEST(NominalPart, SaysWhatLeavesItFree) {
-  Scenario scenario = milled("", part(the_block()));
+  model::Scenario scenario = milled("", part(the_block()));
   scenario.probes.pop_back();  // the plane
   scenario.quantities.clear();
-  const RunOutput output = run(scenario);
+  const run::RunOutput output = run(scenario);
   EXPECT_FALSE(output.cases[0].part_fit);
   ASSERT_FALSE(output.cases[0].notes.empty());
   EXPECT_TRUE(output.cases[0].notes.back().starts_with(
@@ -203,4 +208,4 @@ TEST(NominalPart, SaysWhatLeavesItFree) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::nominal_part_test
+}  // namespace servomill::sim::evaluation::nominal_part_test

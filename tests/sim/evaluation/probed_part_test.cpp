@@ -12,7 +12,7 @@
 #include "sim/run/store.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::probed_part_test {
+namespace servomill::sim::evaluation::probed_part_test {
 namespace {
 
 constexpr double kPerfect = 0.1;      // um: what a perfect machine may leave
@@ -56,16 +56,16 @@ struct Asked {
   std::string cases = "[[case]]\nname = \"one\"\nservo = \"ideal\"\n";
 };
 
-Scenario asking(const Asked& asked) {
+model::Scenario asking(const Asked& asked) {
   return small_scenario(kProgram, asked.root + "\nmachine_errors = \"machine\"\n" + kTool +
                                       "[errors.machine]\n" + asked.errors + asked.cases +
                                       asked.probes + asked.quantities);
 }
 
-RunOutput run(const Scenario& scenario) {
-  RunControl control;
+run::RunOutput run(const model::Scenario& scenario) {
+  run::RunControl control;
   control.threads = 1;
-  return run_scenario(scenario, control);
+  return run::run_scenario(scenario, control);
 }
 
 std::vector<double> values(const std::vector<ComparisonRow>& rows) {
@@ -86,7 +86,7 @@ TEST(ProbedPart, OfAPerfectMachineIsTheNominalOne) {
                 quantity("diameter", "probe = \"boss\"") +
                 quantity("probed_position", "probe = \"boss\"\naxis = \"X\"") +
                 quantity("squareness", "probe = \"flank\"\nto = \"side\"");
-  const RunOutput output =
+  const run::RunOutput output =
       run(asking({std::string(kFlank) + kSide + kPlane + kBoss, quantities, "", ""}));
   ASSERT_EQ(output.comparison.size(), 11U);
   for (const ComparisonRow& row : output.comparison) {
@@ -99,7 +99,7 @@ TEST(ProbedPart, OfAPerfectMachineIsTheNominalOne) {
 // to X, through a CMM of 1.5 um.
 TEST(ProbedPart, ShowsStraightnessAndSquarenessOfTheMachine) {
   const std::string cmm = "[cmm]\nuncertainty_um = 1.5\nprobe_radius_mm = 1.0\nrepetitions = 4\n";
-  const RunOutput output = run(asking(
+  const run::RunOutput output = run(asking(
       {std::string(kFlank) + kSide,
        quantity("straightness", "probe = \"flank\"") +
            quantity("straightness", "probe = \"side\"") +
@@ -123,7 +123,7 @@ TEST(ProbedPart, TurnsWithItsWorkOffset) {
                      quantity("probed_position", "probe = \"side\"\naxis = \"X\"") +
                      quantity("probed_deviation", "probe = \"plane\"");
   // an X scale that is off by 20 um: it is the side that moves, wherever the part stands
-  const RunOutput output = run(asking(asked));
+  const run::RunOutput output = run(asking(asked));
   ASSERT_EQ(output.comparison.size(), 6U);
   for (const std::size_t i : {0U, 1U, 4U, 5U}) {
     EXPECT_LT(std::abs(output.comparison[i].value), kPerfect) << i;
@@ -139,7 +139,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
       "-5.0], normal = [0, -1, 0], points = 5 }\n";
   const std::string inside =
       "[[probe]]\nname = \"inside\"\npoints_mm = [[50, -4, -5, 0, -1, 0], [50, 30, -5, 0, 0, 1]]\n";
-  const RunOutput output =
+  const run::RunOutput output =
       run(asking({beyond + inside,
                   quantity("straightness", "probe = \"beyond\"") +
                       quantity("probed_deviation", "probe = \"inside\"") +
@@ -170,7 +170,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
 TEST(ProbedPart, EndsWhereTheRawPartDoes) {
   const std::string stock =
       "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, -20.0], to_mm = [61.0, 60.0, 5.0] }\n";
-  const RunOutput output = run(
+  const run::RunOutput output = run(
       asking({std::string(kFlank) + stock, quantity("straightness", "probe = \"flank\""), "", ""}));
   EXPECT_EQ(output.comparison[0].note, "31 of 51 points of 'flank'");  // up to X60
   const std::string& note = output.cases[0].notes.at(0);
@@ -184,7 +184,7 @@ TEST(ProbedPart, IsImposedWithTheToolThatCutIt) {
   constexpr const char* kBore =
       "G17 G21 G40 G90 G94 G64 P0.0001\nF3000\nT2 M6\nG43 H2\nG0 X0 Y0 Z50\nG1 X1\nT1 M6\nG43 "
       "H1\nG0 X50 Y50 Z20\nG1 Z-10\nG1 X56\nG3 I-6\nG1 X50\nG0 Z20\nM2\n";
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       kBore, "imposed = \"wave\"\n" + std::string(kTool) +
                  "[[program.tool]]\nnumber = 2\nlength_mm = 60.0\ndiameter_mm = 25.0\n"
                  "[errors.wave]\nEXX = { polynomial_um = [0.0, 1.0] }\n"
@@ -200,7 +200,7 @@ TEST(ProbedPart, IsImposedWithTheToolThatCutIt) {
 }
 
 TEST(ProbedPart, HasNoPositionAlongAnAxisThatNoNormalPointsAlong) {
-  const RunOutput output =
+  const run::RunOutput output =
       run(asking({kFlank, quantity("probed_position", "probe = \"flank\"\naxis = \"X\""), "", ""}));
   EXPECT_TRUE(std::isnan(output.comparison[0].value));
   EXPECT_EQ(output.comparison[0].note, "no normal of its points has a component along X");
@@ -232,15 +232,15 @@ TEST(ProbedPart, ComesBackFromItsFile) {
                     quantity("flatness", "probe = \"plane\"") +
                         quantity("probed_deviation", "probe = \"flank\"\nstatistic = \"rms\""),
                     "[cmm]\nuncertainty_um = 1.5\nrepetitions = 3\n", ""};
-  const Scenario scenario = asking(asked);
-  const RunOutput output = run(scenario);
+  const model::Scenario scenario = asking(asked);
+  const run::RunOutput output = run(scenario);
   const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("part_{}", getpid());
   std::filesystem::create_directories(folder);
   const std::string path = folder / "part.h5";
-  RunStore store(path, false, scenario);
+  run::RunStore store(path, false, scenario);
   store.add(output.cases[0]);
   store.commit(output.comparison);
-  const StoredRun back = read_run(path);
+  const run::StoredRun back = run::read_run(path);
   std::filesystem::remove_all(folder);
   const auto rows = compare(back.quantities, back.cases);
   ASSERT_EQ(rows.size(), 2U);
@@ -249,9 +249,9 @@ TEST(ProbedPart, ComesBackFromItsFile) {
     EXPECT_GT(rows[i].value, kPerfect);
   }
   // the same again, and with other threads
-  RunControl control;
+  run::RunControl control;
   control.threads = 3;
-  const RunOutput again = run_scenario(scenario, control);
+  const run::RunOutput again = run::run_scenario(scenario, control);
   for (std::size_t f = 0; f < 2; ++f) {
     EXPECT_EQ(again.cases[0].probes[f].deviation, output.cases[0].probes[f].deviation);
     EXPECT_EQ(again.cases[0].probes[f].measured, output.cases[0].probes[f].measured);
@@ -263,7 +263,7 @@ TEST(ProbedPart, ComesBackFromItsFile) {
 TEST(ProbedPart, IsDistortedByWhatBestFitLeaves) {
   const std::string probes = std::string(kFlank) + kSide + kPlane;
   const auto distortion = [&](const std::string& errors) {
-    const RunOutput output = run(asking({probes, quantity("distortion", ""), errors, ""}));
+    const run::RunOutput output = run(asking({probes, quantity("distortion", ""), errors, ""}));
     return output.comparison[0].value;
   };
   EXPECT_LT(distortion("EXX = { polynomial_um = [20.0] }\nEZX = { polynomial_um = [-7.0] }\n"),
@@ -281,15 +281,15 @@ TEST(ProbedPart, DoesNotDependOnHowMuchOfThePathIsHeld) {
   asked.errors =
       "EYX = { polynomial_um = [7.0] }\n[errors.wave]\nEYX = { harmonic = { "
       "amplitude_um = 20.0, period_mm = 50.0 } }\n";
-  const Scenario scenario = asking(asked);
-  const PreparedCase prepared(scenario, scenario.cases.front());
-  const CaseInputs inputs = prepared.inputs();
-  const CaseOutput one = run_case(scenario, "one");
+  const model::Scenario scenario = asking(asked);
+  const preparation::PreparedCase prepared(scenario, scenario.cases.front());
+  const engine::CaseInputs inputs = prepared.inputs();
+  const run::CaseOutput one = run_named_case(scenario, "one");
   const plant::VolumetricModel imposed(one.chain, scenario.errors.at("wave"));
   for (const double radius : {0.0, 1.0 * mm}) {
-    Cmm cmm = scenario.cmm;
+    metrology::Cmm cmm = scenario.cmm;
     cmm.probe_radius = radius;
-    std::vector<ProbeSpec> plan = scenario.probes;
+    std::vector<metrology::ProbeSpec> plan = scenario.probes;
     if (radius > 0.0) plan.resize(1), plan[0].feature.targets.resize(4);  // a ball takes its time
     const auto probed = [&](const PositionsHeld& held) {
       return probe_part({one.name, one.result.servo, inputs.path, scenario.program.cutters,
@@ -316,4 +316,4 @@ TEST(ProbedPart, DoesNotDependOnHowMuchOfThePathIsHeld) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::probed_part_test
+}  // namespace servomill::sim::evaluation::probed_part_test

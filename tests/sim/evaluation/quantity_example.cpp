@@ -6,12 +6,13 @@
 #include "sim/evaluation/statistic.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 namespace {
 
 // Distance of the actual from the nominal tool centre point, seen along Z.
-QuantityValue lateral_deviation(const QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
-  const Series& servo = *one.data.servo;
+QuantityValue lateral_deviation(const model::QuantitySpec& spec, CaseEvaluation& one,
+                                const CaseData*) {
+  const records::Series& servo = *one.data.servo;
   const auto x = servo.column("tool_deviation", 'X'), y = servo.column("tool_deviation", 'Y');
   if (!x || !y) return {.note = "tool_deviation was not recorded"};
   Statistic statistic(spec.statistic);
@@ -33,4 +34,4 @@ constexpr QuantityEntry kQuantities[] = {
 
 std::span<const QuantityEntry> lateral_quantities() { return kQuantities; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

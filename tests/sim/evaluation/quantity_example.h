@@ -5,8 +5,8 @@
 
 #include "sim/evaluation/quantity.h"
 
-namespace servomill::sim {
+namespace servomill::sim::evaluation {
 
 std::span<const QuantityEntry> lateral_quantities();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::evaluation

@@ -8,15 +8,15 @@
 #include "sim/evaluation/case_evaluation.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::quantity_example_test {
+namespace servomill::sim::evaluation::quantity_example_test {
 namespace {
 
 struct Row {
   double section, rapid, x, y;
 };
 
-Series series_of(const std::vector<Row>& rows, const char* signal = "tool_deviation") {
-  Series out(
+records::Series series_of(const std::vector<Row>& rows, const char* signal = "tool_deviation") {
+  records::Series out(
       {{"section", "1", "", "", ""}, {"rapid", "1", "", "", ""}, {signal, "um", "", "XYZ", "xyz"}});
   for (const Row& row : rows) {
     double* to = out.add_row();
@@ -29,11 +29,11 @@ Series series_of(const std::vector<Row>& rows, const char* signal = "tool_deviat
   return out;
 }
 
-QuantityValue value_of(const Series& servo, const std::string& statistic,
+QuantityValue value_of(const records::Series& servo, const std::string& statistic,
                        const std::vector<std::string>& sections = {}) {
   const CaseData data{.name = "one", .servo = &servo, .sections = {"", "end"}};
   CaseEvaluation one(data);
-  QuantitySpec spec;
+  model::QuantitySpec spec;
   spec.statistic = statistic;
   spec.sections = sections;
   return lateral_quantities().front().evaluate(spec, one, nullptr);
@@ -41,18 +41,18 @@ QuantityValue value_of(const Series& servo, const std::string& statistic,
 
 // Triangles of 3-4-5 and 5-12-13; the last sample is a rapid.
 TEST(QuantityExample, IsTheDistanceInThePlane) {
-  const Series servo = series_of({{0, 0, 3, -4}, {1, 0, 5, 12}, {1, 1, 1e3, 1e3}});
+  const records::Series servo = series_of({{0, 0, 3, -4}, {1, 0, 5, 12}, {1, 1, 1e3, 1e3}});
   EXPECT_DOUBLE_EQ(value_of(servo, "max").value, 13.0);
   EXPECT_DOUBLE_EQ(value_of(servo, "mean").value, 9.0);
   EXPECT_DOUBLE_EQ(value_of(servo, "max", {""}).value, 5.0);
 }
 
 TEST(QuantityExample, SaysWhyThereIsNone) {
-  const Series servo = series_of({{0, 0, 3, -4}}, "contour_error");
+  const records::Series servo = series_of({{0, 0, 3, -4}}, "contour_error");
   const QuantityValue found = value_of(servo, "max");
   EXPECT_TRUE(std::isnan(found.value));
   EXPECT_EQ(found.note, "tool_deviation was not recorded");
 }
 
 }  // namespace
-}  // namespace servomill::sim::quantity_example_test
+}  // namespace servomill::sim::evaluation::quantity_example_test

@@ -6,7 +6,7 @@
 
 #include "sim/evaluation/path_signal.h"
 
-namespace servomill::sim::quantity_list_test {
+namespace servomill::sim::evaluation::quantity_list_test {
 namespace {
 
 TEST(Quantities, AreNamedOnceAndExplained) {
@@ -45,4 +45,4 @@ TEST(Quantities, AreDerivedFromSignals) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::quantity_list_test
+}  // namespace servomill::sim::evaluation::quantity_list_test

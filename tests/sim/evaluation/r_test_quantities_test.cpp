@@ -8,10 +8,11 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_scenario.h"
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 
-namespace servomill::sim::r_test_quantities_test {
+namespace servomill::sim::evaluation::r_test_quantities_test {
 namespace {
 
 using plant::operator""_err;
@@ -29,7 +30,7 @@ std::string quantity(const std::string& name, const std::string& rest) {
   return "[[quantity]]\nname = \"" + name + "\"\n" + rest + "\n";
 }
 
-Scenario asking(const std::string& quantities, const std::string& errors = "") {
+model::Scenario asking(const std::string& quantities, const std::string& errors = "") {
   return small_scenario(
       kProgram,
       "machine_errors = \"machine\"\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n"
@@ -37,8 +38,9 @@ Scenario asking(const std::string& quantities, const std::string& errors = "") {
           errors + "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + quantities);
 }
 
-std::vector<ComparisonRow> rows_of(const Scenario& scenario, const std::string& name = "one") {
-  const CaseOutput output = run_case(scenario, name);
+std::vector<ComparisonRow> rows_of(const model::Scenario& scenario,
+                                   const std::string& name = "one") {
+  const run::CaseOutput output = run_named_case(scenario, name);
   std::vector<ComparisonRow> out =
       compare(scenario.quantities, std::vector<CaseData>{output.data()});
   std::erase_if(out, [&](const ComparisonRow& row) { return row.case_name != name; });
@@ -46,7 +48,7 @@ std::vector<ComparisonRow> rows_of(const Scenario& scenario, const std::string& 
 }
 
 std::string faults_of(const std::string& quantities) {
-  return fault_messages([&] { check_scenario(asking(quantities)); });
+  return fault_messages([&] { run::check_scenario(asking(quantities)); });
 }
 
 // A C axis that lies 10 um beside the place where the NC takes it for: the ball goes around a
@@ -66,7 +68,7 @@ TEST(BallQuantities, OfATurningTableAreThoseOfTheClosedForm) {
 }
 
 TEST(BallQuantities, ListEveryLocationErrorWithTheTruthAndWhyNot) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       asking(quantity("location_error", "sections = [\"C\", \"B\", \"both\"]"),
              "EX0C = \"10 um\"\nEA0B = \"-20 urad\"\n");
   std::string said;
@@ -184,12 +186,12 @@ TEST(BallQuantities, HaveTheirNotesInTableAndJson) {
 class ShippedScenario : public testing::Test {
  protected:
   explicit ShippedScenario(const std::string& file)
-      : scenario(read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/iso/" + file)),
+      : scenario(input::read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/iso/" + file)),
         rows(shared(file, "none", scenario)) {}
 
   // Runs take seconds: each is made once for all tests.
   static const std::vector<ComparisonRow>& shared(const std::string& file, const std::string& name,
-                                                  const Scenario& scenario) {
+                                                  const model::Scenario& scenario) {
     static std::map<std::pair<std::string, std::string>, std::vector<ComparisonRow>> all;
     auto& found = all[{file, name}];
     if (found.empty()) found = rows_of(scenario, name);
@@ -226,7 +228,7 @@ class ShippedScenario : public testing::Test {
     return out;
   }
 
-  Scenario scenario;
+  model::Scenario scenario;
   const std::vector<ComparisonRow>& rows;
 };
 
@@ -264,8 +266,8 @@ TEST_F(Bk4, RecoversAllButOneOfThem) {
 // The residual is that of a machine without errors, whose loops pass the joints of the chords.
 TEST_F(Bk4, ProvesTheCompensationThatTheRTestFound) {
   EXPECT_GT(largest("none", "ball_bar_deviation"), 10.0);
-  Scenario without = scenario;
-  for (CaseSpec& one : without.cases) one.machine_errors = "";
+  model::Scenario without = scenario;
+  for (model::CaseSpec& one : without.cases) one.machine_errors = "";
   std::map<std::string, double> nominal;
   for (const ComparisonRow& row : rows_of(without, "none")) {
     if (row.quantity == "ball_bar_deviation") nominal[row.sections] = row.value;
@@ -279,4 +281,4 @@ TEST_F(Bk4, ProvesTheCompensationThatTheRTestFound) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::r_test_quantities_test
+}  // namespace servomill::sim::evaluation::r_test_quantities_test

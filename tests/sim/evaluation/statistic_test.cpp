@@ -6,7 +6,7 @@
 
 #include "sim/evaluation/row_ranges.h"
 
-namespace servomill::sim::statistic_test {
+namespace servomill::sim::evaluation::statistic_test {
 namespace {
 
 double of(std::string_view name, const std::vector<double>& values) {
@@ -52,4 +52,4 @@ TEST(RowRanges, GivesItsRowsInOrder) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::statistic_test
+}  // namespace servomill::sim::evaluation::statistic_test

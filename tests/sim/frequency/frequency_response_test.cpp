@@ -11,9 +11,10 @@
 #include "sim/frequency/bode.h"
 #include "sim/frequency/margins.h"
 #include "sim/frequency/stability.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::frequency_response_test {
+namespace servomill::sim::frequency::frequency_response_test {
 namespace {
 
 constexpr int kY = 1;
@@ -21,13 +22,15 @@ constexpr Complex kJ{0.0, 1.0};
 
 Complex s_of(double f) { return kJ * 2.0 * std::numbers::pi * f; }
 
-MachineSettings hsm600u() {
-  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+model::MachineSettings hsm600u() {
+  return input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
 }
-plant::FeedDriveParams& drive_of(MachineSettings& machine) { return machine.drives[kY]; }
-controllers::CascadeParams& cascade_of(MachineSettings& machine) { return machine.nc.cascade[kY]; }
+plant::FeedDriveParams& drive_of(model::MachineSettings& machine) { return machine.drives[kY]; }
+controllers::CascadeParams& cascade_of(model::MachineSettings& machine) {
+  return machine.nc.cascade[kY];
+}
 
-void set_periods(MachineSettings& machine, double base, Tick ticks) {
+void set_periods(model::MachineSettings& machine, double base, Tick ticks) {
   machine.nc.periods = {base, ticks, ticks, ticks};
   for (auto& cascade : machine.nc.cascade) cascade.Tv = machine.nc.periods.seconds(ticks);
 }
@@ -55,7 +58,7 @@ Complex two_mass(const plant::FeedDriveParams& p, Complex s) {
 constexpr double kFolding = 0.1;
 
 TEST(FrequencyResponse, OfTheDriveIsThatOfTwoMasses) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   FrequencyResponse response(machine, kY, 0, PositionLoop::closed);
   for (const double f : logarithmic(1.0, 2000.0, 60)) {
     const Complex exact =
@@ -68,7 +71,7 @@ TEST(FrequencyResponse, OfTheDriveIsThatOfTwoMasses) {
 
 // DOMAIN.md section 9: f_a = sqrt(k/M) / 2 pi, f_r = sqrt(k (1/M + r^2/J)) / 2 pi.
 TEST(FrequencyResponse, ShowsAntiresonanceAndResonance) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   plant::FeedDriveParams& p = drive_of(machine);
   p.c = 200.0;  // little, so that the extremes lie at the undamped frequencies
   p.b_load = p.b_motor = 0.0;
@@ -91,7 +94,7 @@ TEST(FrequencyResponse, ShowsAntiresonanceAndResonance) {
 // A force F moves the slide until the velocity loop's proportional part holds it: x = F r^2 / (Kp
 // Kv). With an integral part, x = s F r^2 / (Ki Kv) (1 + Ki / (k r^2)): the motor turns by F / k.
 TEST(FrequencyResponse, OfAForceIsTheServoStiffnessAtLowFrequencies) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   controllers::CascadeParams& c = cascade_of(machine);
   const double compliance = c.r * c.r / (c.Kp * c.Kv);
   const auto x_per_F = [&](double f) {
@@ -110,7 +113,7 @@ TEST(FrequencyResponse, OfAForceIsTheServoStiffnessAtLowFrequencies) {
 }
 
 TEST(FrequencyResponse, OfAnIdealRigidDriveIsFirstOrder) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   set_periods(machine, 1e-6, 10);
   drive_of(machine).kind = plant::DriveKind::rigid;
   drive_of(machine).T_i = 1e-5;
@@ -131,7 +134,7 @@ TEST(FrequencyResponse, OfAnIdealRigidDriveIsFirstOrder) {
 }
 
 // The whole cascade without sampling: PI and P on a drive with a first-order current lag.
-Complex continuous_open_loop(MachineSettings& machine, double f) {
+Complex continuous_open_loop(model::MachineSettings& machine, double f) {
   const plant::FeedDriveParams& p = drive_of(machine);
   const controllers::CascadeParams& c = cascade_of(machine);
   const Complex s = s_of(f), lag = 1.0 / (p.T_i * s + 1.0), G = two_mass(p, s);
@@ -142,7 +145,7 @@ Complex continuous_open_loop(MachineSettings& machine, double f) {
 }
 
 TEST(FrequencyResponse, TendsToTheContinuousCascadeWithThePeriods) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   const auto deviation = [&](Tick ticks) {
     set_periods(machine, 1e-6, ticks);
     FrequencyResponse response(machine, kY, 0, PositionLoop::closed);
@@ -162,7 +165,7 @@ TEST(FrequencyResponse, TendsToTheContinuousCascadeWithThePeriods) {
 }
 
 TEST(FrequencyResponse, OfALateReadingIsLateByTheDelay) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   FrequencyResponse fresh(machine, kY, 0, PositionLoop::closed);
   const ResponseAt L = open_position_loop(fresh);
   double worst = 0.0;
@@ -182,7 +185,7 @@ TEST(FrequencyResponse, OfALateReadingIsLateByTheDelay) {
 
 // The same loop cut in another way: the velocity loop alone, driven at its command.
 TEST(FrequencyResponse, OfTheOpenLoopIsKvTimesThatOfTheVelocityLoopIntegrated) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   FrequencyResponse closed(machine, kY, 0, PositionLoop::closed);
   FrequencyResponse alone(machine, kY, 0, PositionLoop::open);
   const ResponseAt L = open_position_loop(closed);
@@ -197,7 +200,7 @@ TEST(FrequencyResponse, OfTheOpenLoopIsKvTimesThatOfTheVelocityLoopIntegrated) {
 }
 
 TEST(FrequencyResponse, OfTheOpenLoopExistsForAnUnstableClosedOne) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   FrequencyResponse stable(machine, kY, 0, PositionLoop::closed);
   cascade_of(machine).Kv *= 20.0;
   ASSERT_GT(spectral_radius(machine, kY, 0), 1.0);
@@ -213,7 +216,7 @@ TEST(FrequencyResponse, OfTheOpenLoopExistsForAnUnstableClosedOne) {
 TEST(Margins, OfGainIsWhereTheEigenvaluesReachTheUnitCircle) {
   constexpr double kRadiusTol = 1e-7;
   for (const bool slow : {false, true}) {
-    MachineSettings machine = hsm600u();
+    model::MachineSettings machine = hsm600u();
     if (slow) {
       machine.nc.periods.position = 180;
       machine.nc.periods.velocity = 60;
@@ -233,7 +236,7 @@ TEST(Margins, OfGainIsWhereTheEigenvaluesReachTheUnitCircle) {
 
 TEST(Margins, OfTheVelocityLoopAreWhereItBeginsToOscillate) {
   constexpr double kRadiusTol = 1e-7;
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   const double Tv = cascade_of(machine).Tv;
   FrequencyResponse response(machine, kY, 0, PositionLoop::open);
   const ResponseAt L = open_velocity_loop(response);
@@ -278,7 +281,7 @@ TEST(Margins, SeeANarrowResonance) {
     double damping, wv;  // N m s/rad, rad/s
   };
   for (const Loop& loop : {Loop{1.0, 40.0}, {0.3, 20.0}, {0.03, 20.0}}) {
-    MachineSettings machine = hsm600u();
+    model::MachineSettings machine = hsm600u();
     machine.drives[kC].c = loop.damping;
     controllers::CascadeParams& cascade = machine.nc.cascade[kC];
     cascade.Ki *= loop.wv * cascade.J / cascade.Kp;
@@ -317,4 +320,4 @@ TEST(Margins, SeeANarrowResonance) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::frequency_response_test
+}  // namespace servomill::sim::frequency::frequency_response_test

@@ -10,19 +10,20 @@
 #include "sim/frequency/margins.h"
 #include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::measured_response_test {
+namespace servomill::sim::frequency::measured_response_test {
 namespace {
 
 constexpr double kMagnitudeTol = 0.1;  // dB, wanted of a measurement
 constexpr double kPhaseTol = 1.0;      // deg
 
-MachineSettings hsm600u() {
-  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+model::MachineSettings hsm600u() {
+  return input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
 }
 
-void use_CC422(MachineSettings& machine) {
+void use_CC422(model::MachineSettings& machine) {
   machine.nc.periods.position = 180;
   machine.nc.periods.velocity = 60;
   for (auto& cascade : machine.nc.cascade) cascade.Tv = 0.6e-3;
@@ -45,8 +46,8 @@ Complex taken(const Of& of, const Response& response) {
   return of.input < 0 ? y : y / response[static_cast<std::size_t>(of.input)];
 }
 
-Deviation largest_deviation(const MachineSettings& machine, int joint, Tick delay, const Of& of,
-                            const MeasuredResponse& measured) {
+Deviation largest_deviation(const model::MachineSettings& machine, int joint, Tick delay,
+                            const Of& of, const MeasuredResponse& measured) {
   FrequencyResponse exact(machine, joint, delay, of.loop);
   Deviation worst;
   for (const MeasuredPoint& point : measured.points) {
@@ -77,11 +78,11 @@ TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
   for (const bool slow : {false, true}) {
     for (const int joint : {kY, kC}) {
       if (joint == kC && !slow) continue;
-      MachineSettings machine = linearised(hsm600u());
+      model::MachineSettings machine = linearised(hsm600u());
       machine.nc.cascade[static_cast<std::size_t>(joint)].i_max = 1e9;
       if (slow) use_CC422(machine);
       for (const Of& of : kAll) {
-        const LoopPeriods& p = machine.nc.periods;
+        const model::LoopPeriods& p = machine.nc.periods;
         const double rate =
             1.0 / p.seconds(of.loop == PositionLoop::closed ? p.position : p.velocity);
         const Tick delay = slow ? 3 : 1;
@@ -100,7 +101,7 @@ TEST(MeasuredResponse, OfALinearDriveIsTheExactOne) {
 
 TEST(MeasuredResponse, OfAMultiSineIsTheExactOne) {
   constexpr int kY = 1;
-  const MachineSettings machine = linearised(hsm600u());
+  const model::MachineSettings machine = linearised(hsm600u());
   const Measurement how{.entry = Entry::setpoint, .method = Method::multi_sine, .amplitude = 1.0};
   const auto wanted = logarithmic(10.0, 2000.0, 12);
   const MeasuredResponse measured = measure(machine, kY, 0, PositionLoop::closed, how, wanted);
@@ -117,7 +118,7 @@ TEST(MeasuredResponse, OfAMultiSineIsTheExactOne) {
 TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
   constexpr int kY = 1;
   constexpr double kLow = 3.0;  // Hz
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   machine.drives[kY].friction.kind = plant::FrictionKind::set_valued;
   Measurement how{.entry = Entry::setpoint};
   how.amplitude = default_amplitude(machine, kY, how.entry);
@@ -139,7 +140,7 @@ TEST(MeasuredResponse, OfAnAxisWithFrictionIsTheLinearOneWhileItMoves) {
 // Settings that a run refuses are refused here, too.
 TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
   constexpr int kX = 0;
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   machine.drives[kX].friction = {};
   machine.drives[kX].friction.kind = plant::FrictionKind::set_valued;
   machine.drives[kX].friction.Fs_positive = machine.drives[kX].friction.Fs_negative = 450.0;
@@ -165,7 +166,7 @@ TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
 
 TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
   constexpr int kY = 1;
-  MachineSettings machine = linearised(hsm600u());
+  model::MachineSettings machine = linearised(hsm600u());
   const double most = machine.nc.cascade[kY].i_max = hsm600u().nc.cascade[kY].i_max;
   const auto run = [&](double amplitude) {
     const Measurement how{.entry = Entry::velocity_command, .amplitude = amplitude};
@@ -185,7 +186,7 @@ TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
 TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
   constexpr int kC = 4;
   constexpr double kTol = 2.5 * kMostAdded;
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const std::vector<double> wanted = {30.0, 300.0, 1000.0, 2000.0};
   const auto count = [&](const Of& of, double share) {
     const auto input = static_cast<AxisSignal>(of.input);
@@ -210,4 +211,4 @@ TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::measured_response_test
+}  // namespace servomill::sim::frequency::measured_response_test

@@ -3,18 +3,19 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::stability_test {
+namespace servomill::sim::frequency::stability_test {
 namespace {
 
-MachineSettings hsm600u() {
-  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+model::MachineSettings hsm600u() {
+  return input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
 }
 
 TEST(SpectralRadius, IsBelowOneForEveryAxisOfTheMachineFile) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   for (int j = 0; j < kJoints; ++j) {
     for (const Tick delay : {0, 1}) {
       const double radius = spectral_radius(machine, j, delay);
@@ -27,7 +28,7 @@ TEST(SpectralRadius, IsBelowOneForEveryAxisOfTheMachineFile) {
 // A position loop much slower than its velocity loop is first order: the slowest mode is
 // exp(-Kv T).
 TEST(SpectralRadius, OfALowGainIsThatOfAFirstOrderLoop) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   constexpr double kVelocityLoopShare =
       1e-3;  // a lag of the velocity loop of a millisecond at most
   machine.nc.cascade[0].Kv = 1.0;
@@ -36,7 +37,7 @@ TEST(SpectralRadius, OfALowGainIsThatOfAFirstOrderLoop) {
   EXPECT_NEAR(rate, 1.0, kVelocityLoopShare);
 }
 
-double limit_of_Kv(MachineSettings machine, Tick delay) {
+double limit_of_Kv(model::MachineSettings machine, Tick delay) {
   double stable = 10.0, unstable = 5000.0;  // 1/s
   while (unstable - stable > 1e-6 * stable) {
     machine.nc.cascade[0].Kv = 0.5 * (stable + unstable);
@@ -46,7 +47,7 @@ double limit_of_Kv(MachineSettings machine, Tick delay) {
 }
 
 TEST(SpectralRadius, FallsWithTheAgeOfTheReading) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const double fresh = limit_of_Kv(machine, 0), old = limit_of_Kv(machine, 19);
   RecordProperty("limit_Kv", fmt::format("{:.3f}", fresh));
   RecordProperty("limit_Kv_old_reading", fmt::format("{:.3f}", old));
@@ -57,14 +58,14 @@ TEST(SpectralRadius, FallsWithTheAgeOfTheReading) {
 // Growth of the following error of X a position period, from its largest values in two intervals
 // after the end of a small move; encoders without steps, currents without limit.
 double simulated_growth(double Kv) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       "G1 X0.01 F60\nM30\n",
       fmt::format("[machine_override.nc]\ncheck_stability = false\nfollowing_error_limit_mm = 1e6\n"
                   "[machine_override.axis.X]\nKv = \"{} 1/s\"\nscale_step = 0.0\nmotor_step = 0.0\n"
                   "i_max_A = 1e12\n"
                   "[record]\nperiod_ms = 0.2\nsettle_ms = 700.0\n[[case]]\nname = \"one\"\n",
                   Kv));
-  const Series series = run_case(scenario, "one").result.servo;
+  const records::Series series = run_named_case(scenario, "one").result.servo;
   const std::size_t time = *series.column("time");
   const std::size_t error = *series.column("following_error_linear", 'X');
   const auto largest = [&](double from, double to) {
@@ -81,7 +82,7 @@ double simulated_growth(double Kv) {
 }
 
 TEST(SpectralRadius, IsTheGrowthThatTheSimulationShows) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   const double limit = limit_of_Kv(machine, 0);
   for (const double factor : {0.9, 1.1}) {
     machine.nc.cascade[0].Kv = factor * limit;
@@ -105,9 +106,9 @@ TEST(RunScenario, RefusesGainsThatDiverge) {
                                       "name = \"one\"\n",
                                       factor * limit));
   };
-  EXPECT_NO_THROW(check_scenario(scenario(0.99)));
-  EXPECT_THROW(check_scenario(scenario(1.01)), InputError);
+  EXPECT_NO_THROW(run::check_scenario(scenario(0.99)));
+  EXPECT_THROW(run::check_scenario(scenario(1.01)), InputError);
 }
 
 }  // namespace
-}  // namespace servomill::sim::stability_test
+}  // namespace servomill::sim::frequency::stability_test

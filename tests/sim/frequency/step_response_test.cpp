@@ -10,16 +10,17 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/stability.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::step_response_test {
+namespace servomill::sim::frequency::step_response_test {
 namespace {
 
 enum class Preset { CC422, CC424 };
 
-MachineSettings hsm600u(Preset preset) {
-  MachineSettings machine =
-      linearised(read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml"));
+model::MachineSettings hsm600u(Preset preset) {
+  model::MachineSettings machine =
+      linearised(input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml"));
   if (preset == Preset::CC422) {
     machine.nc.periods.position = 180;
     machine.nc.periods.velocity = 60;
@@ -28,11 +29,11 @@ MachineSettings hsm600u(Preset preset) {
   return machine;
 }
 
-double overshoot(const MachineSettings& machine, int joint) {
+double overshoot(const model::MachineSettings& machine, int joint) {
   return step_response(machine, joint, 0, {StepKind::position, 1e-4, 0.15}, 1).figures.overshoot;
 }
 
-double load_peak(const MachineSettings& machine, int joint) {
+double load_peak(const model::MachineSettings& machine, int joint) {
   const double force = joint < kLinearJoints ? 500.0 : 50.0;  // N, N m
   return step_response(machine, joint, 0, {StepKind::load, force, 0.1}, 1).figures.peak;
 }
@@ -61,7 +62,7 @@ TEST(StepResponse, IsThatOfTheDomainTable) {
     const Checks& row = kTable[static_cast<std::size_t>(joint)];
     for (const Preset preset : {Preset::CC422, Preset::CC424}) {
       const auto column = static_cast<std::size_t>(preset);
-      MachineSettings machine = hsm600u(preset);
+      model::MachineSettings machine = hsm600u(preset);
       const double late = 100.0 * overshoot(machine, joint),
                    late_load = load_peak(machine, joint) / um;
       machine.nc.periods.current = 1;
@@ -126,7 +127,7 @@ TEST(StepFigures, OfAnAxisThatDoesNotArriveAreNotNumbers) {
 }
 
 TEST(StepResponse, OfTheVelocityLoopSettlesOnItsCommand) {
-  const MachineSettings machine = hsm600u(Preset::CC424);
+  const model::MachineSettings machine = hsm600u(Preset::CC424);
   const StepResponse step = step_response(machine, 0, 0, {StepKind::velocity, 0.01, 0.4});
   constexpr double kIntegralTail = 1e-6;  // m/s, of 20 time constants of the reset
   EXPECT_NEAR(step.figures.steady_error, 0.0, kIntegralTail);
@@ -135,4 +136,4 @@ TEST(StepResponse, OfTheVelocityLoopSettlesOnItsCommand) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::step_response_test
+}  // namespace servomill::sim::frequency::step_response_test

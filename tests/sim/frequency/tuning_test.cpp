@@ -8,19 +8,20 @@
 
 #include "sim/frequency/measured_response.h"
 #include "sim/frequency/stability.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::tuning_test {
+namespace servomill::sim::frequency::tuning_test {
 namespace {
 
 constexpr int kY = 1;
 constexpr double kRounding = 2e-3;  // of a gain: four digits, rounded down
 
-MachineSettings hsm600u() {
-  return read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
+model::MachineSettings hsm600u() {
+  return input::read_machine_file(SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml");
 }
 
-void use_CC422(MachineSettings& machine) {
+void use_CC422(model::MachineSettings& machine) {
   machine.nc.periods.position = 180;
   machine.nc.periods.velocity = 60;
   for (auto& cascade : machine.nc.cascade) cascade.Tv = 0.6e-3;
@@ -42,7 +43,7 @@ void expect_kept(const Assessment& a, const TuneSettings& wanted) {
 }
 
 TEST(Tune, KeepsTheMarginsAndLeavesNothingOver) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const TuneSettings wanted;
   const Tuning& t = tuned_Y();
   expect_kept(t.after, wanted);
@@ -65,11 +66,11 @@ TEST(Tune, KeepsTheMarginsAndLeavesNothingOver) {
 // The resonance of C is sharp: between two points of a coarse grid it would rise above 1 unseen.
 TEST(Tune, KeepsTheMarginsAtASharpResonance) {
   constexpr int kC = 4;
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const Tuning t = tune(machine, kC, 0, {});
   expect_kept(t.after, {});
   const double resonance = resonance_frequency(machine.drives[kC]);
-  const MachineSettings tuned = with_gains(machine, kC, t.after.gains);
+  const model::MachineSettings tuned = with_gains(machine, kC, t.after.gains);
   FrequencyResponse exact(tuned, kC, 0, PositionLoop::open);
   for (const double f : logarithmic(0.8 * resonance, 1.25 * resonance, 2000)) {
     const Complex L = ratio(exact.at(Entry::velocity_command, f), AxisSignal::measured_speed,
@@ -92,7 +93,7 @@ TEST(Tune, KeepsAllThatIsDemanded) {
                                {kZ, 8e3, 30.0, false},
                                {kB, 20.0, 30.0, false},
                                {kC, 60.0, 45.0, true}}) {
-    MachineSettings machine = hsm600u();
+    model::MachineSettings machine = hsm600u();
     machine.drives[static_cast<std::size_t>(demand.joint)].c = demand.damping;
     if (demand.slow) use_CC422(machine);
     TuneSettings wanted;
@@ -108,9 +109,9 @@ TEST(Tune, KeepsAllThatIsDemanded) {
 }
 
 TEST(Tune, IsConfirmedByTheSimulationAtTheCrossovers) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const Tuning& t = tuned_Y();
-  const MachineSettings tuned = with_gains(machine, kY, t.after.gains);
+  const model::MachineSettings tuned = with_gains(machine, kY, t.after.gains);
   const auto measured = [&](PositionLoop loop, Entry entry, AxisSignal y, AxisSignal e, double f) {
     const Measurement how{.entry = entry, .amplitude = default_amplitude(tuned, kY, entry)};
     return ratio(measure(tuned, kY, 0, loop, how, {f}).points.front().response, y, e);
@@ -152,7 +153,7 @@ TEST(Tune, GoesNoHigherThanTheBandwidthNeeds) {
 }
 
 TEST(Tune, TellsWhenALowerVelocityBandwidthAllowsMore) {
-  MachineSettings machine = hsm600u();
+  model::MachineSettings machine = hsm600u();
   machine.drives[kY].T_i = 0.0;  // the velocity loop can be faster than the resonance
   const Tuning t = tune(machine, kY, 0, {});
   ASSERT_GT(t.calmer_wv, 0.0);
@@ -165,7 +166,7 @@ TEST(Tune, TellsWhenALowerVelocityBandwidthAllowsMore) {
 }
 
 TEST(Tune, KeepsMoreMarginAtALowerCommonKv) {
-  const MachineSettings machine = hsm600u();
+  const model::MachineSettings machine = hsm600u();
   const Tuning& own = tuned_Y();
   const Tuning common = with_common_Kv(machine, kY, 0, own, 0.8 * own.after.gains.Kv);
   expect_kept(common.after, {});
@@ -188,4 +189,4 @@ TEST(Tune, RefusesWhatNoGainHas) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::tuning_test
+}  // namespace servomill::sim::frequency::tuning_test

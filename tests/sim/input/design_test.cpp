@@ -9,21 +9,21 @@
 
 #include "sim/input/read_design.h"
 
-namespace servomill::sim::design_test {
+namespace servomill::sim::input::design_test {
 namespace {
 
 using Point = std::vector<std::string>;
 
-SweepDesign design_of(const std::string& toml) {
-  const Document document = Document::from_text("[sweep]\n" + toml, "s.toml");
-  Reader root(document);
-  Reader table = root.table("sweep");
-  SweepDesign design = read_sweep(table);
+model::SweepDesign design_of(const std::string& toml) {
+  const config::Document document = config::Document::from_text("[sweep]\n" + toml, "s.toml");
+  config::Reader root(document);
+  config::Reader table = root.table("sweep");
+  model::SweepDesign design = read_sweep(table);
   root.finish();
   return design;
 }
 
-std::vector<Point> all_points(const SweepDesign& design) {
+std::vector<Point> all_points(const model::SweepDesign& design) {
   std::vector<Point> points;
   for (std::uint64_t i = 0; i < design.size(); ++i) points.push_back(design.point(i));
   return points;
@@ -39,13 +39,13 @@ std::string refusal(const std::string& toml) {
 }
 
 TEST(Design, OfOneListTakesItsValuesInTurn) {
-  const SweepDesign design = design_of("\"program.feed_override\" = [0.5, 1.0]\n");
+  const model::SweepDesign design = design_of("\"program.feed_override\" = [0.5, 1.0]\n");
   EXPECT_EQ(design.keys.at(0).key, "program.feed_override");
   EXPECT_EQ(all_points(design), (std::vector<Point>{{"0.5"}, {"1.0"}}));
 }
 
 TEST(Design, OfAGridLetsTheLastKeyVaryFastest) {
-  const SweepDesign design = design_of("a = [1, 2]\nb = ['x', \"y\", true]\n");
+  const model::SweepDesign design = design_of("a = [1, 2]\nb = ['x', \"y\", true]\n");
   EXPECT_EQ(all_points(design), (std::vector<Point>{{"1", "'x'"},
                                                     {"1", "\"y\""},
                                                     {"1", "true"},
@@ -55,21 +55,21 @@ TEST(Design, OfAGridLetsTheLastKeyVaryFastest) {
 }
 
 TEST(Design, HasAnyNumberOfKeys) {
-  const SweepDesign design = design_of("a=[1,2]\nb=[1,2]\nc=[1,2]\nd=[1,2]\ne=[1,2]\n");
+  const model::SweepDesign design = design_of("a=[1,2]\nb=[1,2]\nc=[1,2]\nd=[1,2]\ne=[1,2]\n");
   const auto points = all_points(design);
   EXPECT_EQ(points.size(), 32U);
   EXPECT_EQ(std::set<Point>(points.begin(), points.end()).size(), 32U);
 }
 
 TEST(Design, TakesKeysAsTomlNestsThem) {
-  const SweepDesign design =
+  const model::SweepDesign design =
       design_of("machine.nc.Kv = [60, 80]\nprogram.parameters.\"#<a.b>\" = [1]\n");
   EXPECT_EQ(design.keys.at(0).key, "machine.nc.Kv");
   EXPECT_EQ(design.keys.at(1).key, "program.parameters.\"#<a.b>\"");
 }
 
 TEST(Design, ReadsTheExampleOfItsHeader) {
-  const SweepDesign design = design_of(
+  const model::SweepDesign design = design_of(
       "\"program.feed_override\" = [0.5, 1.0]\n"
       "\"machine.nc.Kv\" = { log = [\"40 1/s\", \"160 1/s\"], count = 5 }\n"
       "samples = { design = \"sobol\", count = 256, seed = 1 }\n"
@@ -88,18 +88,18 @@ TEST(Design, ReadsTheExampleOfItsHeader) {
 }
 
 TEST(Design, SpacesRangesEvenlyOrInEqualRatios) {
-  const SweepDesign linear = design_of("a = { linear = [1.0, 2.0], count = 5 }\n");
+  const model::SweepDesign linear = design_of("a = { linear = [1.0, 2.0], count = 5 }\n");
   EXPECT_EQ(all_points(linear), (std::vector<Point>{{"1"}, {"1.25"}, {"1.5"}, {"1.75"}, {"2"}}));
   // 0.2 + 2 / 3 (2.6 - 0.2) rounds to 1.7999999999999998
-  const SweepDesign rounded = design_of("a = { linear = [0.2, 2.6], count = 4 }\n");
+  const model::SweepDesign rounded = design_of("a = { linear = [0.2, 2.6], count = 4 }\n");
   EXPECT_EQ(all_points(rounded), (std::vector<Point>{{"0.2"}, {"1"}, {"1.8"}, {"2.6"}}));
-  const SweepDesign log = design_of("a = { log = [\"1 mm\", \"100 mm\"], count = 3 }\n");
+  const model::SweepDesign log = design_of("a = { log = [\"1 mm\", \"100 mm\"], count = 3 }\n");
   EXPECT_EQ(all_points(log), (std::vector<Point>{{"\"1 mm\""}, {"\"10 mm\""}, {"\"100 mm\""}}));
   EXPECT_EQ(log.column(0).unit, "mm");
 }
 
 TEST(Design, VariesListsTogether) {
-  const SweepDesign design =
+  const model::SweepDesign design =
       design_of("a = [1, 2]\n[[sweep.zip]]\nb = [10, 20]\nc.d = ['x', 'y']\n");
   EXPECT_EQ(all_points(design),
             (std::vector<Point>{
@@ -113,15 +113,16 @@ const std::string kSampled =
     "w = { normal = [150.0, 3.0] }\n"
     "x = { choice = ['a', 'b'] }\n";
 
-std::vector<double> column(const SweepDesign& design, std::size_t key) {
+std::vector<double> column(const model::SweepDesign& design, std::size_t key) {
   std::vector<double> out;
-  for (std::uint64_t i = 0; i < design.size(); ++i) out.push_back(number_of(design.point(i)[key]));
+  for (std::uint64_t i = 0; i < design.size(); ++i)
+    out.push_back(model::number_of(design.point(i)[key]));
   return out;
 }
 
 // A stratified sample meets each quantile to within one stratum: here to 1/500 of the range.
 TEST(Design, SamplesAsItsDistributionsSay) {
-  const SweepDesign design = design_of(kSampled);
+  const model::SweepDesign design = design_of(kSampled);
   ASSERT_EQ(design.size(), 500U);
   auto u = column(design, 0), v = column(design, 1), w = column(design, 2);
   for (auto* all : {&u, &v, &w}) std::sort(all->begin(), all->end());
@@ -139,7 +140,7 @@ TEST(Design, SamplesAsItsDistributionsSay) {
 }
 
 TEST(Design, RunsTheSameSamplesAtEveryPointOfTheGrid) {
-  const SweepDesign design = design_of("feed = [1, 2, 3]\n" + kSampled);
+  const model::SweepDesign design = design_of("feed = [1, 2, 3]\n" + kSampled);
   ASSERT_EQ(design.size(), 1500U);
   for (std::uint64_t i = 0; i < 500; ++i) {
     Point one = design.point(i), other = design.point(1000 + i);
@@ -152,7 +153,7 @@ TEST(Design, RunsTheSameSamplesAtEveryPointOfTheGrid) {
 }
 
 TEST(Design, ComputesAPointWithoutTheOthers) {
-  const SweepDesign design = design_of(
+  const model::SweepDesign design = design_of(
       "samples = { design = \"sobol\", count = 10_000_000 }\nu = { uniform = [0.0, 1.0] }\n");
   const Point last = design.point(9'999'999);
   EXPECT_EQ(design_of("samples = { design = \"sobol\", count = 10_000_000 }\n"
@@ -163,17 +164,17 @@ TEST(Design, ComputesAPointWithoutTheOthers) {
 }
 
 TEST(Design, WritesNumbersThatReadAgainToTheSameBits) {
-  const SweepDesign design = design_of(
+  const model::SweepDesign design = design_of(
       "samples = { design = \"random\", count = 100 }\n"
       "u = { uniform = [0.0, 1e-7] }\n");
   for (std::uint64_t i = 0; i < design.size(); ++i) {
-    const Document document = Document::from_text("u = " + design.point(i)[0], "");
-    EXPECT_EQ(document.root().find("u")->real, number_of(design.point(i)[0]));
+    const config::Document document = config::Document::from_text("u = " + design.point(i)[0], "");
+    EXPECT_EQ(document.root().find("u")->real, model::number_of(design.point(i)[0]));
   }
 }
 
 TEST(Column, IsOfNumbersWhereAllValuesAre) {
-  const SweepDesign design = design_of(
+  const model::SweepDesign design = design_of(
       "a = [1, 2.5]\nb = [\"60 1/s\", \"80 1/s\"]\nc = [\"60 1/s\", \"3 m/min/mm\"]\n"
       "d = [\"table\", \"gcode\", \"table\"]\ne = [\"auto\", 5]\nf = [0x10, 1_000]\n");
   EXPECT_TRUE(design.column(0).numeric);
@@ -181,21 +182,21 @@ TEST(Column, IsOfNumbersWhereAllValuesAre) {
   EXPECT_TRUE(design.column(1).numeric);
   EXPECT_EQ(design.column(1).unit, "1/s");
   EXPECT_FALSE(design.column(2).numeric);
-  EXPECT_EQ(design.column(3).texts, (ValueTexts{"\"table\"", "\"gcode\""}));
-  EXPECT_EQ(design.column(4).texts, (ValueTexts{"\"auto\"", "5"}));
+  EXPECT_EQ(design.column(3).texts, (model::ValueTexts{"\"table\"", "\"gcode\""}));
+  EXPECT_EQ(design.column(4).texts, (model::ValueTexts{"\"auto\"", "5"}));
   EXPECT_TRUE(design.column(5).numeric);
-  EXPECT_EQ(number_of(design.point(0)[5]), 16.0);
-  EXPECT_EQ(number_of(design.point(1)[5]), 1000.0);
+  EXPECT_EQ(model::number_of(design.point(0)[5]), 16.0);
+  EXPECT_EQ(model::number_of(design.point(1)[5]), 1000.0);
 }
 
 TEST(NumberOf, ReadsTheNumberOfAValue) {
-  EXPECT_EQ(number_of("1.5"), 1.5);
-  EXPECT_EQ(number_of("-2e3"), -2000.0);
-  EXPECT_EQ(number_of("\"60 1/s\""), 60.0);
-  EXPECT_EQ(number_of("'3 mm'"), 3.0);
-  EXPECT_TRUE(std::isnan(number_of("\"table\"")));
-  EXPECT_TRUE(std::isnan(number_of("")));
-  EXPECT_TRUE(std::isnan(number_of("\"\"")));
+  EXPECT_EQ(model::number_of("1.5"), 1.5);
+  EXPECT_EQ(model::number_of("-2e3"), -2000.0);
+  EXPECT_EQ(model::number_of("\"60 1/s\""), 60.0);
+  EXPECT_EQ(model::number_of("'3 mm'"), 3.0);
+  EXPECT_TRUE(std::isnan(model::number_of("\"table\"")));
+  EXPECT_TRUE(std::isnan(model::number_of("")));
+  EXPECT_TRUE(std::isnan(model::number_of("\"\"")));
 }
 
 const std::string kForm =
@@ -247,10 +248,10 @@ TEST(ReadSweep, RefusesRangesThatAreNone) {
 
 TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
   std::string toml = "samples = { design = \"random\", count = 3 }\n";
-  for (std::size_t k = 0; k < kMostDimensions; ++k) {
+  for (std::size_t k = 0; k < model::kMostDimensions; ++k) {
     toml += "a" + std::to_string(k) + " = { choice = [1] }\n";
   }
-  EXPECT_EQ(design_of(toml).sampled_dimensions, kMostDimensions);
+  EXPECT_EQ(design_of(toml).sampled_dimensions, model::kMostDimensions);
   for (const std::string form : {"{ choice = [1] }", "{ uniform = [0, 1] }"}) {
     EXPECT_EQ(
         refusal(toml + "b = " + form + "\n"),
@@ -290,7 +291,7 @@ TEST(ReadSweep, RefusesSamplesWithoutDistributionAndTheOtherWayRound) {
 }
 
 TEST(ReadSweep, RefusesMoreThanTenMillionPoints) {
-  EXPECT_EQ(design_of("a = { linear = [0, 1], count = 10_000_000 }\n").size(), kMostPoints);
+  EXPECT_EQ(design_of("a = { linear = [0, 1], count = 10_000_000 }\n").size(), model::kMostPoints);
   EXPECT_EQ(refusal("a = { linear = [0, 1], count = 10_000_001 }\n"),
             "s.toml:1:1: error: sweep: has 10000001 points; must be <= 10000000");
   EXPECT_EQ(refusal("a = { linear = [0, 1], count = 9_000_000_000_000_000 }\n"
@@ -300,7 +301,7 @@ TEST(ReadSweep, RefusesMoreThanTenMillionPoints) {
 }
 
 TEST(Range, HasNoDigitsOfRounding) {
-  const SweepDesign design =
+  const model::SweepDesign design =
       design_of("\"program.feed_override\" = { linear = [0.2, 2.0], count = 10 }\n");
   EXPECT_EQ(
       all_points(design),
@@ -309,4 +310,4 @@ TEST(Range, HasNoDigitsOfRounding) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::design_test
+}  // namespace servomill::sim::input::design_test

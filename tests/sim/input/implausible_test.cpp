@@ -6,7 +6,7 @@
 
 #include "sim/input/read_machine.h"
 
-namespace servomill::sim::implausible_test {
+namespace servomill::sim::input::implausible_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ TEST(ImplausibleValues, AreInNoMachineThatComesWithServomill) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::implausible_test
+}  // namespace servomill::sim::input::implausible_test

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace servomill::sim::input_files_test {
+namespace servomill::sim::input::input_files_test {
 namespace {
 
 class Files : public testing::Test {
@@ -49,4 +49,4 @@ TEST_F(Files, HaveTheChecksumThatXzWouldStore) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::input_files_test
+}  // namespace servomill::sim::input::input_files_test

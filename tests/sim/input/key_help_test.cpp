@@ -8,7 +8,7 @@
 
 #include "sim/input/key_list.h"
 
-namespace servomill::sim::key_help_test {
+namespace servomill::sim::input::key_help_test {
 namespace {
 
 TEST(KeyHelp, HasASentenceForEveryKeyAndNoneForOthers) {
@@ -40,4 +40,4 @@ TEST(KeyHelp, EqualTablesShareTheirSentences) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::key_help_test
+}  // namespace servomill::sim::input::key_help_test

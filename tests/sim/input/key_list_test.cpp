@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim::key_list_test {
+namespace servomill::sim::input::key_list_test {
 namespace {
 
 // Read once: the readers go over all specimens each time.
@@ -96,4 +96,4 @@ TEST(KeyList, RefusesASectionThatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::key_list_test
+}  // namespace servomill::sim::input::key_list_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace servomill::sim::key_text_test {
+namespace servomill::sim::input::key_text_test {
 namespace {
 
 const std::vector<KeyEntry>& hardware() {
@@ -59,4 +59,4 @@ TEST(KeyText, HasOneJsonObjectAKey) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::key_text_test
+}  // namespace servomill::sim::input::key_text_test

@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_scenario.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::machine_override_test {
+namespace servomill::sim::input::machine_override_test {
 namespace {
 
 constexpr const char* kProgram = "G17 G21 G90 G94 F6000\nG1 X50\n(MSG, back)\nG1 X0\nM2\n";
 
-Scenario scenario_with(const std::string& override_of_second, const std::string& root = "") {
+model::Scenario scenario_with(const std::string& override_of_second, const std::string& root = "") {
   return small_scenario(kProgram, root +
                                       "[[case]]\nname = \"first\"\n[[case]]\nname = \"second\"\n" +
                                       override_of_second +
@@ -19,7 +20,7 @@ Scenario scenario_with(const std::string& override_of_second, const std::string&
 
 std::string message(const std::string& override_of_second) {
   try {
-    check_scenario(scenario_with(override_of_second));
+    run::check_scenario(scenario_with(override_of_second));
   } catch (const InputError& error) {
     std::string out;
     for (const Fault& fault : error.faults()) {
@@ -31,11 +32,11 @@ std::string message(const std::string& override_of_second) {
 }
 
 TEST(MachineOverride, IsLaidOverTheMachineOfTheScenarioForThatCaseAlone) {
-  const Scenario scenario = scenario_with(
+  const model::Scenario scenario = scenario_with(
       "[case.machine_override]\nnc.velocity_feed_forward = 0.5\naxis.Y.moving_mass = \"700 kg\"\n",
       "machine_override.nc.Kv = 50.0\n");
-  const MachineSettings& first = scenario.machine_of(scenario.cases[0]);
-  const MachineSettings& second = scenario.machine_of(scenario.cases[1]);
+  const model::MachineSettings& first = scenario.machine_of(scenario.cases[0]);
+  const model::MachineSettings& second = scenario.machine_of(scenario.cases[1]);
   EXPECT_FALSE(scenario.cases[0].machine);
   EXPECT_EQ(first.nc.cascade[0].kvf, 1.0);
   EXPECT_EQ(second.nc.cascade[0].kvf, 0.5);
@@ -48,23 +49,26 @@ TEST(MachineOverride, IsLaidOverTheMachineOfTheScenarioForThatCaseAlone) {
 
 // The lag at constant speed is v (1 - kvf) / Kv; the case without override does not notice.
 TEST(MachineOverride, IsTheMachineThatTheCaseRunsOn) {
-  const Scenario scenario = scenario_with("machine_override.nc.velocity_feed_forward = 0.0\n");
-  const Scenario alone = small_scenario(kProgram, "[[case]]\nname = \"first\"\n");
-  const auto lag = [](const CaseOutput& output) {
+  const model::Scenario scenario =
+      scenario_with("machine_override.nc.velocity_feed_forward = 0.0\n");
+  const model::Scenario alone = small_scenario(kProgram, "[[case]]\nname = \"first\"\n");
+  const auto lag = [](const run::CaseOutput& output) {
     return largest_of(output.result.servo, "following_error_linear", 'X',
                       rows_within(output.result.servo, 20.0, 30.0));
   };
-  EXPECT_NEAR(lag(run_case(scenario, "second")), 0.1 / (5.0 / 60.0 * 1e3) / um, 0.002 * 1200.0);
-  const CaseOutput with = run_case(scenario, "first"), without = run_case(alone, "first");
+  EXPECT_NEAR(lag(run_named_case(scenario, "second")), 0.1 / (5.0 / 60.0 * 1e3) / um,
+              0.002 * 1200.0);
+  const run::CaseOutput with = run_named_case(scenario, "first"),
+                        without = run_named_case(alone, "first");
   EXPECT_EQ(with.result.servo.data(), without.result.servo.data());
 }
 
 // Limits of the axes are those of the case, when the motion is planned and when the travel is
 // checked.
 TEST(MachineOverride, HoldsForThePlanOfTheMotion) {
-  const Scenario scenario = scenario_with("machine_override.axis.X.v_max = \"3 m/min\"\n");
-  const double first = run_case(scenario, "first").duration;
-  const double second = run_case(scenario, "second").duration;
+  const model::Scenario scenario = scenario_with("machine_override.axis.X.v_max = \"3 m/min\"\n");
+  const double first = run_named_case(scenario, "first").duration;
+  const double second = run_named_case(scenario, "second").duration;
   EXPECT_GT(second, 2.0);
   EXPECT_LT(first, 1.5);
   EXPECT_EQ(message("machine_override.axis.X.travel_mm = [-10.0, 40.0]\n"),
@@ -73,9 +77,9 @@ TEST(MachineOverride, HoldsForThePlanOfTheMotion) {
 }
 
 TEST(MachineOverride, SurvivesWritingAndReading) {
-  const Scenario scenario = scenario_with(
+  const model::Scenario scenario = scenario_with(
       "machine_override = { nc = { Kv = \"4 m/min/mm\" }, axis.X.moving_mass = \"800 kg\" }\n");
-  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  const model::Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
   ASSERT_TRUE(again.cases[1].machine);
   EXPECT_EQ(again.cases[1].machine->drives[0].M, 800.0);
@@ -107,4 +111,4 @@ TEST(MachineOverride, LeavesAloneWhatAllCasesShare) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::machine_override_test
+}  // namespace servomill::sim::input::machine_override_test

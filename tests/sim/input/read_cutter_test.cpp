@@ -9,10 +9,10 @@
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 
-namespace servomill::sim::read_cutter_test {
+namespace servomill::sim::input::read_cutter_test {
 namespace {
 
-Scenario with_tool(const std::string& keys) {
+model::Scenario with_tool(const std::string& keys) {
   return small_scenario("G1 X1 F100\nM30\n", "[[program.tool]]\nnumber = 3\nlength_mm = 100.0\n" +
                                                  keys + "[[case]]\nname = \"one\"\n");
 }
@@ -54,4 +54,4 @@ TEST(CutterOfATool, MayHaveACornerRadiusUpToThatOfABall) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::read_cutter_test
+}  // namespace servomill::sim::input::read_cutter_test

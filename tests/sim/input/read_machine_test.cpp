@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::read_machine_test {
+namespace servomill::sim::input::read_machine_test {
 namespace {
 
 using plant::operator""_err;
@@ -85,4 +85,4 @@ TEST(MachineDescription, TakesSquarenessAsASlope) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::read_machine_test
+}  // namespace servomill::sim::input::read_machine_test

@@ -13,11 +13,12 @@
 
 #include "sim/config/document.h"
 #include "sim/evaluation/comparison.h"
+#include "sim/input/read_scenario.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
 #include "strategies/registry.h"
 
-namespace servomill::sim::scenario_test {
+namespace servomill::sim::input::scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +49,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& file) {
 class EveryMachine : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryMachine, ReadsWithoutFaultAndIsStable) {
-  EXPECT_NO_THROW(check_machine(read_machine_file(GetParam())));
+  EXPECT_NO_THROW(run::check_machine(read_machine_file(GetParam())));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, EveryMachine, testing::ValuesIn(files(true)), test_name);
@@ -56,25 +57,25 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, EveryMachine, testing::ValuesIn(files(true))
 class EveryScenario : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryScenario, SurvivesWriteAndReadUnchanged) {
-  const Scenario scenario = read_scenario(GetParam());
-  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  const model::Scenario scenario = read_scenario(GetParam());
+  const model::Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
   EXPECT_EQ(again.program.text(), scenario.program.text());
   EXPECT_EQ(again.cases.size(), scenario.cases.size());
 }
 
 TEST_P(EveryScenario, CanBePrepared) {
-  const Scenario scenario = read_scenario(GetParam());
-  EXPECT_NO_THROW(check_scenario(scenario));
+  const model::Scenario scenario = read_scenario(GetParam());
+  EXPECT_NO_THROW(run::check_scenario(scenario));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, EveryScenario, testing::ValuesIn(files(false)), test_name);
 
 TEST(Resolved, HoldsTheChangesOfTheCommandLine) {
   // the scenario overrides this key of its machine, and the command line has the last word
-  const Scenario scenario =
+  const model::Scenario scenario =
       read_scenario(kSmall, {"machine.nc.Kv=42", "program.feed_override=0.5"});
-  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  const model::Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.machine.nc.cascade[0].Kv, 42.0);
   EXPECT_EQ(again.program.feed_override, 0.5);
 }
@@ -82,7 +83,7 @@ TEST(Resolved, HoldsTheChangesOfTheCommandLine) {
 TEST(Changes, OfAFileNameAreReadFromWhereTheUserIs) {
   const std::string machine = fs::path(kSmall).parent_path().string() + "/machine.toml";
   const std::string here = fs::relative(machine).string();
-  const Scenario scenario = read_scenario(kSmall, {"machine=" + here});
+  const model::Scenario scenario = read_scenario(kSmall, {"machine=" + here});
   EXPECT_EQ(scenario.resolved, read_scenario(kSmall).resolved);
 }
 
@@ -92,10 +93,10 @@ TEST(Changes, OfAProgramReplaceTheOneThatAResolvedScenarioHolds) {
   const std::string resolved = folder / "resolved.toml", other = folder / "other.ngc";
   std::ofstream(resolved) << read_scenario(kSmall).resolved;
   std::ofstream(other) << "G1 X7 F1000\nM2\n";
-  const Scenario changed = read_scenario(resolved, {"program.file=\"" + other + "\""});
+  const model::Scenario changed = read_scenario(resolved, {"program.file=\"" + other + "\""});
   EXPECT_EQ(changed.program.text(), "G1 X7 F1000\nM2\n");
   EXPECT_EQ(read_resolved_scenario(changed.resolved, "again").program.text(), "G1 X7 F1000\nM2\n");
-  const Scenario both =
+  const model::Scenario both =
       read_scenario(resolved, {"program.file=\"" + other + "\"", "program.text=\"M2\\n\""});
   EXPECT_EQ(both.program.text(), "M2\n") << "as --set says";
   EXPECT_EQ(read_scenario(resolved).program.text(), read_scenario(kSmall).program.text());
@@ -136,18 +137,21 @@ TEST(Faults, StandInTheFileThatSaysThem) {
 }
 
 // Dotted paths of everything in a document, as --set takes them.
-void collect_paths(const Value& value, const std::string& path, std::vector<std::string>& out) {
+void collect_paths(const config::Value& value, const std::string& path,
+                   std::vector<std::string>& out) {
   if (!path.empty()) out.push_back(path);
   std::size_t item = 0;
-  for (const Value& child : value.children) {
-    const bool is_list = value.type == Value::Type::list;
-    collect_paths(child,
-                  is_list ? fmt::format("{}[{}]", path, item++) : joined_key(path, child.key), out);
+  for (const config::Value& child : value.children) {
+    const bool is_list = value.type == config::Value::Type::list;
+    collect_paths(
+        child, is_list ? fmt::format("{}[{}]", path, item++) : config::joined_key(path, child.key),
+        out);
   }
 }
 
 TEST(Nonsense, InAnyKeyIsAnInputErrorOrAMeaningButNeverACrash) {
-  const Document document = Document::from_text(read_scenario(kSmall).resolved, "resolved");
+  const config::Document document =
+      config::Document::from_text(read_scenario(kSmall).resolved, "resolved");
   std::vector<std::string> paths;
   collect_paths(document.root(), "", paths);
   std::size_t refused = 0;
@@ -156,7 +160,7 @@ TEST(Nonsense, InAnyKeyIsAnInputErrorOrAMeaningButNeverACrash) {
     for (const char* value :
          {"true", "-1", "x", "[]", "{}", "nan", "1e300", "0", "1e-300", "\"\""}) {
       try {
-        check_scenario(read_scenario(kSmall, {fmt::format("{}={}", path, value)}));
+        run::check_scenario(read_scenario(kSmall, {fmt::format("{}={}", path, value)}));
       } catch (const InputError& error) {
         ++refused;
         ASSERT_FALSE(error.faults().empty());
@@ -201,7 +205,7 @@ TEST(EveryStrategy, CanBeNamedWithItsDefaultsSaidOrNot) {
                            {fmt::format("case[1].strategy=[{{type=\"{}\"{}}}]", entry.name, keys)});
     };
     const auto quiet = read(silent).cases.at(1).strategies.at(0).parameters;
-    const Scenario scenario = read(silent + all_defaults(entry));
+    const model::Scenario scenario = read(silent + all_defaults(entry));
     const auto& said = scenario.cases.at(1).strategies.at(0).parameters;
     for (const ParameterSpec& parameter : entry.parameters) {
       if (parameter.default_text.empty()) continue;
@@ -216,35 +220,36 @@ TEST(EveryStrategy, CanBeNamedWithItsDefaultsSaidOrNot) {
 }
 
 TEST(Store, ComparesAgainAsTheRunDid) {
-  const Scenario scenario = read_scenario(kSmall);
+  const model::Scenario scenario = read_scenario(kSmall);
   const std::string path = testing::TempDir() + "scenario_test.h5";
   std::string printed;
   {
-    RunStore store(path, true, scenario);
-    RunControl control;
-    control.case_done = [&](const CaseOutput& one) { store.add(one); };
-    const RunOutput output = run_scenario(scenario, control);
+    run::RunStore store(path, true, scenario);
+    run::RunControl control;
+    control.case_done = [&](const run::CaseOutput& one) { store.add(one); };
+    const run::RunOutput output = run::run_scenario(scenario, control);
     store.commit(output.comparison);
-    printed = format_table(output.comparison);
+    printed = evaluation::format_table(output.comparison);
   }
-  const StoredRun stored = read_run(path);
-  EXPECT_EQ(format_table(compare(stored.quantities, stored.cases)), printed);
+  const run::StoredRun stored = run::read_run(path);
+  EXPECT_EQ(evaluation::format_table(evaluation::compare(stored.quantities, stored.cases)),
+            printed);
   EXPECT_NE(printed.find("20 um"), std::string::npos);
   fs::remove(path);
 }
 
 TEST(Store, KeepsSinglePrecisionAndComparesAgainAsTheRunDid) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       read_scenario(kSmall, {"record.storage=\"float32\"", "record.compression=0"});
   const std::string path = testing::TempDir() + "scenario_test_float32.h5";
-  RunStore store(path, true, scenario);
-  RunControl control;
-  control.case_done = [&](const CaseOutput& one) { store.add(one); };
-  const RunOutput output = run_scenario(scenario, control);
+  run::RunStore store(path, true, scenario);
+  run::RunControl control;
+  control.case_done = [&](const run::CaseOutput& one) { store.add(one); };
+  const run::RunOutput output = run::run_scenario(scenario, control);
   store.commit(output.comparison);
-  const StoredRun stored = read_run(path);
-  EXPECT_EQ(format_table(compare(stored.quantities, stored.cases)),
-            format_table(output.comparison));
+  const run::StoredRun stored = run::read_run(path);
+  EXPECT_EQ(evaluation::format_table(evaluation::compare(stored.quantities, stored.cases)),
+            evaluation::format_table(output.comparison));
   for (std::size_t i = 0; i < stored.cases.size(); ++i) {
     EXPECT_EQ(stored.cases[i].servo->data(), output.cases[i].result.servo.data());
   }
@@ -252,13 +257,13 @@ TEST(Store, KeepsSinglePrecisionAndComparesAgainAsTheRunDid) {
 }
 
 TEST(Scenario, SaysHowExactlyToRecord) {
-  const Scenario plain = read_scenario(kSmall);
-  EXPECT_EQ(plain.record.format.storage, Storage::float64);
+  const model::Scenario plain = read_scenario(kSmall);
+  EXPECT_EQ(plain.record.format.storage, records::Storage::float64);
   EXPECT_EQ(plain.record.format.resolution, 0.001e-9);
   EXPECT_EQ(plain.record.compression, 1);
-  const Scenario said = read_scenario(
+  const model::Scenario said = read_scenario(
       kSmall, {"record.storage=\"float32\"", "record.compression=9", "record.resolution_nm=0"});
-  EXPECT_EQ(said.record.format.storage, Storage::float32);
+  EXPECT_EQ(said.record.format.storage, records::Storage::float32);
   EXPECT_EQ(said.record.format.resolution, 0.0);
   EXPECT_EQ(said.record.compression, 9);
   for (const auto& [change, complaint] : std::map<std::string, std::string>{
@@ -294,7 +299,7 @@ TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
   const std::string path = write("above.toml", fmt::format("based_on = \"{}\"\ntitle = \"above\"\n"
                                                            "[program]\nfeed_override = 0.5\n",
                                                            kSmall));
-  const Scenario above = read_scenario(path), below = read_scenario(kSmall);
+  const model::Scenario above = read_scenario(path), below = read_scenario(kSmall);
   EXPECT_EQ(above.title, "above");
   EXPECT_EQ(above.program.feed_override, 0.5);
   EXPECT_EQ(above.program.text(), below.program.text());  // found beside the scenario that names it
@@ -304,24 +309,24 @@ TEST_F(BasedOn, WinsOverTheScenarioBelowAndKeepsTheRest) {
 // The scenario in a result file runs anywhere.
 TEST_F(BasedOn, IsNotInTheResolvedScenario) {
   const std::string path = write("above.toml", fmt::format("based_on = \"{}\"\n", kSmall));
-  const Scenario above = read_scenario(path);
+  const model::Scenario above = read_scenario(path);
   EXPECT_EQ(above.resolved.find("based_on"), std::string::npos);
-  const Scenario again = read_scenario(write("resolved.toml", above.resolved));
+  const model::Scenario again = read_scenario(write("resolved.toml", above.resolved));
   EXPECT_EQ(again.resolved, above.resolved);
   // as earlier versions stored it
-  const Scenario earlier =
+  const model::Scenario earlier =
       read_resolved_scenario("based_on = \"gone.toml\"\n" + above.resolved, "earlier");
   EXPECT_EQ(earlier.cases.size(), above.cases.size());
 }
 
 TEST_F(BasedOn, ReplacesCasesOfTheSameNameAndAddsOthers) {
-  const Scenario below = read_scenario(kSmall);
+  const model::Scenario below = read_scenario(kSmall);
   const std::string first = below.cases.front().name;
   const std::string path = write(
       "above.toml", fmt::format("based_on = \"{}\"\n[[case]]\nname = \"{}\"\nwork_offset = {{ "
                                 "X_mm = 1.0 }}\n[[case]]\nname = \"new\"\n",
                                 kSmall, first));
-  const Scenario above = read_scenario(path);
+  const model::Scenario above = read_scenario(path);
   ASSERT_EQ(above.cases.size(), below.cases.size() + 1);
   EXPECT_EQ(above.cases.front().name, first);
   EXPECT_EQ(above.cases.front().work_offset[0], 1e-3);
@@ -346,4 +351,4 @@ TEST_F(BasedOn, RefusesACircleAndAFileThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::scenario_test
+}  // namespace servomill::sim::input::scenario_test

@@ -7,10 +7,11 @@
 #include <fstream>
 
 #include "controllers/gcode/called_subroutines.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 
-namespace servomill::sim::subroutine_files_test {
+namespace servomill::sim::input::subroutine_files_test {
 namespace {
 
 class Folder {
@@ -62,16 +63,17 @@ TEST(SubroutineFiles, AScenarioKeepsTheirTexts) {
       folder.write("s.toml", "title = \"t\"\nmachine = \"" SERVOMILL_SOURCE_DIR
                              "/scenarios/machines/hsm600u.toml\"\n[program]\nfile = \"plate.ngc\"\n"
                              "[[case]]\nname = \"one\"\n");
-  const Scenario scenario = read_scenario(scenario_file);
+  const model::Scenario scenario = read_scenario(scenario_file);
   EXPECT_EQ(scenario.program.subroutines.size(), 2U);
   std::filesystem::remove(folder.path("line.ngc"));
   std::filesystem::remove(folder.path("go.ngc"));
-  const Scenario again = read_resolved_scenario(scenario.resolved, "again");
+  const model::Scenario again = read_resolved_scenario(scenario.resolved, "again");
   EXPECT_EQ(again.resolved, scenario.resolved);
-  const std::vector<Move> moves = read_program(again, again.cases.front(), nullptr).all();
+  const std::vector<Move> moves =
+      preparation::read_program(again, again.cases.front(), nullptr).all();
   ASSERT_EQ(moves.size(), 2U);
   EXPECT_DOUBLE_EQ(moves[0].end[0], 3e-3);
 }
 
 }  // namespace
-}  // namespace servomill::sim::subroutine_files_test
+}  // namespace servomill::sim::input::subroutine_files_test

@@ -11,7 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/metrology/random_poses.h"
 
-namespace servomill::sim::best_fit_test {
+namespace servomill::sim::metrology::best_fit_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -251,4 +251,4 @@ TEST(Quiver, ShowsDeviationsAtNominalPlaces) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::best_fit_test
+}  // namespace servomill::sim::metrology::best_fit_test

@@ -14,7 +14,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::circle_fit_test {
+namespace servomill::sim::metrology::circle_fit_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -230,4 +230,4 @@ TEST(MinimumZone, IsNeverWiderThanAboutTheLeastSquaresCentreAndHoldsAllPoints) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::circle_fit_test
+}  // namespace servomill::sim::metrology::circle_fit_test

@@ -11,7 +11,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::circular_test_test {
+namespace servomill::sim::metrology::circular_test_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -237,4 +237,4 @@ TEST(CircularTest, WantsPointsCloseTogetherAndOnTheCircle) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::circular_test_test
+}  // namespace servomill::sim::metrology::circular_test_test

@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::cmm_test {
+namespace servomill::sim::metrology::cmm_test {
 namespace {
 
 constexpr int kMany = 10000;
@@ -69,4 +69,4 @@ TEST(Cmm, WithoutUncertaintyMeasuresWhatIsThereAndLeavesMissedPointsOut) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::cmm_test
+}  // namespace servomill::sim::metrology::cmm_test

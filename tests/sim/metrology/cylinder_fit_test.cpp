@@ -11,7 +11,7 @@
 #include "sim/metrology/sphere_fit.h"
 #include "tests/sim/metrology/random_poses.h"
 
-namespace servomill::sim::cylinder_fit_test {
+namespace servomill::sim::metrology::cylinder_fit_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -191,4 +191,4 @@ TEST(LeastSquaresCircleOfSpace, IsNotDeterminedByALine) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::cylinder_fit_test
+}  // namespace servomill::sim::metrology::cylinder_fit_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim::dense_solver_test {
+namespace servomill::sim::metrology::dense_solver_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -72,4 +72,4 @@ TEST(SingularValues, OfZeroHaveNoRank) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::dense_solver_test
+}  // namespace servomill::sim::metrology::dense_solver_test

@@ -7,7 +7,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <limits>
 
-namespace servomill::sim::linear_program_test {
+namespace servomill::sim::metrology::linear_program_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -85,4 +85,4 @@ TEST(LinearProgram, AgreesWithAllCornersTried) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::linear_program_test
+}  // namespace servomill::sim::metrology::linear_program_test

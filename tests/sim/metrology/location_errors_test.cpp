@@ -13,7 +13,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/plant/kinematics/machine_kinds.h"
 
-namespace servomill::sim::location_errors_test {
+namespace servomill::sim::metrology::location_errors_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -286,4 +286,4 @@ TEST(BallBar, RecoversAllOfTheEightButOneFromFourCircles) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::location_errors_test
+}  // namespace servomill::sim::metrology::location_errors_test

@@ -11,7 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/metrology/random_poses.h"
 
-namespace servomill::sim::minimum_zone_test {
+namespace servomill::sim::metrology::minimum_zone_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -221,4 +221,4 @@ TEST(MinimumZoneCylinder, GrowsWithEveryMotion) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::minimum_zone_test
+}  // namespace servomill::sim::metrology::minimum_zone_test

@@ -9,7 +9,7 @@
 #include "sim/metrology/line_fit.h"
 #include "tests/sim/metrology/random_poses.h"
 
-namespace servomill::sim::plane_fit_test {
+namespace servomill::sim::metrology::plane_fit_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -154,4 +154,4 @@ TEST(LeastSquaresLine, IsNotDeterminedByOnePlace) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::plane_fit_test
+}  // namespace servomill::sim::metrology::plane_fit_test

@@ -9,7 +9,7 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/units.h"
 
-namespace servomill::sim::r_test_test {
+namespace servomill::sim::metrology::r_test_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -261,4 +261,4 @@ TEST(Readings, OfABarAreAlongIt) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::r_test_test
+}  // namespace servomill::sim::metrology::r_test_test

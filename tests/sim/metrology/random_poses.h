@@ -6,7 +6,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
-namespace servomill::sim {
+namespace servomill::sim::metrology {
 
 class Random {
  public:
@@ -31,4 +31,4 @@ class Random {
   boost::random::normal_distribution<double> normal_{0.0, 1.0};
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::metrology

@@ -12,7 +12,7 @@
 #include "sim/metrology/minimum_zone.h"
 #include "sim/metrology/sphere_fit.h"
 
-namespace servomill::sim::reference_data_test {
+namespace servomill::sim::metrology::reference_data_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -163,4 +163,4 @@ TEST(ReferenceData, CylindricityC37) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::reference_data_test
+}  // namespace servomill::sim::metrology::reference_data_test

@@ -15,7 +15,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/metrology/random_poses.h"
 
-namespace servomill::sim::triangle_mesh_test {
+namespace servomill::sim::metrology::triangle_mesh_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -251,4 +251,4 @@ TEST(TriangleMesh, RefusesWhatBoundsNoBody) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::triangle_mesh_test
+}  // namespace servomill::sim::metrology::triangle_mesh_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-namespace servomill::sim::sampling_test {
+namespace servomill::sim::model::sampling_test {
 namespace {
 
 constexpr std::size_t kDimensions = 5;
@@ -149,4 +149,4 @@ TEST(NormalQuantile, IsThatOfTables) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::sampling_test
+}  // namespace servomill::sim::model::sampling_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::schedule_test {
+namespace servomill::sim::model::schedule_test {
 namespace {
 
 // Walks the schedule over several common multiples and notes when each rate was due.
@@ -108,4 +108,4 @@ TEST(ReadScenario, RefusesPeriodsThatHardlyEverMeet) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::schedule_test
+}  // namespace servomill::sim::model::schedule_test

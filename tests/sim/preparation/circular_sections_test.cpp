@@ -9,7 +9,7 @@
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 
-namespace servomill::sim::circular_sections_test {
+namespace servomill::sim::preparation::circular_sections_test {
 namespace {
 
 // R = 28 mm; turns begin and end at speed, on a diagonal where no axis reverses.
@@ -31,18 +31,18 @@ std::string quantity(const std::string& name, const std::string& rest) {
   return "[[quantity]]\nname = \"" + name + "\"\n" + rest + "\n";
 }
 
-Scenario asking(const std::string& quantities,
-                const std::string& cases = "[[case]]\nname = \"one\"\n",
-                const std::string& root = "") {
+model::Scenario asking(const std::string& quantities,
+                       const std::string& cases = "[[case]]\nname = \"one\"\n",
+                       const std::string& root = "") {
   return small_scenario(kProgram, root + cases + quantities);
 }
 
 std::string faults_of(const std::string& quantities) {
-  return fault_messages([&] { check_scenario(asking(quantities)); });
+  return fault_messages([&] { run::check_scenario(asking(quantities)); });
 }
 
 TEST(CircularSections, AreEvaluatedOneByOneOrInPairs) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       asking(quantity("circular_error", "sections = [\"ccw\", \"cw\", \"small\"]") +
              quantity("circle_squareness", "sections = [\"ccw\", \"cw\", \"cw\", \"ccw\"]"));
   ASSERT_EQ(scenario.quantities.size(), 5U);
@@ -90,7 +90,7 @@ TEST(CircularSections, GiveTheNumbersOfClosedForms) {
   const double R = std::sqrt(800.0) * mm, v = 4.0 / 60.0, Kv = 60.0;  // m, m/s, 1/s
   const double shrunk = R * (1.0 - 1.0 / std::hypot(1.0, v / R / Kv));
   const std::string both = "sections = [\"ccw\", \"cw\"]";
-  const Scenario scenario = asking(
+  const model::Scenario scenario = asking(
       quantity("mean_bidirectional_radial_error", both) + quantity("circle_squareness", both) +
           quantity("circular_error", "sections = [\"ccw\"]") +
           quantity("reversal_spike", "axis = \"X\"\nsections = [\"ccw\"]"),
@@ -98,8 +98,9 @@ TEST(CircularSections, GiveTheNumbersOfClosedForms) {
       "velocity_feed_forward = 0.0\nacceleration_feed_forward = 0.0\n"
       "[errors.square]\nEC0Y = { um_per_m = 50.0 }\n",
       "machine_errors = \"square\"\n");
-  const CaseOutput output = run_case(scenario, "one");
-  const auto rows = compare(scenario.quantities, std::vector<CaseData>{output.data()});
+  const run::CaseOutput output = run_named_case(scenario, "one");
+  const auto rows =
+      evaluation::compare(scenario.quantities, std::vector<evaluation::CaseData>{output.data()});
   EXPECT_NEAR(rows[0].value, shrunk / um, 0.01 * shrunk / um);
   constexpr double kAngleTol = 0.2;  // urad: 6 nm on the diameter, from joints of the path
   EXPECT_NEAR(rows[1].value, -50.0, kAngleTol) << "Y leans away from X: more than 90 deg";
@@ -108,10 +109,12 @@ TEST(CircularSections, GiveTheNumbersOfClosedForms) {
 }
 
 TEST(CircularSections, HaveNoNumberWhereTheMachineDidNotFollow) {
-  const Scenario scenario = asking(quantity("circular_error", "sections = [\"ccw\"]"));
-  CaseOutput output = run_case(scenario, "one");
+  const model::Scenario scenario = asking(quantity("circular_error", "sections = [\"ccw\"]"));
+  run::CaseOutput output = run_named_case(scenario, "one");
   const auto value = [&] {
-    return compare(scenario.quantities, std::vector<CaseData>{output.data()})[0].value;
+    return evaluation::compare(scenario.quantities,
+                               std::vector<evaluation::CaseData>{output.data()})[0]
+        .value;
   };
   EXPECT_FALSE(std::isnan(value()));
   std::vector<double> data = output.result.servo.data();
@@ -122,4 +125,4 @@ TEST(CircularSections, HaveNoNumberWhereTheMachineDidNotFollow) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::circular_sections_test
+}  // namespace servomill::sim::preparation::circular_sections_test

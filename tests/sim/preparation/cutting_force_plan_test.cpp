@@ -9,12 +9,12 @@
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::cutting_force_plan_test {
+namespace servomill::sim::preparation::cutting_force_plan_test {
 namespace {
 
 std::string message_of(const std::string& program, const std::string& toml) {
   try {
-    const Scenario scenario = small_scenario(program, toml);
+    const model::Scenario scenario = small_scenario(program, toml);
     const PreparedCase prepared(scenario, scenario.cases.front());
     return "";
   } catch (const InputError& error) {
@@ -29,8 +29,9 @@ std::string message_of(const std::string& program, const std::string& toml) {
 
 // Warnings of a case that cuts, without the folder of the program.
 std::vector<std::string> notes_of(const std::string& program, const std::string& tool) {
-  const Scenario scenario = small_scenario(program, tool + kBlock + kSteel + one_case("cut"));
-  std::vector<std::string> notes = run_case(scenario, "cut").notes;
+  const model::Scenario scenario =
+      small_scenario(program, tool + kBlock + kSteel + one_case("cut"));
+  std::vector<std::string> notes = run_named_case(scenario, "cut").notes;
   for (std::string& note : notes) note.erase(0, note.find("small.ngc"));
   return notes;
 }
@@ -144,4 +145,4 @@ TEST(CuttingErrors, tell_what_is_missing) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::cutting_force_plan_test
+}  // namespace servomill::sim::preparation::cutting_force_plan_test

@@ -5,18 +5,18 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 constexpr const char* kProgram = "G21 G90 G94\nG1 X100 F1200\nM2\n";
 
-Scenario scenario(const std::string& more = "") {
+model::Scenario scenario(const std::string& more = "") {
   return small_scenario(kProgram, "[record]\nperiod_ms = 1.0\n" + more +
                                       "[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n");
 }
 
 // An hour of motion in each of two cases.
-RunEstimate two_hours(const Scenario& of) {
+RunEstimate two_hours(const model::Scenario& of) {
   const std::vector<double> motions = {3599.9, 3599.9};  // s, and 0.1 s of settling
   return estimate(of, motions, 1);
 }
@@ -41,7 +41,7 @@ TEST(RunEstimate, CountsRowsAndTheirBytes) {
 
 // The rest is the program's and the system's.
 TEST(RunEstimate, TakesFourFifthsOfTheMemoryAndNoMore) {
-  const Scenario of = scenario();
+  const model::Scenario of = scenario();
   RunEstimate takes = two_hours(of);
   takes.memory = 8e9;
   EXPECT_EQ(refusal([&] { refuse_too_large(of, takes, 10.001e9); }), "");
@@ -52,7 +52,7 @@ TEST(RunEstimate, TakesFourFifthsOfTheMemoryAndNoMore) {
 }
 
 TEST(RunEstimate, KeepsToTheSizeThatTheScenarioAllows) {
-  const Scenario of = scenario();
+  const model::Scenario of = scenario();
   RunEstimate takes = two_hours(of);
   takes.size = of.record.max_size;
   EXPECT_EQ(refusal([&] { refuse_too_large(of, takes); }), "");
@@ -65,7 +65,7 @@ TEST(RunEstimate, KeepsToTheSizeThatTheScenarioAllows) {
 
 // A recording is on the disk once more until the cases are compared.
 TEST(RunEstimate, TakesTwiceTheFileOfTheDisk) {
-  const Scenario of = scenario();
+  const model::Scenario of = scenario();
   RunEstimate takes = two_hours(of);
   takes.file = 1e9;
   EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", kCopiesOfRun, 2.0e9); }), "");
@@ -79,7 +79,7 @@ TEST(RunEstimate, TakesTwiceTheFileOfTheDisk) {
 
 // The path of the cutters is held as far as it comes near probes.
 TEST(RunEstimate, MemoryOfAProbedPartDoesNotGrowWithTheDuration) {
-  const Scenario of = small_scenario(
+  const model::Scenario of = small_scenario(
       "T1 M6\nG43 H1\nG1 X100 F1200\nM2\n",
       "[record]\nperiod_ms = 1.0\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\ndiameter_mm = "
       "8.0\n[[probe]]\nname = \"top\"\nline = { from_mm = [0.0, 0.0, 0.0], to_mm = [100.0, 0.0, "
@@ -90,4 +90,4 @@ TEST(RunEstimate, MemoryOfAProbedPartDoesNotGrowWithTheDuration) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

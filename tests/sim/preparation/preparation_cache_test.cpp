@@ -1,6 +1,7 @@
 /// Sweeps share what their points have in common, and no result shows it.
 #include "sim/preparation/preparation_cache.h"
 #include "sim/config/document.h"
+#include "sim/input/read_scenario.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@
 #include "sim/input/scenario_source.h"
 #include "sim/run/run.h"
 
-namespace servomill::sim::preparation_cache_test {
+namespace servomill::sim::preparation::preparation_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,11 +109,11 @@ class Sharing : public testing::Test {
 };
 
 // All that a run would be given, byte for byte, or why there is none.
-std::string prepared(const Scenario& scenario, PreparationCache* cache) {
-  MemoKey all;
+std::string prepared(const model::Scenario& scenario, PreparationCache* cache) {
+  system::MemoKey all;
   try {
     for (const PreparedCase& one : prepare_cases(scenario, cache)) {
-      CaseInputs in = one.inputs();
+      engine::CaseInputs in = one.inputs();
       controllers::Trajectory::Cursor cursor{};
       constexpr double kModelPeriod = 60e-6;  // s
       const auto feedback = in.feedback ? in.feedback->feedback(kModelPeriod) : nullptr;
@@ -130,7 +131,7 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
       }
       all.add(in.path.length());
       all.add(in.path.piece(0).end);
-      const CaseOutput out = output_of(one, {});
+      const run::CaseOutput out = run::output_of(one, {});
       all.add(std::string_view(out.program));
       all.add(out.blocks);
     }
@@ -141,13 +142,14 @@ std::string prepared(const Scenario& scenario, PreparationCache* cache) {
 }
 
 // Dotted paths of all numbers of a document, as --set takes them, with other values.
-void collect_changes(const Value& value, const std::string& path, std::vector<std::string>& out) {
-  if (value.type == Value::Type::integer)
+void collect_changes(const config::Value& value, const std::string& path,
+                     std::vector<std::string>& out) {
+  if (value.type == config::Value::Type::integer)
     out.push_back(fmt::format("{}={}", path, value.integer + 1));
-  if (value.type == Value::Type::real) {
+  if (value.type == config::Value::Type::real) {
     out.push_back(fmt::format("{}={}", path, value.real == 0.0 ? 1e-3 : 1.03125 * value.real));
   }
-  if (value.type == Value::Type::text) {
+  if (value.type == config::Value::Type::text) {
     char* end = nullptr;
     const double number = std::strtod(value.text.c_str(), &end);
     if (end != value.text.c_str()) {
@@ -155,28 +157,29 @@ void collect_changes(const Value& value, const std::string& path, std::vector<st
     }
   }
   std::size_t item = 0;
-  for (const Value& child : value.children) {
-    const bool is_list = value.type == Value::Type::list;
+  for (const config::Value& child : value.children) {
+    const bool is_list = value.type == config::Value::Type::list;
     collect_changes(
-        child, is_list ? fmt::format("{}[{}]", path, item++) : joined_key(path, child.key), out);
+        child, is_list ? fmt::format("{}[{}]", path, item++) : config::joined_key(path, child.key),
+        out);
   }
 }
 
-std::vector<std::string> changes_of_every_number(const Scenario& scenario) {
+std::vector<std::string> changes_of_every_number(const model::Scenario& scenario) {
   std::vector<std::string> out;
-  collect_changes(Document::from_text(scenario.resolved, "resolved").root(), "", out);
+  collect_changes(config::Document::from_text(scenario.resolved, "resolved").root(), "", out);
   return out;
 }
 
 TEST_F(Sharing, ShowsInNoResultWhateverNumberChanges) {
-  const ScenarioSource source(path_);
+  const input::ScenarioSource source(path_);
   PreparationCache cache;
   const std::string unchanged = prepared(source.at(), &cache);
   std::size_t different = 0, refused = 0;
   const auto changes = changes_of_every_number(source.at());
   for (const std::string& change : changes) {
     try {
-      const Scenario scenario = source.at({change});
+      const model::Scenario scenario = source.at({change});
       const std::string alone = prepared(scenario, nullptr);
       EXPECT_TRUE(prepared(scenario, &cache) == alone) << change;
       different += alone != unchanged ? 1 : 0;
@@ -192,7 +195,7 @@ TEST_F(Sharing, ShowsInNoResultWhateverNumberChanges) {
 
 TEST_F(Sharing, ReadsAScenarioWithChangesAsIfItWereReadAnew) {
   const std::vector<std::string> base = {"machine.nc.Kv=70", "program.feed_override=0.5"};
-  const ScenarioSource source(path_, base);
+  const input::ScenarioSource source(path_, base);
   std::vector<std::string> changes = changes_of_every_number(source.at());
   for (const char* more :
        {"machine_override.nc.Kv=50", "machine=nowhere.toml", "machine=3", "case[9].name=x",
@@ -201,7 +204,7 @@ TEST_F(Sharing, ReadsAScenarioWithChangesAsIfItWereReadAnew) {
   }
   const auto text_of = [](const auto& read) -> std::string {
     try {
-      const Scenario scenario = read();
+      const model::Scenario scenario = read();
       return scenario.resolved + scenario.machine_text + scenario.text + scenario.name;
     } catch (const InputError& error) {
       return error.what();
@@ -211,13 +214,13 @@ TEST_F(Sharing, ReadsAScenarioWithChangesAsIfItWereReadAnew) {
     std::vector<std::string> all = base;
     all.push_back(changes[i]);
     EXPECT_EQ(text_of([&] { return source.at({changes[i]}); }),
-              text_of([&] { return read_scenario(path_, all); }))
+              text_of([&] { return input::read_scenario(path_, all); }))
         << changes[i];
   }
 }
 
 TEST_F(Sharing, GivesTheSameComparisonBitForBit) {
-  const ScenarioSource source(path_);
+  const input::ScenarioSource source(path_);
   PreparationCache cache;
   boost::random::mt19937 random(4);
   const boost::random::uniform_real_distribution<double> factor(0.8, 1.25);
@@ -230,11 +233,11 @@ TEST_F(Sharing, GivesTheSameComparisonBitForBit) {
                                  fmt::format("errors.imposed.EC0Y=\"{} urad\"", 50.0 * x),
                                  fmt::format("program.parameters.\"#101\"={}",
                                              5.0 * x)}[static_cast<std::size_t>(which(random))]);
-    const Scenario scenario = source.at(changes);
-    RunControl shared;
+    const model::Scenario scenario = source.at(changes);
+    run::RunControl shared;
     shared.cache = &cache;
-    const auto with = run_scenario(scenario, shared).comparison;
-    const auto without = run_scenario(scenario, {}).comparison;
+    const auto with = run::run_scenario(scenario, shared).comparison;
+    const auto without = run::run_scenario(scenario, {}).comparison;
     ASSERT_EQ(with.size(), without.size());
     for (std::size_t i = 0; i < with.size(); ++i) {
       EXPECT_EQ(with[i].value, without[i].value) << with[i].quantity << ", " << with[i].case_name;
@@ -244,10 +247,10 @@ TEST_F(Sharing, GivesTheSameComparisonBitForBit) {
 }
 
 TEST_F(Sharing, LeavesOnlyTheLoopsToBeCheckedWhereAGainChanges) {
-  const ScenarioSource source(path_);
+  const input::ScenarioSource source(path_);
   PreparationCache cache;
   const auto prepare_at = [&](const std::string& change) {
-    const Scenario scenario = source.at({change});
+    const model::Scenario scenario = source.at({change});
     prepare_cases(scenario, &cache);
   };
   prepare_at("program.feed_override=1.0");
@@ -276,7 +279,7 @@ TEST_F(Sharing, LeavesOnlyTheLoopsToBeCheckedWhereAGainChanges) {
 }
 
 TEST_F(Sharing, RefusesUnstableGainsTheSecondTimeToo) {
-  const ScenarioSource source(path_);
+  const input::ScenarioSource source(path_);
   PreparationCache cache;
   const auto complaint = [&](const std::string& Kv) {
     return prepared(source.at({"machine.axis.Y.Kv=" + Kv}), &cache);
@@ -292,7 +295,7 @@ TEST_F(Sharing, RefusesUnstableGainsTheSecondTimeToo) {
 }
 
 TEST_F(Sharing, ServesManyThreads) {
-  const ScenarioSource source(path_);
+  const input::ScenarioSource source(path_);
   constexpr int kPoints = 12;
   const auto change = [](int i) {
     return std::vector<std::string>{fmt::format("program.feed_override={}", 0.5 + 0.25 * (i % 3)),
@@ -319,4 +322,4 @@ TEST_F(Sharing, ServesManyThreads) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::preparation_cache_test
+}  // namespace servomill::sim::preparation::preparation_cache_test

@@ -16,7 +16,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/strategies/identified_machines.h"
 
-namespace servomill::sim {
+namespace servomill::sim::preparation {
 namespace {
 
 constexpr int kShown = 3;  // programs that differ, in full
@@ -37,8 +37,8 @@ const std::string kFile = "random.ngc";
 
 /// A five-axis machine with two tools and all work systems set.
 struct Shop {
-  Scenario scenario = trunnion_scenario("M30\n", "[[case]]\nname = \"none\"\n");
-  const MachineSettings& machine = scenario.machine;
+  model::Scenario scenario = trunnion_scenario("M30\n", "[[case]]\nname = \"none\"\n");
+  const model::MachineSettings& machine = scenario.machine;
   controllers::ProgramSetup setup;
 
   Shop() {
@@ -182,7 +182,7 @@ bool is_of_verification(const std::string& message) {
 }
 
 void run(Outcomes& outcomes, std::uint32_t seed, const Rewriting& rewriting) {
-  const RandomProgram program(seed, {.has_rotary_axes = seed % 5 == 4});
+  const programs::RandomProgram program(seed, {.has_rotary_axes = seed % 5 == 4});
   try {
     check(rewriting, program.text());
     ++outcomes.verified;
@@ -322,4 +322,4 @@ INSTANTIATE_TEST_SUITE_P(Errors, RewrittenLaw, testing::Bool(),
                          [](const auto& one) { return one.param ? "Identified" : "None"; });
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::preparation

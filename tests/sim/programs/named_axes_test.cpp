@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim::named_axes_test {
+namespace servomill::sim::programs::named_axes_test {
 namespace {
 
 struct Named {
@@ -48,4 +48,4 @@ TEST(NamedAxes, APolarCoordinateNamesXAndY) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::named_axes_test
+}  // namespace servomill::sim::programs::named_axes_test

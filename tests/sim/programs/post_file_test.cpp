@@ -8,11 +8,12 @@
 #include <fstream>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "sim/run/run.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim::post_file_test {
+namespace servomill::sim::programs::post_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +33,9 @@ PostRequest request_of(const std::string& cl_file) {
   return request;
 }
 
-std::string shipped(const std::string& name) { return read_file(kFolder + name, {}, "program"); }
+std::string shipped(const std::string& name) {
+  return system::read_file(kFolder + name, {}, "program");
+}
 
 TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
   PostRequest example1 = request_of("example1.cls");
@@ -55,11 +58,11 @@ TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
 }
 
 std::map<std::string, double> tool_differences(const std::string& scenario_file) {
-  RunControl control;
+  run::RunControl control;
   control.threads = 1;
   std::map<std::string, double> out;
-  for (const ComparisonRow& row :
-       run_scenario(read_scenario(kFolder + scenario_file), control).comparison) {
+  for (const evaluation::ComparisonRow& row :
+       run::run_scenario(input::read_scenario(kFolder + scenario_file), control).comparison) {
     if (row.quantity == "tool_difference") out[row.case_name] = row.value;
   }
   return out;
@@ -277,4 +280,4 @@ TEST(PostFile, RapidsOfOneToolAxisTurnNoRotaryAxis) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::post_file_test
+}  // namespace servomill::sim::programs::post_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace servomill::sim::post_functions_test {
+namespace servomill::sim::programs::post_functions_test {
 namespace {
 
 using controllers::ClRecord;
@@ -102,4 +102,4 @@ TEST(PostFunctions, SpindleAndCoolantAreComparedWhereTheProgramArrives) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::post_functions_test
+}  // namespace servomill::sim::programs::post_functions_test

@@ -6,7 +6,7 @@
 
 #include "plant/kinematics/structure.h"
 
-namespace servomill::sim::post_kinematics_test {
+namespace servomill::sim::programs::post_kinematics_test {
 namespace {
 
 constexpr double kExact = 1e-15;  // m: a few roundings
@@ -86,4 +86,4 @@ TEST(PostKinematics, PosesAreEqualToTheDigitsOfThePrograms) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::post_kinematics_test
+}  // namespace servomill::sim::programs::post_kinematics_test

@@ -17,7 +17,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/text.h"
 
-namespace servomill::sim::verify_post_test {
+namespace servomill::sim::programs::verify_post_test {
 namespace {
 
 using controllers::Approach;
@@ -42,14 +42,14 @@ constexpr const char* kUpright =
     "RAPID\nGOTO/20,0,40\nSTOP\nRAPID\nGOTO/-20,10,40\nGOTO/-20,10,10\nGOTO/-25,12,9\nFINI\n";
 
 struct Work {
-  MachineSettings machine;
+  model::MachineSettings machine;
   controllers::ClData data;
   controllers::PostOptions options;
   std::string program;
 };
 
-MachineSettings machine_of(const char* structure) {
-  MachineSettings machine;
+model::MachineSettings machine_of(const char* structure) {
+  model::MachineSettings machine;
   machine.chain = plant::make_chain(plant::parse_structure(structure));
   machine.nc.lower.setConstant(-std::numeric_limits<double>::infinity());
   machine.nc.upper.setConstant(std::numeric_limits<double>::infinity());
@@ -333,4 +333,4 @@ TEST(VerifyPost, SaysWhatWasCompared) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::verify_post_test
+}  // namespace servomill::sim::programs::verify_post_test

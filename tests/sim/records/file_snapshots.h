@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::records {
 
 /// From its making to its end, keeps how the file looked before each write, and what `promised`
 /// said then: how much had to be readable if the process were killed.
@@ -52,9 +52,9 @@ class FileSnapshots {
   std::vector<Snapshot> all_;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::records
 
 extern "C" ssize_t pwrite(int file, const void* data, size_t size, off_t offset) {
-  if (auto* snapshots = servomill::sim::FileSnapshots::active().load()) snapshots->take();
+  if (auto* snapshots = servomill::sim::records::FileSnapshots::active().load()) snapshots->take();
   return syscall(SYS_pwrite64, file, data, size, offset);
 }

@@ -10,7 +10,7 @@
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 
-namespace servomill::sim::fixed_dataset_test {
+namespace servomill::sim::records::fixed_dataset_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ TEST_F(FixedDataset, IsReadWithinItsLength) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::fixed_dataset_test
+}  // namespace servomill::sim::records::fixed_dataset_test

@@ -11,7 +11,7 @@
 #include "sim/records/output_file.h"
 #include "sim/system/system_error.h"
 
-namespace servomill::sim::hdf5_file_test {
+namespace servomill::sim::records::hdf5_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,7 +140,7 @@ TEST_F(Hdf5File, SaysWhyItCannotBeMade) {
   fs::create_directory(path("out.h5.partial"));
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }),
             "out.h5.partial: error: cannot be made: Is a directory");
-  EXPECT_THROW(OutputFile(path("out.h5"), true), SystemError);
+  EXPECT_THROW(OutputFile(path("out.h5"), true), system::SystemError);
 }
 
 TEST_F(Hdf5File, SaysWhatItLacks) {
@@ -184,4 +184,4 @@ TEST_F(Hdf5File, RefusesWhatIsNoHdf5File) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::hdf5_file_test
+}  // namespace servomill::sim::records::hdf5_file_test

@@ -8,7 +8,7 @@
 
 #include "sim/records/row_keeper.h"
 
-namespace servomill::sim::row_thinning_test {
+namespace servomill::sim::records::row_thinning_test {
 namespace {
 
 constexpr std::size_t kRows = 20000;
@@ -219,4 +219,4 @@ TEST_F(Thinned, TakesWhatItMayOnTheDisk) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::row_thinning_test
+}  // namespace servomill::sim::records::row_thinning_test

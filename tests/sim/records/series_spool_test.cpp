@@ -8,7 +8,7 @@
 
 #include "sim/system/system_error.h"
 
-namespace servomill::sim::series_spool_test {
+namespace servomill::sim::records::series_spool_test {
 namespace {
 
 constexpr std::size_t kChunkRows = 100;
@@ -123,7 +123,7 @@ TEST(SeriesSpool, SaysWhichFolderItCannotWrite) {
   try {
     SeriesSpool({}, {"/nowhere/at/all", kChunkRows, 1});
     FAIL();
-  } catch (const SystemError& error) {
+  } catch (const system::SystemError& error) {
     EXPECT_STREQ(error.what(),
                  "/nowhere/at/all: error: recorded signals cannot be kept there: No such file or "
                  "directory");
@@ -138,4 +138,4 @@ TEST(EvenChunkRows, LeavesLittleOfTheLastChunkEmpty) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::series_spool_test
+}  // namespace servomill::sim::records::series_spool_test

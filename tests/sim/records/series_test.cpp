@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace servomill::sim::series_test {
+namespace servomill::sim::records::series_test {
 namespace {
 
 TEST(Series, KeepsItsSignalsInTheirOrder) {
@@ -28,4 +28,4 @@ TEST(Series, KeepsItsSignalsInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::series_test
+}  // namespace servomill::sim::records::series_test

@@ -33,7 +33,7 @@ thread_local std::size_t allocations = 0;  // the writer's thread may allocate
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace servomill::sim::series_writer_test {
+namespace servomill::sim::records::series_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,7 +153,7 @@ std::size_t fill(const std::string& path, std::string& message) {
   for (std::size_t n = 0; n < kMostRows; ++n) {
     try {
       writer.append(row(n));
-    } catch (const SystemError& error) {
+    } catch (const system::SystemError& error) {
       message = error.what();
       return n + 1 - 2 * kBlock;
     }
@@ -311,4 +311,4 @@ TEST_F(SeriesFile, HoldsTheSameAtEveryLevelOfCompression) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::series_writer_test
+}  // namespace servomill::sim::records::series_writer_test

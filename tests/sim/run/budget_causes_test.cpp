@@ -5,7 +5,7 @@
 
 #include "tests/sim/run/small_budget.h"
 
-namespace servomill::sim::budget_causes_test {
+namespace servomill::sim::run::budget_causes_test {
 namespace {
 
 using namespace small_budget;
@@ -153,7 +153,7 @@ TEST(BudgetCauses, OfBacklashAlone) {
 
 // An ideal servo stands where the NC wants it, but the structure gives way to the cut.
 TEST(BudgetCauses, OfTheCutAlone) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       "G17 G90 T1 M6\nG43 H1\nS4775 M3\nG0 X-30 Y0\nZ-2\n(MSG, slot)\nG1 X30 F1394\nM30\n",
       "[machine_override.axis.Y]\nstructural_stiffness = \"40 N/um\"\n[[program.tool]]\nnumber = "
       "1\nlength_mm = 110.0\ndiameter_mm = 8.0\nteeth = 4\n[[part.stock]]\nbox = { from_mm = "
@@ -169,4 +169,4 @@ TEST(BudgetCauses, OfTheCutAlone) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::budget_causes_test
+}  // namespace servomill::sim::run::budget_causes_test

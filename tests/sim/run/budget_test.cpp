@@ -3,7 +3,7 @@
 
 #include "tests/sim/run/small_budget.h"
 
-namespace servomill::sim::budget_test {
+namespace servomill::sim::run::budget_test {
 namespace {
 
 using namespace small_budget;
@@ -78,7 +78,7 @@ TEST(Budget, AddsUpForExperiment1) {
       "sections = [\"flank\"]\ncases = [\"table\", \"feedback\", \"gcode\", \"lead\"]\n"
       "[[quantity]]\nname = \"realised_ratio\"\naxis = \"Y\"\nbaseline = \"nominal\"\n"
       "sections = [\"flank\"]\ncases = [\"table\"]\n";  // the same once more
-  const Scenario scenario = small_scenario(kFlank, toml);
+  const model::Scenario scenario = small_scenario(kFlank, toml);
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
   ASSERT_EQ(budgets.size(), 4U);
   constexpr double kShare = 0.01;  // of the residual
@@ -131,7 +131,7 @@ TEST(Budget, ComparesByTheTurnWhereTheTipStands) {
 
 // Deviation of the tool and following error belong to every case, asked for or not.
 TEST(Budget, IsThereForCasesThatNobodyAsksAbout) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario(kProgram,
                      "[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n"
                      "[[quantity]]\nname = \"contour_error\"\n"
@@ -141,16 +141,16 @@ TEST(Budget, IsThereForCasesThatNobodyAsksAbout) {
   const std::vector<std::string> both = {"tool_deviation", "following_error"};
   const auto quantities = budget_quantities(scenario, both, {"flank"});
   ASSERT_EQ(quantities.size(), 1U + 2U * 3U);  // as it is; two cases of X, Y, Z
-  for (const QuantitySpec& one : quantities) {
+  for (const model::QuantitySpec& one : quantities) {
     EXPECT_EQ(one.sections, std::vector<std::string>{"flank"});
   }
 }
 
 TEST(Budget, RefusesASectionThatTheProgramLacks) {
-  const Scenario scenario = small_scenario(kProgram, "[[case]]\nname = \"one\"\n");
+  const model::Scenario scenario = small_scenario(kProgram, "[[case]]\nname = \"one\"\n");
   const std::vector<std::string> also = {"tool_deviation"};
   auto quantities = budget_quantities(scenario, also, {"flonk"});
-  for (QuantitySpec& one : quantities) one.sections_place = {"--section"};
+  for (model::QuantitySpec& one : quantities) one.sections_place = {"--section"};
   try {
     find_budgets(scenario, quantities);
     FAIL() << "accepted";
@@ -161,7 +161,7 @@ TEST(Budget, RefusesASectionThatTheProgramLacks) {
 }
 
 TEST(Budget, SaysWhyThereIsNone) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       kProgram,
       root("polynomial_um = [0.0, 10.0]") +
           one_case(kTableOverX, "[case.machine_override.nc]\nfollowing_error_limit_mm = 1e-6\n"));
@@ -171,4 +171,4 @@ TEST(Budget, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::budget_test
+}  // namespace servomill::sim::run::budget_test

@@ -46,15 +46,15 @@ std::vector<std::string_view> names() {
 
 }  // namespace servomill::strategies
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr const char* kProgram = "G1 X20 F2400\nG1 X0\nM2\n";
 
 // @param type     of the strategy of the case "one"
 // @param changes  keys of that case
-Scenario scenario(const std::string& type, const std::string& changes = "",
-                  const std::string& root = "") {
+model::Scenario scenario(const std::string& type, const std::string& changes = "",
+                         const std::string& root = "") {
   return small_scenario(kProgram,
                         "imposed = \"imposed\"\n"
                         "[errors.imposed]\n"
@@ -80,13 +80,13 @@ std::string refusal(const std::string& type, const std::string& changes) {
   return "none";
 }
 
-RunOutput run(const Scenario& one) { return run_scenario(one, {}); }
+RunOutput run(const model::Scenario& one) { return run_scenario(one, {}); }
 
 TEST(UnknownFeedbackStrategy, HasTheHardwareAndGivesTheSameBits) {
   const RunOutput known = run(scenario("feedback")), strange = run(scenario("stranger"));
   for (std::size_t c = 0; c < known.cases.size(); ++c) {
-    const Series& a = known.cases[c].result.servo;
-    const Series& b = strange.cases[c].result.servo;
+    const records::Series& a = known.cases[c].result.servo;
+    const records::Series& b = strange.cases[c].result.servo;
     ASSERT_EQ(a.rows(), b.rows());
     for (std::size_t row = 0; row < a.rows(); ++row) {
       for (std::size_t column = 0; column < a.width(); ++column) {
@@ -101,7 +101,7 @@ TEST(UnknownFeedbackStrategy, HasTheHardwareAndGivesTheSameBits) {
 
 TEST(UnknownFeedbackStrategy, HasTheSameBudget) {
   const auto budget = [](const std::string& type) {
-    const Scenario one = scenario(type);
+    const model::Scenario one = scenario(type);
     return find_budgets(one, budget_quantities(one)).at(0);
   };
   const Budget known = budget("feedback"), strange = budget("stranger");
@@ -148,7 +148,8 @@ TEST(FeedbackHardware, IsInAllCasesAsSoonAsOneNeedsIt) {
 }
 
 TEST(FeedbackHardware, ThatSomeCasesLackIsReported) {
-  const Scenario uneven = scenario("stranger", "", "[feedback_hardware]\nconnected = false\n");
+  const model::Scenario uneven =
+      scenario("stranger", "", "[feedback_hardware]\nconnected = false\n");
   EXPECT_FALSE(uneven.cases[0].feedback_hardware);
   const RunOutput out = run(uneven);
   EXPECT_EQ(out.comparison.at(0).note,
@@ -163,7 +164,7 @@ TEST(FeedbackHardware, ThatSomeCasesLackIsReported) {
 
 TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
   const auto note_of = [](const char* program, double feed_override) {
-    Scenario uneven =
+    model::Scenario uneven =
         small_scenario(program,
                        "imposed = \"imposed\"\n[errors.imposed]\nEXX = { um_per_m = 100.0 }\n"
                        "[feedback_hardware]\nconnected = false\n[[case]]\nname = \"nominal\"\n"
@@ -184,7 +185,7 @@ TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
 }
 
 TEST(Comparison, HasNoRowOfTheBaseItself) {
-  Scenario all = scenario("feedback");
+  model::Scenario all = scenario("feedback");
   EXPECT_EQ(all.quantities.at(0).cases, std::vector<std::string>{"one"});
   all.quantities[0].name = "lag_time";
   all.quantities[0].cases = {"nominal", "one"};  // as if asked for
@@ -195,4 +196,4 @@ TEST(Comparison, HasNoRowOfTheBaseItself) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim::converge_test {
+namespace servomill::sim::run::converge_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -94,7 +94,7 @@ class Converging : public testing::Test {
            std::to_string(tolerance_um) + "\nmax_block_mm = " + std::to_string(max_block_mm) + "\n";
   }
   static Convergence converge(const std::string& path, const std::set<Refinement>& which) {
-    return find_convergence(ScenarioSource(path), which).value();
+    return find_convergence(input::ScenarioSource(path), which).value();
   }
   static double change(const Convergence& found, Refinement which) {
     return found.rows.at(0).change[static_cast<std::size_t>(which)];
@@ -102,7 +102,7 @@ class Converging : public testing::Test {
 };
 
 TEST_F(Converging, HalvesKeysOfTheScenario) {
-  const Scenario one = ScenarioSource(file(blocks(1.0, "ideal", 0.1))).at();
+  const model::Scenario one = input::ScenarioSource(file(blocks(1.0, "ideal", 0.1))).at();
   using Keys = std::vector<std::string>;
   EXPECT_EQ(halved(Refinement::recording, one), Keys{"record.period_ms=\"0.0005 s\""});
   EXPECT_EQ(halved(Refinement::block, one),
@@ -116,18 +116,19 @@ TEST_F(Converging, HalvesKeysOfTheScenario) {
 
 TEST_F(Converging, HalvesTheToleranceOfDrivesWithFriction) {
   const std::string friction = "[machine_override]\nfriction_model = \"lugre\"\n";
-  const Scenario rubs = ScenarioSource(file(blocks(2.0, "cascade") + friction)).at();
+  const model::Scenario rubs = input::ScenarioSource(file(blocks(2.0, "cascade") + friction)).at();
   EXPECT_EQ(halved(Refinement::solver, rubs),
             std::vector<std::string>{"machine.solver_tolerance_nm=\"1e-12 m\""});
   EXPECT_EQ(rubs.machine.drives[0].solver_tolerance, 2e-12);
-  const Scenario halved_once = ScenarioSource(file(blocks(2.0, "cascade") + friction),
-                                              {"machine.solver_tolerance_nm=\"1e-12 m\""})
-                                   .at();
+  const model::Scenario halved_once =
+      input::ScenarioSource(file(blocks(2.0, "cascade") + friction),
+                            {"machine.solver_tolerance_nm=\"1e-12 m\""})
+          .at();
   EXPECT_EQ(halved_once.machine.drives[0].solver_tolerance, 1e-12);
 }
 
 TEST_F(Converging, LeavesBlocksThatAreAnInputAlone) {
-  const ScenarioSource identified(file(blocks(3.2)));
+  const input::ScenarioSource identified(file(blocks(3.2)));
   EXPECT_EQ(halved(Refinement::block, identified.at()), std::vector<std::string>{});
   const Convergence found = find_convergence(identified, {Refinement::block}).value();
   EXPECT_EQ(change(found, Refinement::block), 0.0);
@@ -141,14 +142,14 @@ TEST_F(Converging, LeavesBlocksThatAreAnInputAlone) {
 }
 
 TEST_F(Converging, KnowsTheResolutionOfARow) {
-  const Scenario servo = ScenarioSource(file(blocks(1.0, "cascade", 0.1))).at();
-  ComparisonRow of_y;
+  const model::Scenario servo = input::ScenarioSource(file(blocks(1.0, "cascade", 0.1))).at();
+  evaluation::ComparisonRow of_y;
   of_y.case_name = "gcode";
   of_y.axis = "Y";
   of_y.unit = "um";
   EXPECT_NEAR(resolution_of(servo, of_y), servo.machine.scale[1].step() / 1e-6, 1e-12);
   EXPECT_GT(resolution_of(servo, of_y), 1e-3) << "um";
-  const Scenario ideal = ScenarioSource(file(blocks(1.0, "ideal", 0.1))).at();
+  const model::Scenario ideal = input::ScenarioSource(file(blocks(1.0, "ideal", 0.1))).at();
   EXPECT_NEAR(resolution_of(ideal, of_y), 1e-6, 1e-12) << "um: of the recording";
   of_y.unit = "1";
   EXPECT_EQ(resolution_of(servo, of_y), 0.0);
@@ -164,7 +165,8 @@ TEST_F(Converging, SharesAreAsUncertainAsTheDisplacement) {
     if (row.row.quantity == "realised_ratio" && row.row.case_name == "gcode") brought = &row;
   }
   ASSERT_NE(brought, nullptr);
-  const Scenario scenario = ScenarioSource(file(blocks(1.0, "cascade", 0.1) + share)).at();
+  const model::Scenario scenario =
+      input::ScenarioSource(file(blocks(1.0, "cascade", 0.1) + share)).at();
   const double step_um = scenario.machine.scale[1].step() / 1e-6;
   EXPECT_NEAR(brought->resolution, step_um, 0.02 * step_um) << "%, of 100 um";
   EXPECT_TRUE(brought->is_limited_by_resolution());
@@ -211,9 +213,9 @@ TEST_F(Converging, SaysWhatCannotBeHalved) {
 }
 
 TEST_F(Converging, IsRefusedBeforeItRuns) {
-  EXPECT_THROW(find_convergence(ScenarioSource(file("", "machine_errors = \"no\"\n")), {}),
+  EXPECT_THROW(find_convergence(input::ScenarioSource(file("", "machine_errors = \"no\"\n")), {}),
                InputError);
 }
 
 }  // namespace
-}  // namespace servomill::sim::converge_test
+}  // namespace servomill::sim::run::converge_test

@@ -4,7 +4,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::determinism_test {
+namespace servomill::sim::run::determinism_test {
 namespace {
 
 const std::string kProgram =
@@ -17,7 +17,7 @@ std::string strategy_case(const std::string& type, const std::string& more = "")
       type, more.empty() ? "" : "_more", more);
 }
 
-Scenario all_strategies() {
+model::Scenario all_strategies() {
   return small_scenario(
       kProgram,
       "imposed = \"imposed\"\nmachine_errors = \"imposed\"\n[errors.imposed]\n"
@@ -30,14 +30,14 @@ Scenario all_strategies() {
           strategy_case("feedback", "extrapolation_time_ms = \"auto\"\n") + strategy_case("gcode"));
 }
 
-RunOutput run_with(const Scenario& scenario, unsigned threads) {
+RunOutput run_with(const model::Scenario& scenario, unsigned threads) {
   RunControl control;
   control.threads = threads;
   return run_scenario(scenario, control);
 }
 
 TEST(RunScenario, GivesTheSameBitsForAnyNumberOfThreads) {
-  const Scenario scenario = all_strategies();
+  const model::Scenario scenario = all_strategies();
   const RunOutput reference = run_with(scenario, 1);
   for (const unsigned threads : {1U, 2U, 5U}) {
     const RunOutput again = run_with(all_strategies(), threads);
@@ -55,7 +55,7 @@ TEST(RunScenario, GivesTheSameBitsForAnyNumberOfThreads) {
 
 // Feedback of an error with slope 3 makes the loop unstable: y = x - 3 x. Only that case stops.
 TEST(RunScenario, StopsTheCaseThatDivergesAndNoOther) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       "G1 X10 F2000\nM30\n",
       "[errors.mad]\nEXX = { polynomial_um = [0.0, 3000.0] }\n"
       "[machine_override.nc]\nfollowing_error_limit_mm = 2.0\n"
@@ -66,7 +66,7 @@ TEST(RunScenario, StopsTheCaseThatDivergesAndNoOther) {
       "[[quantity]]\nname = \"following_error\"\naxis = \"X\"\n");
   const RunOutput out = run_with(scenario, 2);
   ASSERT_EQ(out.cases.size(), 3U);
-  const CaseResult& stopped = out.cases[1].result;
+  const engine::CaseResult& stopped = out.cases[1].result;
   EXPECT_FALSE(stopped.outcome.finished);
   EXPECT_EQ(stopped.outcome.axis, 'X');
   EXPECT_GT(stopped.outcome.time, 0.0);
@@ -85,16 +85,16 @@ TEST(RunScenario, StopsTheCaseThatDivergesAndNoOther) {
 // Gains far beyond the limit, as an experiment: stops with axis and time, and what happened in the
 // last position periods is kept, up to the one that went beyond the limit.
 TEST(RunScenario, KeepsTheLastTicksOfALoopThatDiverges) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       "G1 X10 F2000\nM30\n",
       "[machine_override.nc]\ncheck_stability = false\nfollowing_error_limit_mm = 0.3\n"
       "[machine_override.axis.X]\nKv = \"2000 1/s\"\n"
       "[[case]]\nname = \"diverging\"\n[[case]]\nname = \"ideal\"\nservo = \"ideal\"\n");
   const RunOutput out = run_with(scenario, 2);
-  const CaseResult& stopped = out.cases[0].result;
+  const engine::CaseResult& stopped = out.cases[0].result;
   ASSERT_FALSE(stopped.outcome.finished);
   EXPECT_EQ(stopped.outcome.axis, 'X');
-  const Series& last = stopped.last_ticks;
+  const records::Series& last = stopped.last_ticks;
   ASSERT_GT(last.rows(), 10U);
   EXPECT_LE(last.rows(), 2000U);
   const auto error = [&](std::size_t row) {
@@ -110,7 +110,7 @@ TEST(RunScenario, KeepsTheLastTicksOfALoopThatDiverges) {
 }
 
 TEST(RunScenario, EndsEarlyWhenAskedTo) {
-  const StopFlag stop = true;
+  const engine::StopFlag stop = true;
   RunControl control;
   control.stop = &stop;
   const RunOutput out = run_scenario(
@@ -125,4 +125,4 @@ TEST(RunScenario, EndsEarlyWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::determinism_test
+}  // namespace servomill::sim::run::determinism_test

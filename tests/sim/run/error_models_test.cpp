@@ -5,14 +5,14 @@
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 
-namespace servomill::sim::error_models_test {
+namespace servomill::sim::run::error_models_test {
 namespace {
 
 using plant::operator""_err;
 
 constexpr double kRounding = 1e-18;  // m, rad, of sums of some 1e-5
 
-Scenario with_errors(const std::string& errors) {
+model::Scenario with_errors(const std::string& errors) {
   return small_scenario("M2\n", errors + "[[case]]\nname = \"one\"\n");
 }
 
@@ -25,7 +25,7 @@ const std::string kMachine =
     "EYX = { polynomial_um = [1.0, 0.5] }\n";
 
 TEST(ErrorModels, DifferByWhatTheySay) {
-  const Scenario scenario = with_errors(
+  const model::Scenario scenario = with_errors(
       "[errors.identified]\nrelative_to = \"machine\"\nEX0C = \"-0.5 um\"\nEA0C = { constant_urad "
       "= "
       "2.0 }\nEB0C = \"3 urad\"\nEYX = { constant_um = 0.25 }\nEZX = { constant_um = 4.0 }\n" +
@@ -44,7 +44,7 @@ TEST(ErrorModels, DifferByWhatTheySay) {
 }
 
 TEST(ErrorModels, MayHaveAnErrorOfScale) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       with_errors("[errors.screw]\nEXX = { um_per_m = 40.0, constant_um = 1.0 }\n");
   const auto& EXX = scenario.errors.at("screw").component("EXX"_err);
   EXPECT_NEAR(EXX.value(0.25), 11.0 * um, kRounding);
@@ -62,7 +62,7 @@ TEST(ErrorModels, RefuseALocationWhoseUnitWasForgotten) {
 }
 
 TEST(ErrorModels, ThatDifferByNothingAreTheSame) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       with_errors("[errors.identified]\nrelative_to = \"machine\"\n" + kMachine);
   EXPECT_TRUE(scenario.errors.at("identified") == scenario.errors.at("machine"));
 }
@@ -90,13 +90,13 @@ TEST(ErrorModels, DifferFromAnotherThatIsComplete) {
 // the C axis has turned half about, so that its place counts twice.
 TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreCompensated) {
   const auto left = [](const std::string& difference) {
-    const Scenario scenario = small_scenario(
+    const model::Scenario scenario = small_scenario(
         "G21 G90 G94\nG0 X20 C180\nG1 X30 F1000\nM2\n",
         "machine_errors = \"machine\"\n" + kMachine +
             "[errors.identified]\nrelative_to = \"machine\"\n" + difference +
             "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"feedback\"\n"
             "model = \"identified\"\niterations = \"converged\"\n");
-    const CaseOutput out = run_case(scenario, "one");
+    const CaseOutput out = run_named_case(scenario, "one");
     return largest_of(out.result.servo, "tool_deviation", 'X',
                       rows_within(out.result.servo, 20.0, 30.0));
   };
@@ -106,4 +106,4 @@ TEST(ErrorModels, LeaveTheirDifferenceWhenTheyAreCompensated) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::error_models_test
+}  // namespace servomill::sim::run::error_models_test

@@ -1,23 +1,23 @@
 // Simulation of G95.
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::feed_per_revolution_sim_test {
+namespace servomill::sim::run::feed_per_revolution_sim_test {
 namespace {
 
 TEST(FeedPerRevolution, RunsAsTheSameFeedPerMinute) {
   const auto duration_of = [](const std::string& program) {
-    const Scenario scenario = small_scenario(program, "[[case]]\nname = \"one\"\n");
-    const CaseOutput output = run_case(scenario, "one");
+    const model::Scenario scenario = small_scenario(program, "[[case]]\nname = \"one\"\n");
+    const CaseOutput output = run_named_case(scenario, "one");
     return output.duration;
   };
   EXPECT_EQ(duration_of("S1000 M3\nG95 G1 X5 F2\nM2\n"), duration_of("G1 X5 F2000\nM2\n"));
 }
 
 TEST(FeedPerRevolution, OfASpindleThatStandsStillIsRefused) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario("S1000\nG0 X1\nG95 G1 X5 F2\nM2\n", "[[case]]\nname = \"one\"\n");
   try {
-    PreparedCase(scenario, *scenario.find_case("one"));
+    preparation::PreparedCase(scenario, *scenario.find_case("one"));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
@@ -27,4 +27,4 @@ TEST(FeedPerRevolution, OfASpindleThatStandsStillIsRefused) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::feed_per_revolution_sim_test
+}  // namespace servomill::sim::run::feed_per_revolution_sim_test

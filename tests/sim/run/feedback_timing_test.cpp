@@ -5,7 +5,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::feedback_timing_test {
+namespace servomill::sim::run::feedback_timing_test {
 namespace {
 
 constexpr double kSlope = 1e-3;                            // of EXX over X
@@ -13,9 +13,9 @@ constexpr std::size_t kModelPeriod = 6, kSignalDelay = 1;  // ticks, the default
 constexpr std::size_t kPositionPeriod = 3;
 
 // All loops run every third tick, nothing rounds a reading, and each tick is a row.
-const Series& every_tick() {
+const records::Series& every_tick() {
   static const CaseOutput kOutput = [] {
-    Scenario scenario = small_scenario(
+    model::Scenario scenario = small_scenario(
         "G1 X1 F1200\nM2\n",
         "[machine_override.nc]\nposition_period_us = 30.0\nvelocity_period_us = 30.0\n"
         "current_period_us = 30.0\n"
@@ -25,14 +25,14 @@ const Series& every_tick() {
         "max_rate_mm_per_s = 1000.0\n");
     scenario.machine.scale = {};
     scenario.machine.motor = {};
-    return run_case(scenario, "one");
+    return run_named_case(scenario, "one");
   }();
   return kOutput.result.servo;
 }
 
 // Model periods lie at ticks n = 0, 6, ...; the position loop at k uses the last with n + 7 <= k.
 TEST(VirtualDisplacement, OfTickNIsReadFromTickNPlus7On) {
-  const Series& rows = every_tick();
+  const records::Series& rows = every_tick();
   const std::size_t read = rows.column("fb_linear", 'X').value();
   const std::size_t scale = rows.column("meas_linear", 'X').value();
   ASSERT_GT(rows.rows(), 4000U);
@@ -51,4 +51,4 @@ TEST(VirtualDisplacement, OfTickNIsReadFromTickNPlus7On) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::feedback_timing_test
+}  // namespace servomill::sim::run::feedback_timing_test

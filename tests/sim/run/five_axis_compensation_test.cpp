@@ -7,7 +7,7 @@
 #include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::five_axis_compensation_test {
+namespace servomill::sim::run::five_axis_compensation_test {
 namespace {
 
 // All component errors of the five axes, some 20 um and 20 urad each, smooth; all location errors.
@@ -48,7 +48,7 @@ std::string five_axis_case(const std::string& name, const std::string& servo,
          (type == "none" ? "" : "model = \"machine\"\naction = \"compensate\"\n" + more);
 }
 
-Scenario five_axes(const std::string& program = kProgram) {
+model::Scenario five_axes(const std::string& program = kProgram) {
   const std::string all = "axes = \"all\"\niterations = \"converged\"\n";
   const std::string fine = "tolerance_um = 0.02\ntolerance_urad = 0.05\n";
   return small_scenario(
@@ -62,12 +62,12 @@ Scenario five_axes(const std::string& program = kProgram) {
 }
 
 double quantity(const CaseOutput& out, const std::string& name) {
-  QuantitySpec spec;
+  model::QuantitySpec spec;
   spec.name = name;
   spec.statistic = "max";
   spec.cases = {out.name};
-  const CaseData data = out.data();
-  const double value = compare({&spec, 1}, {&data, 1}).front().value;
+  const evaluation::CaseData data = out.data();
+  const double value = evaluation::compare({&spec, 1}, {&data, 1}).front().value;
   testing::Test::RecordProperty(out.name + "_" + name, fmt::format("{:.6g}", value));
   return value;
 }
@@ -75,15 +75,15 @@ double quantity(const CaseOutput& out, const std::string& name) {
 struct Left {
   double tip, axis;  // um, urad
 };
-Left left_by(const Scenario& scenario, const std::string& name) {
-  const CaseOutput out = run_case(scenario, name);
+Left left_by(const model::Scenario& scenario, const std::string& name) {
+  const CaseOutput out = run_named_case(scenario, name);
   return {quantity(out, "tcp_deviation"), quantity(out, "tool_axis_deviation")};
 }
 
 // Goal: less than 0.1 um and 1 urad wherever the machine can. With exact inverses the residual is
 // the rounding of the recorded values, 1 nm at most.
 TEST(FiveAxes, FeedbackLeavesNothingOfTipAndToolAxis) {
-  const Scenario scenario = five_axes();
+  const model::Scenario scenario = five_axes();
   const Left without = left_by(scenario, "none");
   EXPECT_GT(without.tip, 30.0);
   EXPECT_GT(without.axis, 30.0);
@@ -99,7 +99,7 @@ TEST(FiveAxes, FeedbackLeavesNothingOfTipAndToolAxis) {
 
 // X, Y and Z put the tip right and leave the tool axis as it is.
 TEST(FiveAxes, LinearAxesAloneLeaveTheToolAxis) {
-  const Scenario scenario = five_axes();
+  const model::Scenario scenario = five_axes();
   const Left linear = left_by(scenario, "linear");
   EXPECT_LT(linear.tip, 1e-5);
   EXPECT_GT(linear.axis, 30.0);
@@ -115,7 +115,7 @@ TEST(FiveAxes, RewrittenProgramsKeepTheirTolerances) {
 
 // Through B = 0: the tip stays right, the tool axis is left what C would have to turn far for.
 TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
-  const Scenario scenario = five_axes(
+  const model::Scenario scenario = five_axes(
       "G21 G90 G94 G64 P0.00001\nT1 M6\nG43 H1\nG0 X10 Y-20 Z-100 B-10 C10\n"
       "G1 X40 Y-10 Z-95 B10 C30 F3000\nM30\n");
   const Left left = left_by(scenario, "feedback");
@@ -124,14 +124,14 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_GT(left.axis, 1.0);
   EXPECT_LT(left.axis, without.axis);
   // reported at the identified worst place
-  const CaseOutput out = run_case(scenario, "feedback");
+  const CaseOutput out = run_named_case(scenario, "feedback");
   ASSERT_EQ(out.notes.size(), 1U);
   EXPECT_NE(out.notes.front().find("small.ngc:5: warning: case feedback: strategy feedback cannot "
                                    "correct "),
             std::string::npos)
       << out.notes.front();
   testing::Test::RecordProperty("note", out.notes.front());
-  EXPECT_TRUE(run_case(five_axes(), "feedback").notes.empty());
+  EXPECT_TRUE(run_named_case(five_axes(), "feedback").notes.empty());
 }
 
 // A rotary axis that corrects the tool axis lags like the others do, by 1/Kv and what the hardware
@@ -144,13 +144,13 @@ double lag_of_rotary_axis(const std::string& more) {
   const std::string one =
       "[[case]]\nname = \"one\"\nwork_offset = { B_deg = 30.0 }\n[[case.strategy]]\n"
       "type = \"feedback\"\nmodel = \"tilt\"\naction = \"impose\"\naxes = \"all\"\n";
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       fmt::format("G0 X-30\nG1 X30 F{}\nM30\n", kFeed),
       "[machine_override.nc]\nKv = \"60 1/s\"\n" +
           fmt::format("[errors.tilt]\nEBX = {{ polynomial_urad = [0.0, {}] }}\n", kSlope) + one +
           more);
-  const CaseOutput out = run_case(scenario, "one");
-  const Series& series = out.result.servo;
+  const CaseOutput out = run_named_case(scenario, "one");
+  const records::Series& series = out.result.servo;
   const auto rows = rows_within(series, 20.0, 28.0);
   const double turned = (mean_of(series, "true_rotary", 'B', rows) - 30.0) * deg / urad;
   const double wanted = kSlope * mean_of(series, "ref_linear", 'X', rows);
@@ -173,9 +173,9 @@ TEST(FiveAxes, FeedbackRefusesAScaleThatIsNotRead) {
       "[machine_override.axis]\nB.position_feedback = \"motor\"\n[errors.tilt]\n"
       "EBX = { polynomial_urad = [0.0, 1.0] }\n[[case]]\nname = \"one\"\n[[case.strategy]]\n"
       "type = \"feedback\"\nmodel = \"tilt\"\n";
-  EXPECT_NO_THROW(prepare_cases(small_scenario("G1 X1 F100\nM30\n", toml)));
+  EXPECT_NO_THROW(preparation::prepare_cases(small_scenario("G1 X1 F100\nM30\n", toml)));
   try {
-    prepare_cases(small_scenario("G1 X1 F100\nM30\n", toml + "axes = \"all\"\n"));
+    preparation::prepare_cases(small_scenario("G1 X1 F100\nM30\n", toml + "axes = \"all\"\n"));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(
@@ -188,4 +188,4 @@ TEST(FiveAxes, FeedbackRefusesAScaleThatIsNotRead) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::five_axis_compensation_test
+}  // namespace servomill::sim::run::five_axis_compensation_test

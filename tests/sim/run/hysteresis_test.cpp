@@ -10,7 +10,7 @@
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 
-namespace servomill::sim::hysteresis_test {
+namespace servomill::sim::run::hysteresis_test {
 namespace {
 
 // Five targets of X, each approached five times from below and from above as ISO 230-2 asks for,
@@ -39,8 +39,8 @@ const std::string kErrors =
     "[errors.machine.EAX]\nreversal = { width_urad = -8.0, distance_mm = 0.02 }\n"
     "[errors.machine.EYY]\nreversal = { width_um = 5.0, distance_mm = 0.01 }\n";
 
-Scenario machine_with_hysteresis(const std::string& program, const std::string& more,
-                                 const std::string& errors = kErrors) {
+model::Scenario machine_with_hysteresis(const std::string& program, const std::string& more,
+                                        const std::string& errors = kErrors) {
   return small_scenario(program, "machine_errors = \"machine\"\n" + errors + more);
 }
 
@@ -54,7 +54,7 @@ struct Approaches {
   std::vector<double> up[std::size(kTargets)], down[std::size(kTargets)];
 };
 
-Approaches approaches_of(const Series& series) {
+Approaches approaches_of(const records::Series& series) {
   const std::size_t x = series.column("ref_linear", 'X').value();
   const std::size_t deviation = series.column("tool_deviation", 'X').value();
   const std::size_t actual = series.column("true_linear", 'X').value();
@@ -84,7 +84,7 @@ double mean(const std::vector<double>& values) {
 // B_i of ISO 230-2 is the stated width, the mean of both directions the stated mean.
 TEST(Hysteresis, GivesTheReversalValuesOfIso230) {
   const std::string cases = one_case("ideal", "ideal") + one_case("servo", "cascade");
-  const Scenario scenario =
+  const model::Scenario scenario =
       machine_with_hysteresis(iso_230_2_program(), "[record]\nperiod_ms = 10.0\n" + cases);
   constexpr double kIdealTol = 1e-5;  // um: distances in the workpiece are of 0.1 m, doubles in mm
   // um: a drive overshoots by 3 um, 1.2 % of half the distance, and comes back: 1.5 x (1.2 %)^2 of
@@ -92,7 +92,7 @@ TEST(Hysteresis, GivesTheReversalValuesOfIso230) {
   constexpr double kServoTol = 2e-3;
   for (const std::string name : {"ideal", "servo"}) {
     const double kTol = name == "ideal" ? kIdealTol : kServoTol;
-    const CaseOutput output = run_case(scenario, name);
+    const CaseOutput output = run_named_case(scenario, name);
     const Approaches found = approaches_of(output.result.servo);
     for (std::size_t i = 0; i < std::size(kTargets); ++i) {
       const double x = kTargets[i];
@@ -114,36 +114,37 @@ constexpr const char* kToAndFro =
 // The truth is advanced by the clock of the machine: recording only looks.
 TEST(Hysteresis, IsTheSameHoweverOftenItIsRecorded) {
   const auto run_with = [](const std::string& period) {
-    return run_case(machine_with_hysteresis(kToAndFro, "[record]\nperiod_ms = " + period + "\n" +
-                                                           one_case("servo", "cascade")),
-                    "servo");
+    return run_named_case(
+        machine_with_hysteresis(
+            kToAndFro, "[record]\nperiod_ms = " + period + "\n" + one_case("servo", "cascade")),
+        "servo");
   };
   const CaseOutput often = run_with("1.0"), rarely = run_with("5.0");
-  const Series &a = often.result.servo, &b = rarely.result.servo;
+  const records::Series &a = often.result.servo, &b = rarely.result.servo;
   const std::size_t x = a.column("tool_deviation", 'X').value();
   ASSERT_GT(b.rows(), 20U);
   for (std::size_t n = 0; n < b.rows(); ++n) EXPECT_EQ(a.at(5 * n, x), b.at(n, x)) << n;
 }
 
 TEST(Hysteresis, GivesTheSameBitsInLockstepAsAlone) {
-  const Scenario scenario = machine_with_hysteresis(
+  const model::Scenario scenario = machine_with_hysteresis(
       kToAndFro, one_case("one", "cascade") + one_case("lag", "cascade") +
                      "[case.machine_override.nc]\nvelocity_feed_forward = 0.0\n" +
                      one_case("three", "cascade"));
-  const std::vector<PreparedCase> prepared = prepare_cases(scenario);
-  std::vector<CaseInputs> inputs;
+  const std::vector<preparation::PreparedCase> prepared = preparation::prepare_cases(scenario);
+  std::vector<engine::CaseInputs> inputs;
   inputs.reserve(prepared.size());
-  std::vector<CaseInputs*> together;
-  for (const PreparedCase& one : prepared) {
+  std::vector<engine::CaseInputs*> together;
+  for (const preparation::PreparedCase& one : prepared) {
     inputs.push_back(one.inputs());
     together.push_back(&inputs.back());
-    ASSERT_TRUE(share_lanes(inputs.front(), inputs.back()));
+    ASSERT_TRUE(engine::share_lanes(inputs.front(), inputs.back()));
   }
-  const StopFlag never = false;
+  const engine::StopFlag never = false;
   std::atomic<float> progress = 0.0F;
-  const std::vector<CaseResult> results = simulate(together, never, progress);
+  const std::vector<engine::CaseResult> results = engine::simulate(together, never, progress);
   for (std::size_t n = 0; n < prepared.size(); ++n) {
-    const CaseOutput alone = run_case(scenario, prepared[n].spec().name);
+    const CaseOutput alone = run_named_case(scenario, prepared[n].spec().name);
     EXPECT_EQ(results[n].servo.data(), alone.result.servo.data()) << prepared[n].spec().name;
   }
   EXPECT_NE(results[0].servo.data(), results[1].servo.data());
@@ -155,11 +156,11 @@ TEST(Hysteresis, ChangesOverWithoutAJump) {
   const std::string errors =
       "[errors.machine.EYX]\nreversal = { width_um = 10.0, distance_mm = 0.05 }\n";
   const std::string program = "G17 G21 G40 G90 G94\nG1 X1 F1000\nX0.4\nX0.41\nX0.38\nX0.9\nM30\n";
-  const CaseOutput output =
-      run_case(machine_with_hysteresis(
-                   program, "[record]\nperiod_ms = 0.6\n" + one_case("ideal", "ideal"), errors),
-               "ideal");
-  const Series& series = output.result.servo;
+  const CaseOutput output = run_named_case(
+      machine_with_hysteresis(program, "[record]\nperiod_ms = 0.6\n" + one_case("ideal", "ideal"),
+                              errors),
+      "ideal");
+  const records::Series& series = output.result.servo;
   const std::size_t x = series.column("true_linear", 'X').value();
   const std::size_t y = series.column("tool_deviation", 'Y').value();
   constexpr double kSteepest = 1.5 * 0.5 * 10.0 / (0.5 * 0.05);  // um/mm
@@ -184,10 +185,10 @@ TEST(Hysteresis, LeavesHalfItsWidthToACorrectionByTheMean) {
       "[errors.machine.EXX]\npolynomial_um = [1.0, 0.05]\n"
       "reversal = { width_um = 4.0, distance_mm = 0.05 }\n";
   const CaseOutput output =
-      run_case(machine_with_hysteresis(iso_230_2_program(1),
-                                       "[record]\nperiod_ms = 10.0\n" + corrected, errors),
-               "feedback");
-  const Series& series = output.result.servo;
+      run_named_case(machine_with_hysteresis(iso_230_2_program(1),
+                                             "[record]\nperiod_ms = 10.0\n" + corrected, errors),
+                     "feedback");
+  const records::Series& series = output.result.servo;
   const std::size_t deviation = series.column("tool_deviation", 'X').value();
   double least = 0.0, most = 0.0;
   for (std::size_t n = 0; n < series.rows(); ++n) {
@@ -219,4 +220,4 @@ TEST(Hysteresis, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::hysteresis_test
+}  // namespace servomill::sim::run::hysteresis_test

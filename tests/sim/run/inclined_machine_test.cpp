@@ -9,9 +9,10 @@
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 
-namespace servomill::sim::inclined_machine_test {
+namespace servomill::sim::run::inclined_machine_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -31,7 +32,7 @@ std::string message_with(const std::string& old_text, const std::string& new_tex
   const fs::path file = fs::path(testing::TempDir()) / "inclined_machine_test.toml";
   std::ofstream(file) << machine;
   try {
-    read_machine_file(file);
+    input::read_machine_file(file);
   } catch (const InputError& e) {
     const std::string what = e.what();
     return what.substr(what.find(".toml:") + 6);
@@ -40,7 +41,8 @@ std::string message_with(const std::string& old_text, const std::string& new_tex
 }
 
 TEST(DirectionOfAnAxis, InclinesIt) {
-  const MachineSettings machine = read_machine_file(kMachines / "generic_nutating_head_bc.toml");
+  const model::MachineSettings machine =
+      input::read_machine_file(kMachines / "generic_nutating_head_bc.toml");
   const auto& B = machine.chain.at(Axis::B);
   EXPECT_TRUE(B.is_inclined);
   EXPECT_LT((plant::direction_of(B) - Vector3d(0.0, std::sqrt(0.5), std::sqrt(0.5))).norm(), 1e-15);
@@ -79,7 +81,7 @@ TEST(MachineFiles, GoWhereTheirJointsSay) {
   for (const auto& entry : fs::directory_iterator(kMachines)) {
     if (entry.path().extension() != ".toml") continue;
     ++machines;
-    const MachineSettings machine = read_machine_file(entry.path());
+    const model::MachineSettings machine = input::read_machine_file(entry.path());
     plant::InverseSettings settings;
     settings.lower = machine.nc.lower;
     settings.upper = machine.nc.upper;
@@ -104,4 +106,4 @@ TEST(MachineFiles, GoWhereTheirJointsSay) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::inclined_machine_test
+}  // namespace servomill::sim::run::inclined_machine_test

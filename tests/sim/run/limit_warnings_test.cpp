@@ -5,7 +5,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::limit_warnings_test {
+namespace servomill::sim::run::limit_warnings_test {
 namespace {
 
 // Y is 1 um off for each mm of X: 60 um at the end of line 3, 20 um and less in line 4.
@@ -28,13 +28,13 @@ std::string note_of(const CaseOutput& output) {
 // do.
 TEST(Saturation, IsToldWithItsLimitLineAndTime) {
   const std::string feedback = "type = \"feedback\"\n";
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       kProgram, kErrors + one_case("free", feedback) +
                     one_case("size", feedback + "max_um = 50.0\n") +
                     one_case("rate", feedback + "max_rate_mm_per_s = 0.09\n") +
                     one_case("ideal", feedback + "max_um = 50.0\n", "servo = \"ideal\"\n"));
-  EXPECT_EQ(note_of(run_case(scenario, "free")), "none");
-  const CaseOutput size = run_case(scenario, "size");
+  EXPECT_EQ(note_of(run_named_case(scenario, "free")), "none");
+  const CaseOutput size = run_named_case(scenario, "size");
   ASSERT_EQ(size.notes.size(), 1U);
   EXPECT_NE(size.notes[0].find("small.ngc:3: warning: case size: strategy feedback: virtual "
                                "displacement of Y saturated at 50 um, first here, "),
@@ -42,7 +42,7 @@ TEST(Saturation, IsToldWithItsLimitLineAndTime) {
       << size.notes[0];
   // how long, from the recorded place of X
   const auto beyond = [](const CaseOutput& one, const char* what) {
-    const Series& servo = one.result.servo;
+    const records::Series& servo = one.result.servo;
     double rows = 0.0;
     for (std::size_t n = 0; n < servo.rows(); ++n) {
       if (servo.at(n, servo.column(what, 'X').value()) > 50.0) rows += 1.0;
@@ -52,34 +52,34 @@ TEST(Saturation, IsToldWithItsLimitLineAndTime) {
   constexpr double kRows = 6 * ms;  // of 1 ms, where it begins and ends
   ASSERT_EQ(size.result.saturations.size(), 1U);
   EXPECT_NEAR(size.result.saturations[0].time, beyond(size, "meas_linear"), kRows);
-  const CaseOutput ideal = run_case(scenario, "ideal");
+  const CaseOutput ideal = run_named_case(scenario, "ideal");
   ASSERT_EQ(ideal.result.saturations.size(), 1U);
   EXPECT_NEAR(ideal.result.saturations[0].time, beyond(ideal, "true_linear"), kRows);
-  EXPECT_NE(note_of(run_case(scenario, "rate"))
+  EXPECT_NE(note_of(run_named_case(scenario, "rate"))
                 .find(": strategy feedback: rate of the virtual displacement of Y saturated at "
                       "0.09 mm/s, first here, "),
             std::string::npos)
-      << note_of(run_case(scenario, "rate"));
+      << note_of(run_named_case(scenario, "rate"));
 }
 
 // Runs in lockstep tell the same.
 TEST(Saturation, IsTheSameInLockstep) {
   const std::string feedback = "type = \"feedback\"\nmax_um = 50.0\n";
-  const Scenario scenario = small_scenario(kProgram, kErrors + one_case("a", feedback) +
-                                                         one_case("b", feedback,
-                                                                  "work_offset = { "
-                                                                  "X_mm = 7.0 }\n"));
-  PreparationCache cache;
-  const std::vector<PreparedCase> cases = prepare_cases(scenario, &cache);
-  std::vector<CaseInputs> inputs;
-  for (const PreparedCase& one : cases) inputs.push_back(one.inputs());
-  std::vector<CaseInputs*> together;
-  for (CaseInputs& one : inputs) together.push_back(&one);
-  const StopFlag never = false;
+  const model::Scenario scenario = small_scenario(kProgram, kErrors + one_case("a", feedback) +
+                                                                one_case("b", feedback,
+                                                                         "work_offset = { "
+                                                                         "X_mm = 7.0 }\n"));
+  preparation::PreparationCache cache;
+  const std::vector<preparation::PreparedCase> cases = preparation::prepare_cases(scenario, &cache);
+  std::vector<engine::CaseInputs> inputs;
+  for (const preparation::PreparedCase& one : cases) inputs.push_back(one.inputs());
+  std::vector<engine::CaseInputs*> together;
+  for (engine::CaseInputs& one : inputs) together.push_back(&one);
+  const engine::StopFlag never = false;
   std::atomic<float> progress = 0.0F;
-  const auto results = simulate(together, never, progress);
+  const auto results = engine::simulate(together, never, progress);
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    const CaseOutput alone = run_case(scenario, cases[k].spec().name);
+    const CaseOutput alone = run_named_case(scenario, cases[k].spec().name);
     ASSERT_EQ(alone.result.saturations.size(), 1U);
     ASSERT_EQ(results[k].saturations.size(), 1U);
     EXPECT_EQ(results[k].saturations[0].first, alone.result.saturations[0].first);
@@ -91,36 +91,36 @@ TEST(Saturation, IsTheSameInLockstep) {
 TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
   const std::string table =
       "type = \"table\"\nbase_axis = \"X\"\nspacing_rule = \"free\"\nspacing_mm = 10.0\n";
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario(kProgram, kErrors + one_case("wide", table) +
                                    one_case("short", table + "from_mm = -20.0\nto_mm = 55.0\n") +
                                    one_case("both", table + "from_mm = -15.0\nto_mm = 155.0\n"));
-  EXPECT_EQ(note_of(run_case(scenario, "wide")), "none");
-  const CaseOutput one = run_case(scenario, "short");
+  EXPECT_EQ(note_of(run_named_case(scenario, "wide")), "none");
+  const CaseOutput one = run_named_case(scenario, "short");
   ASSERT_EQ(one.notes.size(), 1U);  // points every 10 mm: the last one at 60
   EXPECT_TRUE(one.notes[0].ends_with(
       "small.ngc:7: warning: case short: strategy table: the table over X ends at 60.0000 mm, the "
       "program goes on to 150.0000 mm; from there on the last value is held"))
       << one.notes[0];
   EXPECT_TRUE(
-      note_of(run_case(scenario, "both"))
+      note_of(run_named_case(scenario, "both"))
           .ends_with("small.ngc:5: warning: case both: strategy table: the table over X ends "
                      "at -15.0000 mm, the program goes on to -20.0000 mm; from there on the "
                      "last value is held"))
-      << note_of(run_case(scenario, "both"));
+      << note_of(run_named_case(scenario, "both"));
 }
 
 // EYX = 1 um/mm: 7 mm away Y is wrong by 7 um everywhere.
 TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
   const std::string gcode = "type = \"gcode\"\n", moved = "work_offset = { X_mm = 7.0 }\n",
                     ideal = "servo = \"ideal\"\n";
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       kProgram, kErrors + one_case("here", gcode, ideal) + one_case("moved", gcode, ideal + moved) +
                     one_case("old", gcode + "rewrite_origin = \"program\"\n", ideal + moved) +
                     one_case("unmoved", gcode + "rewrite_origin = \"program\"\n", ideal));
   // largest distance of Y from the error curve of a place `shift` mm away
   const auto off = [&](const char* name, double shift) {
-    const Series servo = run_case(scenario, name).result.servo;
+    const records::Series servo = run_named_case(scenario, name).result.servo;
     const std::size_t x = *servo.column("ref_linear", 'X'), y = *servo.column("true_linear", 'Y');
     const std::size_t line = *servo.column("line");
     double largest = 0.0;
@@ -138,4 +138,4 @@ TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::limit_warnings_test
+}  // namespace servomill::sim::run::limit_warnings_test

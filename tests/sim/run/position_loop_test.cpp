@@ -90,7 +90,7 @@ std::vector<std::string_view> names() {
 
 }  // namespace servomill::strategies
 
-namespace servomill::sim {
+namespace servomill::sim::run {
 namespace {
 
 constexpr const char* kProgram = "G1 X60 Y20 F3000\nG4 P0.3\nG1 X0\nM2\n";
@@ -108,7 +108,7 @@ std::string case_of(const std::string& name, const std::string& type,
          "\n";
 }
 
-void expect_same(const Series& one, const Series& other) {
+void expect_same(const records::Series& one, const records::Series& other) {
   ASSERT_EQ(one.rows(), other.rows());
   ASSERT_EQ(one.width(), other.width());
   for (std::size_t row = 0; row < one.rows(); ++row) {
@@ -124,10 +124,10 @@ TEST(PositionLoop, AProportionalTermIsALargerGain) {
                            "[machine_override.axis.X.backlash_compensation]\nwidth = \"10 um\"\n"
                            "time_ms = 10.0\n"}) {
     SCOPED_TRACE(more);
-    const CaseOutput with_term = run_case(
+    const CaseOutput with_term = run_named_case(
         small_scenario(kProgram, case_of("one", "proportional") + machine_with("32 1/s", more)),
         "one");
-    const CaseOutput with_gain = run_case(
+    const CaseOutput with_gain = run_named_case(
         small_scenario(kProgram, case_of("one", "none") + machine_with("64 1/s", more)), "one");
     expect_same(with_term.result.servo, with_gain.result.servo);
   }
@@ -137,10 +137,10 @@ TEST(PositionLoop, AProportionalTermIsALargerGain) {
 TEST(PositionLoop, AConstantVelocityDisplacesAnAxisAtRest) {
   const double v = 1e-3, Kv = 40.0;
   const CaseOutput out =
-      run_case(small_scenario(kProgram, case_of("one", "constant", "velocity = 1e-3") +
-                                            machine_with("40 1/s")),
-               "one");
-  const Series& servo = out.result.servo;
+      run_named_case(small_scenario(kProgram, case_of("one", "constant", "velocity = 1e-3") +
+                                                  machine_with("40 1/s")),
+                     "one");
+  const records::Series& servo = out.result.servo;
   const std::size_t last = servo.rows() - 1;
   const double y = servo.at(last, *servo.column("true_linear", 'Y'));
   const double y_cmd = servo.at(last, *servo.column("cmd_linear", 'Y'));
@@ -150,13 +150,13 @@ TEST(PositionLoop, AConstantVelocityDisplacesAnAxisAtRest) {
 
 // Lag mode: an axis at constant speed is behind by v / Kv, with an integral term by nothing.
 TEST(PositionLoop, AnIntegralTermFollowsARampWithoutError) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario("G1 X60 Y20 F3000\nM2\n", case_of("lag", "none") +
                                                    case_of("integral", "integral", "gain = 400.0") +
                                                    machine_with("40 1/s"));
   const double feed_X = kSpeed * 60.0 / std::hypot(60.0, 20.0);
   for (const auto& [name, expected] : {std::pair{"lag", feed_X / 40.0}, {"integral", 0.0}}) {
-    const Series servo = run_case(scenario, name).result.servo;
+    const records::Series servo = run_named_case(scenario, name).result.servo;
     const auto rows = rows_within(servo, 50.0, 55.0);
     const double behind =
         mean_of(servo, "cmd_linear", 'X', rows) - mean_of(servo, "fb_linear", 'X', rows);
@@ -166,21 +166,21 @@ TEST(PositionLoop, AnIntegralTermFollowsARampWithoutError) {
 }
 
 TEST(PositionLoop, RunsInLockstepHaveTheBitsOfRunsAlone) {
-  std::vector<Scenario> points;
+  std::vector<model::Scenario> points;
   for (int n = 0; n < 11; ++n) {
     const std::string gain = "gain = " + std::to_string(10 * n);
     points.push_back(small_scenario(
         kProgram, case_of("one", n % 2 == 0 ? "integral" : "proportional", gain + ".0") +
                       machine_with("32 1/s")));
   }
-  static const StopFlag kNever = false;
+  static const engine::StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
   std::size_t ended = 0;
   const auto compare_each = [&](std::vector<EndedPoint>&& some) {
     for (const EndedPoint& one : some) {
       ++ended;
       ASSERT_EQ(one.result.status, PointStatus::done) << one.result.reason;
-      const CaseOutput alone = run_case(points[one.place], "one");
+      const CaseOutput alone = run_named_case(points[one.place], "one");
       expect_same(one.result.cases.front().result.servo, alone.result.servo);
     }
   };
@@ -189,7 +189,7 @@ TEST(PositionLoop, RunsInLockstepHaveTheBitsOfRunsAlone) {
 }
 
 TEST(PositionLoop, AbsurdValuesEndTheCase) {
-  const Scenario scenario = small_scenario(
+  const model::Scenario scenario = small_scenario(
       kProgram, case_of("nan", "not_finite") + case_of("fast", "constant", "velocity = 1e30") +
                     case_of("well", "constant", "velocity = 1e-3") + machine_with("40 1/s"));
   const RunOutput out = run_scenario(scenario, {});
@@ -207,11 +207,11 @@ TEST(PositionLoop, AbsurdValuesEndTheCase) {
 // Ideal axes have no position loop.
 TEST(PositionLoop, DoesNothingOnIdealAxes) {
   const auto ideal = [](const std::string& type, const std::string& keys) {
-    return run_case(small_scenario(kProgram,
-                                   "[[case]]\nname = \"one\"\nservo = \"ideal\"\n"
-                                   "[[case.strategy]]\ntype = \"" +
-                                       type + "\"\n" + keys),
-                    "one");
+    return run_named_case(small_scenario(kProgram,
+                                         "[[case]]\nname = \"one\"\nservo = \"ideal\"\n"
+                                         "[[case.strategy]]\ntype = \"" +
+                                             type + "\"\n" + keys),
+                          "one");
   };
   expect_same(ideal("constant", "velocity = 1.0\n").result.servo, ideal("none", "").result.servo);
 }
@@ -232,4 +232,4 @@ TEST(PositionLoop, DoesNotAllocateInARun) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::run

@@ -8,19 +8,19 @@
 #include <memory>
 #include <string>
 
-namespace servomill::sim::result_stream_test {
+namespace servomill::sim::run::result_stream_test {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{10000};
 
-std::vector<Signal> signals() {
+std::vector<records::Signal> signals() {
   return {{.name = "time", .units = "s", .long_name = "time", .labels = "", .scale = ""},
           {.name = "true_linear",
            .units = "mm",
            .long_name = "actual position",
            .labels = "XYZ",
            .scale = "axis_linear",
-           .storage = Storage::float64,
+           .storage = records::Storage::float64,
            .quantum = 0x1p-20}};
 }
 
@@ -29,8 +29,8 @@ double value(std::size_t row, std::size_t column) {
   return std::sin(static_cast<double>(row)) / static_cast<double>(column + 1);
 }
 
-Series some_series(std::size_t rows, const RowKeeping& keeping) {
-  RowKeeper keeper(signals(), keeping, rows);
+records::Series some_series(std::size_t rows, const records::RowKeeping& keeping) {
+  records::RowKeeper keeper(signals(), keeping, rows);
   for (std::size_t row = 0; row < rows; ++row) {
     const double values[] = {value(row, 0), value(row, 1), value(row, 2), value(row, 3)};
     keeper.add(values);
@@ -38,7 +38,8 @@ Series some_series(std::size_t rows, const RowKeeping& keeping) {
   return keeper.take();
 }
 
-CaseResult sent(const std::shared_ptr<CaseResult>& result, const RowKeeping& keeping) {
+engine::CaseResult sent(const std::shared_ptr<engine::CaseResult>& result,
+                        const records::RowKeeping& keeping) {
   strategies::PluginChild child("strategy x (x.so)", [&] {
     return [&](strategies::ProcessPipe& to) { write_result(*result, to); };
   });
@@ -48,11 +49,11 @@ CaseResult sent(const std::shared_ptr<CaseResult>& result, const RowKeeping& kee
   return read_result(child, keeping);
 }
 
-void expect_same(const Series& one, const Series& other) {
+void expect_same(const records::Series& one, const records::Series& other) {
   ASSERT_EQ(one.rows(), other.rows());
   ASSERT_EQ(one.width(), other.width());
   for (std::size_t k = 0; k < one.signals().size(); ++k) {
-    const Signal &a = one.signals()[k], &b = other.signals()[k];
+    const records::Signal &a = one.signals()[k], &b = other.signals()[k];
     EXPECT_EQ(a.name + a.units + a.long_name + a.labels + a.scale,
               b.name + b.units + b.long_name + b.labels + b.scale);
     EXPECT_EQ(a.offset, b.offset);
@@ -69,17 +70,17 @@ void expect_same(const Series& one, const Series& other) {
 
 // Rows in memory or on the disk, on either side.
 TEST(ResultStream, KeepsEveryBit) {
-  const RowKeeping in_memory, on_disk = {.folder = "", .most_in_memory = 0.0};
-  for (const RowKeeping& there : {in_memory, on_disk}) {
-    for (const RowKeeping& here : {in_memory, on_disk}) {
+  const records::RowKeeping in_memory, on_disk = {.folder = "", .most_in_memory = 0.0};
+  for (const records::RowKeeping& there : {in_memory, on_disk}) {
+    for (const records::RowKeeping& here : {in_memory, on_disk}) {
       for (const std::size_t rows : {1UL, 1024UL, 20001UL}) {
-        const auto result = std::make_shared<CaseResult>();
+        const auto result = std::make_shared<engine::CaseResult>();
         result->outcome = {false, false, "axis Y: following error beyond 10 mm", 'Y', 1.25};
         result->servo = some_series(rows, there);
         result->last_ticks = some_series(3, in_memory);
         result->saturations = {{.joint = 1, .of_rate = true, .limit = 0.1, .first = 0.2}, {}};
         result->simulated_time = 1.26;
-        const CaseResult got = sent(result, here);
+        const engine::CaseResult got = sent(result, here);
         EXPECT_FALSE(got.outcome.finished);
         EXPECT_FALSE(got.outcome.interrupted);
         EXPECT_EQ(got.outcome.reason, result->outcome.reason);
@@ -100,8 +101,8 @@ TEST(ResultStream, KeepsEveryBit) {
 
 // A case that has stopped where it begins has no last ticks.
 TEST(ResultStream, KeepsWhatIsEmpty) {
-  const auto result = std::make_shared<CaseResult>();
-  const CaseResult got = sent(result, {});
+  const auto result = std::make_shared<engine::CaseResult>();
+  const engine::CaseResult got = sent(result, {});
   EXPECT_TRUE(got.outcome.finished);
   EXPECT_EQ(got.servo.rows(), 0U);
   EXPECT_EQ(got.last_ticks.width(), 0U);
@@ -137,4 +138,4 @@ TEST(ResultStream, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::result_stream_test
+}  // namespace servomill::sim::run::result_stream_test

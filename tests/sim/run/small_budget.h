@@ -11,7 +11,7 @@
 #include "sim/run/budget.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::small_budget {
+namespace servomill::sim::run::small_budget {
 
 inline constexpr double kFeed = 1394.0 / 60.0;  // mm/s
 inline constexpr double kKv = 60.0;             // 1/s
@@ -56,7 +56,7 @@ inline void expect_sum(const Budget& budget) {
 }
 
 inline Budget budget_of(const std::string& toml, const char* program = kProgram) {
-  const Scenario scenario = small_scenario(program, toml);
+  const model::Scenario scenario = small_scenario(program, toml);
   const auto budgets = find_budgets(scenario, budget_quantities(scenario));
   EXPECT_EQ(budgets.size(), 1U);
   EXPECT_EQ(budgets.front().note, "");
@@ -83,4 +83,4 @@ inline void expect_nothing_else(const Budget& budget, const std::vector<Cause>& 
   EXPECT_LT(largest(budget.remainder), least);
 }
 
-}  // namespace servomill::sim::small_budget
+}  // namespace servomill::sim::run::small_budget

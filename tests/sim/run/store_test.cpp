@@ -11,7 +11,7 @@
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::store_test {
+namespace servomill::sim::run::store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ class RunFile : public testing::Test {
   fs::path folder_;
 };
 
-Scenario scenario() {
+model::Scenario scenario() {
   std::string cases;
   for (std::size_t i = 0; i < kCases; ++i) {
     cases += "[[case]]\nname = \"case" + std::to_string(i) + "\"\n";
@@ -46,11 +46,11 @@ CaseOutput output(std::size_t number) {
   out.name = "case" + std::to_string(number);
   out.sections = {""};
   out.duration = static_cast<double>(number);
-  out.result.servo = Series({{"time", "s", "time", "", ""},
-                             {"s", "mm", "arc length", "", ""},
-                             {"rapid", "1", "rapid", "", ""},
-                             {"section", "1", "section", "", ""},
-                             {"true_linear", "mm", "position", "XYZ", "axis_linear"}});
+  out.result.servo = records::Series({{"time", "s", "time", "", ""},
+                                      {"s", "mm", "arc length", "", ""},
+                                      {"rapid", "1", "rapid", "", ""},
+                                      {"section", "1", "section", "", ""},
+                                      {"true_linear", "mm", "position", "XYZ", "axis_linear"}});
   for (std::size_t n = 0; n < kRows; ++n) {
     double* row = out.result.servo.add_row();
     for (std::size_t c = 0; c < out.result.servo.width(); ++c) {
@@ -61,17 +61,17 @@ CaseOutput output(std::size_t number) {
 }
 
 TEST_F(RunFile, KilledAtAnyWriteHasEveryCompleteCase) {
-  const Scenario described = scenario();
+  const model::Scenario described = scenario();
   std::atomic<std::size_t> complete = 0;
   RunStore store(path("out.h5"), false, described);
-  FileSnapshots snapshots(store.partial_path(), folder_ / "snapshots", complete);
+  records::FileSnapshots snapshots(store.partial_path(), folder_ / "snapshots", complete);
   for (std::size_t i = 0; i < kCases; ++i) {
     store.add(output(i));
     ++complete;
   }
   store.commit({});
   EXPECT_GT(snapshots.all().size(), 10 * kCases);
-  for (const FileSnapshots::Snapshot& left : snapshots.all()) {
+  for (const records::FileSnapshots::Snapshot& left : snapshots.all()) {
     // the first cases, and those around the number that a group holds at its head by itself
     if (left.promised >= 2 && left.promised < kHeld) continue;
     SCOPED_TRACE(left.path);
@@ -93,7 +93,7 @@ std::string bytes(const std::string& path) {
 }
 
 TEST_F(RunFile, IsTheSameForTheSameCases) {
-  const Scenario described = scenario();
+  const model::Scenario described = scenario();
   for (const std::string name : {"a.h5", "b.h5"}) {
     RunStore store(path(name), false, described);
     for (std::size_t i = 0; i < 3; ++i) store.add(output(i));
@@ -105,15 +105,15 @@ TEST_F(RunFile, IsTheSameForTheSameCases) {
 }
 
 TEST_F(RunFile, TakesRowsFromTheDiskAsTheyAre) {
-  const Scenario described = scenario();
+  const model::Scenario described = scenario();
   const CaseOutput in_memory = output(0);
-  const Series& servo = in_memory.result.servo;
-  auto spool = std::make_shared<SeriesSpool>(
-      servo.signals(), SpoolFormat{folder_, 16, described.record.compression});
+  const records::Series& servo = in_memory.result.servo;
+  auto spool = std::make_shared<records::SeriesSpool>(
+      servo.signals(), records::SpoolFormat{folder_, 16, described.record.compression});
   spool->append(servo.data());
   spool->finish();
   CaseOutput on_disk = in_memory;
-  on_disk.result.servo = Series(servo.signals(), std::move(spool));
+  on_disk.result.servo = records::Series(servo.signals(), std::move(spool));
   RunStore store(path("out.h5"), false, described);
   store.add(on_disk);
   store.commit({});
@@ -121,18 +121,18 @@ TEST_F(RunFile, TakesRowsFromTheDiskAsTheyAre) {
 }
 
 TEST_F(RunFile, SpeaksNotOfUnfinishedCasesWhenItIsComplete) {
-  const Scenario described = scenario();
+  const model::Scenario described = scenario();
   RunStore store(path("out.h5"), false, described);
   store.add(output(0));
   fs::copy_file(store.partial_path(), path("before.h5"));
-  EXPECT_TRUE(InputFile(path("before.h5")).has("/unfinished"));
+  EXPECT_TRUE(records::InputFile(path("before.h5")).has("/unfinished"));
   store.commit({});
-  EXPECT_FALSE(InputFile(path("out.h5")).has("/unfinished"));
+  EXPECT_FALSE(records::InputFile(path("out.h5")).has("/unfinished"));
 }
 
 // Errors of a machine whose X lies far from its zero, and whose Y has no travel.
 TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
-  const Scenario far =
+  const model::Scenario far =
       small_scenario("G1 Z1 F1000\nM2\n",
                      "machine_errors = \"true\"\n"
                      "[machine_override.axis.X]\ntravel_mm = [600.0, 3400.0]\n"
@@ -143,7 +143,7 @@ TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
                      "[program.start]\nX_mm = 700.0\n[[case]]\nname = \"one\"\n");
   RunStore store(path("out.h5"), false, far);
   store.commit({});
-  const InputFile file(path("out.h5"));
+  const records::InputFile file(path("out.h5"));
   const auto x = file.values("/errors/true/X/position"), exx = file.values("/errors/true/X/EXX");
   ASSERT_EQ(x.size(), exx.size());
   EXPECT_EQ(x.size(), 5601U) << "a place each 0.5 mm";
@@ -162,4 +162,4 @@ TEST_F(RunFile, HasErrorsOverAllOfTheTravelAndLocationErrors) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::store_test
+}  // namespace servomill::sim::run::store_test

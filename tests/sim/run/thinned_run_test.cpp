@@ -9,7 +9,7 @@
 #include "sim/records/row_thinning.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::thinned_run_test {
+namespace servomill::sim::run::thinned_run_test {
 namespace {
 
 constexpr double kSingle = 1e-6;  // relative: means and rms are kept as float32
@@ -42,7 +42,7 @@ std::string quantity(const std::string& name, const std::string& keys) {
   return "[[quantity]]\nname = \"" + name + "\"\n" + keys;
 }
 
-Scenario scenario(const std::string& record) {
+model::Scenario scenario(const std::string& record) {
   std::string quantities;
   for (const std::string statistic : {"max", "rms", "mean", "range"}) {
     const std::string keys = "statistic = \"" + statistic + "\"\n";
@@ -61,18 +61,18 @@ Scenario scenario(const std::string& record) {
 
 class ThinnedRun : public testing::Test {
  protected:
-  const Scenario all = scenario("period_ms = 1.0\n");
-  const Scenario thinned = scenario("max_size_GB = 0.001\n");
+  const model::Scenario all = scenario("period_ms = 1.0\n");
+  const model::Scenario thinned = scenario("max_size_GB = 0.001\n");
   const RunOutput of_all = run_scenario(all, {});
   const RunOutput of_thinned = run_scenario(thinned, {});
 };
 
 TEST_F(ThinnedRun, HasFewerRowsThatStandForAll) {
   for (std::size_t i = 0; i < of_all.cases.size(); ++i) {
-    const Series& every = of_all.cases[i].result.servo;
-    const Series& some = of_thinned.cases[i].result.servo;
+    const records::Series& every = of_all.cases[i].result.servo;
+    const records::Series& some = of_thinned.cases[i].result.servo;
     EXPECT_LT(some.rows(), every.rows() / 4);
-    const std::size_t samples = some.column(kSamples).value();
+    const std::size_t samples = some.column(records::kSamples).value();
     double sum = 0.0;
     for (std::size_t row = 0; row < some.rows(); ++row) sum += some.at(row, samples);
     EXPECT_EQ(sum, static_cast<double>(every.rows()));
@@ -82,9 +82,10 @@ TEST_F(ThinnedRun, HasFewerRowsThatStandForAll) {
 TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
   ASSERT_EQ(of_all.comparison.size(), of_thinned.comparison.size());
   for (std::size_t i = 0; i < of_all.comparison.size(); ++i) {
-    const ComparisonRow &wanted = of_all.comparison[i], &found = of_thinned.comparison[i];
+    const evaluation::ComparisonRow &wanted = of_all.comparison[i],
+                                    &found = of_thinned.comparison[i];
     SCOPED_TRACE(wanted.case_name + " " + wanted.quantity + " " + wanted.statistic);
-    if (quantity_entry(wanted.quantity).needs_baseline) {
+    if (evaluation::quantity_entry(wanted.quantity).needs_baseline) {
       EXPECT_NEAR(found.value, wanted.value, kBetween);
       EXPECT_EQ(found.note, "at the rows that are recorded (record.period_ms)");
     } else if (wanted.statistic == "max" || wanted.statistic == "range") {
@@ -97,12 +98,13 @@ TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
 }
 
 TEST_F(ThinnedRun, IsEstimatedAndReported) {
-  const RunEstimate takes = check_scenario(thinned);
+  const preparation::RunEstimate takes = check_scenario(thinned);
   EXPECT_TRUE(takes.is_thinned);
   EXPECT_EQ(takes.file, 0.25e6);
-  EXPECT_NE(thinning_message(takes).find("the file takes at most 0.00025 GB (a quarter of "
-                                         "record.max_size_GB = 0.001)"),
-            std::string::npos);
+  EXPECT_NE(
+      preparation::thinning_message(takes).find("the file takes at most 0.00025 GB (a quarter of "
+                                                "record.max_size_GB = 0.001)"),
+      std::string::npos);
   EXPECT_FALSE(check_scenario(scenario("period_ms = 1.0\nmax_size_GB = 1\n")).is_thinned);
 }
 
@@ -111,4 +113,4 @@ TEST_F(ThinnedRun, IsRefusedWhereThePeriodIsGiven) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::thinned_run_test
+}  // namespace servomill::sim::run::thinned_run_test

@@ -6,7 +6,7 @@
 #include "sim/evaluation/comparison.h"
 #include "tests/sim/five_axis_program.h"
 
-namespace servomill::sim::tip_rewrite_test {
+namespace servomill::sim::run::tip_rewrite_test {
 namespace {
 
 const std::string kFine =
@@ -22,17 +22,17 @@ std::string gcode(const std::string& more = kFine) {
   return kPlain + corrected_case("gcode", "ideal", "gcode", more);
 }
 
-void expect_corrected(const Scenario& scenario, const std::string& section) {
-  const Deviation without = deviation_in(run_case(scenario, "none"), section);
+void expect_corrected(const model::Scenario& scenario, const std::string& section) {
+  const Deviation without = deviation_in(run_named_case(scenario, "none"), section);
   EXPECT_GT(without.tip, 10.0);
   EXPECT_GT(without.axis, 10.0);
-  const Deviation left = deviation_in(run_case(scenario, "gcode"), section);
+  const Deviation left = deviation_in(run_named_case(scenario, "gcode"), section);
   EXPECT_LT(left.tip, kTip);
   EXPECT_LT(left.axis, kAxis);
 }
 
 TEST(RewrittenTipMoves, PutTipAndToolAxisRightOnGreatCircles) {
-  const Scenario scenario = trunnion_scenario(
+  const model::Scenario scenario = trunnion_scenario(
       "G21 G90 G94 G64 P0.00005\nT1 M6\nG43.5 H1\nG0 X-20 Y5 Z20 I0.2 J-0.2 K1\n(MSG, line)\n"
       "G1 X0 Y10 Z25 I0.25 J0 K1 F1500\nX10 Y20 I0.2 J0.3 K1\n(MSG, end)\nM30\n",
       gcode());
@@ -40,7 +40,7 @@ TEST(RewrittenTipMoves, PutTipAndToolAxisRightOnGreatCircles) {
 }
 
 TEST(RewrittenTipMoves, FollowRotaryWordsAndArcs) {
-  const Scenario scenario = trunnion_scenario(
+  const model::Scenario scenario = trunnion_scenario(
       "G21 G90 G94 G64 P0.00005\nT1 M6\nG43.4 H1\nG0 X-20 Y5 Z20 A15 C10\n(MSG, line)\n"
       "G1 X0 Y10 A20 C30 F1500\n(MSG, arc)\nG3 X10 Y20 I0 J10 A18 C40\n(MSG, end)\nM30\n",
       gcode());
@@ -50,33 +50,33 @@ TEST(RewrittenTipMoves, FollowRotaryWordsAndArcs) {
 
 // The tip stands: a line on which only the tool axis turns has rows, and takes its time.
 TEST(RewrittenTipMoves, TurnTheToolAxisWhereTheTipStands) {
-  const Scenario scenario = trunnion_scenario(
+  const model::Scenario scenario = trunnion_scenario(
       "G21 G90 G94 G64 P0.00005\nT1 M6\nG43.5 H1\nG0 X-20 Y5 Z20 I0.2 J-0.2 K1\n(MSG, turn)\n"
       "G1 I0.3 J0.1 K1 F600\n(MSG, end)\nG1 X0\nM30\n",
       gcode());
   expect_corrected(scenario, "turn");
   // the same feed of the rotation, beside its corners
-  const double before = run_case(scenario, "none").duration;
-  EXPECT_NEAR(run_case(scenario, "gcode").duration, before, 0.05 * before);
+  const double before = run_named_case(scenario, "none").duration;
+  EXPECT_NEAR(run_named_case(scenario, "gcode").duration, before, 0.05 * before);
 }
 
 TEST(RewrittenTipMoves, LeaveTheToolAxisToLinearAxesAlone) {
-  const Scenario scenario = trunnion_scenario(
+  const model::Scenario scenario = trunnion_scenario(
       "G21 G90 G94 G64 P0.00005\nT1 M6\nG43.5 H1\nG0 X-20 Y5 Z20 I0.2 J-0.2 K1\n(MSG, line)\n"
       "G1 X0 Y10 Z25 I0.25 J0 K1 F1500\n(MSG, end)\nM30\n",
       gcode("iterations = \"converged\"\ntolerance_um = 0.02\ntolerance_urad = 0.05\n"));
-  const Deviation left = deviation_in(run_case(scenario, "gcode"), "line");
+  const Deviation left = deviation_in(run_named_case(scenario, "gcode"), "line");
   EXPECT_LT(left.tip, kTip);
   EXPECT_GT(left.axis, 10.0);
 }
 
 TEST(RewrittenTipMoves, KeepTheFeedOfTheTip) {
-  const Scenario scenario = trunnion_scenario(
+  const model::Scenario scenario = trunnion_scenario(
       "G21 G90 G94 G64 P0.00005\nT1 M6\nG43.5 H1\nG0 X-20 Y5 Z20 I0.2 J-0.2 K1\n(MSG, line)\n"
       "G1 X0 Y10 Z25 I0.25 J0 K1 F300\n(MSG, end)\nM30\n",
       gcode());
-  const CaseOutput out = run_case(scenario, "gcode");
-  const Series& series = out.result.servo;
+  const CaseOutput out = run_named_case(scenario, "gcode");
+  const records::Series& series = out.result.servo;
   const std::size_t s = *series.column("s"), time = *series.column("time");
   const std::size_t middle = series.rows() / 2;
   const double feed = (series.at(middle + 20, s) - series.at(middle - 20, s)) /
@@ -103,4 +103,4 @@ TEST(RewrittenTipMoves, AreRefusedInTiltedPlanesAndWithASecondTool) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::tip_rewrite_test
+}  // namespace servomill::sim::run::tip_rewrite_test

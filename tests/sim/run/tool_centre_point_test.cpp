@@ -6,7 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::tool_centre_point_test {
+namespace servomill::sim::run::tool_centre_point_test {
 namespace {
 
 constexpr double kStraight = 0.5;    // um: chords of the planner at a tolerance of 10 um
@@ -20,7 +20,7 @@ const std::string kTool = "[[program.tool]]\nnumber = 1\nlength_mm = 100.0\n";
 const std::string kCases = "[[case]]\nname = \"ideal\"\nservo = \"ideal\"\n" + kTool;
 const Eigen::Vector3d kFrom(-40, 10, 20), kTo(40, 20, 30);  // mm
 
-Eigen::Vector3d point(const Series& series, const std::string& name, std::size_t row) {
+Eigen::Vector3d point(const records::Series& series, const std::string& name, std::size_t row) {
   return {series.at(row, *series.column(name, 'X')), series.at(row, *series.column(name, 'Y')),
           series.at(row, *series.column(name, 'Z'))};
 }
@@ -30,8 +30,8 @@ double off_line(const Eigen::Vector3d& p) {
 }
 
 TEST(ToolCentrePoint, IsNominallyOnTheStraightLineAtEqualS) {
-  const CaseOutput output = run_case(small_scenario(kTip, kCases), "ideal");
-  const Series& series = output.result.servo;
+  const CaseOutput output = run_named_case(small_scenario(kTip, kCases), "ideal");
+  const records::Series& series = output.result.servo;
   const std::size_t line = *series.column("line");
   double furthest = 0.0;
   for (std::size_t n = 0; n < series.rows(); ++n) {
@@ -55,8 +55,8 @@ TEST(ToolCentrePoint, IsNominallyOnTheStraightLineAtEqualS) {
 
 TEST(ToolCentrePoint, FollowsThroughTheServoLoops) {
   const CaseOutput output =
-      run_case(small_scenario(kTip, "[[case]]\nname = \"servo\"\n" + kTool), "servo");
-  const Series& series = output.result.servo;
+      run_named_case(small_scenario(kTip, "[[case]]\nname = \"servo\"\n" + kTool), "servo");
+  const records::Series& series = output.result.servo;
   double worst = 0.0;
   for (std::size_t n = 0; n < series.rows(); ++n) {
     if (series.at(n, *series.column("line")) != 4.0) continue;
@@ -67,7 +67,7 @@ TEST(ToolCentrePoint, FollowsThroughTheServoLoops) {
 }
 
 TEST(ToolCentrePoint, TellsWhatTheNcPutRightAndWhereItSlowedDown) {
-  const CaseOutput output = run_case(
+  const CaseOutput output = run_named_case(
       small_scenario("G43.5 H1\nG0 X-40 Z20 I-0.3 J0.01 K1\nG1 X40 I0.3 J0.01 K1 F4000\nM2\n",
                      kCases),
       "ideal");
@@ -107,4 +107,4 @@ TEST(ToolCentrePoint, SaysWhereTheTravelEnds) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::tool_centre_point_test
+}  // namespace servomill::sim::run::tool_centre_point_test

@@ -4,7 +4,7 @@
 #include "plant/vocabulary/units.h"
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::uncorrectable_test {
+namespace servomill::sim::run::uncorrectable_test {
 namespace {
 
 // Pitch of X, 0.2 urad a millimetre: the tool tilts with x, most at the end of line 3. B stands at
@@ -21,27 +21,27 @@ std::string one_case(const std::string& name, const std::string& more) {
 }
 
 TEST(Uncorrectable, IsToldWithItsSizeAndLine) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario(kProgram, kErrors + one_case("linear", "action = \"compensate\"\n") +
                                    one_case("all", "action = \"compensate\"\naxes = \"all\"\n") +
                                    one_case("generates", "action = \"impose\"\n"));
-  const std::vector<std::string> notes = run_case(scenario, "linear").notes;
+  const std::vector<std::string> notes = run_named_case(scenario, "linear").notes;
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_TRUE(notes[0].ends_with(
       "small.ngc:3: warning: case linear: strategy feedback cannot correct 18.0 urad of the tool "
       "axis here, the most found"))
       << notes[0];
-  EXPECT_TRUE(run_case(scenario, "all").notes.empty());
-  EXPECT_TRUE(run_case(scenario, "generates").notes.empty());
+  EXPECT_TRUE(run_named_case(scenario, "all").notes.empty());
+  EXPECT_TRUE(run_named_case(scenario, "generates").notes.empty());
 }
 
 TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
-  const Scenario scenario =
+  const model::Scenario scenario =
       small_scenario(kProgram, kErrors + "[record]\nuncorrectable = true\n" +
                                    one_case("linear", "action = \"compensate\"\n") +
                                    one_case("all", "action = \"compensate\"\naxes = \"all\"\n") +
                                    one_case("generates", "action = \"impose\"\n"));
-  const Series linear = run_case(scenario, "linear").result.servo;
+  const records::Series linear = run_named_case(scenario, "linear").result.servo;
   const auto tip = linear.column("uncorrectable_tip"), axis = linear.column("uncorrectable_axis");
   ASSERT_TRUE(tip && axis);
   const std::size_t x = linear.column("ref_linear", 'X').value();
@@ -50,15 +50,15 @@ TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
     EXPECT_NEAR(linear.at(n, *axis), 0.2 * std::abs(linear.at(n, x)), kTol);
     EXPECT_NEAR(linear.at(n, *tip), 0.0, 1e-6);
   }
-  const Series all = run_case(scenario, "all").result.servo;
+  const records::Series all = run_named_case(scenario, "all").result.servo;
   for (std::size_t n = 0; n < all.rows(); ++n) {
     const double B = all.at(n, all.column("ref_rotary", 'B').value());
     if (B > 2.0) {
       EXPECT_NEAR(all.at(n, all.column("uncorrectable_axis").value()), 0.0, kTol) << B;
     }
   }
-  EXPECT_FALSE(run_case(scenario, "generates").result.servo.column("uncorrectable_tip"));
+  EXPECT_FALSE(run_named_case(scenario, "generates").result.servo.column("uncorrectable_tip"));
 }
 
 }  // namespace
-}  // namespace servomill::sim::uncorrectable_test
+}  // namespace servomill::sim::run::uncorrectable_test

@@ -7,15 +7,16 @@
 #include <cstring>
 #include <map>
 
+#include "sim/input/read_scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/point_batch.h"
 
-namespace servomill::sim::lockstep_test {
+namespace servomill::sim::sweep::lockstep_test {
 namespace {
 
 const std::string kScenario = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
 
-Scenario scenario_with(const std::vector<std::string>& more) {
+model::Scenario scenario_with(const std::vector<std::string>& more) {
   std::vector<std::string> changes = {
       "case=[{name=\"only\"}]",
       "quantity=[{name=\"following_error\",axis=\"X\",statistic=\"max\"}]",
@@ -23,7 +24,7 @@ Scenario scenario_with(const std::vector<std::string>& more) {
       "program.feed_override=3.0",
   };
   changes.insert(changes.end(), more.begin(), more.end());
-  return read_scenario(kScenario, changes);
+  return input::read_scenario(kScenario, changes);
 }
 
 // Settings in which one of eight may differ from the others.
@@ -53,19 +54,21 @@ const std::map<std::string, std::vector<std::string>> kOdd = {
 };
 
 // The k-th of eight runs that differ a little.
-Scenario usual(std::size_t k) { return scenario_with({fmt::format("machine.nc.Kv={}", 50 + k)}); }
+model::Scenario usual(std::size_t k) {
+  return scenario_with({fmt::format("machine.nc.Kv={}", 50 + k)});
+}
 
-std::map<std::size_t, BatchResult> run(const std::vector<Scenario>& points,
-                                       const StopFlag& stop = false) {
+std::map<std::size_t, run::BatchResult> run(const std::vector<model::Scenario>& points,
+                                            const engine::StopFlag& stop = false) {
   std::atomic<float> progress = 0.0F;
-  PreparationCache cache;  // else each has a strategy of its own
-  std::map<std::size_t, BatchResult> results;
-  const auto keep = [&](std::vector<EndedPoint>&& ended) {
-    for (EndedPoint& one : ended) {
+  preparation::PreparationCache cache;  // else each has a strategy of its own
+  std::map<std::size_t, run::BatchResult> results;
+  const auto keep = [&](std::vector<run::EndedPoint>&& ended) {
+    for (run::EndedPoint& one : ended) {
       EXPECT_TRUE(results.emplace(one.place, std::move(one.result)).second) << one.place;
     }
   };
-  run_batch(points, stop, progress, keep, {.keep = Keep::series, .cache = &cache});
+  run::run_batch(points, stop, progress, keep, {.keep = run::Keep::series, .cache = &cache});
   return results;
 }
 
@@ -74,11 +77,11 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-void expect_same(const BatchResult& one, const BatchResult& other, std::size_t place) {
+void expect_same(const run::BatchResult& one, const run::BatchResult& other, std::size_t place) {
   EXPECT_EQ(other.status, one.status) << other.reason;
   EXPECT_EQ(other.reason, one.reason);
   ASSERT_EQ(other.cases.size(), 1U);
-  const CaseResult &a = one.cases[0].result, &b = other.cases[0].result;
+  const engine::CaseResult &a = one.cases[0].result, &b = other.cases[0].result;
   EXPECT_TRUE(same_bits(a.servo.data(), b.servo.data())) << "run " << place;
   EXPECT_TRUE(same_bits(a.last_ticks.data(), b.last_ticks.data())) << "run " << place;
 }
@@ -86,22 +89,22 @@ void expect_same(const BatchResult& one, const BatchResult& other, std::size_t p
 class Lockstep : public testing::TestWithParam<std::string> {};
 
 TEST_P(Lockstep, GivesEachTheBitsThatItHasAlone) {
-  static const std::vector<BatchResult> kAlone = [] {
-    std::vector<BatchResult> alone;
+  static const std::vector<run::BatchResult> kAlone = [] {
+    std::vector<run::BatchResult> alone;
     for (std::size_t k = 0; k < 8; ++k) alone.push_back(std::move(run({usual(k)}).at(0)));
     return alone;
   }();
-  const Scenario odd = scenario_with(kOdd.at(GetParam()));
+  const model::Scenario odd = scenario_with(kOdd.at(GetParam()));
   const auto odd_alone = run({odd});
   for (const std::size_t place : {std::size_t{0}, std::size_t{4}}) {
-    std::vector<Scenario> points;
+    std::vector<model::Scenario> points;
     for (std::size_t k = 0; k < 8; ++k) points.push_back(k == place ? odd : usual(k));
     const auto together = run(points);
     ASSERT_EQ(together.size(), 8U);
     for (std::size_t k = 0; k < 8; ++k) {
       expect_same(k == place ? odd_alone.at(0) : kAlone[k], together.at(k), k);
       if (k != place) {
-        EXPECT_EQ(together.at(k).status, PointStatus::done) << together.at(k).reason;
+        EXPECT_EQ(together.at(k).status, run::PointStatus::done) << together.at(k).reason;
       }
     }
   }
@@ -122,18 +125,18 @@ INSTANTIATE_TEST_SUITE_P(OneOfEight, Lockstep, testing::ValuesIn(names_of_odd())
 
 // The runs differ as the table above says.
 TEST(Lockstep, HasOddRunsThatAreOdd) {
-  std::map<std::string, BatchResult> odd;
+  std::map<std::string, run::BatchResult> odd;
   for (const auto& [name, changes] : kOdd) odd[name] = std::move(run({scenario_with(changes)})[0]);
-  const auto series = [&](const std::string& name) -> const Series& {
+  const auto series = [&](const std::string& name) -> const records::Series& {
     return odd.at(name).cases.at(0).result.servo;
   };
   const auto& last = odd.at("overflows").cases.at(0).result.last_ticks.data();
   EXPECT_TRUE(std::any_of(last.begin(), last.end(), [](double x) { return !std::isfinite(x); }));
-  EXPECT_EQ(odd.at("faults").status, PointStatus::stopped);
+  EXPECT_EQ(odd.at("faults").status, run::PointStatus::stopped);
   EXPECT_NE(odd.at("faults").reason.find("following error beyond 0.001 mm"), std::string::npos);
   for (const char* name : {"ends early", "uses cvode", "has a winding", "has friction",
                            "has regularised friction", "has bristles", "is ideal"}) {
-    EXPECT_EQ(odd.at(name).status, PointStatus::done) << name << ": " << odd.at(name).reason;
+    EXPECT_EQ(odd.at(name).status, run::PointStatus::done) << name << ": " << odd.at(name).reason;
   }
   EXPECT_LT(series("ends early").rows(), series("has a winding").rows());
 }
@@ -141,7 +144,7 @@ TEST(Lockstep, HasOddRunsThatAreOdd) {
 // Virtual encoders of two strategies in turn, at feeds of their own, one with a machine that stops:
 // they end one by one, until one of each strategy is left, and then one of all.
 TEST(Lockstep, OfVirtualEncodersGivesEachTheBitsThatItHasAlone) {
-  std::vector<Scenario> points;
+  std::vector<model::Scenario> points;
   for (std::size_t k = 0; k < 8; ++k) {
     const bool leads = k % 2 == 1;
     std::vector<std::string> changes = {
@@ -155,45 +158,45 @@ TEST(Lockstep, OfVirtualEncodersGivesEachTheBitsThatItHasAlone) {
   const auto together = run(points);
   ASSERT_EQ(together.size(), 8U);
   for (std::size_t k = 0; k < 8; ++k) {
-    EXPECT_EQ(together.at(k).status, k == 5 ? PointStatus::stopped : PointStatus::done);
+    EXPECT_EQ(together.at(k).status, k == 5 ? run::PointStatus::stopped : run::PointStatus::done);
     expect_same(run({points[k]}).at(0), together.at(k), k);
   }
 }
 
 TEST(RunBatch, TellsOfPointsAsSoonAsTheyHaveEnded) {
-  std::vector<Scenario> points;
+  std::vector<model::Scenario> points;
   for (int k = 0; k < 12; ++k) points.push_back(scenario_with({}));
   points[5] = scenario_with({"machine.nc.Kv=5000"});  // refused before anything runs
-  StopFlag stop = false;
+  engine::StopFlag stop = false;
   std::atomic<float> progress = 0.0F;
   std::vector<std::vector<std::size_t>> reported;
-  run_batch(points, stop, progress, [&](std::vector<EndedPoint>&& ended) {
+  run::run_batch(points, stop, progress, [&](std::vector<run::EndedPoint>&& ended) {
     reported.emplace_back();
-    for (const EndedPoint& one : ended) reported.back().push_back(one.place);
+    for (const run::EndedPoint& one : ended) reported.back().push_back(one.place);
     stop = reported.size() == 2;  // what has ended by then is kept, the others are never reported
   });
   EXPECT_EQ(reported, (std::vector<std::vector<std::size_t>>{{5}, {0, 1, 2, 3, 4, 6, 7, 8}}));
 }
 
 TEST(RunBatch, HoldsNoMoreRowsAtOnceThanItMay) {
-  const std::vector<Scenario> points(3, scenario_with({}));
-  const StopFlag never = false;
+  const std::vector<model::Scenario> points(3, scenario_with({}));
+  const engine::StopFlag never = false;
   std::atomic<float> progress = 0.0F;
   std::vector<std::size_t> reported;
-  const auto tell = [&](std::vector<EndedPoint>&& ended) {
+  const auto tell = [&](std::vector<run::EndedPoint>&& ended) {
     ASSERT_EQ(ended.size(), 1U);
     reported.push_back(ended.front().place);
   };
-  run_batch(points, never, progress, tell, {.rows = 1.0});
+  run::run_batch(points, never, progress, tell, {.rows = 1.0});
   EXPECT_EQ(reported, (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_EQ(progress, 1.0F);
 }
 
 TEST(RowsAtOnce, ShareTheMemoryAmongTheThreads) {
-  EXPECT_LE(rows_at_once(1), kMostRows);
-  EXPECT_GT(rows_at_once(1000), 0.0);
-  EXPECT_DOUBLE_EQ(rows_at_once(100000), rows_at_once(200000) * 2.0);
+  EXPECT_LE(run::rows_at_once(1), run::kMostRows);
+  EXPECT_GT(run::rows_at_once(1000), 0.0);
+  EXPECT_DOUBLE_EQ(run::rows_at_once(100000), run::rows_at_once(200000) * 2.0);
 }
 
 }  // namespace
-}  // namespace servomill::sim::lockstep_test
+}  // namespace servomill::sim::sweep::lockstep_test

@@ -6,7 +6,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim::selection_test {
+namespace servomill::sim::sweep::selection_test {
 namespace {
 
 TEST(Selection, OfOneShardIsAllInTheirOrder) {
@@ -84,4 +84,4 @@ TEST(ShardName, StandsBeforeTheEnding) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::selection_test
+}  // namespace servomill::sim::sweep::selection_test

@@ -10,7 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/sweep/run_sweep.h"
 
-namespace servomill::sim::sweep_test {
+namespace servomill::sim::sweep::sweep_test {
 namespace {
 
 const std::string kScenario = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
@@ -25,8 +25,8 @@ const std::string kSix =
     "case.table.strategy.time_constant_ms={linear=[0.0,20.0],count=3}";
 
 // All points by number; runs them alone where no control says otherwise.
-std::map<std::uint64_t, BatchResult> run_all(const Sweep& sweep, SweepControl control = {}) {
-  std::map<std::uint64_t, BatchResult> results;
+std::map<std::uint64_t, run::BatchResult> run_all(const Sweep& sweep, SweepControl control = {}) {
+  std::map<std::uint64_t, run::BatchResult> results;
   control.batch_done = [&](std::vector<SweepPoint>&& points) {
     for (SweepPoint& one : points) {
       EXPECT_EQ(one.values, sweep.design().point(one.index));
@@ -38,7 +38,8 @@ std::map<std::uint64_t, BatchResult> run_all(const Sweep& sweep, SweepControl co
 }
 
 // Bit for bit, NaN included.
-void expect_same(const std::vector<ComparisonRow>& a, const std::vector<ComparisonRow>& b) {
+void expect_same(const std::vector<evaluation::ComparisonRow>& a,
+                 const std::vector<evaluation::ComparisonRow>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(std::memcmp(&a[i].value, &b[i].value, sizeof(double)), 0)
@@ -46,8 +47,8 @@ void expect_same(const std::vector<ComparisonRow>& a, const std::vector<Comparis
   }
 }
 
-void expect_same(const std::map<std::uint64_t, BatchResult>& a,
-                 const std::map<std::uint64_t, BatchResult>& b) {
+void expect_same(const std::map<std::uint64_t, run::BatchResult>& a,
+                 const std::map<std::uint64_t, run::BatchResult>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [index, result] : a) {
     EXPECT_EQ(result.status, b.at(index).status);
@@ -61,8 +62,8 @@ TEST(Sweep, RunsEveryPointAsItWouldRunAlone) {
   const auto results = run_all(sweep);
   ASSERT_EQ(results.size(), 6U);
   for (const auto& [index, result] : results) {
-    EXPECT_EQ(result.status, PointStatus::done) << result.reason;
-    expect_same(result.rows, run_scenario(sweep.at(index), {}).comparison);
+    EXPECT_EQ(result.status, run::PointStatus::done) << result.reason;
+    expect_same(result.rows, run::run_scenario(sweep.at(index), {}).comparison);
   }
 }
 
@@ -96,7 +97,7 @@ TEST(Sweep, LeavesOutWhatIsDone) {
 
 TEST(Sweep, KeepsSignalsOnRequest) {
   SweepControl control;
-  control.keep = Keep::series;
+  control.keep = run::Keep::series;
   const auto results = run_all(sweep_of("program.feed_override=[1.0]"), control);
   ASSERT_EQ(results.at(0).cases.size(), 2U);
   EXPECT_EQ(results.at(0).cases[1].name, "table");
@@ -105,18 +106,18 @@ TEST(Sweep, KeepsSignalsOnRequest) {
 
 TEST(Sweep, SaysWhyAPointIsRefusedAndGoesOn) {
   const auto results = run_all(sweep_of("program.feed_override=[1.0,-1.0,2.0]"));
-  EXPECT_EQ(results.at(0).status, PointStatus::done);
-  EXPECT_EQ(results.at(1).status, PointStatus::refused);
+  EXPECT_EQ(results.at(0).status, run::PointStatus::done);
+  EXPECT_EQ(results.at(1).status, run::PointStatus::refused);
   EXPECT_EQ(results.at(1).reason,
             "sweep.\"program.feed_override\": program.feed_override = -1.0; must be > 0");
   EXPECT_TRUE(results.at(1).rows.empty());
-  EXPECT_EQ(results.at(2).status, PointStatus::done);
+  EXPECT_EQ(results.at(2).status, run::PointStatus::done);
 }
 
 TEST(Sweep, SaysWhereTheMachineStopped) {
   const auto results = run_all(sweep_of("machine.nc.following_error_limit_mm=[10.0,0.001]"));
-  EXPECT_EQ(results.at(0).status, PointStatus::done);
-  EXPECT_EQ(results.at(1).status, PointStatus::stopped);
+  EXPECT_EQ(results.at(0).status, run::PointStatus::done);
+  EXPECT_EQ(results.at(1).status, run::PointStatus::stopped);
   EXPECT_EQ(results.at(1).reason.substr(0, 43), "case nominal stopped: axis X: following err");
   EXPECT_TRUE(std::isnan(results.at(1).rows.at(0).value));
 }
@@ -125,11 +126,11 @@ TEST(Sweep, RefusesPointsThatAskForSomethingElse) {
   const auto results =
       run_all(sweep_of("\"case[1].name\"=[\"table\",\"tabel\"]",
                        {"quantity[0].cases=[\"nominal\"]", "quantity[0].baseline=nominal"}));
-  EXPECT_EQ(results.at(0).status, PointStatus::done);
-  EXPECT_EQ(results.at(1).status, PointStatus::done);
+  EXPECT_EQ(results.at(0).status, run::PointStatus::done);
+  EXPECT_EQ(results.at(1).status, run::PointStatus::done);
   const auto others = run_all(
       sweep_of("\"case[0].name\"=[\"nominal\",\"ideal\"]", {"quantity=[{name=\"cycle_time\"}]"}));
-  EXPECT_EQ(others.at(1).status, PointStatus::refused);
+  EXPECT_EQ(others.at(1).status, run::PointStatus::refused);
   EXPECT_EQ(others.at(1).reason,
             "asks for other quantities or cases than the scenario without its sweep");
 }
@@ -144,7 +145,7 @@ TEST(Sweep, GivesUpWhenItsResultsCannotBeWritten) {
 }
 
 TEST(Sweep, EndsWhenItIsStopped) {
-  const StopFlag stop = true;
+  const engine::StopFlag stop = true;
   SweepControl control;
   control.stop = &stop;
   EXPECT_TRUE(run_all(sweep_of(kSix), control).empty());
@@ -224,4 +225,4 @@ TEST(RefuseHopeless, TellsAFaultOfAllOfManyPoints) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::sweep_test
+}  // namespace servomill::sim::sweep::sweep_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace servomill::sim::base64_test {
+namespace servomill::sim::system::base64_test {
 namespace {
 
 // The examples of RFC 4648, section 10.
@@ -35,4 +35,4 @@ TEST(Base64, RefusesAnythingElse) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::base64_test
+}  // namespace servomill::sim::system::base64_test

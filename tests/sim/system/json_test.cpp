@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace servomill::sim::json_test {
+namespace servomill::sim::system::json_test {
 namespace {
 
 TEST(Json, EscapesWhatRfc8259Section7Forbids) {
@@ -47,4 +47,4 @@ TEST(Json, CanDoWithoutBlanks) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::json_test
+}  // namespace servomill::sim::system::json_test

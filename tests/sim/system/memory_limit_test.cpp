@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim::memory_limit_test {
+namespace servomill::sim::system::memory_limit_test {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -77,4 +77,4 @@ TEST(ResidentMemory, GrowsWithWhatIsHeld) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::memory_limit_test
+}  // namespace servomill::sim::system::memory_limit_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace servomill::sim::shared_cache_test {
+namespace servomill::sim::system::shared_cache_test {
 namespace {
 
 template <class... Parts>
@@ -140,4 +140,4 @@ TEST(SharedCache, GivesEveryThreadItsOwnFailure) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::shared_cache_test
+}  // namespace servomill::sim::system::shared_cache_test

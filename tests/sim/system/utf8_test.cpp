@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace servomill::sim::utf8_test {
+namespace servomill::sim::system::utf8_test {
 namespace {
 
 TEST(Utf8, CountsTheBytesOfACharacter) {
@@ -37,4 +37,4 @@ TEST(Utf8, FindsTheStartOfACharacter) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::utf8_test
+}  // namespace servomill::sim::system::utf8_test

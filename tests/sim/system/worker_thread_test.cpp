@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace servomill::sim::worker_thread_test {
+namespace servomill::sim::system::worker_thread_test {
 namespace {
 
 TEST(WorkerThread, DoesJobsInOrderInAnotherThread) {
@@ -84,4 +84,4 @@ TEST(ForEachIndex, ThrowsWhatACallThrew) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::worker_thread_test
+}  // namespace servomill::sim::system::worker_thread_test

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/system/read_file.h"
 
-namespace servomill::sim::write_file_test {
+namespace servomill::sim::system::write_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,4 +43,4 @@ TEST(WriteTextFile, SaysWhyItFails) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::write_file_test
+}  // namespace servomill::sim::system::write_file_test

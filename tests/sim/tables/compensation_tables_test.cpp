@@ -6,7 +6,7 @@
 
 #include "tests/sim/tables/rich_tables.h"
 
-namespace servomill::sim::compensation_tables_test {
+namespace servomill::sim::tables::compensation_tables_test {
 namespace {
 
 // 10 um in 100 mm, at the corrected position 0.01 % less; 2 um more upwards, 2 um less downwards.
@@ -80,4 +80,4 @@ TEST(CompensationTables, NoTableForAnAxisWithoutError) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::compensation_tables_test
+}  // namespace servomill::sim::tables::compensation_tables_test

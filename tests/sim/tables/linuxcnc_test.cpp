@@ -13,7 +13,7 @@
 #include "plant/geometry/volumetric.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim::linuxcnc_test {
+namespace servomill::sim::tables::linuxcnc_test {
 namespace {
 
 using plant::operator""_err;
@@ -95,7 +95,7 @@ TEST_P(BothTypes, TheAxisStandsWhereTheCommandSays) {
   TableRequest request = request_of(TableFormat::linuxcnc);
   request.comp_file_type = GetParam();
   request.spacing = 5.0 * mm;
-  const MachineSettings machine = machine_of("[w X b Y Z t]");
+  const model::MachineSettings machine = machine_of("[w X b Y Z t]");
   const auto tables = export_tables(machine, wavy_positioning(), request);
   const auto files = table_files(tables);
   const plant::VolumetricModel actual(machine.chain, wavy_positioning());
@@ -132,7 +132,7 @@ TEST(Linuxcnc, TurnsARotaryAxisToWhereTheCommandSays) {
   plant::ErrorModel errors;
   errors.component("ECC"_err) = plant::harmonic(50.0 * urad, 120.0 * deg);
   for (const plant::Sense sense : {plant::Sense::tool, plant::Sense::table}) {
-    MachineSettings machine = machine_of("[w C' X b Y Z t]");
+    model::MachineSettings machine = machine_of("[w C' X b Y Z t]");
     machine.chain.at(Axis::C).sense = sense;
     const auto tables = export_tables(machine, errors, request_of(TableFormat::linuxcnc));
     const JointCompensation joint(file_named(table_files(tables), "joint_3_c.comp").text, 0);
@@ -190,4 +190,4 @@ TEST(Linuxcnc, NamesWhatItCannotHold) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::linuxcnc_test
+}  // namespace servomill::sim::tables::linuxcnc_test

@@ -8,7 +8,7 @@
 #include "sim/tables/verify_tables.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 using plant::operator""_err;
 
@@ -69,4 +69,4 @@ inline TableRequest three_points(TableFormat format) {
   return request;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

@@ -8,11 +8,11 @@
 #include "plant/vocabulary/units.h"
 #include "sim/tables/table_files.h"
 
-namespace servomill::sim {
+namespace servomill::sim::tables {
 
 /// X -100..100, Y -50..150, Z 0..200 mm; rotary axes endless.
-inline MachineSettings machine_of(const std::string& structure) {
-  MachineSettings machine;
+inline model::MachineSettings machine_of(const std::string& structure) {
+  model::MachineSettings machine;
   machine.name = "small machine";
   machine.chain = plant::make_chain(plant::parse_structure(structure));
   constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -35,4 +35,4 @@ inline const TextFile& file_named(const std::vector<TextFile>& files, const std:
   throw std::logic_error("no file " + name);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::tables

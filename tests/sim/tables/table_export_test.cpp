@@ -11,14 +11,14 @@
 #include "plant/vocabulary/input_error.h"
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim::table_export_test {
+namespace servomill::sim::tables::table_export_test {
 namespace {
 
 using plant::operator""_err;
 
 constexpr double kSecondOrder = 0.02 * um;  // products of two errors: 40 um x 2e-4, both ways
 
-std::string refusal(const MachineSettings& machine, const plant::ErrorModel& errors,
+std::string refusal(const model::MachineSettings& machine, const plant::ErrorModel& errors,
                     const TableRequest& request) {
   try {
     export_tables(machine, errors, request);
@@ -149,7 +149,7 @@ class CrossFormats : public testing::TestWithParam<Control> {};
 // Positioning, straightness and squareness are functions of one axis each: the tables correct them
 // in the whole of the travel.
 TEST_P(CrossFormats, CorrectAllPoseErrorsWithoutAnglesEverywhere) {
-  const MachineSettings machine = machine_of("[w X b Y Z t]");
+  const model::MachineSettings machine = machine_of("[w X b Y Z t]");
   TableRequest request = request_of(GetParam().format);
   request.tool_length = 50.0 * mm;
   const auto tables = export_tables(machine, without_angles(), request);
@@ -281,7 +281,7 @@ TEST(TableExport, RefusesMorePointsThanTheControlTakes) {
 }
 
 TEST(TableExport, RefusesAnEndlessLinearAxis) {
-  MachineSettings machine = machine_of("[w X b Y Z t]");
+  model::MachineSettings machine = machine_of("[w X b Y Z t]");
   machine.nc.upper[1] = std::numeric_limits<double>::infinity();
   TableRequest request = request_of(TableFormat::linuxcnc);
   EXPECT_EQ(refusal(machine, without_angles(), request),
@@ -312,7 +312,7 @@ TEST(TableExport, CountsAxesWithoutTablesAsLeft) {
 
 // Entries of a rotary axis lie within 0..360 deg: those beyond the travel stand for angles below 0.
 TEST(TableExport, HeidenhainTurnsNegativeAnglesIntoOneTurn) {
-  MachineSettings machine = machine_of("[w B' X b Y Z t]");
+  model::MachineSettings machine = machine_of("[w B' X b Y Z t]");
   const int b = *machine.chain.layout.joint_of(Axis::B);
   machine.nc.lower[b] = -120.0 * deg;
   machine.nc.upper[b] = 90.0 * deg;
@@ -328,4 +328,4 @@ TEST(TableExport, HeidenhainTurnsNegativeAnglesIntoOneTurn) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::table_export_test
+}  // namespace servomill::sim::tables::table_export_test

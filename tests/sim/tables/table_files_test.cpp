@@ -5,7 +5,7 @@
 
 #include "tests/sim/tables/small_machine.h"
 
-namespace servomill::sim::table_files_test {
+namespace servomill::sim::tables::table_files_test {
 namespace {
 
 using plant::operator""_err;
@@ -261,4 +261,4 @@ M17
 }
 
 }  // namespace
-}  // namespace servomill::sim::table_files_test
+}  // namespace servomill::sim::tables::table_files_test

@@ -7,7 +7,7 @@
 #include "tests/sim/tables/rich_tables.h"
 #include "tests/text.h"
 
-namespace servomill::sim::table_mutations_test {
+namespace servomill::sim::tables::table_mutations_test {
 namespace {
 
 // Numbers of a line by their place in it.
@@ -198,4 +198,4 @@ TEST(TableMutations, TellsWhereAndByHowMuch) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::table_mutations_test
+}  // namespace servomill::sim::tables::table_mutations_test

@@ -6,7 +6,7 @@
 
 #include "tests/sim/tables/rich_tables.h"
 
-namespace servomill::sim::table_residuals_test {
+namespace servomill::sim::tables::table_residuals_test {
 namespace {
 
 std::vector<std::string> notes(TableFormat format, const plant::ErrorModel& errors) {
@@ -114,4 +114,4 @@ TEST(TableResiduals, MoreTablesThanASmallSinumerikHasAreReported) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::table_residuals_test
+}  // namespace servomill::sim::tables::table_residuals_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/tables/rich_tables.h"
 
-namespace servomill::sim::verify_tables_test {
+namespace servomill::sim::tables::verify_tables_test {
 namespace {
 
 TEST(VerifyTables, EveryFormatHoldsTheErrorModel) {
@@ -33,7 +33,7 @@ TEST(VerifyTables, EveryFormatHoldsTheErrorModel) {
 TEST(VerifyTables, OnChainsOfAnyOrderAndSense) {
   for (const char* structure : {"[w X Y b Z t]", "[w C' A' Y b X Z t]", "[w Y b X Z B t]"}) {
     for (const plant::Sense sense : {plant::Sense::tool, plant::Sense::table}) {
-      MachineSettings machine = machine_of(structure);
+      model::MachineSettings machine = machine_of(structure);
       for (auto& axis : machine.chain.axes) axis.sense = sense;
       plant::ErrorModel errors = rich_model();
       if (!machine.chain.layout.joint_of(Axis::C)) errors.component("ECC"_err) = {};
@@ -78,7 +78,7 @@ TEST(VerifyTables, RandomModelsAreVerified) {
   constexpr int kModels = 5;
   for (int n = 0; n < kModels; ++n) {
     for (const char* structure : {"[w X b Y Z t]", "[w C' A' Y b X Z t]", "[w Y b X Z B t]"}) {
-      const MachineSettings machine = machine_of(structure);
+      const model::MachineSettings machine = machine_of(structure);
       const plant::ErrorModel errors = random_model(engine, machine.chain.layout);
       for (const TableFormat format : {TableFormat::linuxcnc, TableFormat::heidenhain,
                                        TableFormat::siemens, TableFormat::csv}) {
@@ -112,4 +112,4 @@ TEST(VerifyTables, AnErrorThatDoesNotRepeatIsRefusedForATableThatDoes) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::verify_tables_test
+}  // namespace servomill::sim::tables::verify_tables_test

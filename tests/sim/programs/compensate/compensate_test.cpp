@@ -3,7 +3,7 @@
 
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim::compensate_test {
+namespace servomill::sim::programs::compensate_test {
 namespace {
 
 const std::string kNoErrors = "[errors.none]\nEXX = { constant_um = 0.0 }\n";
@@ -393,4 +393,4 @@ TEST(Compensate, RefusesMovesOfTheTip) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::compensate_test
+}  // namespace servomill::sim::programs::compensate_test

@@ -1,7 +1,7 @@
 // Motions of programs for other controls: arcs in every plane, rapids and endless axes.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::dialect_motion_test {
+namespace servomill::sim::programs::dialect_motion_test {
 namespace {
 
 TEST(DialectMotion, PolarMovesAreWrittenWhileZIsUnknown) {
@@ -223,4 +223,4 @@ TEST(DialectMotion, RapidsThatMayLeaveTheirLineAreTheUsersWord) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::dialect_motion_test
+}  // namespace servomill::sim::programs::dialect_motion_test

@@ -2,7 +2,7 @@
 // each way in which a written program once did what the original does not.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::dialect_rules_test {
+namespace servomill::sim::programs::dialect_rules_test {
 namespace {
 
 // G43 H1 comes in a block of its own: no height of the tip before the length is in force.
@@ -326,4 +326,4 @@ TEST(DialectRules, WhatNoBlockCanExpressIsAssumedInTheFile) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::dialect_rules_test
+}  // namespace servomill::sim::programs::dialect_rules_test

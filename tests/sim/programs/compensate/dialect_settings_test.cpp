@@ -2,7 +2,7 @@
 // functions that the control lacks.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::dialect_settings_test {
+namespace servomill::sim::programs::dialect_settings_test {
 namespace {
 
 TEST(DialectSettings, SmoothingHoldsForFeedsOnly) {
@@ -154,4 +154,4 @@ TEST(DialectSettings, RetractsThatGoDownAreRefused) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::dialect_settings_test
+}  // namespace servomill::sim::programs::dialect_settings_test

@@ -1,7 +1,7 @@
 // Programs for other controls than LinuxCNC: what they say, and what they refuse to say.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::dialect_test {
+namespace servomill::sim::programs::dialect_test {
 namespace {
 
 const std::string kProgram =
@@ -184,4 +184,4 @@ TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::dialect_test
+}  // namespace servomill::sim::programs::dialect_test

@@ -6,7 +6,7 @@
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/text.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Unit, plane, tool and spindle, as most of the programs begin.
 inline const std::string kDialectStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\n";
@@ -70,4 +70,4 @@ inline std::string refusal(Dialect dialect, const std::string& program) {
   return refusal(dialect_trial(dialect, program));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

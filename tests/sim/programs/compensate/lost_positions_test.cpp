@@ -1,7 +1,7 @@
 // Positions that tool changes and stops leave unknown, in programs for other controls.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::lost_positions_test {
+namespace servomill::sim::programs::lost_positions_test {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\n";
@@ -96,4 +96,4 @@ TEST(LostPositions, LeaveTheOtherAxesWhereTheyAreBehindG28) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::lost_positions_test
+}  // namespace servomill::sim::programs::lost_positions_test

@@ -3,7 +3,7 @@
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X10 Y10\nG43 H1 Z20\n";
@@ -210,4 +210,4 @@ TEST(OptionalBlocks, MustNotDecideAboutTheOrderOfARapid) {
 }
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

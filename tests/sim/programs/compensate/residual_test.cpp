@@ -4,9 +4,10 @@
 
 #include "sim/input/read_machine.h"
 
+#include "sim/input/read_scenario.h"
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim::residual_test {
+namespace servomill::sim::programs::residual_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -15,7 +16,7 @@ using Eigen::Vector3d;
 class Truth {
  public:
   Truth(const CompensateRequest& request, const Vector3d& p_ST)
-      : machine_(read_machine_file(request.machine_file)), p_ST_(p_ST) {
+      : machine_(input::read_machine_file(request.machine_file)), p_ST_(p_ST) {
     const auto models = read_models(request);
     model_.emplace(machine_.chain, models.begin()->second);
   }
@@ -29,15 +30,15 @@ class Truth {
  private:
   std::map<std::string, plant::ErrorModel> read_models(const CompensateRequest& request) const {
     const std::string file = request.error_file.empty() ? request.machine_file : request.error_file;
-    if (!request.error_file.empty()) return read_error_file(file, machine_.chain.layout);
-    const Document document = Document::from_file(file);
-    Reader root(document);
+    if (!request.error_file.empty()) return input::read_error_file(file, machine_.chain.layout);
+    const config::Document document = config::Document::from_file(file);
+    config::Reader root(document);
     std::map<std::string, plant::ErrorModel> models;
-    read_machine(root, &models);
+    input::read_machine(root, &models);
     root.finish();
     return models;
   }
-  MachineSettings machine_;
+  model::MachineSettings machine_;
   std::optional<plant::VolumetricModel> model_;
   Vector3d p_ST_;
 };
@@ -191,4 +192,4 @@ TEST(CompensateResidual, OfAPerfectIdentificationIsBelowTheTolerance) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::residual_test
+}  // namespace servomill::sim::programs::residual_test

@@ -22,7 +22,7 @@
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/correction.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 inline const std::string kWrittenPrefix = "compensate_";
 
@@ -88,4 +88,4 @@ inline std::string refusal(const Trial& trial) {
   return "taken";
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

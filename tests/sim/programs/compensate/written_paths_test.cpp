@@ -2,7 +2,7 @@
 // canned cycles, ends of helices, turns of endless axes.
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::written_paths_test {
+namespace servomill::sim::programs::written_paths_test {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X10 Y10 Z20\n";
@@ -119,4 +119,4 @@ TEST(WrittenTurns, OfAnEndlessAxisThatNoWordSaysAreRefused) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::written_paths_test
+}  // namespace servomill::sim::programs::written_paths_test

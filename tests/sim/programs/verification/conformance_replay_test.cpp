@@ -6,7 +6,7 @@
 #include "tests/sim/programs/verification/each_dialect.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim::conformance_replay_test {
+namespace servomill::sim::programs::conformance_replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,4 +44,4 @@ TEST_P(ConformanceReplay, ProgramsAreVerifiedOrRefused) {
 INSTANTIATE_TEST_SUITE_P(Dialects, ConformanceReplay, each_dialect(), name_of_dialect);
 
 }  // namespace
-}  // namespace servomill::sim::conformance_replay_test
+}  // namespace servomill::sim::programs::conformance_replay_test

@@ -7,7 +7,7 @@
 
 #include "sim/programs/compensate/compensate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 inline auto each_dialect() {
   return testing::Values(Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc, Dialect::siemens);
@@ -17,4 +17,4 @@ inline std::string name_of_dialect(const testing::TestParamInfo<Dialect>& info) 
   return std::string(kDialects[static_cast<std::size_t>(info.param)]);
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -10,7 +10,7 @@
 #include "sim/programs/verification/linuxcnc_replay.h"
 #include "sim/programs/verification/readings.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 using controllers::ActionKind;
@@ -166,4 +166,4 @@ bool is_within(const std::vector<Effect>& a, const std::vector<Effect>& b, doubl
   return true;
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

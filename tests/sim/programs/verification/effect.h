@@ -10,7 +10,7 @@
 #include "plant/vocabulary/axes.h"
 #include "sim/programs/compensate/compensate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Motion that goes nowhere and switches that change nothing are left out, and so are lines.
 struct Effect {
@@ -34,4 +34,4 @@ std::vector<Effect> linuxcnc_effects_of(const std::string& text, controllers::Pr
 /// Tells if both go along the same paths within `tolerance` (m), and do the same otherwise.
 bool is_within(const std::vector<Effect>& a, const std::vector<Effect>& b, double tolerance);
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

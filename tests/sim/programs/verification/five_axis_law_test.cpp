@@ -7,7 +7,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr int kShown = 2;  // programs that differ, in full
@@ -99,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, FiveAxisLaw,
                          });
 
 }  // namespace
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

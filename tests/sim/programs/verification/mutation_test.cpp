@@ -9,7 +9,7 @@
 #include "tests/sim/programs/verification/effect.h"
 #include "tests/sim/programs/verification/mutations.h"
 
-namespace servomill::sim::mutation_test {
+namespace servomill::sim::programs::mutation_test {
 namespace {
 
 const std::string kProgram =
@@ -97,7 +97,8 @@ CompensateRequest request_for(const std::string& program, bool has_errors, Diale
 std::vector<Effect> linuxcnc_effects(const std::string& text, const CompensateRequest& request) {
   controllers::ProgramSetup setup = program_setup(request.inputs, "mutant");
   setup.work_offset[0].head<3>() << 0.4, 0.35, -0.09;
-  return linuxcnc_effects_of(text, setup, read_machine_description(kRouter).machine.chain.layout);
+  return linuxcnc_effects_of(text, setup,
+                             input::read_machine_description(kRouter).machine.chain.layout);
 }
 
 std::vector<Effect> effects(const std::string& text, const CompensateRequest& request) {
@@ -188,4 +189,4 @@ TEST_P(Mutations, ThatChangeWhatTheControlDoesAreFound) {
 INSTANTIATE_TEST_SUITE_P(Dialects, Mutations, each_dialect(), name_of_dialect);
 
 }  // namespace
-}  // namespace servomill::sim::mutation_test
+}  // namespace servomill::sim::programs::mutation_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 // A line's begin: behind its number.
@@ -226,4 +226,4 @@ constexpr MutationKind kKinds[] = {
 
 std::span<const MutationKind> mutation_kinds() { return kKinds; }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -8,7 +8,7 @@
 #include "sim/programs/compensate/compensate.h"
 #include "tests/text.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 using Lines = std::vector<std::string>;
 
@@ -25,4 +25,4 @@ struct MutationKind {
 
 std::span<const MutationKind> mutation_kinds();
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

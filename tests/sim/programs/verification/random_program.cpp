@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr double kInch = 25.4;
@@ -374,4 +374,4 @@ void RandomProgram::plane() {
   line(normal_ == 2 ? "G17" : normal_ == 1 ? "G18" : "G19");
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Tools 1 and 2 (diameters 6 and 8 mm), all work systems; rotary axes A and C on request.
 /// Interrupted programs consist of little else than optional blocks ('/'), stops, reference moves
@@ -111,4 +111,4 @@ class RandomProgram {
   int normal_ = 2, tool_ = 1, loops_ = 0;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -4,7 +4,7 @@
 
 #include "tests/sim/programs/verification/random_program.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 // Each program has some of the kinds, so that many can be written for every control.
 std::vector<RandomProgram::Step> RandomProgram::interrupted_steps() {
@@ -143,4 +143,4 @@ void RandomProgram::naming() {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 
 #include "tests/sim/programs/verification/random_program.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 void RandomProgram::arc_by_radius() {
   const int a = (normal_ + 1) % 3, b = (normal_ + 2) % 3;
@@ -233,4 +233,4 @@ void RandomProgram::optional_cut() {
   line("G1" + axis(2, uniform(-3, 3)) + " F" + number(400));
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -4,7 +4,7 @@
 
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 namespace {
 
 constexpr std::size_t kLongestReason = 100;
@@ -58,4 +58,4 @@ void ReplayCount::print(Dialect dialect, int often) const {
   }
 }
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -6,7 +6,7 @@
 
 #include "sim/programs/compensate/compensate.h"
 
-namespace servomill::sim {
+namespace servomill::sim::programs {
 
 /// Refusals by the writer's own words are counted apart from those by the verification: a user can
 /// act on the first, the second are faults of the writer or the reader.
@@ -20,4 +20,4 @@ struct ReplayCount {
   void print(Dialect dialect, int often = 1) const;
 };
 
-}  // namespace servomill::sim
+}  // namespace servomill::sim::programs

@@ -7,7 +7,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim::replay_law_test {
+namespace servomill::sim::programs::replay_law_test {
 namespace {
 
 constexpr const char* kNoErrors = "[errors.none]\nEXX = { constant_um = 0.0 }\n";
@@ -83,4 +83,4 @@ TEST_P(ReplayLaw, HoldsForInterruptedPrograms) {
 INSTANTIATE_TEST_SUITE_P(Dialects, ReplayLaw, each_dialect(), name_of_dialect);
 
 }  // namespace
-}  // namespace servomill::sim::replay_law_test
+}  // namespace servomill::sim::programs::replay_law_test

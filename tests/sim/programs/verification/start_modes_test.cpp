@@ -5,7 +5,7 @@
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::start_modes_test {
+namespace servomill::sim::programs::start_modes_test {
 namespace {
 
 // Modes and the word of the written program that ends or sets them.
@@ -173,4 +173,4 @@ TEST(StartModes, NoWordOfTheFrameIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::start_modes_test
+}  // namespace servomill::sim::programs::start_modes_test

@@ -3,7 +3,7 @@
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::unsafe_order_test {
+namespace servomill::sim::programs::unsafe_order_test {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X10 Y10 Z5\n";
@@ -115,4 +115,4 @@ TEST(UnsafeOrder, AnEndlessAxisBehindAnOptionalStop) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::unsafe_order_test
+}  // namespace servomill::sim::programs::unsafe_order_test

@@ -3,7 +3,7 @@
 
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim::verification_test {
+namespace servomill::sim::programs::verification_test {
 namespace {
 
 const std::string kProgram =
@@ -103,4 +103,4 @@ TEST(Verification, ReplaysLinuxCncFromTwoStarts) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::verification_test
+}  // namespace servomill::sim::programs::verification_test

@@ -1,0 +1,119 @@
+#include "sim/engine/recorded_signals.h"
+
+#include <cmath>
+#include <iterator>
+
+#include "plant/vocabulary/units.h"
+
+namespace servomill::sim::engine {
+namespace {
+
+using records::Signal;
+
+constexpr const char* kLinear = "axis_linear";
+constexpr const char* kRotary = "axis_rotary";
+constexpr const char* kXyz = "xyz";
+constexpr const char* kIjk = "ijk";
+
+// Letters of the joints from one to before another that the machine has.
+std::string letters(const model::MachineSettings& machine, int from, int to) {
+  std::string out;
+  for (int joint = from; joint < to; ++joint) {
+    if (machine.chain.layout.has(joint)) out += machine.chain.layout.letter_of(joint);
+  }
+  return out;
+}
+
+const Signal kToolSignals[] = {
+    {"tool_position_nominal", "mm",
+     "tool centre point of the ideal machine on the programmed path, in the workpiece", "XYZ",
+     kXyz},
+    {"tool_position_true", "mm", "tool centre point, in the workpiece", "XYZ", kXyz},
+    {"tool_deviation", "um", "true minus nominal tool centre point at equal s", "XYZ", kXyz},
+    {"tool_axis_nominal", "1", "unit tool axis of the ideal machine", "IJK", kIjk},
+    {"tool_axis_true", "1", "unit tool axis, in the workpiece", "IJK", kIjk},
+    {"contour_error", "um", "distance of the true tool centre point to the nominal path", "", ""},
+};
+
+// A resolution of one metre in the unit of a signal; 0: the signal is never rounded.
+double per_metre(const Signal& signal) {
+  const std::string& unit = signal.units;
+  constexpr double kArm = 1.0;  // m
+  constexpr double kTime = 10 * ms;
+  constexpr double kStrength = 0.1 / (1 * um);   // A/m and N
+  constexpr double kStiffness = 1.0 / (1 * um);  // N/m
+  if (unit == "mm") return 1.0 / mm;
+  if (unit == "um") return 1.0 / um;
+  if (unit == "deg") return 1.0 / (kArm * deg);
+  if (unit == "mm/s") return 1.0 / (mm * kTime);
+  if (unit == "deg/s") return 1.0 / (kArm * deg * kTime);
+  if (unit == "A" || unit == "N m") return kStrength;
+  if (unit == "N") return kStiffness;
+  return signal.scale == kIjk ? 1.0 / kArm : 0.0;
+}
+
+}  // namespace
+
+std::vector<Signal> recorded_signals(const model::MachineSettings& machine, SignalParts parts) {
+  const std::string linear = letters(machine, 0, kLinearJoints);
+  const std::string rotary = letters(machine, kLinearJoints, kJoints);
+  std::vector<Signal> all = {
+      {"time", "s", "time since the start of the program", "", ""},
+      {"s", "mm", "arc length on the path of the original program", "", ""},
+      {"line", "1", "line of the original program", "", ""},
+      {"section", "1", "section of the original program, index into attribute sections", "", ""},
+      {"rapid", "1", "1 while a rapid move is interpolated", "", ""},
+  };
+  const auto per_axis = [&](const std::string& name, const char* unit_linear,
+                            const char* unit_rotary, const std::string& what) {
+    if (!linear.empty())
+      all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
+    if (!rotary.empty())
+      all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
+  };
+  per_axis("ref", "mm", "deg", "interpolated position");
+  per_axis("cmd", "mm", "deg", "setpoint after corrections");
+  per_axis("fb", "mm", "deg", "position feedback, virtual displacement included");
+  per_axis("meas", "mm", "deg", "reading of the scale");
+  per_axis("true", "mm", "deg", "position of the slide or table");
+  per_axis("following_error", "um", "deg", "setpoint minus position feedback");
+  per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
+  per_axis("current", "A", "A", "torque-forming current");
+  per_axis("torque", "N m", "N m", "motor torque");
+  if (parts.imposed) {
+    all.push_back({"imposed_linear", "um",
+                   "displacement that the imposed errors ask for at the programmed position",
+                   linear, kLinear});
+  }
+  all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
+  if (parts.uncorrectable) {
+    all.push_back({"uncorrectable_tip", "um",
+                   "TCP deviation that the axes cannot compensate, identified", "", ""});
+    all.push_back({"uncorrectable_axis", "urad",
+                   "tool axis deviation that the axes cannot compensate, identified", "", ""});
+  }
+  if (parts.cut) {
+    all.push_back({"cutting_force", "N",
+                   "average force of the work on the cutter, in the workpiece", "XYZ", kXyz});
+    all.push_back({"structural_deflection", "um",
+                   "by which the cut bends the structure behind the scales, part of "
+                   "tool_position_true",
+                   linear, kLinear});
+  }
+  if (parts.programmed && !linear.empty()) {
+    all.push_back({"programmed_linear", "mm",
+                   "position of the ideal machine on the programmed path, linear axes", linear,
+                   kLinear});
+  }
+  return all;
+}
+
+void round_to(const model::RecordFormat& format, std::vector<Signal>& signals) {
+  for (Signal& signal : signals) {
+    const double most = format.resolution * per_metre(signal);
+    if (most > 0.0) signal.quantum = std::exp2(std::floor(std::log2(most)));
+    if (per_metre(signal) > 0.0 && signal.name != "s") signal.storage = format.storage;
+  }
+}
+
+}  // namespace servomill::sim::engine

@@ -1,0 +1,27 @@
+/// Signals of the recording of a case: names, units, what they say and to what they are rounded.
+#pragma once
+
+#include <vector>
+
+#include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
+#include "sim/records/series.h"
+
+namespace servomill::sim::engine {
+
+/// Signals that not every case has.
+struct SignalParts {
+  bool imposed = false;        // displacement by imposed errors
+  bool uncorrectable = false;  // deviation that the axes cannot compensate
+  bool cut = false;            // force and deflection
+  bool programmed = false;     // positions on the programmed path
+};
+
+/// All signals of a row, in the order of its columns.
+std::vector<records::Signal> recorded_signals(const model::MachineSettings& machine,
+                                              SignalParts parts);
+
+/// Gives every signal the quantum and the storage of a format.
+void round_to(const model::RecordFormat& format, std::vector<records::Signal>& signals);
+
+}  // namespace servomill::sim::engine

@@ -1,0 +1,31 @@
+/// Reads scenarios and machine files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/model/scenario.h"
+
+namespace servomill::sim::input {
+
+struct ScenarioDocument;
+class InputFiles;
+
+/// Reads a scenario and the files that it names (paths relative to it).
+/// @param changes  what --set says, in order
+/// @throws InputError with all faults of a file at once
+model::Scenario read_scenario(const std::string& path,
+                              const std::vector<std::string>& changes = {});
+
+/// The same from a resolved document (as stored in a result file), program text included.
+model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
+
+/// Common part of both: reads the document with the machine in it (sim/input/scenario_document.h).
+/// @param files  where the program is looked for
+model::Scenario read_document(ScenarioDocument scenario, const std::string& name,
+                              InputFiles& files);
+
+/// Only a machine, for `check`.
+model::MachineSettings read_machine_file(const std::string& path);
+
+}  // namespace servomill::sim::input
