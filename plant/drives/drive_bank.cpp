@@ -173,7 +173,10 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
     c.gentle[n][j] = bounds.gentle[n];
   }
   c.tanh_end[j] = kTanhEnd * f.v0;
+  prepare_parabolas(block, j, drive);
+}
 
+void DriveBank::prepare_parabolas(std::size_t block, std::size_t j, const PreparedDrive& drive) {
   std::vector<ParabolaBlock>& parabolas = parabolas_[block];
   parabolas.resize(drive.whole.size() + drive.rungs.size());
   const auto copy = [&](ParabolaBlock& to, const Propagator& from, double h) {

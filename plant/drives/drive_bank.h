@@ -87,6 +87,7 @@ class DriveBank {
   void prepare_stretches();
   void prepare_block(std::size_t block);
   void prepare_lane(std::size_t block, std::size_t j, const PreparedDrive& drive);
+  void prepare_parabolas(std::size_t block, std::size_t j, const PreparedDrive& drive);
 
   std::vector<std::shared_ptr<const PreparedDrive>> drives_;  // of each lane
   std::vector<double> inverse_r_;                             // 1/m, of each lane

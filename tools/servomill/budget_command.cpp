@@ -170,12 +170,7 @@ void print_json(const sim::run::Budget& budget) {
   fmt::print("{}\n", out.number("remainder_rms", budget.remainder.rms).line());
 }
 
-}  // namespace
-
-int budget_command(const Arguments& arguments) {
-  const std::string summary = causes_help();
-  Options options("budget", "SCENARIO.toml [--case NAME]... [--quantity NAME]... [-o OUT.h5]",
-                  summary, "SCENARIO.toml");
+void add_budget_options(Options& options) {
   options.add()("case,c", po::value<std::vector<std::string>>()->value_name("NAME"),
                 "only of this case (default: of all that the quantities of the scenario name)");
   options.add()("quantity", po::value<std::vector<std::string>>()->value_name("NAME"),
@@ -195,6 +190,15 @@ int budget_command(const Arguments& arguments) {
   options.add()("json", "prints one JSON object a budget");
   options.add()("quiet,q", "no progress bar");
   add_plugin_option(options);
+}
+
+}  // namespace
+
+int budget_command(const Arguments& arguments) {
+  const std::string summary = causes_help();
+  Options options("budget", "SCENARIO.toml [--case NAME]... [--quantity NAME]... [-o OUT.h5]",
+                  summary, "SCENARIO.toml");
+  add_budget_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 

@@ -19,6 +19,7 @@ namespace servomill::tools {
 namespace {
 
 namespace fs = std::filesystem;
+namespace po = boost::program_options;
 
 sim::programs::Dialect dialect_of(const Options& options) {
   return static_cast<sim::programs::Dialect>(
@@ -183,26 +184,7 @@ void refuse_outputs(const Options& options, const std::string& name) {
   if (!to_stdout) sim::system::refuse_same_output(record, name, "--record", "the program");
 }
 
-}  // namespace
-
-int compensate_command(const Arguments& arguments) {
-  namespace po = boost::program_options;
-  Options options(
-      "compensate", "PROGRAM --machine M.toml [-o OUT] [...]",
-      "Writes a program with the errors of the machine corrected. Only motion changes: comments,\n"
-      "spindle, coolant, tool calls and the order of blocks are kept. Moves are split as little "
-      "as\n"
-      "the tolerance allows, and arcs are kept as arcs where possible. Loops and subroutines are\n"
-      "unrolled, expressions are replaced by numbers, canned cycles and cutter compensation by "
-      "their\n"
-      "moves.\n\n"
-      "Errors depend on machine coordinates: give the work offset (--work-offset or\n"
-      "--parameter-file) and the tool lengths (--tools or --tool-length). Machine positions (G53,\n"
-      "G28, G30) are not corrected, rapids are corrected at their end points only.\n\n"
-      "The result is read back as its control reads it, under every setting of the machine "
-      "builder,\n"
-      "and compared with the original before it gets its name; a difference is refused.",
-      "PROGRAM");
+void add_correction_options(Options& options) {
   const auto text = [] { return po::value<std::string>(); };
   const auto texts = [] { return po::value<std::vector<std::string>>(); };
   options.add()("machine,m", text()->value_name("M.toml"), "machine file, with its [errors.NAME]");
@@ -224,6 +206,10 @@ int compensate_command(const Arguments& arguments) {
   options.add()("correct-rapids", "corrects G0 along its path, too");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
                 "axes that carry the correction: X, Y and Z only, or rotary axes, too");
+}
+
+void add_control_options(Options& options) {
+  const auto text = [] { return po::value<std::string>(); };
   options.add()("dialect", text()->default_value("linuxcnc")->value_name("NAME"),
                 "linuxcnc, or blocks for heidenhain, fanuc, siemens");
   options.add()("retract", text()->value_name("Z=-5"),
@@ -248,6 +234,11 @@ int compensate_command(const Arguments& arguments) {
                 "surface-speed (G97), preset (G92.1); and settings that it does not have: rollover "
                 "of rotary axes (No. 1008#0), length-b (No. 5001#1: without it arcs in G18 and G19 "
                 "stay arcs). Default: it may have each");
+}
+
+void add_other_options(Options& options) {
+  const auto text = [] { return po::value<std::string>(); };
+  const auto texts = [] { return po::value<std::vector<std::string>>(); };
   add_program_options(options);
   options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
                 "position of G54 in the machine, such as X=10,Y=-5 (mm, deg) or \"X=10 mm\"; "
@@ -261,6 +252,30 @@ int compensate_command(const Arguments& arguments) {
   options.add()("json", "prints what it changed as JSON");
   options.add()("force,f", "replaces OUT if it exists");
   options.add()("quiet,q", "prints nothing but warnings and faults");
+}
+
+}  // namespace
+
+int compensate_command(const Arguments& arguments) {
+  Options options(
+      "compensate", "PROGRAM --machine M.toml [-o OUT] [...]",
+      "Writes a program with the errors of the machine corrected. Only motion changes: comments,\n"
+      "spindle, coolant, tool calls and the order of blocks are kept. Moves are split as little "
+      "as\n"
+      "the tolerance allows, and arcs are kept as arcs where possible. Loops and subroutines are\n"
+      "unrolled, expressions are replaced by numbers, canned cycles and cutter compensation by "
+      "their\n"
+      "moves.\n\n"
+      "Errors depend on machine coordinates: give the work offset (--work-offset or\n"
+      "--parameter-file) and the tool lengths (--tools or --tool-length). Machine positions (G53,\n"
+      "G28, G30) are not corrected, rapids are corrected at their end points only.\n\n"
+      "The result is read back as its control reads it, under every setting of the machine "
+      "builder,\n"
+      "and compared with the original before it gets its name; a difference is refused.",
+      "PROGRAM");
+  add_correction_options(options);
+  add_control_options(options);
+  add_other_options(options);
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = output_name(options);

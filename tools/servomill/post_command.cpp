@@ -15,6 +15,8 @@
 namespace servomill::tools {
 namespace {
 
+namespace po = boost::program_options;
+
 // A whole number within bounds, both included.
 int whole_option(const Options& options, const std::string& name, int min, int max) {
   const int value = options.get<int>(name);
@@ -160,26 +162,7 @@ sim::programs::PostRequest request_of(const Options& options) {
   return request;
 }
 
-}  // namespace
-
-int post_command(const Arguments& arguments) {
-  namespace po = boost::program_options;
-  Options options(
-      "post", "PART.cls --machine M.toml [-o OUT.ngc] [...]",
-      "Posts cutter locations to G-code for a machine. PART is an APT cutter location file\n"
-      "(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\n"
-      "Between locations the tip goes straight and the tool axis on a great circle: points are\n"
-      "inserted where the axes alone would leave the tolerance. The feed is that of the tip; each\n"
-      "block says how long it takes (G93). Every location takes the axis positions nearest to "
-      "those\n"
-      "before, within the travel.\n\n"
-      "To the first location, after a tool change and across rapids on which the tool axis "
-      "changes:\n"
-      "Z to the height to retract to, rotary axes, spindle on, X and Y, Z to the clearance, and "
-      "along\n"
-      "the tool axis; back the same way. The program is read back and compared with the locations\n"
-      "before it is written. Bare numbers are in the unit that each option names.",
-      "PART.cls");
+void add_post_options(Options& options) {
   options.add()("machine,m", po::value<std::string>()->value_name("M.toml"), "machine file");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as axis.A.centre_mm=[0,0,-150]");
@@ -227,6 +210,28 @@ int post_command(const Arguments& arguments) {
                 "axis positions near which the first location is sought; default: zero");
   options.add()("force,f", "replaces the program if it exists");
   options.add()("quiet,q", "prints nothing but warnings and faults");
+}
+
+}  // namespace
+
+int post_command(const Arguments& arguments) {
+  Options options(
+      "post", "PART.cls --machine M.toml [-o OUT.ngc] [...]",
+      "Posts cutter locations to G-code for a machine. PART is an APT cutter location file\n"
+      "(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\n"
+      "Between locations the tip goes straight and the tool axis on a great circle: points are\n"
+      "inserted where the axes alone would leave the tolerance. The feed is that of the tip; each\n"
+      "block says how long it takes (G93). Every location takes the axis positions nearest to "
+      "those\n"
+      "before, within the travel.\n\n"
+      "To the first location, after a tool change and across rapids on which the tool axis "
+      "changes:\n"
+      "Z to the height to retract to, rotary axes, spindle on, X and Y, Z to the clearance, and "
+      "along\n"
+      "the tool axis; back the same way. The program is read back and compared with the locations\n"
+      "before it is written. Bare numbers are in the unit that each option names.",
+      "PART.cls");
+  add_post_options(options);
   if (!options.parse(arguments)) return kDone;
 
   const std::string name = program_name(options);

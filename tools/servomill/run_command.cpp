@@ -84,15 +84,30 @@ class Kept {
   std::vector<std::string> complete_, incomplete_;
 };
 
-}  // namespace
+// Prints what a run has found; the exit status.
+int print_output(const sim::run::RunOutput& output, const Options& options,
+                 const sim::model::Scenario& scenario, const std::string& path) {
+  const bool json = options.has("json"), quiet = options.has("quiet");
+  bool finished = true;
+  for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
+  print_notes(output);
+  if (json) {
+    for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
+  } else if (!quiet) {
+    fmt::print("{}\n\n", scenario.title);
+    print_outcomes(output);
+    fmt::print("\n{}\nwritten to {}\n", sim::evaluation::format_table(output.comparison), path);
+  }
+  if (!finished && (json || quiet)) {
+    for (const sim::run::CaseOutput& one : output.cases) {
+      if (one.result.outcome.finished) continue;
+      fmt::print(stderr, "case {} stopped: {}\n", one.name, one.result.outcome.reason);
+    }
+  }
+  return finished ? kDone : kMachineStopped;
+}
 
-int run_command(const Arguments& arguments) {
-  Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
-                  "Runs every case of a scenario, prints the comparison and writes all signals to "
-                  "one HDF5 file. A long run says first how many rows, how large a file, how much "
-                  "memory and how much time it takes; its rows are thinned where "
-                  "record.period_ms is not given and their signals exceed record.max_size_GB.",
-                  "SCENARIO.toml");
+void add_run_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "result file (default: name of the scenario with .h5, in this folder)");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
@@ -107,6 +122,18 @@ int run_command(const Arguments& arguments) {
   options.add()("isolate",
                 "simulates cases with plug-ins in processes of their own: a plug-in that crashes, "
                 "calls exit() or does not return within 10 s ends its case, not the command");
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
+                  "Runs every case of a scenario, prints the comparison and writes all signals to "
+                  "one HDF5 file. A long run says first how many rows, how large a file, how much "
+                  "memory and how much time it takes; its rows are thinned where "
+                  "record.period_ms is not given and their signals exceed record.max_size_GB.",
+                  "SCENARIO.toml");
+  add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
   if (options.has("isolate")) sim::input::isolate_plugins();
@@ -115,10 +142,9 @@ int run_command(const Arguments& arguments) {
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::string path =
       sim::run::writable_name(output_name(options, scenario.name, ""), options.has("force"));
-  const bool json = options.has("json"), quiet = options.has("quiet");
   const auto& stop = stop_on_interrupt();
   std::optional<sim::run::RunStore> store;
-  ProgressBar bar(quiet);
+  ProgressBar bar(options.has("quiet"));
   sim::run::RunControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
@@ -158,23 +184,7 @@ int run_command(const Arguments& arguments) {
     return kInterrupted;
   }
 
-  bool finished = true;
-  for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
-  print_notes(output);
-  if (json) {
-    for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
-  } else if (!quiet) {
-    fmt::print("{}\n\n", scenario.title);
-    print_outcomes(output);
-    fmt::print("\n{}\nwritten to {}\n", sim::evaluation::format_table(output.comparison), path);
-  }
-  if (!finished && (json || quiet)) {
-    for (const sim::run::CaseOutput& one : output.cases) {
-      if (one.result.outcome.finished) continue;
-      fmt::print(stderr, "case {} stopped: {}\n", one.name, one.result.outcome.reason);
-    }
-  }
-  return finished ? kDone : kMachineStopped;
+  return print_output(output, options, scenario, path);
 }
 
 }  // namespace servomill::tools

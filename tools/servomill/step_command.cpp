@@ -124,16 +124,36 @@ void print_json(const sim::frequency::StepSettings& settings,
   fmt::print("{}\n", out.number("peak_current_A", response.peak_current).line());
 }
 
-}  // namespace
+// A step of an axis. Gives the settings a duration where they have none; where no step can be
+// shown, says why and returns nothing.
+std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineSettings& machine,
+                                                      int joint, Tick delay,
+                                                      sim::frequency::StepSettings& settings) {
+  const char axis = machine.chain.layout.letter_of(joint);
+  const bool is_velocity = settings.kind == sim::frequency::StepKind::velocity;
+  const double slowest = sim::frequency::slowest_time_constant(
+      machine, joint, delay,
+      is_velocity ? sim::frequency::PositionLoop::open : sim::frequency::PositionLoop::closed);
+  if (!std::isfinite(slowest)) {
+    fmt::print(stderr, "axis {}: the {} loop is unstable; no step is simulated\n", axis,
+               is_velocity ? "velocity" : "position");
+    return std::nullopt;
+  }
+  if (settings.duration == 0.0) {
+    settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
+  }
+  const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
+  sim::frequency::StepResponse response = sim::frequency::step_response(
+      machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
+  if (response.fault) {
+    fmt::print(stderr, "axis {}, {} step: {}\n", axis, sim::run::name_of(settings.kind),
+               *response.fault);
+    return std::nullopt;
+  }
+  return response;
+}
 
-int step_command(const Arguments& arguments) {
-  Options options(
-      "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
-      "Steps an axis in the simulation, with friction, backlash, quantisation and limits as the\n"
-      "scenario has them, and prints figures of merit: a step of the setpoint (nothing is fed\n"
-      "forward), of the velocity command (position loop open; the motor counts, as slide\n"
-      "velocity), of a force on the slide.",
-      "SCENARIO.toml");
+void add_step_options(Options& options) {
   add_axis_options(options);
   options.add()("kind,k", po::value<std::string>()->default_value("all")->value_name("KIND"),
                 "position, velocity, load or all");
@@ -153,6 +173,19 @@ int step_command(const Arguments& arguments) {
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object a step");
   options.add()("quiet,q", "prints nothing but faults");
+}
+
+}  // namespace
+
+int step_command(const Arguments& arguments) {
+  Options options(
+      "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
+      "Steps an axis in the simulation, with friction, backlash, quantisation and limits as the\n"
+      "scenario has them, and prints figures of merit: a step of the setpoint (nothing is fed\n"
+      "forward), of the velocity command (position loop open; the motor counts, as slide\n"
+      "velocity), of a force on the slide.",
+      "SCENARIO.toml");
+  add_step_options(options);
   if (!options.parse(arguments)) return kDone;
 
   const sim::model::Scenario scenario = scenario_for_axes(options);
@@ -178,28 +211,10 @@ int step_command(const Arguments& arguments) {
     if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
     for (const sim::frequency::StepKind kind : kinds) {
       sim::frequency::StepSettings settings = settings_of(options, kind, joint);
-      const double slowest = sim::frequency::slowest_time_constant(
-          machine, joint, delay,
-          kind == sim::frequency::StepKind::velocity ? sim::frequency::PositionLoop::open
-                                                     : sim::frequency::PositionLoop::closed);
-      stable &= std::isfinite(slowest);
-      if (!std::isfinite(slowest)) {
-        fmt::print(stderr, "axis {}: the {} loop is unstable; no step is simulated\n", axis,
-                   kind == sim::frequency::StepKind::velocity ? "velocity" : "position");
-        continue;
-      }
-      if (settings.duration == 0.0) {
-        settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
-      }
-      const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
-      const sim::frequency::StepResponse response = sim::frequency::step_response(
-          machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
-      if (response.fault) {
-        fmt::print(stderr, "axis {}, {} step: {}\n", axis, sim::run::name_of(kind),
-                   *response.fault);
-        stable = false;
-        continue;
-      }
+      const auto found = simulated(machine, joint, delay, settings);
+      stable &= found.has_value();
+      if (!found) continue;
+      const sim::frequency::StepResponse& response = *found;
       if (store) store->add(axis, settings, response);
       if (silent) continue;
       if (json) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <numeric>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
@@ -26,9 +27,14 @@ namespace {
 
 namespace po = boost::program_options;
 
+constexpr const char* kSummary =
+    "Runs a scenario at the points of its [sweep] table, prints one line for each and writes one "
+    "row a point to one HDF5 file. What an interrupted or killed sweep has left is gone on with. "
+    "Exit status 1: at some points the machine stopped or the input was refused; their rows say "
+    "why.";
 constexpr const char* kSynopsis = "SCENARIO.toml [-o OUT.h5] [--shard I/N] [--set KEY=VALUE]...";
 
-void add_options(Options& options) {
+void add_sweep_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "result file (default: name of the scenario with _sweep.h5, in this folder); "
                 "OUT.csv is written beside it");
@@ -122,86 +128,146 @@ int status_of(const sim::sweep::StatusCounts& counts) {
   return all_done ? kDone : kMachineStopped;
 }
 
+struct SweepFiles {
+  std::string table;
+  std::string signals;  // folder; empty: none are kept
+};
+
+// Files that a sweep writes; refused where it may not.
+SweepFiles files_of(const Options& options, const sim::sweep::Sweep& sweep,
+                    const sim::sweep::Selection& selection) {
+  std::string out = output_name(options, sweep.base().name, "_sweep");
+  const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
+  if (options.has("shard")) out = sim::sweep::shard_name(out, selection);
+  out = sim::system::output_target(
+      out, options.has("force") ? sim::system::Existing::replaced : sim::system::Existing::resumed);
+  sim::system::output_target(sim::sweep::csv_name(out), sim::system::Existing::replaced);
+  return {out, signals};
+}
+
+// Prints which points of a table are there before a sweep goes on.
+void print_points_there(const sim::sweep::SweepTable& table, const std::string& file,
+                        std::uint64_t to_do) {
+  const auto& counts = table.counts();
+  const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  if (counts[0] == all) return;
+  fmt::print("{}: {} of {} points are there already\n",
+             table.is_complete() ? file : table.partial_path(), all - counts[0], all);
+  if (to_do > counts[0]) fmt::print("{} of them lack signals, run again\n", to_do - counts[0]);
+}
+
+// Writes the signals of points; how many of them have none.
+std::uint64_t write_signals(const std::string& folder, const sim::sweep::Sweep& sweep,
+                            const std::vector<sim::sweep::SweepPoint>& points) {
+  std::uint64_t without = 0;
+  for (const sim::sweep::SweepPoint& point : points) {
+    sim::sweep::write_point_series(folder, sweep, point);
+    if (point.result.cases.empty()) ++without;
+  }
+  return without;
+}
+
+// Writes the rows of points that have none. A row that is there stays: the same point gives the
+// same bits.
+void write_rows(sim::sweep::SweepTable& table, const sim::sweep::Selection& selection,
+                std::vector<sim::sweep::SweepPoint>& points) {
+  const auto rows =
+      std::stable_partition(points.begin(), points.end(), [&](const sim::sweep::SweepPoint& point) {
+        return table.statuses()[selection.place(point.index)] == sim::run::PointStatus::not_run;
+      });
+  if (rows != points.begin()) table.write({points.begin(), rows});
+}
+
+// Points that are left to be done, for the message of an interrupted sweep.
+struct PointsLeft {
+  PointsLeft(const std::string& table, std::uint64_t points)
+      : file(table), all(static_cast<std::int64_t>(points)) {}
+
+  std::string said() const {
+    return kept_in(is_complete ? file : file + ".partial",
+                   count == kNotCounted
+                       ? "its complete points"
+                       : fmt::format("{} complete points of {}", all - count, all));
+  }
+
+  static constexpr std::int64_t kNotCounted = -1;
+  const std::string file;
+  const std::int64_t all;
+  std::atomic<std::int64_t> count = kNotCounted;
+  std::atomic<bool> is_complete = false;  // the table has its name
+};
+
+bool is_sweep_quiet(const Options& options) {
+  return options.has("quiet") || options.has("json") || options.has("csv");
+}
+
+// Says what there is and what is to come before a sweep goes on.
+void tell_before(const Options& options, const sim::sweep::SweepTable& table,
+                 const SweepFiles& files,
+                 const std::optional<sim::preparation::RunEstimate>& of_a_point,
+                 std::uint64_t to_do) {
+  if (!is_sweep_quiet(options)) print_points_there(table, files.table, to_do);
+  if (of_a_point) {
+    tell_estimate(*of_a_point, to_do, thread_count(options), !files.signals.empty());
+  }
+}
+
+// Prints what stands at the end of a sweep; the exit status.
+int print_sweep_end(const Options& options, const sim::sweep::SweepTable& table,
+                    const SweepFiles& files, std::uint64_t without_signals) {
+  if (options.has("csv")) print_file(sim::sweep::csv_name(files.table));
+  if (!is_sweep_quiet(options)) {
+    fmt::print("{}; written to {}\n", points_by_status(table.counts()), files.table);
+  }
+  if (without_signals > 0) {
+    fmt::print(stderr, "{}: {} points gave no signals\n", files.signals, without_signals);
+    return kMachineStopped;
+  }
+  return status_of(table.counts());
+}
+
 }  // namespace
 
 int sweep_command(const Arguments& arguments) {
-  Options options("sweep", kSynopsis,
-                  "Runs a scenario at the points of its [sweep] table, prints one line for "
-                  "each and writes one row a point to one HDF5 file. What an interrupted or killed "
-                  "sweep has left is gone on with. Exit status 1: at some points the machine "
-                  "stopped or the input was refused; their rows say why.",
-                  "SCENARIO.toml");
-  add_options(options);
+  Options options("sweep", kSynopsis, kSummary, "SCENARIO.toml");
+  add_sweep_options(options);
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
   const sim::sweep::Sweep sweep(options.word(), options.list("set"));
   const sim::sweep::Selection selection = selection_of(options, sweep);
-  std::string out = output_name(options, sweep.base().name, "_sweep");
-  const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
-  if (options.has("shard")) out = sim::sweep::shard_name(out, selection);
-  const unsigned threads = thread_count(options);
-  const bool force = options.has("force");
-  out = sim::system::output_target(
-      out, force ? sim::system::Existing::replaced : sim::system::Existing::resumed);
-  sim::system::output_target(sim::sweep::csv_name(out), sim::system::Existing::replaced);
+  const SweepFiles files = files_of(options, sweep, selection);
   const auto of_a_point = sweep.refuse_hopeless();
 
-  constexpr std::int64_t kNotCounted = -1;
-  std::atomic<std::int64_t> left = kNotCounted;
-  std::atomic<bool> is_complete = false;
-  const auto said = [&, partial = out + ".partial"] {
-    const auto all = static_cast<std::int64_t>(selection.size());
-    return kept_in(is_complete ? out : partial,
-                   left == kNotCounted ? "its complete points"
-                                       : fmt::format("{} complete points of {}", all - left, all));
-  };
-  const KeptWhenInterrupted when_interrupted(said);
-  sim::sweep::SweepTable table(out, force, sweep.base(), sim::sweep::columns_of(sweep.base()),
-                               selection);
-  is_complete = table.is_complete();
+  PointsLeft left(files.table, selection.size());
+  const KeptWhenInterrupted when_interrupted([&left] { return left.said(); });
+  sim::sweep::SweepTable table(files.table, options.has("force"), sweep.base(),
+                               sim::sweep::columns_of(sweep.base()), selection);
+  left.is_complete = table.is_complete();
   if (options.has("retry-failed")) table.forget(sim::run::PointStatus::failed);
-  const std::vector<bool> done = points_done(table, selection, sweep, signals);
-  left = std::count(done.begin(), done.end(), false);
-  const bool quiet = options.has("quiet") || options.has("json") || options.has("csv");
-  if (table.is_complete() && left == 0) {
-    if (!quiet) fmt::print("{} holds all {} points already\n", out, selection.size());
+  const std::vector<bool> done = points_done(table, selection, sweep, files.signals);
+  left.count = std::count(done.begin(), done.end(), false);
+  if (table.is_complete() && left.count == 0) {
+    if (!is_sweep_quiet(options))
+      fmt::print("{} holds all {} points already\n", files.table, selection.size());
     return status_of(table.counts());
   }
-  const std::uint64_t there = selection.size() - table.counts()[0];
-  const auto to_do = static_cast<std::uint64_t>(left);
-  const std::uint64_t without_signals = to_do - table.counts()[0];
-  const std::string path = table.is_complete() ? out : table.partial_path();
-  if (there > 0 && !quiet) {
-    fmt::print("{}: {} of {} points are there already\n", path, there, selection.size());
-    if (without_signals > 0) fmt::print("{} of them lack signals, run again\n", without_signals);
-  }
+  tell_before(options, table, files, of_a_point, static_cast<std::uint64_t>(left.count));
 
-  if (of_a_point) tell_estimate(*of_a_point, to_do, threads, !signals.empty());
-
-  const auto& stop = stop_on_interrupt();
   ProgressBar bar(options.has("quiet"));
   SweepLines lines = lines_of(options, sweep, selection, done);
   sim::sweep::SweepControl control;
-  control.threads = threads;
-  control.stop = &stop;
-  control.keep = signals.empty() ? sim::run::Keep::comparison : sim::run::Keep::series;
+  control.threads = thread_count(options);
+  control.stop = &stop_on_interrupt();
+  control.keep = files.signals.empty() ? sim::run::Keep::comparison : sim::run::Keep::series;
   control.progress = [&](double share) { bar.show(share); };
   std::uint64_t still_without_signals = 0;
   control.batch_done = [&](std::vector<sim::sweep::SweepPoint>&& points) {
-    for (const sim::sweep::SweepPoint& point : points) {
-      if (signals.empty()) continue;
-      sim::sweep::write_point_series(signals, sweep, point);
-      if (point.result.cases.empty()) ++still_without_signals;
-    }
-    // a row that is there stays: the same point gives the same bits
-    const auto rows = std::stable_partition(
-        points.begin(), points.end(), [&](const sim::sweep::SweepPoint& point) {
-          return table.statuses()[selection.place(point.index)] == sim::run::PointStatus::not_run;
-        });
-    if (rows != points.begin()) table.write({points.begin(), rows});
-    left -= static_cast<std::int64_t>(points.size());
+    if (!files.signals.empty())
+      still_without_signals += write_signals(files.signals, sweep, points);
+    write_rows(table, selection, points);
+    left.count -= static_cast<std::int64_t>(points.size());
     bar.clear();
     for (const sim::sweep::SweepPoint& point : points) lines.add(point);
   };
@@ -209,24 +275,18 @@ int sweep_command(const Arguments& arguments) {
     sim::sweep::run_sweep(sweep, selection, done, control);
   } catch (const Interrupted&) {
     bar.clear();
-    print_interrupted(said());
+    print_interrupted(left.said());
     return kInterrupted;
   }
   bar.clear();
   lines.finish();
-  tell_mixed_levels(out, levels_of(table, signals));
-  if (left > 0) {
-    print_interrupted(said());
+  tell_mixed_levels(files.table, levels_of(table, files.signals));
+  if (left.count > 0) {
+    print_interrupted(left.said());
     return kInterrupted;
   }
   if (!table.is_complete()) table.commit();
-  if (options.has("csv")) print_file(sim::sweep::csv_name(out));
-  if (!quiet) fmt::print("{}; written to {}\n", points_by_status(table.counts()), out);
-  if (still_without_signals > 0) {
-    fmt::print(stderr, "{}: {} points gave no signals\n", signals, still_without_signals);
-    return kMachineStopped;
-  }
-  return status_of(table.counts());
+  return print_sweep_end(options, table, files, still_without_signals);
 }
 
 }  // namespace servomill::tools

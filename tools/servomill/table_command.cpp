@@ -206,20 +206,7 @@ void write(const std::vector<sim::tables::TextFile>& files, const std::string& f
   }
 }
 
-}  // namespace
-
-int table_command(const Arguments& arguments) {
-  Options options(
-      "table", "SCENARIO.toml|--machine M.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
-      "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
-      "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
-      "A table holds the errors on one line along its axis, and 0 at the reference. What it "
-      "cannot\n"
-      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
-      "errors themselves. Every format names the document that it follows. The files are read "
-      "back\n"
-      "by the rules of that document and compared with the error model before they are written.",
-      "SCENARIO.toml");
+void add_table_options(Options& options) {
   options.add()("format", po::value<std::string>()->value_name("FORMAT"),
                 "linuxcnc, heidenhain, siemens or csv");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder for the files");
@@ -254,6 +241,23 @@ int table_command(const Arguments& arguments) {
   options.add()("force,f", "replaces files of the same names");
   options.add()("quiet,q", "prints nothing but faults");
   add_plugin_option(options);
+}
+
+}  // namespace
+
+int table_command(const Arguments& arguments) {
+  Options options(
+      "table", "SCENARIO.toml|--machine M.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
+      "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
+      "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
+      "A table holds the errors on one line along its axis, and 0 at the reference. What it "
+      "cannot\n"
+      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
+      "errors themselves. Every format names the document that it follows. The files are read "
+      "back\n"
+      "by the rules of that document and compared with the error model before they are written.",
+      "SCENARIO.toml");
+  add_table_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
   if (!options.has("output") || options.get<std::string>("output").empty()) {

@@ -184,17 +184,59 @@ void print_json(char axis, const sim::frequency::Tuning& t, double common_Kv) {
   fmt::print("{}\n", out.line());
 }
 
-}  // namespace
+// The velocity gain of all axes, and the axis that asks for it.
+struct CommonKv {
+  double value;  // 1/s
+  char axis;
+};
 
-int tune_command(const Arguments& arguments) {
-  Options options(
-      "tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
-      "Finds gains for an axis on the exact multirate model: the largest velocity bandwidth that\n"
-      "keeps phase and gain margin of the velocity loop (its reset time goes along), then the\n"
-      "largest Kv that keeps those of the position loop and the overshoot. Says what binds, what\n"
-      "changes, what a simulation of the whole axis shows, and prints the lines for the scenario.\n"
-      "Several axes get one Kv, as interpolation needs it: the smallest rules.",
-      "SCENARIO.toml");
+struct TunedAxis {
+  const sim::model::MachineSettings& machine;
+  int joint;
+  Tick delay;  // of the reading
+  const sim::frequency::Tuning& tuning;
+  double own_Kv;  // 1/s, before the common one
+};
+
+// Prints by what the gains of an axis are limited.
+void print_limits(const TunedAxis& axis, const sim::frequency::TuneSettings& wanted,
+                  const CommonKv& common) {
+  const sim::frequency::Tuning& t = axis.tuning;
+  const plant::FeedDriveParams& drive = axis.machine.drives[static_cast<std::size_t>(axis.joint)];
+  fmt::print("{}\n\n", axis_headline(axis.machine, axis.joint, axis.delay));
+  fmt::print("  wv = {:.4g} rad/s: limited by {}\n", t.after.gains.wv,
+             reason(t.velocity, wanted, drive, "velocity"));
+  fmt::print("  Tn = {:.4g} ms: {:g} / wv, which costs {:.0f} deg of phase at wv\n",
+             t.after.gains.Tn / ms, wanted.reset_ratio, std::atan(1.0 / wanted.reset_ratio) / deg);
+  fmt::print("  Kv = {:.4g} 1/s: limited by {}\n", axis.own_Kv,
+             reason(t.position, wanted, drive, "position"));
+  if (t.wv_lowered > 0.0 || t.Kv_lowered > 0.0) {
+    fmt::print(
+        "  Both are {:.2g} % and {:.2g} % lower than found first, to keep the requested "
+        "margins\n",
+        100.0 * t.wv_lowered, 100.0 * t.Kv_lowered);
+  }
+  if (t.calmer_wv > 0.0) {
+    fmt::print(
+        "  Less would be more: at wv = {:.3g} rad/s the margins of the position loop allow "
+        "Kv = {:.3g} 1/s; see --velocity-bandwidth\n",
+        t.calmer_wv, t.calmer_Kv);
+  }
+  if (wanted.bandwidth && t.position.kind != sim::frequency::Limit::Kind::bandwidth) {
+    fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
+  }
+  if (axis.own_Kv > common.value) {
+    fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: that of axis {}\n", common.value,
+               common.axis);
+  }
+  if (!sim::frequency::keeps(t.after, wanted)) {
+    fmt::print(
+        "  With the common Kv the axis does NOT keep the requested margins: see the table.\n");
+  }
+  fmt::print("\n");
+}
+
+void add_tune_options(Options& options) {
   add_axis_options(options);
   const auto text = [] { return po::value<std::string>(); };
   options.add()("phase-margin", text()->default_value("60 deg")->value_name("\"60 deg\""),
@@ -211,6 +253,20 @@ int tune_command(const Arguments& arguments) {
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
                 "reset time times velocity bandwidth");
   options.add()("json", "prints one JSON object an axis");
+}
+
+}  // namespace
+
+int tune_command(const Arguments& arguments) {
+  Options options(
+      "tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
+      "Finds gains for an axis on the exact multirate model: the largest velocity bandwidth that\n"
+      "keeps phase and gain margin of the velocity loop (its reset time goes along), then the\n"
+      "largest Kv that keeps those of the position loop and the overshoot. Says what binds, what\n"
+      "changes, what a simulation of the whole axis shows, and prints the lines for the scenario.\n"
+      "Several axes get one Kv, as interpolation needs it: the smallest rules.",
+      "SCENARIO.toml");
+  add_tune_options(options);
   if (!options.parse(arguments)) return kDone;
 
   const sim::frequency::TuneSettings wanted = settings_of(options);
@@ -226,61 +282,29 @@ int tune_command(const Arguments& arguments) {
                        [](const sim::frequency::Tuning& a, const sim::frequency::Tuning& b) {
                          return a.after.gains.Kv < b.after.gains.Kv;
                        });
-  const double common = slowest->after.gains.Kv;
-  const char ruling =
-      machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())]);
+  const CommonKv common = {
+      slowest->after.gains.Kv,
+      machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())])};
 
   bool confirmed = true;
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    const int joint = joints[k];
-    const char axis = machine.chain.layout.letter_of(joint);
-    const plant::FeedDriveParams& drive = machine.drives[static_cast<std::size_t>(joint)];
-    const double own = tunings[k].after.gains.Kv;
+    const double own_Kv = tunings[k].after.gains.Kv;
     if (joints.size() > 1) {
-      tunings[k] = sim::frequency::with_common_Kv(machine, joint, delay, tunings[k], common);
+      tunings[k] =
+          sim::frequency::with_common_Kv(machine, joints[k], delay, tunings[k], common.value);
     }
-    const sim::frequency::Tuning& t = tunings[k];
-    if (!t.after.stable) throw std::logic_error("tuned gains are not stable");
+    if (!tunings[k].after.stable) throw std::logic_error("tuned gains are not stable");
     if (options.has("json")) {
-      print_json(axis, t, common);
+      print_json(machine.chain.layout.letter_of(joints[k]), tunings[k], common.value);
       continue;
     }
-    fmt::print("{}{}\n\n", k == 0 ? "" : "\n", axis_headline(machine, joint, delay));
-    fmt::print("  wv = {:.4g} rad/s: limited by {}\n", t.after.gains.wv,
-               reason(t.velocity, wanted, drive, "velocity"));
-    fmt::print("  Tn = {:.4g} ms: {:g} / wv, which costs {:.0f} deg of phase at wv\n",
-               t.after.gains.Tn / ms, wanted.reset_ratio,
-               std::atan(1.0 / wanted.reset_ratio) / deg);
-    fmt::print("  Kv = {:.4g} 1/s: limited by {}\n", own,
-               reason(t.position, wanted, drive, "position"));
-    if (t.wv_lowered > 0.0 || t.Kv_lowered > 0.0) {
-      fmt::print(
-          "  Both are {:.2g} % and {:.2g} % lower than found first, to keep the requested "
-          "margins\n",
-          100.0 * t.wv_lowered, 100.0 * t.Kv_lowered);
-    }
-    if (t.calmer_wv > 0.0) {
-      fmt::print(
-          "  Less would be more: at wv = {:.3g} rad/s the margins of the position loop allow "
-          "Kv = {:.3g} 1/s; see --velocity-bandwidth\n",
-          t.calmer_wv, t.calmer_Kv);
-    }
-    if (wanted.bandwidth && t.position.kind != sim::frequency::Limit::Kind::bandwidth) {
-      fmt::print("  The bandwidth of {:g} Hz is not reached.\n", *wanted.bandwidth);
-    }
-    if (own > common) {
-      fmt::print("  Kv = {:.4g} 1/s, equal for interpolating axes: that of axis {}\n", common,
-                 ruling);
-    }
-    if (!sim::frequency::keeps(t.after, wanted)) {
-      fmt::print(
-          "  With the common Kv the axis does NOT keep the requested margins: see the table.\n");
-    }
+    if (k > 0) fmt::print("\n");
+    const TunedAxis axis = {machine, joints[k], delay, tunings[k], own_Kv};
+    print_limits(axis, wanted, common);
+    print_table(axis.tuning, axis.joint);
     fmt::print("\n");
-    print_table(t, joint);
-    fmt::print("\n");
-    confirmed &=
-        confirm(sim::frequency::with_gains(machine, joint, t.after.gains), joint, delay, t.after);
+    confirmed &= confirm(sim::frequency::with_gains(machine, axis.joint, axis.tuning.after.gains),
+                         axis.joint, delay, axis.tuning.after);
   }
   if (options.has("json")) return kDone;
   for (std::size_t k = 0; k < joints.size(); ++k) {

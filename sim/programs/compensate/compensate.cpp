@@ -207,6 +207,29 @@ void refuse_too_many_blocks(const CompensateRequest& request,
                                request.max_block / um, way / request.max_block, way, kMostBlocks));
 }
 
+// Takes what a writer assumes and warns of.
+void add_clauses(const ProgramWriter& writer, const std::string& file, Compensated& out) {
+  for (std::string& clause : writer.assumptions()) {
+    out.warnings.push_back({{file}, "assumes that " + clause});
+    out.summary.assumed.push_back(std::move(clause));
+  }
+  for (std::string& sentence : writer.warnings()) {
+    out.warnings.push_back({{file}, std::move(sentence)});
+  }
+}
+
+// Comments at the head of the program.
+std::vector<std::string> header_of(const CompensateRequest& request, const Preparation& prepared,
+                                   const ProgramWriter& writer, const Summary& summary) {
+  std::vector<std::string> header = {
+      header_line(request, prepared.described.machine.name, prepared.model)};
+  header.push_back(path_line(request, writer));
+  for (const std::string& one : unrolled_parts(summary)) header.push_back(one);
+  for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
+  for (const std::string& one : writer.warnings()) header.push_back("warning: " + one);
+  return header;
+}
+
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
@@ -251,19 +274,8 @@ Compensated compensate(const CompensateRequest& request) {
     summary.smoothing = smoothed->text();
   }
   summary.assumed = assumptions(request, known, summary, layout);
-  for (std::string& clause : writer->assumptions()) {
-    out.warnings.push_back({{request.program_file}, "assumes that " + clause});
-    summary.assumed.push_back(std::move(clause));
-  }
-  for (std::string& sentence : writer->warnings()) {
-    out.warnings.push_back({{request.program_file}, std::move(sentence)});
-  }
-  std::vector<std::string> header = {header_line(request, machine.name, prepared.model)};
-  header.push_back(path_line(request, *writer));
-  for (const std::string& one : unrolled_parts(summary)) header.push_back(one);
-  for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
-  for (const std::string& one : writer->warnings()) header.push_back("warning: " + one);
-  out.program = writer->finish(header);
+  add_clauses(*writer, request.program_file, out);
+  out.program = writer->finish(header_of(request, prepared, *writer, summary));
 
   const VerificationReport verified = verify(request, prepared, out.program);
 
