@@ -33,7 +33,7 @@ std::string overspeed(std::string_view name, const plant::Encoder& encoder, doub
 std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);
-    if (!always_checked_lanes_[l] && at(&ServoBlock::beyond_limits, l) == 0.0 &&
+    if (!always_checked_lanes_[l] && at(&ServoState::beyond_limits, l) == 0.0 &&
         plant::DriveBank::unresolved(state_, l) == 0) {
       continue;
     }
@@ -51,8 +51,8 @@ std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
   Functions& own = functions_[l];
   const auto fault = controllers::supervise(
       machine.nc.functions[j].supervision, own.supervision,
-      {at(&ServoBlock::Q_cmd, l), at(&ServoBlock::dQ_ff, l), at(&ServoBlock::Q_fb, l),
-       at(&ServoBlock::y_motor, l), at(&ServoBlock::y_scale, l)});
+      {at(&ServoInputs::Q_cmd, l), at(&ServoInputs::dQ_ff, l), at(&ServoState::Q_fb, l),
+       at(&ServoState::y_motor, l), at(&ServoState::y_scale, l)});
   if (fault) {
     return fmt::format("{} beyond {:g} {}", name_of(fault->fault), fault->limit / unit, unit_name);
   }

@@ -47,7 +47,9 @@ ServoAxes::ServoAxes(std::vector<const model::MachineSettings*> machines, std::v
       blocks_(blocks_of(params_.size())),
       state_(params_.size()),
       input_(params_.size()),
-      servos_(blocks_),
+      constants_(blocks_),
+      servo_inputs_(blocks_),
+      servo_state_(blocks_),
       functions_(params_.size()),
       kernel_(servo_kernel()) {
   for (const int j : joints_) {
@@ -71,19 +73,19 @@ void ServoAxes::describe(std::size_t l) {
   const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);
   const model::AxisFunctions& functions = machine.nc.functions[j];
-  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
+  const auto set = [&](auto member, double value) { at(member, l) = value; };
   const auto encoder = [](double step) { return step > 0.0 ? 1.0 / step : 0.0; };
-  set(&ServoBlock::r, params_[l].r);
-  set(&ServoBlock::per_r, 1.0 / params_[l].r);
-  set(&ServoBlock::motor_step, machine.motor[j].step());
-  set(&ServoBlock::per_motor_step, encoder(machine.motor[j].step()));
-  set(&ServoBlock::scale_step, machine.scale[j].step());
-  set(&ServoBlock::per_scale_step, encoder(machine.scale[j].step()));
-  set(&ServoBlock::reads_scale,
+  set(&ServoConstants::r, params_[l].r);
+  set(&ServoConstants::per_r, 1.0 / params_[l].r);
+  set(&ServoConstants::motor_step, machine.motor[j].step());
+  set(&ServoConstants::per_motor_step, encoder(machine.motor[j].step()));
+  set(&ServoConstants::scale_step, machine.scale[j].step());
+  set(&ServoConstants::per_scale_step, encoder(machine.scale[j].step()));
+  set(&ServoConstants::reads_scale,
       functions.position_feedback.kind == controllers::PositionFeedback::scale ? 1.0 : 0.0);
-  set(&ServoBlock::feedback_gain, functions.position_feedback.gain);
-  set(&ServoBlock::has_winding, params_[l].has_winding() ? 1.0 : 0.0);
-  ServoBlock& servo = servos_[block(l)];
+  set(&ServoConstants::feedback_gain, functions.position_feedback.gain);
+  set(&ServoConstants::has_winding, params_[l].has_winding() ? 1.0 : 0.0);
+  ServoConstants& servo = constants_[block(l)];
   set_lane(servo.cascade, place(l), gains_of(machine.nc.cascade[j]));
   const controllers::CurrentLoopGains current = gains_of(functions.current_loop);
   servo.current.Kp[place(l)] = current.Kp;
@@ -92,12 +94,12 @@ void ServoAxes::describe(std::size_t l) {
 
   const controllers::SupervisionParams& supervision = functions.supervision;
   const bool rigid = params_[l].is_rigid();  // the motor turns as the slide moves
-  set(&ServoBlock::rigid, rigid ? 1.0 : 0.0);
-  set(&ServoBlock::most_following_error, supervision.following_error);
-  set(&ServoBlock::most_speed,
+  set(&ServoConstants::rigid, rigid ? 1.0 : 0.0);
+  set(&ServoInputs::most_following_error, supervision.following_error);
+  set(&ServoInputs::most_speed,
       std::min(machine.scale[j].fastest(),
                rigid ? params_[l].r * machine.motor[j].fastest() : controllers::kNoLimit));
-  set(&ServoBlock::most_motor_speed, rigid ? controllers::kNoLimit : machine.motor[j].fastest());
+  set(&ServoInputs::most_motor_speed, rigid ? controllers::kNoLimit : machine.motor[j].fastest());
   always_checked_lanes_.push_back(supervision.standstill < controllers::kNoLimit ||
                                   supervision.encoder_difference < controllers::kNoLimit ||
                                   machine.marks[j].has_value());
@@ -133,23 +135,23 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
   const double Q_fb =
       controllers::position_feedback(functions.position_feedback, feedback, y_motor, y_scale);
 
-  ServoBlock& servo = servos_[block(l)];
+  ServoState& servo = servo_state_[block(l)];
   set_lane(servo.cascade_state, place(l), controllers::standing_at(cascade, phi, current.i_cmd));
   servo.current_state.integral[place(l)] = current.state.integral;
   servo.current_state.u[place(l)] = current.state.u;
   servo.current_state.excess[place(l)] = 0.0;
   input_.blocks[block(l)].command[place(l)] = drive.has_winding() ? current.state.u : state.i;
   input_.blocks[block(l)].active[place(l)] = true;
-  const auto set = [&](LaneArray ServoBlock::*member, double value) { at(member, l) = value; };
-  set(&ServoBlock::phi, phi);
-  set(&ServoBlock::scale, scale);
-  set(&ServoBlock::y_motor, y_motor);
-  set(&ServoBlock::y_scale, y_scale);
-  set(&ServoBlock::difference, feedback.difference);
-  set(&ServoBlock::Q_fb, Q_fb);
-  set(&ServoBlock::Q_cmd, Q_fb);
+  const auto set = [&](auto member, double value) { at(member, l) = value; };
+  set(&ServoState::phi, phi);
+  set(&ServoState::scale, scale);
+  set(&ServoState::y_motor, y_motor);
+  set(&ServoState::y_scale, y_scale);
+  set(&ServoState::difference, feedback.difference);
+  set(&ServoState::Q_fb, Q_fb);
+  set(&ServoInputs::Q_cmd, Q_fb);
   for (const auto member :
-       {&ServoBlock::dQ_ff, &ServoBlock::ddQ_ff, &ServoBlock::v_add, &ServoBlock::tau_add}) {
+       {&ServoInputs::dQ_ff, &ServoInputs::ddQ_ff, &ServoInputs::v_add, &ServoInputs::tau_add}) {
     set(member, 0.0);
   }
   Functions& own = functions_[l];
@@ -165,13 +167,13 @@ void ServoAxes::settle(std::size_t l, double Q, double d) {
 
 void ServoAxes::displace(const Joints& displacement, std::size_t run) {
   if (in_a_row_) {
-    row(&ServoBlock::virtual_displacement) = displacement;
+    row(&ServoInputs::virtual_displacement) = displacement;
     return;
   }
   for (std::size_t j = 0; j < kJoints; ++j) {
     const Place& p = places_[run][j];
     if (p.present)
-      servos_[p.block].virtual_displacement[p.place] = displacement[static_cast<int>(j)];
+      servo_inputs_[p.block].virtual_displacement[p.place] = displacement[static_cast<int>(j)];
   }
 }
 
@@ -179,12 +181,12 @@ void ServoAxes::displace(const JointLanes& displacement, const LaneFlags& lanes,
                          std::size_t first) {
   assert(first < runs() && first % kLaneWidth == 0);
   if (fills_blocks()) {
-    return kernel_.displace(&servos_[block(first)], block(runs()), joints_.data(),
+    return kernel_.displace(&servo_inputs_[block(first)], block(runs()), joints_.data(),
                             rotary ? joints_.size() : linear_joints_, lanes, displacement);
   }
   each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
     if ((rotary || j < kLinearJoints) && lanes[n]) {
-      servos_[p.block].virtual_displacement[p.place] = displacement[j][n];
+      servo_inputs_[p.block].virtual_displacement[p.place] = displacement[j][n];
     }
   });
 }
@@ -192,24 +194,24 @@ void ServoAxes::displace(const JointLanes& displacement, const LaneFlags& lanes,
 void ServoAxes::get_readings(JointLanes& Q_meas, std::size_t first) const {
   assert(first < runs() && first % kLaneWidth == 0);
   if (fills_blocks()) {
-    return kernel_.get_scales(&servos_[block(first)], block(runs()), joints_.data(), joints_.size(),
-                              Q_meas);
+    return kernel_.get_scales(&servo_state_[block(first)], block(runs()), joints_.data(),
+                              joints_.size(), Q_meas);
   }
   each_of_eight(first, [&](std::size_t n, std::size_t j, const Place& p) {
-    Q_meas[j][n] = servos_[p.block].scale[p.place];
+    Q_meas[j][n] = servo_state_[p.block].scale[p.place];
   });
 }
 
 void ServoAxes::follow(const AxisSetpoint& set, std::size_t run) {
   if (in_a_row_) {
-    row(&ServoBlock::Q_cmd) = set.Q_cmd;
-    row(&ServoBlock::dQ_ff) = set.dQ_ff;
-    row(&ServoBlock::ddQ_ff) = set.ddQ_ff;
+    row(&ServoInputs::Q_cmd) = set.Q_cmd;
+    row(&ServoInputs::dQ_ff) = set.dQ_ff;
+    row(&ServoInputs::ddQ_ff) = set.ddQ_ff;
     return;
   }
   if (blocks_of_joint_ > 0) {
     for (std::size_t j = 0; j < kJoints; ++j) {
-      ServoBlock& servo = servos_[block_of(j, run)];
+      ServoInputs& servo = servo_inputs_[block_of(j, run)];
       const auto joint = static_cast<int>(j);
       servo.Q_cmd[run % kLaneWidth] = set.Q_cmd[joint];
       servo.dQ_ff[run % kLaneWidth] = set.dQ_ff[joint];
@@ -219,17 +221,17 @@ void ServoAxes::follow(const AxisSetpoint& set, std::size_t run) {
   }
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);
-    at(&ServoBlock::Q_cmd, l) = set.Q_cmd[j];
-    at(&ServoBlock::dQ_ff, l) = set.dQ_ff[j];
-    at(&ServoBlock::ddQ_ff, l) = set.ddQ_ff[j];
+    at(&ServoInputs::Q_cmd, l) = set.Q_cmd[j];
+    at(&ServoInputs::dQ_ff, l) = set.dQ_ff[j];
+    at(&ServoInputs::ddQ_ff, l) = set.ddQ_ff[j];
   }
 }
 
 void ServoAxes::inject(int joint, const Injection& injection, std::size_t run) {
   const std::size_t l = lane(run, joint);
-  at(&ServoBlock::added_velocity, l) = injection.velocity;
-  at(&ServoBlock::added_current, l) = injection.current;
-  at(&ServoBlock::added_reading, l) = injection.reading;
+  at(&ServoInputs::added_velocity, l) = injection.velocity;
+  at(&ServoInputs::added_current, l) = injection.current;
+  at(&ServoInputs::added_reading, l) = injection.reading;
   input_.blocks[block(l)].F[place(l)] = -injection.force;
 }
 
@@ -245,8 +247,8 @@ void ServoAxes::end(std::size_t run) {
     const std::size_t l = lane(run, j);
     input_.blocks[block(l)].active[place(l)] = false;
     // what it stands at is nobody's concern any more
-    for (const auto limit : {&ServoBlock::most_following_error, &ServoBlock::most_speed,
-                             &ServoBlock::most_motor_speed}) {
+    for (const auto limit : {&ServoInputs::most_following_error, &ServoInputs::most_speed,
+                             &ServoInputs::most_motor_speed}) {
       at(limit, l) = controllers::kNoLimit;
     }
   }
@@ -269,32 +271,33 @@ double ServoAxes::scale_reading(std::size_t l, double x, Tick now) const {
 }
 
 void ServoAxes::read_motors() {
-  kernel_.read_motors(servos_.data(), state_.blocks.data(), blocks_);
-  for (const std::size_t l : own_motor_reading_) at(&ServoBlock::phi, l) = motor_reading(l);
+  kernel_.read_motors(constants_.data(), servo_state_.data(), state_.blocks.data(), blocks_);
+  for (const std::size_t l : own_motor_reading_) at(&ServoState::phi, l) = motor_reading(l);
 }
 
 void ServoAxes::read_scales() {
-  kernel_.read_scales(servos_.data(), state_.blocks.data(), blocks_);
+  kernel_.read_scales(constants_.data(), servo_state_.data(), state_.blocks.data(), blocks_);
   for (const std::size_t l : own_scale_reading_) {
-    at(&ServoBlock::scale, l) = scale_reading(l, state_.blocks[block(l)].x[place(l)], now_);
+    at(&ServoState::scale, l) = scale_reading(l, state_.blocks[block(l)].x[place(l)], now_);
   }
 }
 
 void ServoAxes::read_own_scales_at(const LaneArray* positions, Tick now) {
   for (const std::size_t l : own_scale_reading_) {
-    at(&ServoBlock::scale, l) = scale_reading(l, positions[block(l)][place(l)], now);
+    at(&ServoState::scale, l) = scale_reading(l, positions[block(l)][place(l)], now);
   }
 }
 
 void ServoAxes::sample_position_feedback() {
   read_scales();
   read_motors();
-  kernel_.sample_position_feedback(servos_.data(), blocks_);
+  kernel_.sample_position_feedback(constants_.data(), servo_inputs_.data(), servo_state_.data(),
+                                   blocks_);
   for (const std::size_t l : marked_) {
     Functions& own = functions_[l];
     if (own.mark_fault) continue;
     const double x = state_.blocks[block(l)].x[place(l)];
-    own.mark_fault = own.marks->advance(x, x + at(&ServoBlock::virtual_displacement, l));
+    own.mark_fault = own.marks->advance(x, x + at(&ServoInputs::virtual_displacement, l));
   }
 }
 
@@ -303,13 +306,13 @@ void ServoAxes::compensate_backlash() {
     const model::AxisFunctions& functions =
         machine_of(l).nc.functions[static_cast<std::size_t>(axes_[l].joint)];
     const auto ramp = controllers::backlash_compensation(functions.backlash, functions_[l].backlash,
-                                                         at(&ServoBlock::Q_cmd, l));
+                                                         at(&ServoInputs::Q_cmd, l));
     // Only the motor cannot see the gap; the other loops gain the time. It is counted off the
     // motor's reading, so that the gap is no following error.
     if (functions.position_feedback.kind == controllers::PositionFeedback::motor) {
-      at(&ServoBlock::Q_fb, l) -= ramp.offset;
+      at(&ServoState::Q_fb, l) -= ramp.offset;
     } else {
-      functions_[l].backlash_velocity = at(&ServoBlock::v_add, l) = ramp.rate;
+      functions_[l].backlash_velocity = at(&ServoInputs::v_add, l) = ramp.rate;
     }
   }
 }
@@ -317,16 +320,18 @@ void ServoAxes::compensate_backlash() {
 void ServoAxes::add_velocity(const Joints& velocity, std::size_t run) {
   for (const int j : joints_) {
     const std::size_t l = lane(run, j);
-    at(&ServoBlock::v_add, l) = functions_[l].backlash_velocity + velocity[j];
+    at(&ServoInputs::v_add, l) = functions_[l].backlash_velocity + velocity[j];
   }
 }
 
 void ServoAxes::close_position_loops() {
-  beyond_limits_ = kernel_.position_loops(servos_.data(), state_.blocks.data(), blocks_);
+  beyond_limits_ = kernel_.position_loops(constants_.data(), servo_inputs_.data(),
+                                          servo_state_.data(), state_.blocks.data(), blocks_);
 }
 
 void ServoAxes::latch_current_commands() {
-  kernel_.current_loops(servos_.data(), state_.blocks.data(), input_.blocks.data(), blocks_);
+  kernel_.current_loops(constants_.data(), servo_inputs_.data(), servo_state_.data(),
+                        state_.blocks.data(), input_.blocks.data(), blocks_);
 }
 
 void ServoAxes::close_velocity_loops() {
@@ -334,36 +339,38 @@ void ServoAxes::close_velocity_loops() {
     const model::NcSettings& nc = machine_of(l).nc;
     const auto j = static_cast<std::size_t>(axes_[l].joint);
     // in lag mode the axis reverses with its speed command
-    const double v = nc.cascade[j].kvf > 0.0 ? at(&ServoBlock::dQ_ff, l)
-                                             : servos_[block(l)].cascade_state.v_cmd[place(l)];
-    at(&ServoBlock::tau_add, l) =
+    const double v = nc.cascade[j].kvf > 0.0 ? at(&ServoInputs::dQ_ff, l)
+                                             : servo_state_[block(l)].cascade_state.v_cmd[place(l)];
+    at(&ServoInputs::tau_add, l) =
         controllers::friction_compensation(nc.functions[j].friction, functions_[l].friction, v);
   }
   read_motors();
-  kernel_.velocity_loops(servos_.data(), blocks_);
+  kernel_.velocity_loops(constants_.data(), servo_inputs_.data(), servo_state_.data(), blocks_);
 }
 
 Joints ServoAxes::motor_angle(std::size_t run) const {
   return each_joint(run, [&](const Place& p) {
     const plant::DriveBlock& state = state_.blocks[p.block];
-    return (state.delta[p.place] + state.x[p.place]) * servos_[p.block].per_r[p.place];
+    return (state.delta[p.place] + state.x[p.place]) * constants_[p.block].per_r[p.place];
   });
 }
 
 Joints ServoAxes::motor_speed(std::size_t run) const {
   return each_joint(run, [&](const Place& p) {
     const plant::DriveBlock& state = state_.blocks[p.block];
-    const ServoBlock& servo = servos_[p.block];
+    const ServoConstants& servo = constants_[p.block];
     return servo.rigid[p.place] > 0.0 ? state.v[p.place] * servo.per_r[p.place] : state.w[p.place];
   });
 }
 
 Joints ServoAxes::measured_speed(std::size_t run) const {
-  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.w[p.place]; });
+  return each_joint(run,
+                    [&](const Place& p) { return servo_state_[p.block].cascade_state.w[p.place]; });
 }
 
 Joints ServoAxes::speed_error(std::size_t run) const {
-  return each_joint(run, [&](const Place& p) { return servos_[p.block].cascade_state.e[p.place]; });
+  return each_joint(run,
+                    [&](const Place& p) { return servo_state_[p.block].cascade_state.e[p.place]; });
 }
 
 }  // namespace servomill::sim::engine

@@ -115,12 +115,12 @@ class ServoAxes {
   }
 
   /// Positions as read_scales read them.
-  Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoBlock::scale, run); }
+  Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoState::scale, run); }
   /// The same of eight runs side by side, from run `first` on, a multiple of eight. Joints that do
   /// not take part and runs beyond the last are left as they are.
   void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
   /// Positions as the position loops read them last.
-  Joints Q_fb(std::size_t run = 0) const { return joints_of(&ServoBlock::Q_fb, run); }
+  Joints Q_fb(std::size_t run = 0) const { return joints_of(&ServoState::Q_fb, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
@@ -200,14 +200,16 @@ class ServoAxes {
     }
     return each_joint(run, [&](const Place& p) { return (blocks[p.block].*member)[p.place]; });
   }
-  Joints joints_of(LaneArray ServoBlock::*member, std::size_t run) const {
-    return gathered(servos_, member, run);
+  Joints joints_of(LaneArray ServoState::*member, std::size_t run) const {
+    return gathered(servo_state_, member, run);
   }
   Joints drives_of(LaneArray plant::DriveBlock::*member, std::size_t run) const {
     return gathered(state_.blocks, member, run);
   }
   // In a row only: the joints of the only run.
-  auto row(LaneArray ServoBlock::*member) { return Joints::Map((servos_.front().*member).data()); }
+  auto row(LaneArray ServoInputs::*member) {
+    return Joints::Map((servo_inputs_.front().*member).data());
+  }
   // Blocks hold one joint of eight runs each.
   bool fills_blocks() const { return runs() % kLaneWidth == 0; }
   // Block if the runs share lanes and all joints take part.
@@ -223,8 +225,14 @@ class ServoAxes {
       }
     }
   }
-  double& at(LaneArray ServoBlock::*member, std::size_t lane) {
-    return (servos_[block(lane)].*member)[place(lane)];
+  double& at(LaneArray ServoConstants::*member, std::size_t lane) {
+    return (constants_[block(lane)].*member)[place(lane)];
+  }
+  double& at(LaneArray ServoInputs::*member, std::size_t lane) {
+    return (servo_inputs_[block(lane)].*member)[place(lane)];
+  }
+  double& at(LaneArray ServoState::*member, std::size_t lane) {
+    return (servo_state_[block(lane)].*member)[place(lane)];
   }
 
   const model::MachineSettings& machine_of(std::size_t lane) const {
@@ -242,7 +250,7 @@ class ServoAxes {
     drives_.advance_with_stops(state_, input_, stretch, positions_);
     const LaneArray* positions = positions_.data();
     for (const Tick stop : drive_steps_.stretches[stretch].stops) {
-      kernel_.read_scales_at(servos_.data(), positions, blocks_);
+      kernel_.read_scales_at(constants_.data(), servo_state_.data(), positions, blocks_);
       if (!own_scale_reading_.empty()) read_own_scales_at(positions, now_ + stop);
       positions += blocks_;
       at_stop();
@@ -274,7 +282,9 @@ class ServoAxes {
   std::size_t blocks_;                     // that the lanes fill
   plant::DriveState state_;
   plant::DriveInput input_;
-  std::vector<ServoBlock> servos_;
+  std::vector<ServoConstants> constants_;
+  std::vector<ServoInputs> servo_inputs_;
+  std::vector<ServoState> servo_state_;
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
   std::vector<bool> always_checked_lanes_;  // by supervision
@@ -294,7 +304,7 @@ void ServoAxes::each_state(int joint, Visit visit) {
   const controllers::CascadeParams& cascade = machines_[0]->nc.cascade[j];
   const model::AxisFunctions& functions = machines_[0]->nc.functions[j];
   plant::DriveBlock& state = state_.blocks[block(l)];
-  ServoBlock& servo = servos_[block(l)];
+  ServoState& servo = servo_state_[block(l)];
   // the drive
   if (drive.has_winding() || drive.T_i > 0.0) visit(state.i[k]);
   if (!drive.is_rigid()) {
