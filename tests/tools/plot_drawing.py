@@ -3,7 +3,7 @@ import json
 import pathlib
 import subprocess
 
-from plot_files import HERE, PLOT, SMALLEST_PNG, WithFiles, plot, program, servomill
+from plot_files import HERE, PLOT, SMALLEST_PNG, WithFiles, plot, plot_names, program, servomill
 
 import numpy as np
 from PIL import Image
@@ -15,19 +15,19 @@ AT_OTHER_PLACES = 5e-3  # um; between samples 1 um apart, about corners between 
 
 class Drawing(WithFiles):
     def test_all_that_a_run_holds_is_drawn_and_the_rest_counted(self):
-        done = plot(self.side, "-o", self.out)
+        done = plot_names(self.side, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr),
                          (0, "16 other figures would need what the file does not hold; see --why\n"))
         self.assertEqual(len(self.drawn()), 7)
 
     def test_of_several_files_each_is_counted(self):
-        done = plot(self.side, self.sweep, "-o", self.out)
+        done = plot_names(self.side, self.sweep, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
             f"{self.side}: 16 other figures would need what the file does not hold; see --why",
             f"{self.sweep}: 2 other figures would need what the file does not hold; see --why"]))
 
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained_where_one_asks(self):
-        done = plot(self.side, "-o", self.out, "--why")
+        done = plot(self.side, "-o", self.out, "--why", dpi=style.DPI)
         self.assertEqual(done.returncode, 0, done.stderr)
         names = ["circular", "deviations", "figure10", "figure11", "figure6", "figure9",
                  "reversals"]

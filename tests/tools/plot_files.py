@@ -7,14 +7,17 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 PLOT = HERE.parents[1] / "tools" / "plot.py"
 sys.path.insert(0, str(PLOT.parent))
 
 import plot as program
+from figures import style
 
 SMALLEST_PNG = 5000  # bytes; empty axes of these sizes stay below
+COARSE = 60          # dots per inch: half of the time of drawing goes into pixels
 
 
 def servomill(*arguments, status=0):
@@ -23,12 +26,18 @@ def servomill(*arguments, status=0):
     return done.stdout
 
 
-def plot(*arguments):
+def plot(*arguments, dpi=COARSE):
     """Runs the program within this process: its exit status and what it prints."""
     out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), unittest.mock.patch.object(style, "DPI", dpi):
         status = program.run(program.main, [str(one) for one in arguments])
     return types.SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue())
+
+
+def plot_names(*arguments):
+    """The same with empty files in place of pictures, for tests of which figures there are."""
+    with unittest.mock.patch.object(program, "save", lambda figure, path, ending: path.touch()):
+        return plot(*arguments)
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import unittest.mock
 
-from plot_files import PLOT, WithFiles, plot, program
+from plot_files import PLOT, WithFiles, plot, plot_names, program
 
 import h5py
 import numpy as np
@@ -55,7 +55,7 @@ class Mistakes(WithFiles):
                    f"{self.side}: error: nest: the scenario asks for no radial_ball_deviation", self.side, "--figures", "lag,nest")
 
     def test_of_several_figures_those_are_drawn_that_the_file_holds(self):
-        done = plot(self.side, "-o", self.out, "--figures", "figure6,lag,nest")
+        done = plot_names(self.side, "-o", self.out, "--figures", "figure6,lag,nest")
         self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
             "lag: not drawn, the file holds a run, not a sweep",
             "nest: not drawn, the scenario asks for no radial_ball_deviation"]))
@@ -67,18 +67,18 @@ class Mistakes(WithFiles):
 
         figures = [dataclasses.replace(one, draw=fail) if one.name == "figure9" else one for one in program.FIGURES]
         with unittest.mock.patch.object(program, "FIGURES", figures):
-            done = plot(self.side, "-o", self.out, "--figures", "figure6,figure9")
+            done = plot_names(self.side, "-o", self.out, "--figures", "figure6,figure9")
             self.assertEqual((done.returncode, done.stderr), (
                 0, "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)\n"))
             self.assertEqual(self.drawn(), ["side-figure6.png"])
-            done = plot(self.side, "-o", self.out / "all")
+            done = plot_names(self.side, "-o", self.out / "all")
             self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is reported unasked
                 "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)",
                 "16 other figures would need what the file does not hold; see --why"]))
 
     def test_a_file_that_cannot_be_read_costs_no_other(self):
         missing = self.root / "missing.h5"
-        done = plot(missing, self.side, "-o", self.out, "--figures", "figure6")
+        done = plot_names(missing, self.side, "-o", self.out, "--figures", "figure6")
         self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: error: no such file\n"))
         self.assertEqual(self.drawn(), ["side-figure6.png"])
 

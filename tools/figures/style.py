@@ -9,6 +9,7 @@ import matplotlib.colors
 import matplotlib.pyplot as plt
 import numpy as np
 
+DPI = 150
 BLACK, BLUE, PURPLE, LIGHT_PURPLE, RED = "#000000", "#0072b2", "#6a1b9a", "#b07cd8", "#d62718"
 GREY, PALE = "#6b6b6b", "#e9e9e9"
 DASH, DASH_DOT, DOT = (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5))
@@ -83,7 +84,7 @@ def set_up():
         "axes.titlelocation": "left", "axes.labelsize": 11, "legend.fontsize": 10.5,
         "legend.frameon": False, "axes.spines.top": False, "axes.spines.right": False,
         "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.7, "axes.axisbelow": True,
-        "figure.constrained_layout.use": True, "figure.dpi": 150, "savefig.dpi": 150,
+        "figure.constrained_layout.use": True, "figure.dpi": DPI, "savefig.dpi": DPI,
         "svg.hashsalt": "servomill", "svg.fonttype": "none", "pdf.fonttype": 42,
         "lines.dash_capstyle": "butt", "path.simplify_threshold": 0.2,
     })
