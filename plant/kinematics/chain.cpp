@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "plant/vocabulary/sine_and_cosine.h"
 
@@ -15,6 +15,47 @@ namespace {
 void turn_columns(const ChainAxis& a, double q, Eigen::Matrix3d& R) {
   const JointMotion m = motion_at(a, q);
   for (int i = 0; i < 3; ++i) R.col(i) = turned(a, m, R.col(i));
+}
+
+// Turns columns i and j of A, and those of V likewise, to a right angle; false if they stand at
+// one.
+bool turn_apart(int i, int j, Eigen::Matrix3d& A, Eigen::Matrix3d& V) {
+  const double a = A.col(i).squaredNorm(), b = A.col(j).squaredNorm(), c = A.col(i).dot(A.col(j));
+  if (std::abs(c) <= std::numeric_limits<double>::epsilon() * std::sqrt(a * b)) return false;
+  const double zeta = (b - a) / (2.0 * c);
+  const double tangent = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
+  const double cosine = 1.0 / std::hypot(1.0, tangent), sine = cosine * tangent;
+  for (Eigen::Matrix3d* M : {&A, &V}) {
+    const Eigen::Vector3d old = M->col(i);
+    M->col(i) = cosine * old - sine * M->col(j);
+    M->col(j) = sine * old + cosine * M->col(j);
+  }
+  return true;
+}
+
+// Least squares of any rank, by the singular values of J: one-sided Jacobi rotations make the
+// columns of A = J V orthogonal, whose lengths they are. Three columns need some five rounds. (The
+// rank-revealing decomposition of Eigen takes g++ as long as all other sources of this folder.)
+// Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., 8.6.3.
+LeastSquares singular_least_squares(const Eigen::Matrix3d& J, const Eigen::Vector3d& v) {
+  constexpr int kMostRounds = 30;
+  Eigen::Matrix3d A = J, V = Eigen::Matrix3d::Identity();
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool turned = turn_apart(0, 1, A, V);
+    turned |= turn_apart(0, 2, A, V);
+    turned |= turn_apart(1, 2, A, V);
+    if (!turned) break;
+  }
+  // of two columns of length 1 at a small angle, the values have half its ratio
+  const double least = 0.5 * kParallel * A.colwise().norm().maxCoeff();
+  LeastSquares out{Eigen::Vector3d::Zero(), 0};
+  for (int i = 0; i < 3; ++i) {
+    const double length = A.col(i).norm();
+    if (!(length > least)) continue;
+    out.x += V.col(i) * (A.col(i).dot(v) / (length * length));
+    ++out.rank;
+  }
+  return out;
 }
 
 }  // namespace
@@ -108,10 +149,7 @@ LeastSquares least_squares(const Eigen::Matrix3d& J, const Eigen::Vector3d& v) {
   // three axes far from parallel, as most machines have them: no need to look for the rank
   constexpr double kFarFromParallel = 0.5;  // determinant of directions of about unit length
   if (std::abs(J.determinant()) > kFarFromParallel) return {J.inverse() * v, 3};
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> QR;
-  QR.setThreshold(kParallel);
-  QR.compute(J);
-  return {QR.solve(v), static_cast<int>(QR.rank())};
+  return singular_least_squares(J, v);
 }
 
 PoseJacobian jacobian(const MachineChain& chain, const Joints& Q, const Eigen::Vector3d& p_ST) {

@@ -176,5 +176,41 @@ TEST(Inverse, IsNothingWhereTwoLinearAxesAreParallel) {
   EXPECT_TRUE(inverse_fixed_rotary(chain, p, Q, Vector3d::Zero()));
 }
 
+// Normal equations, and x orthogonal to what J takes to 0.
+TEST(LeastSquares, OfAnyRankAreTheSmallest) {
+  constexpr double kTolerance = 1e-12;
+  const Vector3d x = Vector3d::UnitX(), z = Vector3d::UnitZ(), zero = Vector3d::Zero();
+  const Vector3d a = Vector3d(1.0, 2.0, 2.0) / 3.0, b = Vector3d(0.8, 0.0, 0.6);
+  const Vector3d v(0.3, -0.2, 0.7);
+  const auto columns = [](const Vector3d& one, const Vector3d& two, const Vector3d& three) {
+    return (Eigen::Matrix3d() << one, two, three).finished();
+  };
+  struct Case {
+    Eigen::Matrix3d J;
+    int rank;
+    Vector3d null;  // J null = 0
+  };
+  for (const Case& one :
+       {Case{columns(zero, zero, zero), 0, zero}, Case{columns(a, zero, zero), 1, z},
+        Case{columns(a, a, zero), 1, {1.0, -1.0, 0.0}},
+        Case{columns(a, zero, b), 2, Vector3d::UnitY()},
+        Case{columns(a, b, a), 2, {1.0, 0.0, -1.0}}, Case{columns(a, b, x), 3, zero}}) {
+    const LeastSquares found = least_squares(one.J, v);
+    EXPECT_EQ(found.rank, one.rank) << one.J;
+    EXPECT_LT((one.J.transpose() * (one.J * found.x - v)).norm(), kTolerance) << one.J;
+    EXPECT_LT(std::abs(one.null.dot(found.x)), kTolerance) << one.J;
+  }
+}
+
+TEST(LeastSquares, TakeAxesAsParallelWithinTheLimit) {
+  const auto at = [](double angle) {
+    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+    J.col(1) = Vector3d(std::cos(angle), std::sin(angle), 0.0);
+    return least_squares(J, {0.1, 0.0, 0.1}).rank;
+  };
+  EXPECT_EQ(at(1.1 * kParallel), 3);
+  EXPECT_EQ(at(0.9 * kParallel), 2);
+}
+
 }  // namespace
 }  // namespace servomill::plant::chain_test
