@@ -3,7 +3,6 @@
 // programs of every class, every strategy that rewrites.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <map>
 #include <random>
 #include <regex>
@@ -12,6 +11,7 @@
 #include "plant/vocabulary/move_curve.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/preparation/rewritten_text.h"
+#include "tests/number_of.h"
 #include "tests/sim/five_axis_program.h"
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/strategies/identified_machines.h"
@@ -20,11 +20,6 @@ namespace servomill::sim::preparation {
 namespace {
 
 constexpr int kShown = 3;  // programs that differ, in full
-
-int number_of(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
-}
 
 // How many programs a strategy, and the seed of the first.
 int program_count() { return number_of("SERVOMILL_REPLAY_PROGRAMS", 200); }

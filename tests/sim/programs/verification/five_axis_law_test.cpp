@@ -1,8 +1,8 @@
 // The law of compensated programs on five-axis machines of every kind, with errors of all axes:
 // tables, heads and both, axes A and B, rotations that carry corrections and such that do not.
-#include <cstdlib>
 #include <regex>
 
+#include "tests/number_of.h"
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
@@ -11,11 +11,6 @@ namespace servomill::sim::programs {
 namespace {
 
 constexpr int kShown = 2;  // programs that differ, in full
-
-int number_of(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
-}
 
 int program_count() { return number_of("SERVOMILL_REPLAY_PROGRAMS", 200) / 4; }
 int first_seed() { return number_of("SERVOMILL_REPLAY_SEED", 0); }

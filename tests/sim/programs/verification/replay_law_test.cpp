@@ -1,7 +1,7 @@
 // The law of compensated programs: what a control makes of the written program is what the original
 // asks for. Random programs of every class, for every dialect.
-#include <cstdlib>
 
+#include "tests/number_of.h"
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/sim/programs/verification/each_dialect.h"
 #include "tests/sim/programs/verification/random_program.h"
@@ -13,11 +13,6 @@ namespace {
 constexpr const char* kNoErrors = "[errors.none]\nEXX = { constant_um = 0.0 }\n";
 
 constexpr int kShown = 3;  // programs that differ, in full
-
-int number_of(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
-}
 
 // How many programs a dialect, and the seed of the first.
 int program_count() { return number_of("SERVOMILL_REPLAY_PROGRAMS", 200); }
