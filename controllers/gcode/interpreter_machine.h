@@ -125,6 +125,7 @@ class Interpreter::Machine {
   template <typename Action>
   void with_place_of_fault(const Action& action);
   void read_as_control();
+  CornerToNext corner_to_next();
   void read_pending_line();
   void look_for_missing_points();
   void note_other_arithmetic();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <utility>
 
 #include "controllers/gcode/other_language.h"
@@ -22,7 +23,7 @@ bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 class LexicalRules {
  public:
   LexicalRules(std::string_view line, Reader reader)
-      : line_{std::string(line), {}}, reader_(reader) {}
+      : line_{std::string(line), {}, {}}, reader_(reader) {}
 
   TolerantLine result() {
     control_characters();
@@ -170,6 +171,8 @@ class LexicalRules {
       fan_code();
     } else if (is_code('G', "187")) {
       smoothness();
+    } else if (c == ',' && corner_end() > at_ && apply(ReaderRule::corner, at_)) {
+      corner();
     } else if (is_dwell_ && upper(c) == 'U' && apply(ReaderRule::dwell_word, at_)) {
       text()[at_++] = 'X';
     } else if (is_letter(c)) {
@@ -206,6 +209,26 @@ class LexicalRules {
       if (at(at_) == '.') at_ = digits_end(at_ + 1);
     }
     if (apply(ReaderRule::smoothing, begin)) blank(begin, at_);
+  }
+
+  // End of ",R5." that begins here, if its value is a plain number; else the begin.
+  std::size_t corner_end() const {
+    if (upper(at(at_ + 1)) != 'R' && upper(at(at_ + 1)) != 'C') return at_;
+    std::size_t begin = at_ + 2;
+    while (is_blank_at(at(begin))) ++begin;
+    std::size_t end = digits_end(begin);
+    if (at(end) == '.') end = digits_end(end + 1);
+    const bool is_number = end > begin && (end > begin + 1 || at(begin) != '.');
+    return is_number && !line_.corner ? end : at_;
+  }
+
+  void corner() {
+    const std::size_t end = corner_end();
+    const std::string value = text().substr(at_ + 2, end - at_ - 2);
+    line_.corner = {upper(at(at_ + 1)), std::strtod(value.c_str(), nullptr),
+                    static_cast<int>(at_) + 1, value.find('.') != value.npos};
+    blank(at_, end);
+    at_ = end;
   }
 
   bool is_fan_code() const { return is_code('M', "106") || is_code('M', "107"); }
@@ -296,6 +319,7 @@ TolerantLine tolerant_line(std::string_view line, Reader reader) {
 void LineReader::parse(std::string_view& line, const std::string& file, int number, Block& block,
                        Parser::Extent extent) {
   tolerant_.applied.clear();
+  tolerant_.corner.reset();
   try {
     if (extent != Parser::Extent::all && begins_with_colon(line)) {
       tolerant_ = tolerant_line(line, reader_);
@@ -307,9 +331,9 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
     line = tolerant_.text;
   } catch (const InputError& error) {
     const int column = error.faults().front().place.column;
-    const std::string language = other_language(line, column);
-    if (!language.empty()) throw InputError({file, number, column}, language);
     TolerantLine other = tolerant_line(line, reader_);  // `line` may be the text of the last one
+    const std::string language = other_language(other.corner ? other.text : line, column);
+    if (!language.empty()) throw InputError({file, number, column}, language);
     if (other.applied.empty() && line.starts_with("//")) {
       throw InputError({file, number, column},
                        "'//' before words: a comment for some controls, a block that the operator "

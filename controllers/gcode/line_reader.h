@@ -11,10 +11,19 @@
 
 namespace servomill::controllers {
 
+/// ",R5." or ",C2.": the corner to the next block is rounded or chamfered.
+struct CornerWord {
+  char letter = 'R';
+  double value = 0.0;
+  int column = 0;
+  bool has_point = false;
+};
+
 /// A line that LinuxCNC's rules accept and that means the same. Every character keeps its column.
 struct TolerantLine {
   std::string text;
   std::vector<AppliedRule> applied;
+  std::optional<CornerWord> corner = {};
 };
 
 /// Applies the lexical rules of `reader` to a line.
@@ -40,6 +49,8 @@ class LineReader {
 
   /// The rules that the line parsed last needed.
   const std::vector<AppliedRule>& applied() const { return tolerant_.applied; }
+  /// Its corner, if it has one.
+  const std::optional<CornerWord>& corner() const { return tolerant_.corner; }
 
  private:
   Parser parser_;

@@ -78,6 +78,11 @@ void Interpreter::Machine::read_executed_line() {
   reader_.parse(line_, file(), line(), block_);
   for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
   if (block_.percent) return saw_percent();
+  const bool is_move = !block_.words.empty() && block_.o_word.flow == Flow::none;
+  if (reader_.corner() && !is_move) {
+    fail(reader_.corner()->column,
+         fmt::format("',{}' needs a line in its block", reader_.corner()->letter));
+  }
   const bool is_strict = setup_.reader == Reader::linuxcnc;
   const bool is_comment = !is_strict && block_.words.empty() && block_.assignments.empty() &&
                           block_.o_word.flow == Flow::none && !block_.deleted;
@@ -92,6 +97,11 @@ void Interpreter::Machine::read_executed_line() {
     look_for_missing_points();
   }
   if (setup_.reader == Reader::any && !block_.code.empty()) note_other_arithmetic();
+  if (reader_.corner()) {
+    reading_.round_corner(corner_to_next());
+    return read_as_control();
+  }
+  reading_.round_corner({});
   is_strict || !reading_.concerns(block_, state_) ? execute() : read_as_control();
 }
 
@@ -116,27 +126,6 @@ void Interpreter::Machine::read_as_control() {
   } catch (const InputError&) {
     reading_.roll_back();
     throw;
-  }
-}
-
-// X10: 10 mm, or 10 increments.
-void Interpreter::Machine::look_for_missing_points() {
-  constexpr std::string_view kLengths = "XYZIJKR";
-  std::size_t nth = 0;
-  for (const Piece& piece : block_.pieces) {
-    if (piece.kind != PieceKind::word) continue;
-    const Word& word = block_.words[nth++];
-    if (kLengths.find(word.letter) == std::string_view::npos) continue;
-    if (!word.value.is_constant() || word.value.number == 0.0) continue;
-    const auto begin = static_cast<std::size_t>(piece.begin);
-    const std::string_view written =
-        line_.substr(begin, static_cast<std::size_t>(piece.end) - begin);
-    if (written.find('.') != written.npos) continue;
-    warn(word.column,
-         "a length without a decimal point: read in millimetres or inches (LinuxCNC, grbl, Mach); "
-         "Fanuc and Haas may read increments of 0.001 mm; choose with --decimal-point or --reader");
-    has_warned_of_points_ = true;
-    return;
   }
 }
 

@@ -172,6 +172,10 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {circular_pocket, "G12 and G13 with I",
      "read as a full circle of radius I about the position, from its +X side", "Mach", kMach,
      "Using Mach3Mill, G12 and G13 (circular pocket); from memory"},
+    {corner, ",R or ,C behind a line",
+     "read as an arc, or a chamfer, between that line and the next", "Fanuc, Haas", kFanuc | kHaas,
+     "NCT 2000M programmer's manual, section 16.1, p. 120 (the same words); Fanuc and Haas from "
+     "memory"},
     {macro_statement, "variables, IF, GOTO and WHILE of custom macro B",
      "run as the control runs them: a variable that is not set is vacant, and its word left out",
      "Fanuc, Haas", kFanuc | kHaas,

@@ -78,6 +78,7 @@ enum class ReaderRule : std::uint8_t {
   rapid_at_start,
   centre_off_plane,
   circular_pocket,
+  corner,
   macro_statement,
   variable_increment,
   macro_call,

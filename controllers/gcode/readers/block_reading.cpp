@@ -110,6 +110,10 @@ bool BlockReading::read(std::string_view line, const std::string& file, const Bl
   lines_.clear();
   local_call_.reset();
   words_.emplace(line, block, evaluate);
+  next_words_.reset();
+  if (corner_ && corner_->is_next) {
+    next_words_.emplace(corner_->next_line, corner_->next, evaluate);
+  }
   ReadingStep step(*this, *words_, state, file, block);
   try {
     step.run();
@@ -163,6 +167,7 @@ void ReadingStep::run() {
   motion_in_force();
   arc_centre();
   feed();
+  corner();
   laser_power();
   frames();
   feed_beside_unit();

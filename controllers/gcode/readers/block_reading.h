@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "controllers/gcode/block.h"
@@ -78,6 +79,14 @@ struct LocalCall {
   int column = 0;
 };
 
+/// The corner from a block to the next one.
+struct CornerToNext {
+  BlockWord size;  // letter R or C
+  std::string next_line;
+  Block next;           // parsed from it, with its pieces
+  bool is_next = true;  // false: no block follows, or its words are no plain numbers
+};
+
 class BlockReading {
  public:
   using Evaluate = BlockWords::Evaluate;
@@ -102,6 +111,8 @@ class BlockReading {
   const std::optional<LocalCall>& local_call() const { return local_call_; }
   /// Column in the line as written.
   int original_column(std::size_t nth_line, int column) const;
+  /// The corner of the block that is read next, or none.
+  void round_corner(std::optional<CornerToNext> corner) { corner_ = std::move(corner); }
   /// The block that is read next calls again (L of M98 and M97): its other words have acted.
   void call_again(bool is_again) { calls_again_ = is_again; }
   /// Forgets what the block read last has changed, because it failed.
@@ -121,6 +132,8 @@ class BlockReading {
   std::vector<ReadingNote> notes_;
   bool has_unknown_dwell_ = false;
   std::optional<LocalCall> local_call_;
+  std::optional<CornerToNext> corner_;
+  std::optional<BlockWords> next_words_;  // of the block behind the corner
 };
 
 }  // namespace servomill::controllers

@@ -12,6 +12,8 @@
 
 namespace servomill::controllers {
 
+struct PlaneCorner;
+
 class ReadingStep {
  public:
   ReadingStep(BlockReading& reading, BlockWords& block_words, const ModalState& modal_state,
@@ -37,6 +39,7 @@ class ReadingStep {
   void foreign_codes();
   // words_reading.cpp
   void decimal_points();
+  void decimal_point(BlockWord& word) const;
   bool is_polar_angle(char letter) const;
   void unit_codes();
   void feed_beside_unit();
@@ -78,6 +81,10 @@ class ReadingStep {
   void leave_cycle();
   void refuse_arc_behind_cycle(int motion, int column) const;
   void feed();
+  // corner_reading.cpp
+  void corner();
+  std::string no_line_for(std::string_view corner, int motion) const;
+  void write_corner(const PlaneCorner& lines, const BlockWord& size);
   // cycle_reading.cpp
   void cycles();
   void begin_cycle(int code);

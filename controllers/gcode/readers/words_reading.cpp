@@ -129,23 +129,24 @@ bool ReadingStep::is_polar_angle(char letter) const {
 void ReadingStep::decimal_points() {
   const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas;
   if (!depends && options.decimal_point == DecimalPoint::unset) return;
+  for (BlockWord& word : words.all()) decimal_point(word);
+}
+
+void ReadingStep::decimal_point(BlockWord& word) const {
   const bool is_dwell = words.has_code('G', 40) && !words.has('P');
   const bool is_cycle = is_canned_cycle(motion_in_block());  // K counts
-  for (BlockWord& word : words.all()) {
-    const bool is_length = kLengths.find(word.letter) != std::string_view::npos;
-    const bool is_angle = kAngles.find(word.letter) != std::string_view::npos ||
-                          (word.letter == 'R' && words.has_code('G', 680)) ||
-                          is_polar_angle(word.letter);
-    if (!(is_length || is_angle) || word.has_point || !word.is_literal || word.value == 0.0)
-      continue;
-    if ((is_dwell && word.letter == 'X') || (is_cycle && word.letter == 'K')) continue;
-    if (options.decimal_point == DecimalPoint::unset) {
-      fail(word.column, both_readings(WordDifference::decimal_point));
-    }
-    if (options.decimal_point == DecimalPoint::calculator) continue;
-    word.value *= unit() == mm || is_angle ? 1e-3 : 1e-4;
-    word.is_changed = true;
+  const bool is_length = kLengths.find(word.letter) != std::string_view::npos;
+  const bool is_angle = kAngles.find(word.letter) != std::string_view::npos ||
+                        (word.letter == 'R' && words.has_code('G', 680)) ||
+                        is_polar_angle(word.letter);
+  if (!(is_length || is_angle) || word.has_point || !word.is_literal || word.value == 0.0) return;
+  if ((is_dwell && word.letter == 'X') || (is_cycle && word.letter == 'K')) return;
+  if (options.decimal_point == DecimalPoint::unset) {
+    fail(word.column, both_readings(WordDifference::decimal_point));
   }
+  if (options.decimal_point == DecimalPoint::calculator) return;
+  word.value *= unit() == mm || is_angle ? 1e-3 : 1e-4;
+  word.is_changed = true;
 }
 
 // G70 and G71 take words where they are cycles of a lathe.

@@ -46,13 +46,7 @@ const std::vector<Style>& styles() {
       {"estlcam_grbl.nc", {}, 3, 10.0, 10.0},
       // X and Y of expressions are rounded to 0.001 mm: 40 sin 300 deg
       {"fanuc_bolt_circle.nc", {3, 8, 11}, 6, 20.0, -34.641},
-      {"fanuc_corner.nc",
-       {},
-       0,
-       0,
-       0,
-       ":8:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not read; "
-       "write the arc"},
+      {"fanuc_corner.nc", {8}, 6, 0.0, 20.0},
       {"fanuc_tap.nc", {4, 6, 8}, 4, 40.0, 20.0},
       {"freecad_grbl.nc", {}, 1, 5.0, 5.0},
       {"freecad_linuxcnc.ngc", {11, 12, 20}, 4, 10.0, 12.5},

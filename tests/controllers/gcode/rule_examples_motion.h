@@ -10,7 +10,8 @@ inline const std::string kFormats15i = "Fanuc B-63324EN/03 p. 759",
                          kSpiral15i = "Fanuc B-63324EN/01, section 4.4",
                          kHome15i = "Fanuc B-63784EN/01 p. 183",
                          kCall0i = "Fanuc B-64124EN/01 p. 136 and 137",
-                         kCallHaas = "Haas 96-8000 p. 217", kMemory = "from memory";
+                         kCallHaas = "Haas 96-8000 p. 217", kMemory = "from memory",
+                         kCorner = "NCT 2000M programmer's manual, section 16.1";
 
 inline std::vector<RuleExample> motion_examples() {
   const Given increments = {.decimal_point = DecimalPoint::increments};
@@ -50,6 +51,15 @@ inline std::vector<RuleExample> motion_examples() {
        "R 1 2 0 | F 6 2 0 f100 | CCW 6 2 0 o 1 2 0 | F 1 2 0 | R 2 2 0", "p.nc:2:1", kMemory},
       {ReaderRule::circular_pocket, Reader::mach, "G20\nG12 I.1 F10.\nM2\n",
        "F 2.54 0 0 f254 | CW 2.54 0 0 o 0 0 0 | F 0 0 0", "p.nc:2:1", kMemory},
+      // tangents of 5 mm at a right angle; legs of 2 mm of the chamfer
+      {ReaderRule::corner, Reader::fanuc, "G1 X30. ,R5. F100.\nY20. ,C2.\nX0.\nM2\n",
+       "F 25 0 0 f100 | CCW 30 5 0 o 25 5 0 | F 30 18 0 | F 28 20 0 | F 0 20 0", "p.nc:1:9",
+       kCorner},
+      // a corner of 60 deg: 5 / tan 30 deg = 8.660 mm of each line, the centre above the first
+      {ReaderRule::corner, Reader::haas,
+       "G20\nG1 X-3.,r.5 F10.\n\n(back)\nX-1.5 Y2.598076211353\nM2\n",
+       "F -54.202955 0 0 f254 | CW -65.201477 19.05 0 o -54.202955 12.7 0 | F -38.1 65.991136 0",
+       "p.nc:2:8", kCorner},
       {ReaderRule::repeated_group, Reader::fanuc, "G90 G17 G18 G17 G0 X1.\nX2.\nM2\n",
        "R 1 0 0 | R 2 0 0", "p.nc:1:9", kMemory},
       {ReaderRule::repeated_group, Reader::fanuc, "G0 G1 X1. F100.\nX2.\nM2\n",

@@ -126,9 +126,48 @@ TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
   EXPECT_EQ(read("GROUP_BEGIN(0,\"TOP\")\nM2\n", Reader::any, {}).moves,
             "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens' language or of a machine's "
             "builder; programs in G-code are read here");
-  EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::haas, {}).moves,
+  EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::grbl, {}).moves,
             "p.nc:1:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not "
             "read; write the arc");
+}
+
+TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
+  const auto refusal = [](const std::string& program) {
+    const std::string said = read(program + "\nM2\n", Reader::fanuc, {}).moves;
+    const std::string before = "p.nc:1:9: error: ";
+    return said.starts_with(before) ? said.substr(before.size()) : said;
+  };
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100."), "',R' needs a line in the next block, of plain numbers");
+  EXPECT_EQ(refusal("G1 X10. ,C1. F100.\nY#1"),
+            "',C' needs a line in the next block, of plain numbers");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG0 Y5."),
+            "',R' is read between lines only (G1), not beside G0; write the corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG2 X12. Y2. R2."),
+            "',R' is read between lines only (G1), not beside G2; write the corner");
+  EXPECT_EQ(refusal("G0 X10. ,R1. F100.\nG1 Y2."),
+            "',R' is read between lines only (G1), not beside G0; write the corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nY5. Z-1."),
+            "',R' with Z in this or the next block; write the corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG91 Y5."),
+            "',R' with G91 in this or the next block; write the corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX20."), "',R1': the lines make no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX5."), "',R1': the lines make no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R0. F100.\nY5."), "',R0': the lines make no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."),
+            "',R6' takes 6 of each line; the shorter one has 5");
+  EXPECT_EQ(read("G91 G1 X10. ,C2. F100.\nY5.\nM2\n", Reader::any, {}).moves,
+            "p.nc:1:13: error: ',C' is read in G90 and G94 only, without G16, G51, G54.1 and G68; "
+            "write the corner");
+  EXPECT_EQ(read("(TITLE)\nG0 X1.\n,R5.\nM2\n", Reader::fanuc, {}).moves,
+            "p.nc:3:1: error: ',R' needs a line in its block");
+}
+
+// ,R5 is 5 um where X30 is 30 um.
+TEST(RuleExamples, ACornerWithoutADecimalPointIsAsOtherLengthsAre) {
+  EXPECT_EQ(read("G1 X30000 ,R5000 F100.\nY20000\nM2\n", Reader::fanuc,
+                 {.decimal_point = DecimalPoint::increments})
+                .moves,
+            "F 25 0 0 f100 | CCW 30 5 0 o 25 5 0 | F 30 20 0");
 }
 
 // The radius changes in proportion to the angle: 5.04, 5.00, 4.96 mm (Fanuc B-63324EN/01, section

@@ -1,0 +1,143 @@
+// ,R and ,C: the corner between two lines in the plane.
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controllers/gcode/readers/reading_step.h"
+
+namespace servomill::controllers {
+
+// Two lines that meet in the plane.
+struct PlaneCorner {
+  Eigen::Vector2d begin, corner, end;
+
+  // From the corner to where an arc of that radius touches the lines.
+  double tangent(double radius) const { return radius / std::tan(0.5 * angle()); }
+  // Between the lines, 0 ... pi.
+  double angle() const { return std::atan2(std::abs(cross()), to_begin().dot(to_end())); }
+  // > 0: counterclockwise
+  double cross() const {
+    const Eigen::Vector2d u = -to_begin(), w = to_end();
+    return u.x() * w.y() - u.y() * w.x();
+  }
+  Eigen::Vector2d to_begin() const { return (begin - corner).normalized(); }
+  Eigen::Vector2d to_end() const { return (end - corner).normalized(); }
+  // That a corner takes of each line.
+  double way(char letter, double size) const { return letter == 'R' ? tangent(size) : size; }
+  // The reason why there can be no such corner, or nothing.
+  std::string fault(std::string_view name, double size) const;
+  double shortest() const { return std::min((begin - corner).norm(), (end - corner).norm()); }
+};
+
+std::string PlaneCorner::fault(std::string_view name, double size) const {
+  constexpr double kSmallest = 1e-6;  // rad
+  const bool is_corner =
+      shortest() > 0.0 && angle() > kSmallest && angle() < std::numbers::pi - kSmallest;
+  if (!is_corner || size <= 0.0) {
+    return fmt::format("'{}{:g}': the lines make no corner", name, size);
+  }
+  const double taken = way(name.back(), size);
+  if (taken <= shortest()) return {};
+  return fmt::format("'{}{:g}' takes {:.4g} of each line; the shorter one has {:.4g}", name, size,
+                     taken, shortest());
+}
+
+namespace {
+
+Eigen::Vector2d in_plane(const Eigen::Vector3d& p, int first, int second) {
+  return {p[first], p[second]};
+}
+
+}  // namespace
+
+// The reason why a block is no line in the plane beside a corner; empty if it is one.
+std::string ReadingStep::no_line_for(std::string_view corner, int motion) const {
+  if (motion != 10) {
+    return fmt::format("'{}' is read between lines only (G1), not beside {}; write the corner",
+                       corner, motion < 0 ? "this block" : code_name('G', motion));
+  }
+  for (const BlockWord& word : words.all()) {
+    if (word.is_erased) continue;
+    const bool is_of_plane =
+        word.letter >= 'X' && word.letter <= 'Z' && word.letter - 'X' != normal_axis();
+    const int tenths = word.letter == 'G' ? tenths_of(word.value) : -1;
+    const bool is_allowed_code = tenths == 10 || tenths == 900 || word.letter == 'M';
+    const bool is_rate = word.letter == 'F' || word.letter == 'S' || word.letter == 'N';
+    if (is_of_plane || is_allowed_code || is_rate) continue;
+    return fmt::format("'{}' with {} in this or the next block; write the corner", corner,
+                       tenths >= 0 ? code_name('G', tenths) : std::string(1, word.letter));
+  }
+  return {};
+}
+
+void ReadingStep::corner() {
+  if (!reading_.corner_) return;
+  BlockWord size = reading_.corner_->size;
+  const bool is_arc = size.letter == 'R';
+  const std::string_view name = is_arc ? ",R" : ",C";
+  const bool is_other_frame = memory.frame.is_active() || memory.polar.is_on;
+  if (is_incremental() || is_other_frame || state.feed_mode == FeedMode::inverse_time) {
+    fail(size.column,
+         fmt::format("'{}' is read in G90 and G94 only, without G16, G51, G54.1 and G68; write the "
+                     "corner",
+                     name));
+  }
+  if (const std::string why = no_line_for(name, motion_in_block()); !why.empty()) {
+    fail(size.column, why);
+  }
+  const bool is_next_move = reading_.next_words_ && reading_.next_words_->has_axis();
+  if (!is_next_move) {
+    fail(size.column, fmt::format("'{}' needs a line in the next block, of plain numbers", name));
+  }
+  ReadingStep next(reading_, *reading_.next_words_, state, file_, reading_.corner_->next);
+  next.decimal_points();
+  const int next_motion = next.motion_code() < 0 ? 10 : next.motion_code();
+  if (const std::string why = next.no_line_for(name, next_motion); !why.empty()) {
+    fail(size.column, why);
+  }
+  const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas ||
+                       options.decimal_point != DecimalPoint::unset;
+  if (depends) decimal_point(size);
+
+  const int first = (normal_axis() + 1) % 3, second = (normal_axis() + 2) % 3;
+  Eigen::Vector3d p = state.programmed().head<3>() / unit();
+  PlaneCorner lines;
+  lines.begin = in_plane(p, first, second);
+  const auto take = [&](const BlockWords& from) {
+    for (const int axis : {first, second}) {
+      if (const BlockWord* word = from.find("XYZ"[axis])) p[axis] = word->value;
+    }
+    return in_plane(p, first, second);
+  };
+  lines.corner = take(words);
+  lines.end = take(next.words);
+
+  if (const std::string why = lines.fault(name, size.value); !why.empty()) fail(size.column, why);
+  need(ReaderRule::corner, size.column);
+  write_corner(lines, size);
+}
+
+// The line to where the corner begins, and the corner.
+void ReadingStep::write_corner(const PlaneCorner& lines, const BlockWord& size) {
+  const bool is_arc = size.letter == 'R';
+  const double way = lines.way(size.letter, size.value);
+  const Eigen::Vector2d from = lines.corner + way * lines.to_begin();
+  const Eigen::Vector2d to = lines.corner + way * lines.to_end();
+  const char a = "XYZ"[(normal_axis() + 1) % 3], b = "XYZ"[(normal_axis() + 2) % 3];
+  if (words.has(a)) words.set(a, from.x());
+  if (words.has(b)) words.set(b, from.y());
+  if (!is_arc) {
+    behind.push_back(word_text(a, to.x()) + " " + word_text(b, to.y()));
+    return;
+  }
+  behind.push_back(fmt::format("{} {} {} {}", lines.cross() > 0.0 ? "G3" : "G2",
+                               word_text(a, to.x()), word_text(b, to.y()),
+                               word_text('R', size.value)));
+  memory.pending_motion = 10;  // of group 01, behind the arc of the control
+  memory.is_pending_known = true;
+}
+
+}  // namespace servomill::controllers
