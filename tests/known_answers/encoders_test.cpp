@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <regex>
 
 #include "plant/vocabulary/units.h"
+#include "tests/pattern.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::encoders_test {
@@ -188,12 +188,12 @@ model::Scenario displaced(const std::string& amplitude) {
 TEST(ReferenceMarks, StopTheMachineWhenTheVirtualEncoderFalsifiesTheirCount) {
   const std::string reason = stopped(displaced("150.0"));
   RecordProperty("reason", reason);
-  std::smatch part;
-  ASSERT_TRUE(std::regex_match(
-      reason, part,
-      std::regex("axis X: counted (\\d+) signal periods instead of (\\d+) between the reference "
-                 "marks at (-?[0-9.]+) and ([0-9.]+) mm at [0-9.]+ s")))
-      << reason;
+  const std::vector<std::string> part =
+      Pattern(
+          "axis X: counted (\\d+) signal periods instead of (\\d+) between the reference "
+          "marks at (-?[0-9.]+) and ([0-9.]+) mm at [0-9.]+ s")
+          .parts_of(reason);
+  ASSERT_FALSE(part.empty()) << reason;
   const double from = std::stod(part[3]), to = std::stod(part[4]);
   EXPECT_NEAR((to - from) / 0.02, std::stod(part[2]), 0.06);
   // the reading lacks what the slide is to be displaced by
@@ -235,10 +235,10 @@ TEST(EncoderInput, StopsTheMachineWhenTheSignalsAreTooFast) {
   const std::string scale = "scale = { period = \"20 um\", frequency_limit_kHz = 1.0 }\n";
   EXPECT_EQ(stopped(with_axis("G1 X5 F1100\n", scale)), "");
   const std::string reason = stopped(with_axis("G1 X5 F1800\n", scale));
-  EXPECT_TRUE(
-      std::regex_match(reason, std::regex("axis X: signals of the scale at 1\\.0[0-9]* kHz, "
-                                          "beyond the 1 kHz of the input at [0-9.]+ s")))
-      << reason;
+  const Pattern beyond(
+      "axis X: signals of the scale at 1\\.0[0-9]* kHz, beyond the 1 kHz of the input at [0-9.]+ "
+      "s");
+  EXPECT_TRUE(beyond.matches(reason)) << reason;
 }
 
 }  // namespace

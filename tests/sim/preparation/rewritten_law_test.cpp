@@ -5,13 +5,13 @@
 
 #include <map>
 #include <random>
-#include <regex>
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/move_curve.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/preparation/rewritten_text.h"
 #include "tests/number_of.h"
+#include "tests/pattern.h"
 #include "tests/sim/five_axis_program.h"
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/strategies/identified_machines.h"
@@ -309,8 +309,8 @@ TEST(RewrittenTipLaw, HoldsForBlocksThatAreTooSlowForG93) {
                                         "G20\nT1 M6\nS3000 M3\nG43.4 H1\n"
                                         "G0 X0.25 Y-0.6429 Z0.6805 A26.794 C-72.668\n"
                                         "G1 A11.014 C37.562 F22.209\nM30\n");
-  const std::regex slow("\nG94\nG1 X\\S+ Y\\S+ Z\\S+ A\\S+ C\\S+ F0\\.0[0-9]+\n");
-  EXPECT_TRUE(std::regex_search(text, slow)) << text;
+  const Pattern slow("\nG94\nG1 X\\S+ Y\\S+ Z\\S+ A\\S+ C\\S+ F0\\.0[0-9]+\n");
+  EXPECT_TRUE(slow.is_found_in(text)) << text;
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, RewrittenLaw, testing::Bool(),

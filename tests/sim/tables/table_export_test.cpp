@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <regex>
 #include <sstream>
 
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
+#include "tests/pattern.h"
 #include "tests/sim/tables/small_machine.h"
 
 namespace servomill::sim::tables::table_export_test {
@@ -66,7 +66,7 @@ ReadTables read_siemens(const std::vector<TextFile>& files) {
   ReadTables own, cross;
   std::map<int, ReadTable> by_index;
   std::map<int, std::pair<int, int>> axes;
-  static const std::regex kOwn(R"(\$AA_ENC_COMP\[0,(\d+),([XYZ])1\]=(\S+))"),
+  static const Pattern kOwn(R"(\$AA_ENC_COMP\[0,(\d+),([XYZ])1\]=(\S+))"),
       kOwnKey(R"(\$AA_ENC_COMP_(STEP|MIN)\[0,([XYZ])1\]=(\S+))"),
       kCross(R"(\$AN_CEC\[(\d+),(\d+)\]=(\S+))"),
       kCrossKey(R"(\$AN_CEC_(STEP|MIN)\[(\d+)\]=(\S+))"),
@@ -74,22 +74,22 @@ ReadTables read_siemens(const std::vector<TextFile>& files) {
   for (const TextFile& file : files) {
     std::istringstream in(file.text);
     std::string line;
-    std::smatch m;
+    std::vector<std::string> m;
     while (std::getline(in, line)) {
-      if (std::regex_match(line, m, kOwn)) {
-        const int j = joint_of_letter(m[2].str()[0]);
+      if (m = kOwn.parts_of(line); !m.empty()) {
+        const int j = joint_of_letter(m[2][0]);
         own[{j, j}].value[std::stoi(m[1])] = -std::stod(m[3]) * mm;
-      } else if (std::regex_match(line, m, kOwnKey)) {
-        const int j = joint_of_letter(m[2].str()[0]);
+      } else if (m = kOwnKey.parts_of(line); !m.empty()) {
+        const int j = joint_of_letter(m[2][0]);
         (m[1] == "STEP" ? own[{j, j}].step : own[{j, j}].first) = std::stod(m[3]) * mm;
-      } else if (std::regex_match(line, m, kCross)) {
+      } else if (m = kCross.parts_of(line); !m.empty()) {
         by_index[std::stoi(m[1])].value[std::stoi(m[2])] = std::stod(m[3]) * mm;
-      } else if (std::regex_match(line, m, kCrossKey)) {
+      } else if (m = kCrossKey.parts_of(line); !m.empty()) {
         ReadTable& table = by_index[std::stoi(m[2])];
         (m[1] == "STEP" ? table.step : table.first) = std::stod(m[3]) * mm;
-      } else if (std::regex_match(line, m, kAxis)) {
+      } else if (m = kAxis.parts_of(line); !m.empty()) {
         auto& [output, input] = axes[std::stoi(m[2])];
-        (m[1] == "INPUT" ? input : output) = joint_of_letter(m[3].str()[0]);
+        (m[1] == "INPUT" ? input : output) = joint_of_letter(m[3][0]);
       }
     }
   }

@@ -85,12 +85,12 @@ TEST(DialectSettings, SmoothingIsSimulated) {
   const auto numbers = [&](double smoothing) {
     trial.request.smoothing = smoothing;
     const std::string line = trial.run().report[2];
-    std::smatch match;
-    EXPECT_TRUE(std::regex_search(
-        line, match,
-        std::regex("simulated: by ([0-9.]+) um, ([0-9.]+) s at feed; held to 1 um: ([0-9.]+) s$")))
-        << line;
-    return std::array<double, 3>{std::stod(match[1]), std::stod(match[2]), std::stod(match[3])};
+    const auto part =
+        Pattern(".*simulated: by ([0-9.]+) um, ([0-9.]+) s at feed; held to 1 um: ([0-9.]+) s")
+            .parts_of(line);
+    EXPECT_EQ(part.size(), 4U) << line;
+    return std::array<double, 3>{std::stod(part.at(1)), std::stod(part.at(2)),
+                                 std::stod(part.at(3))};
   };
   const auto [by_10, time_10, held_10] = numbers(10e-6);
   const auto [by_50, time_50, held_50] = numbers(50e-6);

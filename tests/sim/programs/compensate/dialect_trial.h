@@ -1,8 +1,7 @@
 /// Programs written for other controls, as tests show them.
 #pragma once
 
-#include <regex>
-
+#include "tests/pattern.h"
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/text.h"
 
@@ -48,16 +47,16 @@ inline std::string said(Dialect dialect, const std::string& program) {
 
 /// Blocks between the retract of the header and the closing frame, without numbers, one line each.
 inline std::string body(const Trial& trial) {
-  static const std::regex kBlockNumber("^(N[0-9]+|[0-9]+) ");
-  static const std::regex kRetract(
+  static const Pattern kBlockNumber("^(N[0-9]+|[0-9]+) ");
+  static const Pattern kRetract(
       "^(G90 G49 G53 G0 Z-2\\.|SUPA G0 Z-2 D0|L Z-2 R0 FMAX M91|G90 G49 G53 G0 Z-0\\.0787)$");
   std::vector<std::string> lines;
   for (const std::string& line : lines_of(said(trial))) {
-    lines.push_back(std::regex_replace(line, kBlockNumber, ""));
+    lines.push_back(kBlockNumber.replaced(line, ""));
   }
   std::size_t first = 0, last = lines.size();
-  while (first < lines.size() && !std::regex_match(lines[first], kRetract)) ++first;
-  while (last > 0 && !std::regex_match(lines[last - 1], kRetract)) --last;
+  while (first < lines.size() && !kRetract.matches(lines[first])) ++first;
+  while (last > 0 && !kRetract.matches(lines[last - 1])) --last;
   std::string out;
   for (std::size_t i = first + 1; i + 1 < last; ++i) out += lines[i] + "\n";
   return out;

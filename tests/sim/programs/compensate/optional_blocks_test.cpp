@@ -1,5 +1,7 @@
 // Blocks with '/' in programs for every control: what follows is right for both positions of the
 // operator's switch, or the program is refused.
+#include <regex>
+
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/dialect_trial.h"
 

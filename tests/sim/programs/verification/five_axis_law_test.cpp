@@ -1,8 +1,7 @@
 // The law of compensated programs on five-axis machines of every kind, with errors of all axes:
 // tables, heads and both, axes A and B, rotations that carry corrections and such that do not.
-#include <regex>
-
 #include "tests/number_of.h"
+#include "tests/pattern.h"
 #include "tests/sim/programs/compensate/trial.h"
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
@@ -46,8 +45,8 @@ std::string errors_of(char tilt) {
 
 CompensateRequest request_for(const std::string& program, std::uint32_t seed, Dialect dialect) {
   const FiveAxisMachine& machine = kMachines[seed % kMachines.size()];
-  const std::string text = std::regex_replace(program, std::regex(" A(-?[0-9])"),
-                                              std::string(" ") + machine.tilt + "$1");
+  const std::string text =
+      Pattern(" A(-?[0-9])").replaced(program, std::string(" ") + machine.tilt + "$1");
   Trial trial(text, "five_axes.ngc");
   CompensateRequest request = trial.request;
   request.machine_file =

@@ -11,9 +11,10 @@ const std::string kStart = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X10 Y10
 // Why the written program is refused once `from` is replaced in it.
 std::string verified(const std::string& program, const std::string& from, const std::string& to) {
   const Trial trial = dialect_trial(Dialect::siemens, program);
+  const Pattern block_number("^N[0-9]+ ");
   std::string text;
   for (const std::string& line : lines_of(trial.run().program)) {
-    text += std::regex_replace(line, std::regex("^N[0-9]+ "), "") + "\n";
+    text += block_number.replaced(line, "") + "\n";
   }
   const std::size_t at = text.find(from);
   if (at == std::string::npos) return "not written: " + text;
