@@ -89,17 +89,22 @@ std::vector<std::size_t> InputFile::shape(const std::string& dataset) const {
   return {size.begin(), size.end()};
 }
 
+bool InputFile::holds_numbers(const std::string& dataset) const {
+  const Hdf5Lock lock;
+  const Hdf5Handle id = open(dataset);
+  if (H5Iget_type(id.get()) != H5I_DATASET) return false;
+  const Hdf5Handle type(H5Dget_type(id.get()));
+  const H5T_class_t kind = H5Tget_class(type.get());
+  return kind == H5T_FLOAT || kind == H5T_INTEGER;
+}
+
 std::vector<double> InputFile::values(const std::string& dataset) const {
   throw_if_interrupted();
   const Hdf5Lock lock;
   std::size_t count = 1;
   for (const std::size_t length : shape(dataset)) count *= length;
+  if (!holds_numbers(dataset)) fail(fmt::format("'{}' does not hold numbers", dataset));
   const Hdf5Handle id = open(dataset);
-  const Hdf5Handle type(H5Dget_type(id.get()));
-  const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) {
-    fail(fmt::format("'{}' does not hold numbers", dataset));
-  }
   std::vector<double> out(count);
   if (H5Dread(id.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
     fail(fmt::format("'{}' cannot be read: {}", dataset, hdf5_reason()));

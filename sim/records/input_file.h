@@ -23,6 +23,7 @@ class InputFile {
 
   /// Lengths of the dimensions; none for one value.
   std::vector<std::size_t> shape(const std::string& dataset) const;
+  bool holds_numbers(const std::string& dataset) const;
   /// All values, row by row.
   std::vector<double> values(const std::string& dataset) const;
 

@@ -24,6 +24,7 @@ FILES = {
     "work.var": "5221 0\n5222 0\n5223 -100\n",
     "errors.toml": ERRORS,
     "part.cls": "PARTNO/TEST\nLOADTL/1\nFEDRAT/200,MMPM\nGOTO/0,0,0\nGOTO/10,0,0\nEND\n",
+    "record.csv": "t [s],x [mm]\n0,1\n1,2\n",
     "base.toml": "",  # the scenario of the gallery
     "above.toml": "based_on = \"base.toml\"\n",
 }
@@ -87,6 +88,7 @@ COMMANDS = [
     (["budget", "above.toml"], "-o", SCENARIO_FILES),
     (["bode", "above.toml", "--axis", "X", "--method", "none"], "-o", SCENARIO_FILES),
     (["step", "above.toml", "--axis", "X"], "-o", SCENARIO_FILES),
+    (["recording", "record.csv"], "-o", ["record.csv"]),
 ]
 
 

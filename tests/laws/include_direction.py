@@ -26,6 +26,7 @@ SIM_ROOMS = {
     "config": ["system"],
     "metrology": [],
     "records": ["system"],
+    "recordings": ["records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "tables": ["controllers", "strategies", "model"],

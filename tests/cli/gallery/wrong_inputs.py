@@ -188,6 +188,31 @@ SWEEP = [
           "servomill sweep scenario.toml -o out.h5 --force --set 'sweep={title=[\"a\"]}'", write={"out.csv": "precious"}),
 ]
 
+def recording(title, content, *more):
+    return typed(title, "servomill recording record.csv", *more, write={"record.csv": content})
+
+
+RECORDINGS = [
+    typed("no recording, and two for one output", "servomill recording", "servomill recording nothing.csv",
+          "servomill recording a.csv b.csv -o out.csv"),
+    recording("a recording in a file of another kind", "PK\x03\x04\x14\x00"),
+    recording("a recording in UTF-16", "t;x\n0;1\n".encode("utf-16")),
+    recording("a recording without a row of numbers", "time;x\nstarted;stopped\n"),
+    recording("an empty recording", ""),
+    recording("a recording without a channel", "t [s]\n0\n1\n"),
+    recording("a recording with a name twice", "t [s];x;x\n0;1;2\n1;2;3\n"),
+    recording("a recording with a row of another length", "t [s];x\n0;1\n1;2;3\n2;3\n"),
+    recording("a recording that is cut off", "t [s];x;y\n0;1;2\n1;2;3\n2;3"),
+    recording("a recording with a word for a number", "t [s];x\n0;1\n1;off\n2;3\n"),
+    recording("a recording with an infinite value", "t [s];x\n0;1\n1;inf\n2;3\n"),
+    recording("a recording in which time runs backwards", "t [ms];x\n0;1\n2;2\n1;3\n"),
+    recording("a recording with an instant twice", "t [ms];x\n0;1\n1;2\n1;3\n"),
+    recording("a recording with a row without its time", "t [ms];x\n0;1\n;2\n2;3\n"),
+    recording("a recording with a time in mm", "t [mm];x\n0;1\n1;2\n"),
+    recording("a recording that cannot be written", "t [s];x\n0;1\n1;2\n", "servomill recording record.csv -q -o record.csv -f",
+              "servomill recording record.csv -q -o out.mat", "servomill recording record.csv -q -o ''"),
+]
+
 SOFT = "drive = \"two_mass\"\nstiffness = 180\ndamping = 1000"
 
 UNITS = [
@@ -198,4 +223,4 @@ UNITS = [
 ]
 
 WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
-                + COMPENSATE + CUTTING + PART + PROBES)
+                + COMPENSATE + CUTTING + PART + PROBES + RECORDINGS)

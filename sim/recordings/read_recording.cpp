@@ -1,0 +1,78 @@
+#include "sim/recordings/read_recording.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/recordings/csv_reader.h"
+#include "sim/recordings/hdf5_reader.h"
+#include "sim/system/read_file.h"
+
+namespace servomill::sim::recordings {
+namespace {
+
+// A format: the mark by which its content is recognised, and its reader.
+struct Format {
+  std::string_view name;
+  bool (*is)(std::string_view bytes);
+  Recording (*read)(std::string_view bytes, const std::string& path);
+};
+
+bool is_hdf5(std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a\n"); }
+
+Recording read_hdf5_file(std::string_view, const std::string& path) { return read_hdf5(path); }
+
+// A text has no NUL; UTF-16 and binary files have.
+bool is_table(std::string_view bytes) {
+  return bytes.find('\0') == std::string_view::npos && is_csv(bytes);
+}
+
+// The first that fits reads: marks of binary files come before those of texts.
+constexpr std::array kFormats = {
+    Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
+    Format{"CSV", is_table, parse_csv},
+};
+
+// Kinds of files that are known by their first bytes and not read.
+std::string refused_kind(std::string_view bytes) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kKinds = {{
+      {"\xFF\xFE", "a text in UTF-16; save it as UTF-8"},
+      {"\xFE\xFF", "a text in UTF-16; save it as UTF-8"},
+      {"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"},
+      {"\x1F\x8B", "compressed (gzip); decompress it"},
+      {"%PDF", "a PDF document"},
+      {"\x89PNG", "a picture"},
+      {"TDSm", "a TDMS file of LabVIEW; export it as CSV"},
+  }};
+  for (const auto& [mark, kind] : kKinds) {
+    if (bytes.starts_with(mark)) return std::string(kind);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string format_names() {
+  std::string out;
+  for (const Format& format : kFormats) {
+    if (!out.empty()) out += ", ";
+    out += format.name;
+  }
+  return out;
+}
+
+Recording read_recording(const std::string& path) {
+  const std::string bytes = system::read_file(path, {}, "recording");
+  if (bytes.empty()) throw InputError({path}, "is empty");
+  if (const std::string kind = refused_kind(bytes); !kind.empty()) {
+    throw InputError({path}, fmt::format("is no recording that can be read: it is {}", kind));
+  }
+  for (const Format& format : kFormats) {
+    if (format.is(bytes)) return format.read(bytes, path);
+  }
+  throw InputError({path}, fmt::format("is no recording of a known kind ({})", format_names()));
+}
+
+}  // namespace servomill::sim::recordings

@@ -1,0 +1,43 @@
+#include "sim/recordings/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/text.h"
+
+namespace servomill::sim::recordings::recording_test {
+namespace {
+
+Recording right() {
+  return {"a.h5", "", {{"time", "s", {0.0, 0.5, 1.0}}}, {{"x", "mm", {1, 2, 3}, 0}}, {}};
+}
+
+std::string refusal(const Recording& recording) {
+  return fault_messages([&] { check(recording); });
+}
+
+TEST(Check, LawsOfARecording) {
+  EXPECT_EQ(refusal(right()), "");
+  Recording wrong = right();
+  wrong.channels[0].samples.pop_back();
+  EXPECT_EQ(refusal(wrong), "channel 'x' has 2 samples, its time has 3 values\n");
+  wrong = right();
+  wrong.channels[0].samples[1] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal(wrong), "channel 'x' is infinite at time 0.5 s\n");
+  wrong = right();
+  wrong.bases[0].values[2] = 0.25;
+  EXPECT_EQ(refusal(wrong), "time: value 3 is 0.25 s after 0.5 s; must ascend\n");
+  wrong = right();
+  wrong.channels.push_back(wrong.channels[0]);
+  EXPECT_EQ(refusal(wrong), "channels 1 and 2 are both called 'x'\n");
+  wrong = right();
+  wrong.channels.clear();
+  EXPECT_EQ(refusal(wrong), "holds no channel\n");
+  wrong = right();
+  wrong.bases[0].values[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal(wrong), "time: value 1 is not finite\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::recordings::recording_test

@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/recordings/read_recording.h"
+#include "sim/recordings/survey.h"
+#include "sim/recordings/write_recording.h"
+#include "sim/run/store.h"
+#include "sim/system/output_name.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+namespace {
+
+namespace po = boost::program_options;
+
+// Everything that is known to be wrong with the output before anything is read.
+void refuse_output(const std::string& out, bool force) {
+  if (out.empty()) throw InputError({"--output"}, "the name of the result file is empty");
+  sim::system::output_target(out, sim::system::existing_of(force));
+  sim::recordings::refuse_unknown_kind(out);
+  if (out.ends_with(".h5")) sim::run::writable_name(out, force);
+}
+
+}  // namespace
+
+int recording_command(const Arguments& arguments) {
+  Options options("recording", "FILE... [-o OUT.h5|OUT.csv]",
+                  "Prints the content of recordings of real axes: channels, units, rates, gaps,\n"
+                  "clipping, missing samples; and converts one. The kind of a file is recognised\n"
+                  "by its content: " +
+                      sim::recordings::format_names() + ".",
+                  "FILE");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"),
+                "writes the recording as OUT.h5 or OUT.csv");
+  options.add()("force,f", "replaces OUT if it exists");
+  options.add()("quiet,q", "prints nothing but faults");
+  if (!options.parse(arguments)) return kDone;
+  const Place place{"servomill recording"};
+  const auto files = options.words();
+  if (files.empty()) throw InputError(place, "needs a FILE; see --help");
+  const std::string out = options.has("output") ? options.get<std::string>("output") : "";
+  if (options.has("output")) {
+    if (files.size() > 1) throw InputError(place, "-o takes one FILE");
+    refuse_output(out, options.has("force"));
+  }
+  for (const std::string& file : files) {
+    const sim::recordings::Recording recording = sim::recordings::read_recording(file);
+    if (!options.has("quiet")) fmt::print("{}", sim::recordings::survey(recording));
+    if (out.empty()) continue;
+    sim::recordings::write_recording(recording, out, options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools
