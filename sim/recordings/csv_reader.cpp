@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -98,15 +97,6 @@ std::string sign_name(char sign) {
   if (sign == '\t') return "tab";
   if (sign == ' ') return "blank";
   return fmt::format("'{}'", sign);
-}
-
-bool is_time(const std::string& name) {
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::string_view, 5> kNames = {"time", "t", "zeit", "timestamp",
-                                                      "elapsed time"};
-  return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
 }
 
 // A table while it is read.
@@ -236,16 +226,15 @@ class Table {
     row_lines_.push_back(line.number);
   }
 
-  Base time_base(std::size_t column, std::vector<std::string>& notes) const {
+  Base time_base(std::size_t column) const {
     Base out;
     const std::string& unit = headings_[column].unit;
     const auto seconds = seconds_of(unit);
     if (!unit.empty() && !seconds) {
-      throw InputError(
-          {file_, heading_line_->number, name_columns_[column]},
-          fmt::format("'{}' is no unit of time; known are s, ms, us, ns, min and h", unit));
+      throw InputError({file_, heading_line_->number, name_columns_[column]},
+                       fmt::format("'{}' is no unit of time; known are {}", unit, kTimeUnits));
     }
-    if (unit.empty()) notes.push_back("the unit of the time is not given: taken for s");
+    out.unit_known = !unit.empty();
     double last = -HUGE_VAL;
     for (std::size_t i = 0; i < columns_[column].size(); ++i) {
       const double value = columns_[column][i] * seconds.value_or(1.0);
@@ -267,16 +256,12 @@ class Table {
     out.format = fmt::format("CSV, separator {}, decimal '{}'", sign_name(layout_.separator),
                              layout_.decimal);
     const auto time = std::find_if(headings_.begin(), headings_.end(),
-                                   [](const Heading& one) { return is_time(one.name); });
+                                   [](const Heading& one) { return is_time_name(one.name); });
     const auto time_column = static_cast<std::size_t>(time - headings_.begin());
     if (time == headings_.end()) {
-      Base rows{"sample", "1", {}};
-      for (std::size_t i = 0; i < row_lines_.size(); ++i) {
-        rows.values.push_back(static_cast<double>(i));
-      }
-      out.bases.push_back(std::move(rows));
+      out.bases.push_back(sample_numbers(row_lines_.size()));
     } else {
-      out.bases.push_back(time_base(time_column, out.notes));
+      out.bases.push_back(time_base(time_column));
     }
     for (std::size_t i = 0; i < headings_.size(); ++i) {
       if (i == time_column) continue;

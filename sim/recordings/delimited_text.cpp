@@ -55,11 +55,11 @@ std::vector<TextLine> text_lines(std::string_view text) {
   std::vector<TextLine> out;
   int number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {
-    const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = text.substr(begin, end - begin);
+    if (line.ends_with('\r')) line.remove_suffix(1);
     if (!trimmed(line).empty()) out.push_back({line, number});
     begin = end + 1;
-    if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++begin;
   }
   return out;
 }
@@ -135,6 +135,13 @@ Heading parse_heading(std::string_view text) {
             std::string(trimmed(std::string_view(all).substr(at + 1, all.size() - at - 2)))};
   }
   return {all, ""};
+}
+
+bool is_time_name(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kNames = {"time", "t", "zeit", "timestamp",
+                                                      "elapsed time"};
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [&](std::string_view one) { return is_word(name, one); });
 }
 
 std::optional<double> seconds_of(std::string_view unit) {

@@ -15,7 +15,7 @@ struct TextLine {
   int number = 0;  // from 1
 };
 
-/// Lines that are not blank; a line ends with LF, CR LF or CR.
+/// Lines that are not blank; a line ends with LF or CR LF.
 std::vector<TextLine> text_lines(std::string_view text);
 
 /// A field of a line, without blanks and quotes around it.
@@ -39,6 +39,12 @@ struct Heading {
   std::string name, unit;
 };
 Heading parse_heading(std::string_view text);
+
+/// True for the names of a column or variable that holds the time: "time", "t", "Zeit", ...
+bool is_time_name(std::string_view name);
+
+/// Units of time in messages.
+inline constexpr std::string_view kTimeUnits = "s, ms, us, ns, min and h";
 
 /// Seconds of a unit of time ("ms", "us", "min"); nothing for another one.
 std::optional<double> seconds_of(std::string_view unit);

@@ -51,6 +51,9 @@ class Hdf5Walk {
     const std::string dataset = group + "/" + base_name;
     Base base;
     base.name = group.empty() ? base_name : group.substr(1) + "/" + base_name;
+    if (is_recording_ && file_.has_attribute(dataset, "long_name")) {
+      base.name = file_.text(dataset, "long_name");
+    }
     base.unit = units_of(dataset);
     base.values = file_.values(dataset);
     out_.bases.push_back(base);

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/csv_reader.h"
 #include "sim/recordings/hdf5_reader.h"
+#include "sim/recordings/mat_reader.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim::recordings {
@@ -32,16 +33,18 @@ bool is_table(std::string_view bytes) {
 // The first that fits reads: marks of binary files come before those of texts.
 constexpr std::array kFormats = {
     Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
+    Format{"MAT v5 of MATLAB", is_mat, read_mat},
     Format{"CSV", is_table, parse_csv},
 };
 
 // Kinds of files that are known by their first bytes and not read.
 std::string refused_kind(std::string_view bytes) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kKinds = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kKinds = {{
       {"\xFF\xFE", "a text in UTF-16; save it as UTF-8"},
       {"\xFE\xFF", "a text in UTF-16; save it as UTF-8"},
       {"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"},
       {"\x1F\x8B", "compressed (gzip); decompress it"},
+      {"MATLAB 7.3", "a MAT file of level 7.3; save it with -v6 or -v7"},
       {"%PDF", "a PDF document"},
       {"\x89PNG", "a picture"},
       {"TDSm", "a TDMS file of LabVIEW; export it as CSV"},
@@ -63,14 +66,17 @@ std::string format_names() {
   return out;
 }
 
-Recording read_recording(const std::string& path) {
+Recording read_recording(const std::string& path, const std::string& time_unit) {
   const std::string bytes = system::read_file(path, {}, "recording");
   if (bytes.empty()) throw InputError({path}, "is empty");
   if (const std::string kind = refused_kind(bytes); !kind.empty()) {
     throw InputError({path}, fmt::format("is no recording that can be read: it is {}", kind));
   }
   for (const Format& format : kFormats) {
-    if (format.is(bytes)) return format.read(bytes, path);
+    if (!format.is(bytes)) continue;
+    Recording out = format.read(bytes, path);
+    set_time_unit(out, time_unit);
+    return out;
   }
   throw InputError({path}, fmt::format("is no recording of a known kind ({})", format_names()));
 }

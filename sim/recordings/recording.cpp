@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/recordings/delimited_text.h"
 #include "sim/system/counted.h"
 
 namespace servomill::sim::recordings {
@@ -40,6 +42,33 @@ void check_channel(const Recording& recording, const Channel& channel) {
 }
 
 }  // namespace
+
+Base sample_numbers(std::size_t count) {
+  Base out{"sample", "1", std::vector<double>(count)};
+  std::iota(out.values.begin(), out.values.end(), 0.0);
+  return out;
+}
+
+void set_time_unit(Recording& recording, const std::string& unit) {
+  const auto seconds = seconds_of(unit);
+  if (!unit.empty() && !seconds) {
+    throw InputError({"--time-unit"},
+                     fmt::format("'{}' is no unit of time; known are {}", unit, kTimeUnits));
+  }
+  bool is_used = unit.empty();
+  for (Base& base : recording.bases) {
+    if (base.unit_known) continue;
+    for (double& value : base.values) value *= seconds.value_or(1.0);
+    base.unit_known = is_used = true;
+    recording.notes.push_back(
+        unit.empty() ? fmt::format("the file has no unit of its {}: taken for s; --time-unit "
+                                   "says otherwise",
+                                   base.name)
+                     : fmt::format("the {} is in {}, by --time-unit", base.name, unit));
+  }
+  if (is_used) return;
+  throw InputError({recording.file}, "has no time without a unit; --time-unit is not for it");
+}
 
 std::string at_text(const Base& base, std::size_t index) {
   if (base.unit == "1") return fmt::format("sample {}", base.values[index]);

@@ -13,6 +13,7 @@ struct Base {
   std::string name = "time";
   std::string unit = "s";  // "s"; "Hz" for spectra; "1" for sample numbers, where no time is known
   std::vector<double> values;  // finite, ascending
+  bool unit_known = true;      // false: a time without its unit, taken for s
 };
 
 /// One recorded quantity.
@@ -32,10 +33,18 @@ struct Recording {
   std::vector<std::string> notes;  // sentences on the content: skipped objects, assumed units
 };
 
+/// Base of samples whose times are not known: 0, 1, 2, ...
+Base sample_numbers(std::size_t count);
+
 /// Laws of every recording: a channel at least, names that differ, as many samples as the base has
 /// instants, a base that ascends, no infinite values.
 /// @throws InputError that names the file, the channel and the time
 void check(const Recording& recording);
+
+/// Gives times without a unit that one, or notes that they are taken for seconds.
+/// @param unit  of time ("us"); empty: not given
+/// @throws InputError if there is no such unit, or the file itself says which
+void set_time_unit(Recording& recording, const std::string& unit);
 
 /// "time 0.25 s", "sample 3", "frequency 10 Hz"; for messages.
 std::string at_text(const Base& base, std::size_t index);

@@ -33,6 +33,8 @@ int recording_command(const Arguments& arguments) {
                   "FILE");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"),
                 "writes the recording as OUT.h5 or OUT.csv");
+  options.add()("time-unit", po::value<std::string>()->value_name("us"),
+                "unit of times of which the file does not say it; not given: s");
   options.add()("force,f", "replaces OUT if it exists");
   options.add()("quiet,q", "prints nothing but faults");
   if (!options.parse(arguments)) return kDone;
@@ -44,8 +46,10 @@ int recording_command(const Arguments& arguments) {
     if (files.size() > 1) throw InputError(place, "-o takes one FILE");
     refuse_output(out, options.has("force"));
   }
+  const std::string time_unit =
+      options.has("time-unit") ? options.get<std::string>("time-unit") : "";
   for (const std::string& file : files) {
-    const sim::recordings::Recording recording = sim::recordings::read_recording(file);
+    const sim::recordings::Recording recording = sim::recordings::read_recording(file, time_unit);
     if (!options.has("quiet")) fmt::print("{}", sim::recordings::survey(recording));
     if (out.empty()) continue;
     sim::recordings::write_recording(recording, out, options.has("force"));

@@ -76,7 +76,7 @@ TEST_F(Hdf5Reader, RecordingWithAChannelOfAnotherLengthIsRefused) {
     file.commit();
   }
   EXPECT_EQ(fault_messages([&] { read_hdf5(path("a.h5")); }),
-            "channel 'base_001/x' has 3 samples, its base_001/time has 2 values\n");
+            "channel 'base_001/x' has 3 samples, its time has 2 values\n");
 }
 
 }  // namespace

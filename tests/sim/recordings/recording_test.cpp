@@ -39,5 +39,22 @@ TEST(Check, LawsOfARecording) {
   EXPECT_EQ(refusal(wrong), "time: value 1 is not finite\n");
 }
 
+TEST(TimeUnit, IsForTimesWithoutOneOnly) {
+  Recording recording = right();
+  EXPECT_EQ(fault_messages([&] { set_time_unit(recording, "us"); }),
+            "has no time without a unit; --time-unit is not for it\n");
+  recording.bases[0].unit_known = false;
+  EXPECT_EQ(fault_messages([&] { set_time_unit(recording, "mm"); }),
+            "'mm' is no unit of time; known are s, ms, us, ns, min and h\n");
+  set_time_unit(recording, "ms");
+  EXPECT_EQ(recording.bases[0].values[1], 0.5e-3);
+  recording = right();
+  recording.bases[0].unit_known = false;
+  set_time_unit(recording, "");
+  EXPECT_EQ(recording.bases[0].values, right().bases[0].values);
+  EXPECT_EQ(recording.notes.at(0),
+            "the file has no unit of its time: taken for s; --time-unit says otherwise");
+}
+
 }  // namespace
 }  // namespace servomill::sim::recordings::recording_test
