@@ -9,6 +9,7 @@
 #include "sim/recordings/csv_reader.h"
 #include "sim/recordings/hdf5_reader.h"
 #include "sim/recordings/mat_reader.h"
+#include "sim/recordings/sinumerik_frequency.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim::recordings {
@@ -34,6 +35,7 @@ bool is_table(std::string_view bytes) {
 constexpr std::array kFormats = {
     Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
     Format{"MAT v5 of MATLAB", is_mat, read_mat},
+    Format{"Sinumerik frequency measurement", is_sinumerik_frequency, parse_sinumerik_frequency},
     Format{"CSV", is_table, parse_csv},
 };
 

@@ -212,6 +212,9 @@ RECORDINGS = [
     recording("a unit of time for a file that has one, and one that there is not", "t [s];x\n0;1\n1;2\n",
               "servomill recording record.csv --time-unit ms", "servomill recording record.csv --time-unit mm"),
     recording("a recording of MATLAB that is cut off", b"MATLAB 5.0 MAT-file" + b" " * 105 + b"\x00\x01IM" + b"\x0e\x00\x00\x00\x40\x00\x00\x00\x06"),
+    recording("a frequency measurement of a Sinumerik control that is cut off",
+              '<?xml version="1.0"?>\n<ResponseTestCustom>\n  <float name="m_dProc'),
+    recording("a frequency measurement of a Sinumerik control without a signal", '<?xml version="1.0"?>\n<ResponseTestCustom>\n</ResponseTestCustom>\n'),
     recording("a recording that cannot be written", "t [s];x\n0;1\n1;2\n", "servomill recording record.csv -q -o record.csv -f",
               "servomill recording record.csv -q -o out.mat", "servomill recording record.csv -q -o ''"),
 ]
