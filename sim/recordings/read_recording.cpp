@@ -10,6 +10,7 @@
 #include "sim/recordings/hdf5_reader.h"
 #include "sim/recordings/mat_reader.h"
 #include "sim/recordings/sinumerik_frequency.h"
+#include "sim/recordings/xml_document.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim::recordings {
@@ -57,6 +58,19 @@ std::string refused_kind(std::string_view bytes) {
   return "";
 }
 
+// Recordings of controls that are recognised and not read. Some of them would pass for tables
+// without names.
+std::string unread_format(std::string_view bytes) {
+  constexpr std::size_t kHead = 4096;
+  const std::string_view head = bytes.substr(0, kHead);
+  if (is_xml(head) && head.find("<traceData") != std::string_view::npos) {
+    return "a trace of a Sinumerik control";
+  }
+  if (head.find("%[GLOBAL]") != std::string_view::npos) return "a recording of TNCscope";
+  if (head.starts_with("Sampling period is ")) return "a recording of LinuxCNC's halscope";
+  return "";
+}
+
 }  // namespace
 
 std::string format_names() {
@@ -73,6 +87,10 @@ Recording read_recording(const std::string& path, const std::string& time_unit) 
   if (bytes.empty()) throw InputError({path}, "is empty");
   if (const std::string kind = refused_kind(bytes); !kind.empty()) {
     throw InputError({path}, fmt::format("is no recording that can be read: it is {}", kind));
+  }
+  if (const std::string kind = unread_format(bytes); !kind.empty()) {
+    throw InputError({path},
+                     fmt::format("is {}, a format that is not read; convert it to CSV", kind));
   }
   for (const Format& format : kFormats) {
     if (!format.is(bytes)) continue;

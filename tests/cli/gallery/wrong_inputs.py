@@ -215,6 +215,7 @@ RECORDINGS = [
     recording("a frequency measurement of a Sinumerik control that is cut off",
               '<?xml version="1.0"?>\n<ResponseTestCustom>\n  <float name="m_dProc'),
     recording("a frequency measurement of a Sinumerik control without a signal", '<?xml version="1.0"?>\n<ResponseTestCustom>\n</ResponseTestCustom>\n'),
+    recording("a recording of a control in a format that is not read", "%[GLOBAL]\n%[CURVE1]\n%COUNT=2\n%[DATA]\n0;1\n1;2\n"),
     recording("a recording that cannot be written", "t [s];x\n0;1\n1;2\n", "servomill recording record.csv -q -o record.csv -f",
               "servomill recording record.csv -q -o out.mat", "servomill recording record.csv -q -o ''"),
 ]
