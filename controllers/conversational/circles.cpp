@@ -66,7 +66,7 @@ void Translator::pole(const HeidenhainBlock& block) {
 void Translator::require_arc(const Positioning& p) const {
   if (p.target[3] || p.target[4] || p.target[5]) fail("a rotary axis on a circle is not read");
   if (p.has(91)) fail("M91 on a circle");
-  if (p.retract) fail("M140 on a circle");
+  if (p.retract || p.is_retract_to_limit) fail("M140 on a circle");
   if (p.feed && p.feed->kind == Feed::Kind::rapid) fail("FMAX on a circle; write F");
 }
 

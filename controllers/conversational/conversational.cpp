@@ -13,6 +13,13 @@ namespace {
 
 constexpr auto kReadings = std::to_array<Reading>({
     {"F in a program in INCH", "tenths of an inch per minute", "all", "TNC 7, Cutting data"},
+    {"N before block numbers", "a block number", "none; simulators of controls write it",
+     "none needed"},
+    {"a comment that ends with '~'", "goes on in the next line", "TNC 640", "from memory"},
+    {"M140 MB MAX", "to the upper end of travel of Z in the machine file", "iTNC 530, TNC 640",
+     "from memory"},
+    {"cycle 392 (ATC)", "without effect on motion: it matches the drives to the load",
+     "machines of DMG MORI", "from memory"},
     {"F of a block with linear and rotary axes", "the feed of the linear axes",
      "some machines: of all axes together", "none found"},
     {"M functions of the machine builder", "without effect on motion", "by machine", "from memory"},
@@ -22,6 +29,8 @@ constexpr auto kReadings = std::to_array<Reading>({
     {"TOOL CALL of a tool without a tool table",
      "a tool of unknown length: Z of the machine is "
      "that of its tip",
+     "every control has a table of its own", "none needed"},
+    {"TOOL CALL of a name without a tool table", "a tool of unknown length, numbered from 30001",
      "every control has a table of its own", "none needed"},
     {"DR2 of TOOL CALL", "without effect: radii of corners act in 3-D compensation only", "all",
      "from memory"},

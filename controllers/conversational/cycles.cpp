@@ -35,6 +35,8 @@ constexpr auto kRefusals = std::to_array<Refusal>({
     {400, 499, "touch probe cycles are not read: what they measure is not known"},
 });
 
+constexpr long kApplicationTuning = 392;  // ATC, of machines of DMG MORI
+
 constexpr auto kDrilling = std::to_array<int>({1, 200, 201, 202, 203, 205, 206, 207, 240});
 
 bool is_drilling(int number) {
@@ -70,6 +72,10 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
       return warn_once("cycle 13", "CYCL DEF 13: the spindle is oriented; read as without effect");
     }
     fail(words[2].place, fmt::format("CYCL DEF {}: {}", *number, refusal.why));
+  }
+  if (*number == kApplicationTuning) {
+    return warn_once("cycle 392",
+                     "CYCL DEF 392: matches the drives to the load; read as without effect");
   }
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "controllers/conversational/translator.h"
 #include "plant/vocabulary/units.h"
@@ -10,6 +11,7 @@ namespace servomill::controllers::conversational {
 namespace {
 
 constexpr double kShortest = 1e-9;  // mm; a shorter line is dropped
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_rotary_only(const Positioning& p) { return !p.target[0] && !p.target[1] && !p.target[2]; }
 
@@ -38,6 +40,7 @@ void Translator::set_side(const Positioning& p) {
 
 void Translator::move_straight(const Positioning& p) {
   if (p.retract) return retract(p);
+  if (p.is_retract_to_limit) return retract_to_limit(p);
   if (!p.has_target()) {
     if (p.has(91)) fail("M91 without a coordinate");
     if (p.feed && p.feed->kind == Feed::Kind::per_minute) feed_ = p.feed->value;
@@ -161,6 +164,42 @@ void Translator::retract(const Positioning& p) {
   motion.words[2] = *p.retract;
   motion.is_incremental = true;
   add(std::move(motion));
+}
+
+// M140 MB MAX: along the tool axis to the end of travel, at rapid where the block has no F. Where
+// the machine is unknown, surveys take the stored position of G28 for a position that is not known.
+void Translator::retract_to_limit(const Positioning& p) {
+  if (p.has_target()) fail("M140 with coordinates; write them in a block of their own");
+  if (is_tcp_ || plane_) {
+    fail(
+        "M140 MB MAX with M128 or in a tilted plane: the direction is that of the inclined tool; "
+        "end them before, or write MB with a number");
+  }
+  require_no_compensation("M140 MB MAX");
+  std::optional<double> end;
+  if (setup_.machine) {
+    const auto joint = setup_.machine->chain().layout.joint_of(Axis::Z);
+    const double upper = joint ? setup_.machine->upper_travel()[*joint] : kInfinity;
+    if (std::isfinite(upper)) end = upper / mm;
+  }
+  const std::string why =
+      "M140 MB MAX: the end of travel of Z is the machine's; name a machine that has it "
+      "(--machine), "
+      "or write MB with a number or M91";
+  if (!end && !setup_.accepts_unknown_positions) fail(why);
+  if (end) {
+    Motion motion;
+    motion.place = place_;
+    motion.is_machine = true;
+    motion.feed = p.feed ? *p.feed : Feed{};
+    motion.words[2] = end;
+    path_.add(std::move(motion));
+  } else {
+    warn_once("M140", why);
+    for (const char* text : {"G91 G28 Z0", "G90"}) note(text);
+  }
+  work_[2].reset();
+  last_element_.reset();
 }
 
 // --------------------------------------------------------------------------------- polar, corners

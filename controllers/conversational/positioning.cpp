@@ -80,12 +80,9 @@ bool Translator::read_function(Words& words, Positioning& p) {
   const int m = whole(value(operand_of(word->rest, place)), 999, place, "M");
   p.functions.emplace_back(m, place);
   if (m == 140) {
-    if (words.take("MBMAX") != nullptr)
-      fail(place,
-           "M140 MB MAX: the limit of travel is the machine's; write MB with a number or M91");
-    if (words.take("MB") != nullptr)
-      fail(place,
-           "M140 MB MAX: the limit of travel is the machine's; write MB with a number or M91");
+    p.is_retract_to_limit = words.take("MBMAX") != nullptr ||
+                            (words.take("MB") != nullptr && words.take("MAX") != nullptr);
+    if (p.is_retract_to_limit) return true;
     const auto retract = words.take_number("MB");
     if (!retract) fail(place, "M140 needs MB with a number");
     p.retract = length(*retract);

@@ -53,13 +53,25 @@ void ProgramFile::blank_title() {
   }
 }
 
+// "N5 L X+1": programs for simulators of the control have such numbers; the control's have none.
+void ProgramFile::take_number_with_N(HeidenhainBlock& block) {
+  if (block.words.empty() || block.number || block.words.front().address != "N") return;
+  const auto number = integer_of(block.words.front().rest);
+  if (!number) return;
+  block.number = *number;
+  block.words.erase(block.words.begin());
+  if (!block.words.empty()) block.place = block.words.front().place;
+  has_numbers_with_N_ = true;
+}
+
 std::optional<HeidenhainBlock> ProgramFile::next() {
   const std::string_view rest = std::string_view(text_).substr(at_.offset);
-  HeidenhainBlocks blocks(rest, file_, at_.line);
+  HeidenhainBlocks blocks(rest, file_, at_.line, true);
   const auto advance = [&] { at_ = {text_.size() - blocks.rest().size(), blocks.line()}; };
   try {
     auto block = blocks.next();
     advance();
+    if (block) take_number_with_N(*block);
     return block;
   } catch (const InputError&) {
     advance();

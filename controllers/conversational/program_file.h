@@ -40,17 +40,21 @@ class ProgramFile {
   const std::vector<HeidenhainBlock>& tool_definitions() const { return tool_definitions_; }
   /// Lines in brackets before BEGIN PGM, which are not read.
   int lines_before_begin() const { return lines_before_begin_; }
+  /// True if block numbers are written with N.
+  bool has_numbers_with_N() const { return has_numbers_with_N_; }
   /// Programs that it calls, by the names written in the blocks.
   const std::vector<std::string>& called_programs() const { return called_; }
 
  private:
   void blank_title();
+  void take_number_with_N(HeidenhainBlock& block);
   void index();
   void index(const HeidenhainBlock& block);
 
   std::string text_, file_;
   BlockMark at_;
   int lines_before_begin_ = 0;
+  bool has_numbers_with_N_ = false;
   std::map<std::string, BlockMark> labels_;
   std::vector<Fault> faults_;
   std::vector<HeidenhainBlock> tool_definitions_;

@@ -8,6 +8,31 @@
 
 namespace servomill::controllers::conversational {
 
+// TOOL CALL "MILL 10": the names are those of the control's tool table. Without any table here,
+// each name is a tool of unknown length, with a number that no program writes.
+int Translator::named_tool(Words& words) {
+  constexpr int kFirst = 30001;
+  const HeidenhainWord* word = words.take_next();
+  const Place place = word->place;
+  std::string name = word->text;
+  while ((name.size() < 2 || name.back() != '"') && words.peek() != nullptr) {
+    name += " " + words.take_next()->text;
+  }
+  if (!setup_.tools.empty()) {
+    fail(place,
+         "a tool called by its name: the tool table of the control has the names, "
+         "the one here numbers; write the number");
+  }
+  const auto [found, is_new] =
+      tool_names_.try_emplace(name, kFirst + static_cast<int>(tool_names_.size()));
+  if (is_new) {
+    warn_once(name, fmt::format("TOOL CALL {}: read as tool {} of unknown length, since no tool "
+                                "table is given",
+                                name, found->second));
+  }
+  return found->second;
+}
+
 // TOOL CALL 5 Z S2000 F500 DL+0.1 DR-0.05, TOOL CALL S3000.
 void Translator::call_tool(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(1));
@@ -15,12 +40,9 @@ void Translator::call_tool(const HeidenhainBlock& block) {
   std::optional<int> number;
   if (const HeidenhainWord* word = words.peek()) {
     const char first = word->text.front();
-    if (first == '"') {
-      fail(word->place,
-           "a tool called by its name: the tool table of the control has the names, "
-           "the one here numbers; write the number");
-    }
-    if ((first >= '0' && first <= '9') || (first == 'Q' && word->address.starts_with('Q'))) {
+    if (first == '"') number = named_tool(words);
+    if (!number &&
+        ((first >= '0' && first <= '9') || (first == 'Q' && word->address.starts_with('Q')))) {
       const Place at = word->place;
       const double written = value(operand_of(word->text, at));
       words.take_next();

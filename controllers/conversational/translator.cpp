@@ -98,6 +98,9 @@ void Translator::run_block() {
   constexpr long kMostBlocks = 10;  // after the first jump, for each jump allowed
   if (jumps_ > 0 && ++blocks_ / kMostBlocks > setup_.most_jumps)
     jumps_ = setup_.most_jumps, count_jump();
+  if (block->is_continued_comment) {
+    warn_once("comment", "a comment that ends with '~': the next line is read as a part of it");
+  }
   if (block->words.empty() || (block->is_optional && setup_.block_delete)) return;
   execute(*block);
 }
@@ -110,6 +113,9 @@ void Translator::begin_program() {
   if (program().lines_before_begin() > 0) {
     warn_once("title",
               fmt::format("{} lines before BEGIN PGM: left out", program().lines_before_begin()));
+  }
+  if (program().has_numbers_with_N()) {
+    warn_once("N", "block numbers with N: read as block numbers, which controls write without N");
   }
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},

@@ -49,7 +49,8 @@ struct Positioning {
   std::optional<int> side;                          // R0, RL, RR
   std::optional<int> direction;                     // DR+, DR-
   std::vector<std::pair<int, Place>> functions;     // M
-  std::optional<double> retract;                    // M140 MB
+  std::optional<double> retract;                    // M140 MB, mm
+  bool is_retract_to_limit = false;                 // M140 MB MAX
 
   bool has_target() const;
   bool has(int function) const;
@@ -131,6 +132,7 @@ class Translator {
   void move_straight(const Positioning& p);
   void move_to_machine(const Positioning& p);
   void retract(const Positioning& p);
+  void retract_to_limit(const Positioning& p);
   Motion motion_of(const Positioning& p);
   void add(Motion motion);
   void begin_functions(const Positioning& p);
@@ -163,6 +165,7 @@ class Translator {
   // tools.cpp
   void call_tool(const HeidenhainBlock& block);
   void define_tool(const HeidenhainBlock& block);
+  int named_tool(Words& words);
   void change_tool(int number);
   void take_tools_of_program();
 
@@ -241,6 +244,7 @@ class Translator {
   std::optional<bool> is_shorter_path_;  // M126, M127
   std::array<double, kAxisWords> revolutions_{};
 
+  std::map<std::string, int> tool_names_;  // of TOOL CALL "NAME", with the number made up for each
   int tool_ = 0;
   bool has_tool_call_ = false;
   double delta_length_ = 0.0, delta_radius_ = 0.0;  // of TOOL CALL, mm

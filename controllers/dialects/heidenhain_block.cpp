@@ -66,6 +66,12 @@ void take_head(HeidenhainBlock& block) {
   }
 }
 
+// True for a block without words other than its number and '/'.
+bool has_head_only(HeidenhainBlock block) {
+  take_head(block);
+  return block.words.empty();
+}
+
 // Sign, digits, separator, digits; nothing else.
 bool is_number(std::string_view digits, const HeidenhainFormat& format) {
   if (!digits.empty() && (digits.front() == '+' || digits.front() == '-')) {
@@ -94,8 +100,12 @@ struct HeidenhainBlocks::Line {
   bool has_comment = false;
 };
 
-HeidenhainBlocks::HeidenhainBlocks(std::string_view text, std::string file, int first_line)
-    : rest_(text), file_(std::move(file)), line_(first_line) {}
+HeidenhainBlocks::HeidenhainBlocks(std::string_view text, std::string file, int first_line,
+                                   bool continues_comments)
+    : rest_(text),
+      file_(std::move(file)),
+      line_(first_line),
+      continues_comments_(continues_comments) {}
 
 // A '~' continues a block also after a comment: the control writes names of parameters as comments.
 HeidenhainBlocks::Line HeidenhainBlocks::take_line() {
@@ -135,8 +145,9 @@ std::optional<HeidenhainBlock> HeidenhainBlocks::next() {
   HeidenhainBlock block;
   block.place = {file_, line_, 1};
   append_words(line.text, block.place, block.words);
+  const bool is_comment = line.has_comment && has_head_only(block);
   while (line.is_continued) {
-    if (block.words.empty()) {
+    if (is_comment && !continues_comments_) {
       throw InputError(block.place,
                        "a comment that ends with '~': it may continue in the next line");
     }
@@ -144,7 +155,8 @@ std::optional<HeidenhainBlock> HeidenhainBlocks::next() {
       throw InputError({file_, line_, 0}, "'~' continues the block, but no line follows");
     }
     line = take_line();
-    append_words(line.text, {file_, line_, 0}, block.words);
+    block.is_continued_comment = is_comment;
+    if (!is_comment) append_words(line.text, {file_, line_, 0}, block.words);
   }
   take_head(block);
   if (!block.words.empty()) block.place = block.words.front().place;

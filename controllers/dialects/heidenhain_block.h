@@ -22,7 +22,8 @@ struct HeidenhainWord {
 struct HeidenhainBlock {
   Place place;  // of its first word, or of its line
   std::optional<long> number;
-  bool is_optional = false;  // begins with '/'
+  bool is_optional = false;           // begins with '/'
+  bool is_continued_comment = false;  // a comment with further lines
   std::vector<HeidenhainWord> words;
 };
 
@@ -32,7 +33,10 @@ class HeidenhainBlocks {
  public:
   /// @param text        must outlive this
   /// @param first_line  number of the line before it
-  HeidenhainBlocks(std::string_view text, std::string file, int first_line = 0);
+  /// @param continues_comments  lines after a comment that ends with '~' belong to it; otherwise
+  ///                            they are refused
+  HeidenhainBlocks(std::string_view text, std::string file, int first_line = 0,
+                   bool continues_comments = false);
   /// The next block, nullopt at the end.
   /// @throws InputError for a control character, for a continuation without a next line
   std::optional<HeidenhainBlock> next();
@@ -48,6 +52,7 @@ class HeidenhainBlocks {
   std::string_view rest_;
   std::string file_;
   int line_ = 0;
+  bool continues_comments_ = false;
 };
 
 /// Bounds of a number: the control's input format.

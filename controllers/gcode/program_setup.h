@@ -47,6 +47,10 @@ struct ProgramSetup {
   bool accepts_unknown_lengths = false;
   /// Dwells may be unknown (NaN), where controls read P in different units.
   bool accepts_unknown_dwells = false;
+  /// For surveys: positions may be unknown that only the machine or --additional-offset gives.
+  /// G54.1 P lies at the work system in force, M140 MB MAX goes to the stored position of G28,
+  /// G53.1 and G43.5 leave the rotary axes, and the tip is reckoned with these at zero.
+  bool accepts_unknown_positions = false;
   /// Finds out whether the reader would read the program, not how: what stops servomill and not
   /// the control is thrown as `Undetermined`.
   bool is_trial = false;

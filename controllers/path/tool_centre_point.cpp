@@ -40,7 +40,9 @@ std::string vector_text(const Vector3d& k) {
 
 ToolCentrePoint::ToolCentrePoint(const plant::MachineChain& chain, const Joints& lower,
                                  const Joints& upper, double axis_tolerance)
-    : inverse_(chain, rotary_travel(lower, upper)), axis_tolerance_(axis_tolerance) {
+    : inverse_(chain, rotary_travel(lower, upper)),
+      axis_tolerance_(axis_tolerance),
+      upper_travel_(upper) {
   assert(axis_tolerance > 0.0);
   for (const plant::ChainAxis& a : chain.axes) number_of_rotary_ += is_linear(a.axis) ? 0 : 1;
 }

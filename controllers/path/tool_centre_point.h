@@ -42,7 +42,7 @@ struct AxisTurn {
 
 class ToolCentrePoint {
  public:
-  /// @param lower, upper    travel (5; m, rad); that of the linear joints does not count here
+  /// @param lower, upper    travel (5; m, rad); that of the linear joints does not limit the tip
   /// @param axis_tolerance  rad, by which the tool axis may leave its great circle
   ToolCentrePoint(const plant::MachineChain& chain, const Joints& lower, const Joints& upper,
                   double axis_tolerance);
@@ -51,6 +51,8 @@ class ToolCentrePoint {
   const plant::InverseKinematics& inverse() const { return inverse_; }
   double axis_tolerance() const { return axis_tolerance_; }
   int number_of_rotary_axes() const { return number_of_rotary_; }
+  /// Upper ends of travel, also of the linear joints; infinite where the machine names none.
+  const Joints& upper_travel() const { return upper_travel_; }
 
   /// @param machine  positions of the axes (6; m, rad)
   AxisWords tip_words(const AxisWords& machine, const Eigen::Vector3d& p_ST) const;
@@ -98,6 +100,7 @@ class ToolCentrePoint {
 
   plant::InverseKinematics inverse_;
   double axis_tolerance_;
+  Joints upper_travel_;
   int number_of_rotary_ = 0;
 };
 

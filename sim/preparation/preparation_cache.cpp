@@ -157,8 +157,8 @@ void add(system::MemoKey& key, const plant::ErrorModel& errors) {
 void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
                decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
-               accepts_unknown_dwells, is_trial, start, block_delete, subroutine_file, most_jumps,
-               machine, trials] = setup;
+               accepts_unknown_dwells, accepts_unknown_positions, is_trial, start, block_delete,
+               subroutine_file, most_jumps, machine, trials] = setup;
   static_cast<void>(trials);  // what it holds follows from the program and the setup
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
@@ -187,6 +187,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   for (const int code : ignored_codes) key.add(code);
   key.add(accepts_unknown_lengths);
   key.add(accepts_unknown_dwells);
+  key.add(accepts_unknown_positions);
   key.add(is_trial);
   key.add(start);
   key.add(block_delete);
@@ -197,6 +198,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(machine->inverse().settings().lower);
   key.add(machine->inverse().settings().upper);
   key.add(machine->axis_tolerance());
+  key.add(machine->upper_travel());
 }
 
 void add(system::MemoKey& key, const controllers::JointLimits& limits) {

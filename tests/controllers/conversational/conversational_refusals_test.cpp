@@ -44,8 +44,16 @@ const Refusal kRefusals[] = {
      "t.h:4:3: error: M92: the builder's reference point is not known; use M91"},
     {"L IX+1 R0 FMAX M91\n", "t.h:4:3: error: M91 with an incremental coordinate"},
     {"L M140 MB MAX\n",
-     "t.h:4:3: error: M140 MB MAX: the limit of travel is the machine's; write MB with a number or "
-     "M91"},
+     "t.h:4:1: error: M140 MB MAX: the end of travel of Z is the machine's; name a machine that "
+     "has "
+     "it (--machine), or write MB with a number or M91"},
+    {"L X+1 M140 MB MAX\n",
+     "t.h:4:1: error: M140 with coordinates; write them in a block of their own"},
+    {"L X+9 RL F1\nL Y+9\nL M140 MB MAX\n",
+     "t.h:6:1: error: M140 MB MAX with RL or RR in force; write a block with R0 before"},
+    {"PLANE SPATIAL SPA+90 SPB+0 SPC+0 STAY\nL M140 MB MAX\n",
+     "t.h:5:1: error: M140 MB MAX with M128 or in a tilted plane: the direction is that of the "
+     "inclined tool; end them before, or write MB with a number"},
     {"C X+1 Y+1 DR+ F1\n", "t.h:4:1: error: no CC before the circle, or its frame has changed"},
     {"CC X+5 Y+0\nC X+5 Y+9 DR+ F1\n",
      "t.h:5:1: error: the end of the circle is 9.0000 mm from CC, its begin 5.0000 mm; controls "

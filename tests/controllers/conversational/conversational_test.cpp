@@ -1,7 +1,10 @@
 // Conversational programs against moves worked out by hand.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "controllers/gcode/interpreter.h"
+#include "controllers/path/tool_centre_point.h"
 #include "moves_text.h"
 #include "plant/vocabulary/units.h"
 
@@ -17,6 +20,14 @@ void expect_all(const std::vector<Example>& examples) {
       ADD_FAILURE() << error.what();
     }
   }
+}
+
+// A portal machine whose Z ends at `upper` (m).
+std::shared_ptr<const ToolCentrePoint> machine_with_z_travel(double upper) {
+  const auto chain = plant::make_chain(plant::parse_structure("[w b X Y Z (C1) t]"));
+  Joints lower = Joints::Constant(-1.0), ends = Joints::Constant(1.0);
+  ends[2] = upper;
+  return std::make_shared<const ToolCentrePoint>(chain, lower, ends, 1e-6);
 }
 
 TEST(Conversational, Lines) { expect_all(line_examples()); }
@@ -51,6 +62,74 @@ TEST(Conversational, LinesInBracketsBeforeTheProgramAreLeftOut) {
   EXPECT_EQ(interpreter.rest().size(), 4u);
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(interpreter.warnings()[0].message, "2 lines before BEGIN PGM: left out");
+}
+
+std::vector<std::string> warnings_of(const std::string& program, const ProgramSetup& setup) {
+  Interpreter interpreter(program, "t.h", setup);
+  interpreter.rest();
+  std::vector<std::string> out;
+  for (const Fault& warning : interpreter.warnings()) out.push_back(warning.message);
+  return out;
+}
+
+// Simulators of the control number the blocks with N.
+TEST(Conversational, BlockNumbersWithN) {
+  const std::string program =
+      "BEGIN PGM T MM\nN1 TOOL CALL 1 Z S100\nN2 L X+1 Y+2 Z+3 R0 FMAX\nN3 END PGM T MM\n";
+  EXPECT_EQ(all_moves(program), "2 tool 1\n2 spindle 0 S100\n3 rapid 1 2 3\n4 end\n");
+  EXPECT_EQ(warnings_of(program, example_setup()),
+            std::vector<std::string>{"block numbers with N: read as block numbers, which controls "
+                                     "write without N"});
+}
+
+// Neither line of the comment is a block, with or without a number.
+TEST(Conversational, CommentsThatGoOn) {
+  for (const std::string number : {"", "3 "}) {
+    const std::string lines = number + ";Free software: see~\n L X+99 F1\n4 L X+1 FMAX\n";
+    EXPECT_EQ(framed_moves(lines), "3 rapid 1 0 0\n");
+    EXPECT_EQ(warnings_of(with_frame(lines), example_setup()),
+              std::vector<std::string>{"a comment that ends with '~': the next line is read as a "
+                                       "part of it"});
+  }
+}
+
+TEST(Conversational, Cycle392MovesNothing) {
+  const std::string lines = "CYCL DEF 392 ATC~\n Q240=0 ;MODE~\n Q241=1\nL X+1 FMAX\n";
+  EXPECT_EQ(framed_moves(lines), "4 rapid 1 0 0\n");
+  EXPECT_EQ(
+      warnings_of(with_frame(lines), example_setup()),
+      std::vector<std::string>{"CYCL DEF 392: matches the drives to the load; read as without "
+                               "effect"});
+}
+
+// Z travels to 400 mm in machine coordinates, at rapid and at F2000; the tip is then 300 mm high.
+TEST(Conversational, RetractToTheEndOfTravel) {
+  ProgramSetup setup = example_setup();
+  setup.machine = machine_with_z_travel(0.4);
+  EXPECT_EQ(framed_moves("L X+5 FMAX\nL M140 MB MAX\nL Z+2 FMAX\nL M140 MB MAX F2000\n", setup),
+            "1 rapid 5 0 0\n2 rapid 5 0 300\n3 rapid 5 0 2\n4 feed 5 0 300 F2000\n");
+  EXPECT_EQ(fault_of("L M140 MB MAX\nL IZ-1 F100\nL X+1 Z+0\nL M140 MB MAX\nL IZ-1 X+1\n", setup),
+            "t.h:8:3: error: IZ: the position of Z is unknown here; write it without I");
+  setup.machine = machine_with_z_travel(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(fault_of("L M140 MB MAX\n", setup),
+            "t.h:4:1: error: M140 MB MAX: the end of travel of Z is the machine's; name a machine "
+            "that has it (--machine), or write MB with a number or M91");
+}
+
+TEST(Conversational, NamesOfToolsWithoutATable) {
+  ProgramSetup setup;
+  setup.reader = Reader::any;
+  const std::string program =
+      "BEGIN PGM T MM\nTOOL CALL \"END MILL\" Z S1\nTOOL CALL \"B\" Z S2\nTOOL CALL \"END MILL\" "
+      "Z S3\nEND PGM T MM\n";
+  EXPECT_EQ(all_moves(program, setup),
+            "2 tool 30001\n2 spindle 0 S1\n3 tool 30002\n3 spindle 0 S2\n4 tool 30001\n"
+            "4 spindle 0 S3\n5 end\n");
+  const auto warnings = warnings_of(program, setup);
+  ASSERT_GE(warnings.size(), 1u);
+  EXPECT_EQ(warnings.front(),
+            "TOOL CALL \"END MILL\": read as tool 30001 of unknown length, since no tool table is "
+            "given");
 }
 
 // The tip counts: machine Z is 100 mm above it
