@@ -88,6 +88,7 @@ void Interpreter::Machine::set_initial(const std::string& name, double value) {
 ReadingOptions Interpreter::Machine::reading_options() {
   ReadingOptions out{setup_.reader, setup_.decimal_point, setup_.feed};
   out.accepts_unknown_dwells = setup_.accepts_unknown_dwells;
+  out.accepts_unknown_positions = setup_.accepts_unknown_positions;
   out.ignored_codes = setup_.ignored_codes;
   out.is_trial = setup_.is_trial;
   if (setup_.reader != Reader::any) return out;

@@ -59,6 +59,7 @@
 namespace servomill::controllers {
 
 struct ModalState;
+struct PlaneFrame;
 struct Request;
 
 /// A line of a program that was run: also a blank one, and one that O-words skip.
@@ -72,6 +73,7 @@ struct ExecutedBlock {
   bool is_repeated = false;           // the program has turned back over this line
   const Request* request = nullptr;   // with numbers in place of expressions; nullptr: no words
   const ModalState* state = nullptr;  // behind the block
+  const PlaneFrame* frame = nullptr;  // behind the block
   /// Number (0 for a named one) and new value of the parameter of each assignment.
   std::span<const std::pair<int, double>> assigned = {};
 };

@@ -275,6 +275,8 @@ class Interpreter::Machine {
 
   // tool-centre-point control and tilted planes
   std::string rotary_not_at_zero(const AxisWords& machine) const;
+  void require_rotary_at_zero(const AxisWords& machine, int column);
+  void note_without_machine(int column, const std::string& why);
   AxisWords machine_now(int column) const;
   void stand_at(const AxisWords& machine, int column);
   void orient_tool();  // G53.1

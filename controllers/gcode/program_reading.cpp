@@ -348,6 +348,7 @@ std::optional<ExecutedBlock> Interpreter::Machine::next_block() {
   out.is_repeated = out.line + (is_of_other_language() ? 1 : 0) <= texts_[read_from].last_line;
   texts_[read_from].last_line = std::max(texts_[read_from].last_line, out.line);
   out.state = &state_;
+  out.frame = &reading_.frame();
   if (block_.pieces.empty()) return out;
   out.block = &block_;
   const bool has_words = block_.o_word.flow == Flow::none && !block_.percent && !block_.deleted;

@@ -25,7 +25,7 @@ ToolControl Interpreter::Machine::tool_control_of(int code) const {
                              code == kVectorControl ? "" : "; write G43 H"));
   }
   if (code == 434) return ToolControl::rotary_axes;
-  if (!setup_.machine) {
+  if (!setup_.machine && !setup_.accepts_unknown_positions) {
     fail(column,
          "G43.5: where the rotary axes go depends on the machine, and none is given (--machine)");
   }
@@ -44,6 +44,18 @@ std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) c
   return {};
 }
 
+void Interpreter::Machine::require_rotary_at_zero(const AxisWords& machine, int column) {
+  const std::string why = rotary_not_at_zero(machine);
+  if (why.empty()) return;
+  if (!setup_.accepts_unknown_positions) fail(column, why);
+  note_without_machine(column, why + " (--machine)");
+}
+
+// Once in a program.
+void Interpreter::Machine::note_without_machine(int column, const std::string& why) {
+  if (noted_.insert(why).second) warn(column, why);
+}
+
 // Positions of the axes, also while the tip is controlled.
 AxisWords Interpreter::Machine::machine_now(int column) const {
   const AxisWords account = state_.to_account(state_.position);
@@ -54,7 +66,7 @@ AxisWords Interpreter::Machine::machine_now(int column) const {
     return *machine;
   }
   const std::string why = rotary_not_at_zero(account);
-  if (!why.empty()) fail(column, why);
+  if (!why.empty() && !setup_.accepts_unknown_positions) fail(column, why);
   AxisWords machine = account;
   machine.head<3>() -= state_.p_ST();
   return machine;
@@ -70,8 +82,7 @@ void Interpreter::Machine::stand_at(const AxisWords& machine, int column) {
   if (setup_.machine) {
     tip = setup_.machine->tip_words(machine, state_.p_ST());
   } else {
-    const std::string why = rotary_not_at_zero(machine);
-    if (!why.empty()) fail(column, why);
+    require_rotary_at_zero(machine, column);
     tip.head<3>() += state_.p_ST();
   }
   state_.position = state_.from_account(tip);
@@ -114,8 +125,10 @@ void Interpreter::Machine::orient_tool() {
     fail(request().motion.column, "G53.1 must stand without motion in its block");
   }
   if (!setup_.machine) {
-    fail(column,
-         "G53.1: where the rotary axes go depends on the machine, and none is given (--machine)");
+    const std::string why =
+        "G53.1: where the rotary axes go depends on the machine, and none is given (--machine)";
+    if (!setup_.accepts_unknown_positions) fail(column, why);
+    return note_without_machine(column, why);
   }
   if (setup_.machine->number_of_rotary_axes() == 0) {
     fail(column, "G53.1: the machine has no rotary axis");
@@ -197,6 +210,9 @@ Eigen::Vector3d Interpreter::Machine::programmed_axis() {
 
 // Puts the rotary words of `end` to where the tool axis is k. Returns the angle of the turn, rad.
 double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& end) const {
+  if (!setup_.machine) {
+    return state_.tool_axis.isZero(0.0) ? 0.0 : angle_between(state_.tool_axis, k);
+  }
   const JointLayout& layout = setup_.machine->chain().layout;
   const AxisWords now = state_.to_machine(state_.position);
   const AxisTurn turn = setup_.machine->great_circle(layout.joints(now), k);

@@ -1,10 +1,14 @@
 #include "sim/programs/known_positions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "controllers/gcode/canned_cycles.h"
+#include "controllers/gcode/readers/plane_frame.h"
 #include "controllers/gcode/request.h"
+#include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/named_axes.h"
 
 namespace servomill::sim::programs {
@@ -16,8 +20,8 @@ constexpr double kStill = 1e-12;  // m, rad: what rounding leaves of positions
 constexpr std::size_t kZ = 2;
 
 // Codes of the non-modal group, ten times.
-constexpr int kG10 = 100, kG28 = 280, kG30 = 300, kG52 = 520, kG53 = 530, kG92 = 920, kG92_1 = 921,
-              kG92_2 = 922;
+constexpr int kG10 = 100, kG28 = 280, kG30 = 300, kG52 = 520, kG53 = 530, kG53_1 = 531, kG92 = 920,
+              kG92_1 = 921, kG92_2 = 922;
 
 bool names(const ExecutedBlock& block, std::size_t i) { return names_axis(block, kAllAxes[i]); }
 
@@ -32,9 +36,26 @@ bool differs(double a, double b) { return std::abs(a - b) > kStill; }
 
 }  // namespace
 
-KnownPositions::Offsets KnownPositions::offsets_of(const controllers::ModalState& state) {
-  return {state.work_system, state.tool_offset_number,  state.work_offset,   state.shift,
-          state.tool_offset, state.sin_rotation != 0.0, state.controls_tip()};
+std::string work_system_name(int system) {
+  return system > kAdditionalSystem
+             ? fmt::format("G54.1 P{}", system - kAdditionalSystem)
+             : std::string(kWorkSystems[static_cast<std::size_t>(system - 1)]);
+}
+
+KnownPositions::Offsets KnownPositions::offsets_of(const ExecutedBlock& block) {
+  const controllers::ModalState& state = *block.state;
+  AxisWords work = state.work_offset;
+  work.head<3>() += block.frame->translation;
+  return {state.work_system,
+          state.tool_offset_number,
+          work,
+          state.shift,
+          state.tool_offset,
+          state.sin_rotation != 0.0,
+          state.controls_tip(),
+          block.frame->additional_system,
+          block.frame->is_translation_known,
+          state.tool_control == ToolControl::tool_axis};
 }
 
 bool KnownPositions::tool_is_known(const Offsets& now) const {
@@ -49,6 +70,9 @@ bool KnownPositions::offset_is_known(std::size_t i) const {
   const auto is_known = [&](std::size_t k) { return work[k] && shift_[k]; };
   if (offsets_.controls_tip && i < kLinearJoints) return false;
   if (i == kZ && !tool_is_known(offsets_)) return false;
+  if (offsets_.additional_system > 0 && i < kLinearJoints) {
+    return offsets_.is_additional_known && shift_[i];
+  }
   return i < 2 && offsets_.is_rotated ? is_known(0) && is_known(1) : is_known(i);
 }
 
@@ -79,14 +103,18 @@ void KnownPositions::follow_shift(const ExecutedBlock& block) {
 
 void KnownPositions::begin_line(const ExecutedBlock& block) {
   const Offsets before = offsets_;
-  offsets_ = offsets_of(*block.state);
+  offsets_ = offsets_of(block);
   if (non_modal_code(block) == kG10) follow_G10(block);
   follow_shift(block);
   const bool control_changes = before.controls_tip != offsets_.controls_tip;
   for (std::size_t i = 0; i < kAxisWords; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     if (control_changes && i < kLinearJoints) machine_[i] = work_[i] = false;
+    const bool is_turned =
+        !given_.has_machine && (offsets_.has_tool_axis || non_modal_code(block) == kG53_1);
+    if (is_turned && i >= kLinearJoints) machine_[i] = work_[i] = false;
     const bool changes = before.work_system != offsets_.work_system ||
+                         before.additional_system != offsets_.additional_system ||
                          differs(before.work[k], offsets_.work[k]) ||
                          differs(before.shift[k], offsets_.shift[k]) ||
                          differs(before.tool_offset[k], offsets_.tool_offset[k]) ||
@@ -136,6 +164,11 @@ MoveKnowledge KnownPositions::next(const Move& move, const ExecutedBlock& block,
     return v;
   };
   const AxisWords offset = move.end_machine - turned(move.end, s);
+  const bool is_additional = block.frame->additional_system > 0;
+  out.work_system =
+      is_additional ? kAdditionalSystem + block.frame->additional_system : move.work_offset;
+  out.system_offset.head<3>() = block.frame->translation;
+  out.is_tilted = block.state->plane != nullptr;
   out.begin_machine = at_;
   out.begin_work = turned(at_ - offset, -s);
   out.begin_work_is_known = work_;

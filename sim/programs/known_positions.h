@@ -4,6 +4,7 @@
 
 #include <array>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "controllers/gcode/interpreter.h"
@@ -17,7 +18,13 @@ struct GivenPlaces {
   std::array<AxisFlags, controllers::kWorkSystems> work_offset{};  // G54 ... G59.3
   std::set<int> tool_lengths;      // numbers of tools of known length
   bool has_stored_places = false;  // of G28 and G30: a parameter file
+  bool has_machine = false;        // that turns the rotary axes of G53.1 and G43.5
 };
+
+/// First number of the work systems G54.1 P0 ... next to 1 ... 9.
+inline constexpr int kAdditionalSystem = 100;
+/// "G54" ... "G59.3", "G54.1 P3".
+std::string work_system_name(int system);
 
 /// Known positions of one move.
 struct MoveKnowledge {
@@ -25,8 +32,11 @@ struct MoveKnowledge {
   AxisWords begin_machine = AxisWords::Zero();  // m, rad
   AxisFlags begin_work_is_known{}, begin_machine_is_known{};
   AxisFlags end_work_is_known{}, end_machine_is_known{};
-  bool is_place = false;           // of the machine (G53, G28, G30)
-  bool distance_is_known = false;  // on every axis that moves
+  bool is_place = false;   // of the machine (G53, G28, G30)
+  bool is_tilted = false;  // in a tilted work plane
+  int work_system = 1;     // 1 ... 9, G54 ... G59.3; kAdditionalSystem + P of G54.1 P
+  AxisWords system_offset = AxisWords::Zero();  // of G54.1 P from the system of Move::end; m
+  bool distance_is_known = false;               // on every axis that moves
 };
 
 /// Follows the lines of a program in order.
@@ -48,9 +58,12 @@ class KnownPositions {
     int work_system = 1, tool = 0;
     AxisWords work = AxisWords::Zero(), shift = AxisWords::Zero(), tool_offset = AxisWords::Zero();
     bool is_rotated = false, controls_tip = false;
+    int additional_system = 0;
+    bool is_additional_known = true;
+    bool has_tool_axis = false;  // G43.5: the tool axis is programmed, not the rotary axes
   };
 
-  static Offsets offsets_of(const controllers::ModalState& state);
+  static Offsets offsets_of(const controllers::ExecutedBlock& block);
   void follow_G10(const controllers::ExecutedBlock& block);
   void follow_shift(const controllers::ExecutedBlock& block);
   bool tool_is_known(const Offsets& now) const;

@@ -52,22 +52,25 @@ void ProgramExtent::count_unknown(const Move& move, const MoveKnowledge& known) 
 
 void ProgramExtent::add(const Move& move, const MoveKnowledge& known) {
   count_unknown(move, known);
-  const bool is_arc = move.kind == MoveKind::arc && move.plane == nullptr;
+  const bool is_arc = move.kind == MoveKind::arc && !known.is_tilted;
   include(machine_, move.end_machine, known.end_machine_is_known);
   if (is_arc) {
     include_extremes(machine_, arc_sweep(move, known.begin_machine.head<3>()),
                      known.begin_machine_is_known, known.end_machine_is_known);
   }
-  if (move.plane != nullptr && tilted_ == 0) tilted_ = move.line;
-  if (known.is_place || move.plane != nullptr) return;
-  WorkExtent& extent = work_[move.work_offset];
+  if (known.is_tilted && tilted_ == 0) tilted_ = move.line;
+  if (known.is_place || known.is_tilted) return;
+  WorkExtent& extent = work_[known.work_system];
+  const AxisWords begin = known.begin_work - known.system_offset;
+  const AxisWords end = move.end - known.system_offset;
+  const Eigen::Vector3d offset = known.system_offset.head<3>();
   const bool is_feed = move.kind != MoveKind::rapid;
   for (AxisRanges* ranges : {&extent.motion, &extent.feed}) {
     if (ranges == &extent.feed && !is_feed) continue;
-    if (ranges == &extent.feed) include(*ranges, known.begin_work, known.begin_work_is_known);
-    include(*ranges, move.end, known.end_work_is_known);
+    if (ranges == &extent.feed) include(*ranges, begin, known.begin_work_is_known);
+    include(*ranges, end, known.end_work_is_known);
     if (!is_arc) continue;
-    const ArcSweep arc(known.begin_work.head<3>(), move.end.head<3>(), move.arc.centre,
+    const ArcSweep arc(begin.head<3>(), end.head<3>(), move.arc.centre - offset,
                        move.arc.normal_axis, move.arc.turns);
     include_extremes(*ranges, arc, known.begin_work_is_known, known.end_work_is_known);
   }

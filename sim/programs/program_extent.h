@@ -32,7 +32,9 @@ class ProgramExtent {
   /// between them.
   void add(const Move& move, const MoveKnowledge& known);
 
-  const std::map<int, WorkExtent>& work() const { return work_; }  ///< by work system, 1 is G54
+  const std::map<int, WorkExtent>& work() const {
+    return work_;
+  }  ///< by MoveKnowledge::work_system
   const AxisRanges& machine() const { return machine_; }
 
   /// First line that moves an axis to a position that is not known; 0: none does.

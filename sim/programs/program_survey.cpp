@@ -8,6 +8,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_groups.h"
+#include "controllers/gcode/readers/plane_frame.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/read_machine.h"
@@ -30,17 +31,22 @@ struct SurveyInputs {
   ProgramSetup setup;
   GivenPlaces given;
   std::optional<model::MachineSettings> machine;
+  bool is_conversational = false;
 };
 
 SurveyInputs read_inputs(const SurveyRequest& request) {
   SurveyInputs out;
+  ProgramText program = ProgramText::of_file(request.program_file);
+  out.is_conversational =
+      controllers::conversational::is_conversational(program, controllers::Reader::any);
   if (!request.inputs.machine.empty()) {
     out.machine = input::read_machine_description(request.inputs.machine).machine;
+    out.given.has_machine = true;
   }
   out.setup = program_setup(request.inputs, request.program_file);
   const JointLayout* layout = out.machine ? &out.machine->chain.layout : nullptr;
   if (!request.inputs.parameter_file.empty()) {
-    out.given.has_stored_places = true;
+    out.given.has_stored_places = !out.is_conversational;  // M140 MB MAX is read as G28
     for (AxisFlags& axes : out.given.work_offset) axes.fill(true);
   }
   const GivenWorkOffsets offsets = work_offsets(request.work_offsets, layout);
@@ -68,7 +74,10 @@ void note_first(std::vector<FirstUse>& uses, const std::string& word, int line) 
 class Surveyor {
  public:
   Surveyor(const SurveyInputs& inputs, ProgramSurvey& out)
-      : inputs_(inputs), out_(out), positions_(inputs.given, inputs.setup.start) {
+      : inputs_(inputs),
+        out_(out),
+        positions_(inputs.given, inputs.setup.start),
+        is_conversational_(inputs.is_conversational) {
     if (inputs.machine) duration_ = std::make_unique<ProgramDuration>(*inputs.machine);
   }
 
@@ -103,11 +112,19 @@ class Surveyor {
     out_.extent.add(move, known);
     if (duration_) duration_->add(move, known);
     if (known.is_place) return;
-    const auto system = static_cast<std::size_t>(move.work_offset - 1);
-    note_first(out_.work_systems, std::string(kWorkSystems[system]), work_system_lines_[system]);
+    note_first(out_.work_systems, work_system_name(known.work_system),
+               work_system_lines_[known.work_system]);
+    if (!block.frame->is_translation_known) {
+      out_.unknown_systems.insert(block.frame->additional_system);
+    }
+    if (block.state->controls_tip() && out_.tip_controlled == 0) out_.tip_controlled = move.line;
   }
 
   void note_words(const ExecutedBlock& block) {
+    const int additional = block.frame->additional_system;
+    if (additional != std::exchange(additional_system_, additional)) {
+      work_system_lines_.try_emplace(kAdditionalSystem + additional, block.line);
+    }
     if (block.request == nullptr) return;
     const auto& words = *block.request;
     const int units = words.code(Group::g_units);
@@ -116,9 +133,10 @@ class Surveyor {
     if (code == 100 || code == 520 || code == 920) {
       note_first(out_.shifts, controllers::code_name('G', code), block.line);
     }
+    const bool is_retract = is_conversational_ && code == 280;  // M140 MB MAX
+    if (is_retract && out_.unknown_retract == 0) out_.unknown_retract = block.line;
     if (words.code(Group::g_work_system) < 0) return;
-    int& line = work_system_lines_[static_cast<std::size_t>(block.state->work_system - 1)];
-    if (line == 0) line = block.line;
+    work_system_lines_.try_emplace(block.state->work_system, block.line);
   }
 
   SurveyedTool& tool(int number, int line) {
@@ -160,7 +178,9 @@ class Surveyor {
   ProgramSurvey& out_;
   KnownPositions positions_;
   std::unique_ptr<ProgramDuration> duration_;
-  std::array<int, controllers::kWorkSystems> work_system_lines_{};
+  std::map<int, int> work_system_lines_;  // by MoveKnowledge::work_system; 0: at the start
+  int additional_system_ = 0;
+  bool is_conversational_;
 };
 
 void survey_moves(const SurveyInputs& inputs, ProgramSurvey& out) {
@@ -203,18 +223,18 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   out.has_tool_table = !inputs.setup.tools.empty();
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();
-  inputs.setup.accepts_unknown_dwells = true;
+  inputs.setup.accepts_unknown_dwells = inputs.setup.accepts_unknown_positions = true;
   survey_moves(inputs, out);
   // every control has a tool table of its own: without one here, no number stops a reader
   ProgramSetup setup = program_setup(request.inputs, request.program_file);
   for (const std::string& text : request.tool_lengths) add_tool_length(text, setup.tools);
   if (setup.tools.empty()) setup.tools.take_any_number();
-  ProgramText text = ProgramText::of_file(out.file);
+  setup.accepts_unknown_positions = true;
   using controllers::Reader;
-  const bool is_conversational = controllers::conversational::is_conversational(text, Reader::any);
   for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
     const auto reader = static_cast<Reader>(k);
-    if (reader == Reader::any || (reader == Reader::heidenhain && !is_conversational)) continue;
+    if (reader == Reader::any || (reader == Reader::heidenhain && !inputs.is_conversational))
+      continue;
     out.readers.push_back(verdict(k, setup, out.file));
   }
   return out;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
@@ -115,7 +116,7 @@ void add_tools(const ProgramSurvey& survey, Text& text) {
 void add_work_extent(const ProgramSurvey& survey, Text& text) {
   const ProgramExtent& extent = survey.extent;
   for (const auto& [system, ranges] : extent.work()) {
-    const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
+    const std::string name = work_system_name(system);
     for (const Axis axis : kAllAxes) {
       const auto i = static_cast<std::size_t>(index_of(axis));
       if (!ranges.motion[i].is_known()) continue;
@@ -137,6 +138,28 @@ void add_work_extent(const ProgramSurvey& survey, Text& text) {
   }
 }
 
+// Options that give the machine coordinates of an axis.
+std::string needed_options(const ProgramSurvey& survey, Axis axis) {
+  std::vector<std::string> options;
+  const auto is_ordinary = [](const auto& of_system) {
+    return of_system.first < kAdditionalSystem;
+  };
+  const auto& systems = survey.extent.work();
+  const bool has_ordinary =
+      systems.empty() || std::any_of(systems.begin(), systems.end(), is_ordinary);
+  if (has_ordinary || survey.unknown_systems.empty()) options.emplace_back("--work-offset");
+  for (const int P : survey.unknown_systems) {
+    if (is_linear(axis)) options.push_back(fmt::format("--additional-offset P{}", P));
+  }
+  if (axis == Axis::Z && survey.unknown_retract > 0) options.emplace_back("--machine");
+  if (axis == Axis::Z) options.emplace_back("the tool lengths");
+  std::string text = options.front();
+  for (std::size_t i = 1; i < options.size(); ++i) {
+    text += (i + 1 == options.size() ? " and " : ", ") + options[i];
+  }
+  return text;
+}
+
 void add_machine_extent(const ProgramSurvey& survey, Text& text) {
   const ProgramExtent& extent = survey.extent;
   for (const Axis axis : kAllAxes) {
@@ -145,13 +168,16 @@ void add_machine_extent(const ProgramSurvey& survey, Text& text) {
     const AxisRange& range = extent.machine()[i];
     const std::string unknown =
         extent.unknown_machine(i) > 0
-            ? fmt::format("{}unknown from line {} on: needs --work-offset{}",
-                          range.is_known() ? "; " : "", extent.unknown_machine(i),
-                          axis == Axis::Z ? " and the tool lengths" : "")
+            ? fmt::format("{}unknown from line {} on: needs {}", range.is_known() ? "; " : "",
+                          extent.unknown_machine(i), needed_options(survey, axis))
             : "";
     text.add("machine", fmt::format("{} {}{}", letter(axis),
                                     range.is_known() ? in_units(range, axis) : "", unknown));
   }
+  if (survey.tip_controlled == 0) return;
+  text.add("machine", fmt::format("X, Y and Z unknown under tool-centre-point control and in a "
+                                  "tilted plane (line {}): a scenario simulates them",
+                                  survey.tip_controlled));
 }
 
 void add_cycle_time(const ProgramSurvey& survey, Text& text) {
@@ -282,11 +308,10 @@ std::string tools_json(const ProgramSurvey& survey) {
 std::string extent_json(const ProgramSurvey& survey) {
   system::JsonObject work, unknown;
   for (const auto& [system, ranges] : survey.extent.work()) {
-    work.raw(kWorkSystems[static_cast<std::size_t>(system - 1)],
-             system::JsonObject()
-                 .raw("motion", ranges_json(ranges.motion))
-                 .raw("feed", ranges_json(ranges.feed))
-                 .line());
+    work.raw(work_system_name(system), system::JsonObject()
+                                           .raw("motion", ranges_json(ranges.motion))
+                                           .raw("feed", ranges_json(ranges.feed))
+                                           .line());
   }
   for (const Axis axis : kAllAxes) {
     const auto i = static_cast<std::size_t>(index_of(axis));
@@ -301,6 +326,9 @@ std::string extent_json(const ProgramSurvey& survey) {
       .raw("work", work.line())
       .raw("machine", ranges_json(survey.extent.machine()))
       .raw("unknown_from_line", unknown.line())
+      .raw("unknown_additional_offsets",
+           fmt::format("[{}]", fmt::join(survey.unknown_systems, ", ")))
+      .raw("tip_controlled_from_line", line_or_null(survey.tip_controlled))
       .line();
 }
 

@@ -254,12 +254,62 @@ name = "cycle_time"
             "offsets_changed_by": [],
             "tools": [],
             "extent": {"work": {"G54": {"motion": {"X": [1, 4], "Z": [2, 2]}, "feed": {"X": [1, 4], "Z": [2, 2]}}},
-                       "machine": {"X": [11, 14]}, "unknown_from_line": {"Z": {"work": None, "machine": 2}}},
+                       "machine": {"X": [11, 14]}, "unknown_from_line": {"Z": {"work": None, "machine": 2}},
+                       "unknown_additional_offsets": [], "tip_controlled_from_line": None},
             "cycle_time": None,
             "tool_changes": 0,
             "stops": 1,
             "readers": {name: {"reads": True} for name in CONTROLS.split(", ")},
             "first_fault_line": None})
+
+    # G54.1 P3 without its offset: an extent of its own, and no machine coordinates
+    def test_an_additional_work_offset_that_is_not_given(self):
+        program = "G21 G90\nG54.1 P3\nG0 X0 Y0\nG1 X10. F100.\nG54\nG0 X99.\nM30\n"
+        fanuc = ["--reader", "fanuc"]
+        self.assertEqual(self.lines(program, "work offsets", *fanuc), ["G54.1 P3 (line 2), G54 (line 5)"])
+        self.assertEqual(self.lines(program, "extent G54.1 P3", *fanuc),
+                         ["X 0.000 ... 10.000 mm; feeds 0.000 ... 10.000 mm", "Y 0.000 mm; feeds 0.000 mm"])
+        self.assertEqual(self.lines(program, "extent G54", *fanuc), ["X 99.000 mm"])
+        needs = "unknown from line 3 on: needs --work-offset and --additional-offset P3"
+        self.assertEqual(self.lines(program, "machine", *fanuc), ["X " + needs, "Y " + needs])
+        self.assertEqual(self.lines(program, "machine", "--work-offset", "X=100", *fanuc)[0], "X 199.000 mm; " + needs)
+        given = ["--additional-offset", "P3:X=50,Y=7,Z=0", "--work-offset", "X=100,Y=0"]
+        self.assertEqual(self.lines(program, "machine", *given, *fanuc), ["X 50.000 ... 199.000 mm", "Y 7.000 mm"])
+        self.assertEqual(self.lines(program, "extent G54.1 P3", *given, *fanuc)[0], "X 0.000 ... 10.000 mm; feeds 0.000 ... 10.000 mm")
+        self.assertEqual(self.lines(program, "read by", *fanuc), ["fanuc, haas"])
+        self.assertEqual(self.check(program, *fanuc).stderr.count("where this work system lies is unknown"), 1)
+        self.assertEqual(self.json(program, *fanuc)["extent"]["unknown_additional_offsets"], [3])
+
+    # The tip of tilted planes and tool-centre-point control stands in work coordinates.
+    def test_tilted_planes_and_tool_centre_point_control_without_a_machine(self):
+        program = ("G21 G90 G17\nT1 M6\nG54\nG43 H1\nG0 X1. Y2. Z50.\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nG0 X3. Y4.\n"
+                   "G1 Z-1. F100.\nG69\nG43.4 H1\nG0 X5. Y0. Z9. B10.\nG1 X8. B20. F500.\nG49\nG53 G0 Z0.\nG0 X7.\nM30\n")
+        fanuc = ["--reader", "fanuc"]
+        done = self.check(program, *fanuc)
+        self.assertIn("G53.1: where the rotary axes go depends on the machine, and none is given (--machine)", done.stderr)
+        self.assertEqual(self.lines(program, "extent G54", *fanuc),
+                         ["X 1.000 ... 8.000 mm; feeds 5.000 ... 8.000 mm", "Y 0.000 ... 2.000 mm; feeds 0.000 mm",
+                          "Z 9.000 ... 50.000 mm; feeds 9.000 mm", "B 10.000 ... 20.000 deg; feeds 10.000 ... 20.000 deg"])
+        self.assertEqual(self.lines(program, "not in it", *fanuc), ["Z moves to a position that is not known (line 8)", "moves in a tilted work plane (line 8)"])
+        machine = self.lines(program, "machine", "--work-offset", "X=0,Y=0,Z=0,B=0", "--tool-length", "1=50", *fanuc)
+        self.assertEqual(machine[0], "X 1.000 ... 7.000 mm; unknown from line 8 on: needs --work-offset")
+        self.assertEqual(machine[-1], "X, Y and Z unknown under tool-centre-point control and in a tilted plane (line 8): "
+                                      "a scenario simulates them")
+        self.assertIn("fanuc", self.lines(program, "read by", *fanuc)[0])
+        self.assertIn("G43.5 without I J K in its first move",
+                      self.check("G21 G90\nT1 M6\nG43.5 H1\nG1 X1. F100.\nM30\n", *fanuc, status=2).stderr)
+
+    # M140 MB MAX goes to the end of travel, which only a machine file has.
+    def test_a_retract_to_the_end_of_travel(self):
+        program = ("BEGIN PGM A MM\nTOOL CALL 1 Z S100\nL Z+5 R0 FMAX\nL M140 MB MAX\nL X+1 FMAX\nL Z+2 FMAX\nL M30\n"
+                   "END PGM A MM\n")
+        lines = self.lines(program, "machine", "--work-offset", "X=0,Z=0", "--tool-length", "1=50")
+        self.assertEqual(lines, ["X 1.000 mm", "Z 52.000 ... 55.000 mm; unknown from line 4 on: needs --work-offset, --machine and "
+                                               "the tool lengths"])
+        self.write("router.toml", ROUTER.replace("[axis.Z]\n", "[axis.Z]\ntravel_mm = [-300.0, 400.0]\n"))
+        self.assertEqual(self.lines(program, "machine", "--work-offset", "X=0,Z=0", "--tool-length", "1=50", "--machine", "router.toml"),
+                         ["X 1.000 mm", "Z 52.000 ... 400.000 mm"])
+        self.assertIn("heidenhain", self.lines(program, "read by")[0])
 
     def test_a_work_offset_of_an_axis_that_the_machine_lacks(self):
         done = self.check("G0 X1\nM2\n", "--machine", "router.toml", "--work-offset", "C=5", status=2)

@@ -88,7 +88,9 @@ int check_command(const Arguments& arguments) {
       "that\n"
       "read it as it stands, and for the others the first line that stops them. Positions are\n"
       "known as far as the program names them, machine coordinates as far as --work-offset or\n"
-      "--parameter-file and the tool lengths are given. The extent holds the ends of all moves "
+      "--parameter-file and the tool lengths are given. What needs an option that is not there\n"
+      "(--additional-offset for G54.1 P, --machine for G43.4, G68.2 and M140 MB MAX) is unknown,\n"
+      "with the name of the option. The extent holds the ends of all moves "
       "and\n"
       "the extreme points of arcs. The cycle time is that of the motion, planned as in a run.",
       "FILE");

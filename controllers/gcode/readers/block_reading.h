@@ -31,6 +31,7 @@ struct ReadingOptions {
   DecimalPoint decimal_point = DecimalPoint::unset;
   std::optional<double> feed;  // m/s, of moves before any F
   bool accepts_unknown_dwells = false;
+  bool accepts_unknown_positions = false;
   std::set<int> ignored_codes = {};  // as of ProgramSetup
   bool is_trial = false;             // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.
@@ -109,6 +110,7 @@ class BlockReading {
   /// P of the block, of a dwell or a canned cycle, is in an unknown unit.
   bool has_unknown_dwell() const { return has_unknown_dwell_; }
   const std::optional<LocalCall>& local_call() const { return local_call_; }
+  const PlaneFrame& frame() const { return memory_.frame; }
   /// Column in the line as written.
   int original_column(std::size_t nth_line, int column) const;
   /// The corner of the block that is read next, or none.

@@ -228,6 +228,8 @@ void ReadingStep::additional_offset() {
     if (tenths == 541 || !words.has_code('G', tenths) || is_additional_G54()) continue;
     frame.translation.setZero();
     frame.is_translated = false;
+    frame.is_translation_known = true;
+    frame.additional_system = 0;
   }
   BlockWord* code = words.code('G', 541);
   if (code == nullptr) code = words.code('G', 1540);
@@ -239,19 +241,17 @@ void ReadingStep::additional_offset() {
   if (!words.has('P')) fail(code->column, fmt::format("{} needs P", name));
   const int P = static_cast<int>(std::lround(words['P']));
   const auto found = memory.additional_offsets.find(P);
-  if (found == memory.additional_offsets.end()) {
-    fail(words.column('P'),
-         fmt::format("{} P{}: where this work system lies is unknown; give it with "
-                     "--additional-offset P{}:X=...,Y=...,Z=...",
-                     name, P, P));
-  }
-  const AxisWords off = found->second - state.work_offset;
+  frame.is_translation_known = found != memory.additional_offsets.end();
+  if (!frame.is_translation_known) refuse_unknown_system(name, P);
+  const AxisWords off =
+      frame.is_translation_known ? AxisWords(found->second - state.work_offset) : AxisWords::Zero();
   if (off.tail<3>().cwiseAbs().maxCoeff() > 0.0 || state.sin_rotation != 0.0) {
     fail(words.column('P'),
          fmt::format("{} P{} turns rotary axes or a work system that is turned", name, P));
   }
   frame.translation = off.head<3>();
   frame.is_translated = true;
+  frame.additional_system = P;
   words.erase('P');
   words.erase(*code);
 }

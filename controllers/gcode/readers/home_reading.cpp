@@ -150,4 +150,14 @@ void ReadingStep::inputs() {
   words.erase(*words.code('G', 100));
 }
 
+// Surveys go on without the offset.
+void ReadingStep::refuse_unknown_system(const std::string& name, int P) {
+  const std::string why = fmt::format(
+      "{} P{}: where this work system lies is unknown; give it with --additional-offset "
+      "P{}:X=...,Y=...,Z=...",
+      name, P, P);
+  if (!options.accepts_unknown_positions) fail(words.column('P'), why);
+  reading_.notes_.push_back({words.column('P'), why});
+}
+
 }  // namespace servomill::controllers

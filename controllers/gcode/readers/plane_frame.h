@@ -18,6 +18,8 @@ struct PlaneFrame {
   int normal_axis = 2;                                    // of the plane that is rotated
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of G54.1 from the work system in force
   bool is_translated = false;
+  int additional_system = 0;  // P of G54.1 in force; 0: none
+  bool is_translation_known = true;
 
   bool is_active() const { return is_scaled || is_mirrored || is_rotated || is_translated; }
   /// G2 becomes G3 and left becomes right.

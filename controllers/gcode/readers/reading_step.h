@@ -110,6 +110,7 @@ class ReadingStep {
   void rotation();
   void centre_of_mach(const BlockWord& code);
   void additional_offset();
+  void refuse_unknown_system(const std::string& name, int P);
   bool is_additional_G54() const;
   void refuse_frame_change(const BlockWord& code) const;
   void polar_words();
