@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 
 namespace servomill::controllers {
@@ -224,6 +225,23 @@ bool has_rule(Reader reader, ReaderRule rule) {
 std::string sentence(ReaderRule rule) {
   const ReaderRuleEntry& one = entry(rule);
   return fmt::format("{}: {} ({}); LinuxCNC refuses it", one.found, one.reading, one.controls);
+}
+
+IgnoredCode ignored_code(std::string_view text) {
+  int number = -1;
+  if (text.starts_with('M')) {
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data() + 1, last, number);
+    if (error != std::errc() || end != last) number = -1;
+  }
+  constexpr int kMost = 9999;
+  if (number < 0 || number > kMost) {
+    return {-1, "must be an M code of the machine's builder, such as M82"};
+  }
+  if (is_known_function(number)) {
+    return {-1, "has a meaning of its own, which cannot be left out"};
+  }
+  return {number, {}};
 }
 
 }  // namespace servomill::controllers

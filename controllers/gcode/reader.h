@@ -113,6 +113,13 @@ bool has_rule(Reader reader, ReaderRule rule);
 /// True for an M code that some rule gives a meaning, or a refusal: none of the machine's builder.
 bool is_known_function(int code);
 
+/// An M code of the machine's builder that is to be left out, written "M82".
+struct IgnoredCode {
+  int number = -1;
+  std::string fault;  // empty: none
+};
+IgnoredCode ignored_code(std::string_view text);
+
 /// "a program that ends without M2 or M30: read as if M2 followed (grbl, Mach)", for warnings.
 std::string sentence(ReaderRule rule);
 

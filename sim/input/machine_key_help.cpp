@@ -31,6 +31,7 @@ constexpr KeyHelp kMachine[] = {
     {"machine.nc", "nominal_filter_ms", "length of the position-setpoint filter"},
     {"machine.nc", "reader", "rules of programs that name none themselves; default any"},
     {"machine.nc", "decimal_point", "lengths without a decimal point in such programs"},
+    {"machine.nc", "ignore_codes", "M codes of the machine's builder without effect on motion"},
     {"machine.nc", "path_tolerance_um", "path tolerance for G64 without P"},
     {"machine.nc", "rotary_tolerance_urad", "tolerance of the tool axis and of rotary axes"},
     {"machine.nc", "block_processing_time_ms",

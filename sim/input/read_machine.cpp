@@ -330,6 +330,21 @@ MachineDescription read_machine_description(const std::string& path,
   return out;
 }
 
+std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback) {
+  std::vector<std::string> usual;
+  for (const int code : fallback) usual.push_back(fmt::format("M{}", code));
+  std::set<int> out;
+  for (const std::string& text : table.texts_or("ignore_codes", usual)) {
+    const controllers::IgnoredCode code = controllers::ignored_code(text);
+    if (code.fault.empty()) {
+      out.insert(code.number);
+    } else {
+      table.fault("ignore_codes", fmt::format("{}: {}", text, code.fault));
+    }
+  }
+  return out;
+}
+
 model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) {
   model::MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
@@ -342,6 +357,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
       static_cast<controllers::Reader>(nc.choice_or("reader", 0, controllers::kReaders));
   machine.nc.decimal_point = static_cast<controllers::DecimalPoint>(
       nc.choice_or("decimal_point", 0, controllers::kDecimalPoints));
+  machine.nc.ignored_codes = read_ignored_codes(nc, {});
   machine.nc.path_tolerance =
       nc.real_or("path_tolerance_um", 10 * um, config::kLength, {config::above(0.0)});
   machine.nc.rotary_tolerance =

@@ -119,6 +119,7 @@ model::ProgramSpec read_program(config::Reader& table, const model::MachineSetti
       "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
   program.decimal_point = static_cast<controllers::DecimalPoint>(table.choice_or(
       "decimal_point", static_cast<std::size_t>(nc.decimal_point), controllers::kDecimalPoints));
+  program.ignored_codes = read_ignored_codes(table, nc.ignored_codes);
   if (table.has("first_feed"))
     program.first_feed = table.real("first_feed", config::kVelocity, {config::above(0.0)});
   program.feed_override =

@@ -32,6 +32,8 @@ constexpr KeyHelp kScenario[] = {
     {"program", "reader", "rules by which the program is read; linuxcnc is strict"},
     {"program", "decimal_point",
      "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments (1 mm)"},
+    {"program", "ignore_codes",
+     "M codes of the machine's builder without effect on motion; default: those of the machine"},
     {"program", "first_feed", "feed of G1, G2 and G3 before any F"},
     {"program", "feed_override", "factor on all feeds"},
     {"program", "parameters", "G-code parameters set before the program starts"},

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ struct NcSettings {
   Joints lower = Joints::Zero(), upper = Joints::Zero();                          // m, rad; travel
   controllers::Reader program_reader = controllers::Reader::any;  // of programs that name none
   controllers::DecimalPoint decimal_point = controllers::DecimalPoint::unset;
+  std::set<int> ignored_codes;     // M codes without effect, of programs that name none
   double path_tolerance = 10e-6;   // m, for G64 without P
   double rotary_tolerance = 1e-4;  // rad
   double block_time = 0.0;         // s, least time of a block; 0: none

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct ProgramSpec {
   controllers::Reader reader = controllers::Reader::any;
   controllers::DecimalPoint decimal_point = controllers::DecimalPoint::unset;
   std::optional<double> first_feed;  // m/s, of moves before any F
+  std::set<int> ignored_codes;       // M codes of the machine's builder without effect
   double feed_override = 1.0;
   AxisWords work_offset = AxisWords::Zero();  // G54, m, rad, machine coordinates
   AxisWords start = AxisWords::Zero();        // m, rad, in work coordinates

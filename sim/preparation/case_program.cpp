@@ -26,6 +26,7 @@ controllers::ProgramSetup program_setup(const model::Scenario& scenario,
   setup.reader = scenario.program.reader;
   setup.decimal_point = scenario.program.decimal_point;
   setup.feed = scenario.program.first_feed;
+  setup.ignored_codes = scenario.program.ignored_codes;
   setup.start = machine_start(scenario, spec);
   setup.machine = tool_centre_point(scenario.machine_of(spec));
   setup.subroutine_file = [texts = scenario.program.subroutines, file = scenario.program.file](

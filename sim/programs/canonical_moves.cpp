@@ -96,18 +96,6 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
       axis_values(option, std::string_view(text).substr(colon + 1), nullptr, false).words;
 }
 
-// The number of "M82", a code that no rule of a reader gives a meaning.
-int ignored_code(const std::string& text) {
-  const double number = text.starts_with('M') ? model::number_of(text.substr(1)) : std::nan("");
-  const bool is_code = number >= 0.0 && number <= 9999.0 && number == std::floor(number);
-  if (is_code && !controllers::is_known_function(static_cast<int>(number))) {
-    return static_cast<int>(number);
-  }
-  throw InputError({"--ignore-code " + text},
-                   is_code ? "has a meaning of its own, which cannot be left out"
-                           : "must be an M code of the machine's builder, such as M82");
-}
-
 }  // namespace
 
 void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
@@ -116,6 +104,7 @@ void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
   using controllers::Reader;
   setup.reader = nc.program_reader;
   setup.decimal_point = nc.decimal_point;
+  setup.ignored_codes = nc.ignored_codes;
   if (inputs.reader) {
     setup.reader = static_cast<Reader>(chosen("--reader", *inputs.reader, controllers::kReaders));
   }
@@ -155,7 +144,9 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
   setup.feed = inputs.feed;
   for (const std::string& text : inputs.additional_offsets) add_additional_offset(text, setup);
   for (const std::string& code : inputs.ignored_codes) {
-    setup.ignored_codes.insert(ignored_code(code));
+    const controllers::IgnoredCode ignored = controllers::ignored_code(code);
+    if (!ignored.fault.empty()) throw InputError({"--ignore-code " + code}, ignored.fault);
+    setup.ignored_codes.insert(ignored.number);
   }
   setup.trials = inputs.trials;
   setup.block_delete = inputs.block_delete;

@@ -311,6 +311,31 @@ name = "cycle_time"
                          ["X 1.000 mm", "Z 52.000 ... 400.000 mm"])
         self.assertIn("heidenhain", self.lines(program, "read by")[0])
 
+    # M82 is the builder's: --ignore-code, program.ignore_codes of a scenario, nc.ignore_codes of a machine
+    def test_codes_that_are_left_out(self):
+        program = "G21 G90\nM82\nG0 X10. Y0. Z3.\nG1 X20. F600.\nM2\n"
+        refused = self.check(program, status=2).stderr
+        self.assertIn("part.ngc:2:1: error: ", refused)
+        self.assertEqual(self.lines(program, "extent G54", "--ignore-code", "M82")[0], "X 10.000 ... 20.000 mm; feeds 10.000 ... 20.000 mm")
+        with open(os.path.join(HERE, "gallery", "machine.toml"), encoding="utf-8") as file:
+            machine = file.read()
+        scenario = 'machine = "machine.toml"\n[program]\nfile = "part.ngc"\n{}[[case]]\nname = "one"\nservo = "ideal"\n'
+
+        def faults(key, of_machine=""):
+            self.write("machine.toml", machine.replace("[nc]\n", "[nc]\n" + of_machine))
+            self.write("scenario.toml", scenario.format(key))
+            return subprocess.run([SERVOMILL, "check", "scenario.toml", "--quiet"], cwd=self.folder, capture_output=True, text=True,
+                                  timeout=PATIENCE, check=False).stderr
+        self.assertEqual(faults(""), refused[refused.index("part.ngc:2:1: error"):])
+        self.assertNotIn("error", faults('ignore_codes = ["M82"]\n'))
+        self.assertIn('scenario.toml:4:16: error: program.ignore_codes', faults('ignore_codes = ["M3"]\n'))
+        self.assertIn("M3: has a meaning of its own, which cannot be left out", faults('ignore_codes = ["M3"]\n'))
+        self.assertIn("82: must be an M code of the machine's builder, such as M82", faults('ignore_codes = ["82"]\n'))
+        self.assertNotIn("error", faults("", 'ignore_codes = ["M82"]\n'))
+        self.assertIn("part.ngc:2:1: error", faults("ignore_codes = []\n", 'ignore_codes = ["M82"]\n'))
+        done = self.check(program, "--machine", "machine.toml", status=0)
+        self.assertNotIn("error", done.stderr)
+
     def test_a_work_offset_of_an_axis_that_the_machine_lacks(self):
         done = self.check("G0 X1\nM2\n", "--machine", "router.toml", "--work-offset", "C=5", status=2)
         self.assertEqual(done.stderr, "--work-offset C=5: error: the machine has no axis C\n")
