@@ -20,7 +20,7 @@ model::MachineSettings read_machine(config::Reader& machine,
                                     std::map<std::string, plant::ErrorModel>* errors = nullptr);
 
 /// M codes of the key `ignore_codes`; `fallback` where it is absent.
-std::set<int> read_ignored_codes(Reader& table, const std::set<int>& fallback);
+std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback);
 
 /// A machine file as programs and tables for a real machine need it.
 struct MachineDescription {
