@@ -29,6 +29,7 @@ class LexicalRules {
     control_characters();
     long_comment();
     skip_blanks();
+    if (sender_wait()) return std::move(line_);
     if (at_ < text().size() && text()[at_] == '%') return percent_title(), std::move(line_);
     if (sender_command()) return std::move(line_);
     checksum();
@@ -76,6 +77,18 @@ class LexicalRules {
     const bool is_request = is_report_request(std::string_view(text()).substr(at_));
     if (!is_request || !apply(ReaderRule::sender_command, at_)) return false;
     blank(at_, std::min(text().find_first_of(" \t;\r", at_), text().size()));
+    return true;
+  }
+
+  // %wait alone, in small letters as the senders compare it, becomes a dwell of no duration.
+  bool sender_wait() {
+    constexpr std::string_view kWait = "%wait", kRest = "G4 P0";
+    static_assert(kWait.size() == kRest.size());
+    const bool is_wait = text().compare(at_, kWait.size(), kWait) == 0;
+    const std::size_t next = text().find_first_not_of(" \t\r", at_ + kWait.size());
+    const bool is_alone = next == std::string::npos || at(next) == ';';
+    if (!is_wait || !is_alone || !apply(ReaderRule::sender_wait, at_)) return false;
+    text().replace(at_, kWait.size(), kRest);
     return true;
   }
 

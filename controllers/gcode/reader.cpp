@@ -162,6 +162,10 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Mach3 Mill G code reference, G70 and G71; from memory"},
     {sender_command, "$$, $G, $I, $N, $# or ?", "a request of a sender, without effect",
      "grbl, TinyG", kGrbl, "grbl 1.1, commands"},
+    {sender_wait, "%wait of a sender to grbl",
+     "the axes come to rest; the dwell of 0.5 s that cncjs adds is left out", "cncjs, bCNC", kGrbl,
+     "cncjs, issue 118 (replaced with G4 P0.5, waits until the planner is empty); bCNC, issue 60 "
+     "(waits until grbl is idle)"},
     {checksum, "a checksum behind '*'", "without effect", "hosts of grbl, RepRap", kGrbl,
      "from memory"},
     {rapid_at_start, "axis words before any of G0, G1, G2, G3 and before any F",

@@ -74,6 +74,7 @@ enum class ReaderRule : std::uint8_t {
   rotation,
   unit_codes,
   sender_command,
+  sender_wait,
   checksum,
   rapid_at_start,
   centre_off_plane,

@@ -148,6 +148,7 @@ const std::vector<Example>& examples() {
        "G1 X-1 Y2 F100\nG3 X-2 Y3 I-1 J0\nM2\n", "p.nc:1:1"},
       {ReaderRule::unit_codes, "G70\nG0 X1.\nG71 X1.\nM2\n", "G20\nG0 X1\nG21 X1\nM2\n",
        "p.nc:1:1"},
+      {ReaderRule::sender_wait, "%wait\nG0 X1.\nM2\n", "G4 P0\nG0 X1\nM2\n", "p.nc:1:1"},
       {ReaderRule::sender_command, "$G ; modes\n?\nG0 X1.\nM2\n", "G0 X1\nM2\n", "p.nc:1:1"},
       {ReaderRule::rapid_at_start, "Z5.\nX1.\nM2\n", "G0 Z5\nX1\nM2\n", "p.nc:1:1"},
       {ReaderRule::centre_off_plane, "G2 X2. I1. J0. K0.000 F100.\nM2\n", "G2 X2 I1 J0 F100\nM2\n",
@@ -251,11 +252,19 @@ TEST(ReaderRules, AreRefusedByLinuxCncAndByReadersWithoutThem) {
       const bool has_other_words =
           one.rule == ReaderRule::scaling || one.rule == ReaderRule::rotation;
       if (has_other_words && reader == Reader::mach) continue;  // G51 X2 Y2, G68 A1 B2 R90
+      const bool is_tape = reader == Reader::fanuc || reader == Reader::haas;
+      if (one.rule == ReaderRule::sender_wait && is_tape) continue;  // title, or end of record
       EXPECT_EQ(read(one.tolerant, reader, one.setup).refusal.empty(), has_rule(reader, one.rule))
           << kReaders[k];
     }
     EXPECT_FALSE(has_rule(Reader::linuxcnc, one.rule));
   }
+}
+
+TEST(ReaderRules, WaitOfASenderIsTheEndOfRecordForFanuc) {
+  const Read fanuc = read("G0 X1.\n%wait\nG0 X2.\nM2\n", Reader::fanuc, {});
+  EXPECT_EQ(without_lines(fanuc.moves),
+            without_lines(read("G0 X1.\n%\n", Reader::fanuc, {}).moves));
 }
 
 TEST(ReaderRules, HaveAnExampleEachAndSayWhoReadsSo) {

@@ -7,6 +7,7 @@ namespace servomill::controllers {
 
 inline const std::string kProtocol = "grbl 1.1, protocol.c, protocol_main_loop()",
                          kGcode = "grbl 1.1, gcode.c, gc_execute_line()",
+                         kWait = "cncjs, issue 118; bCNC, issue 60",
                          kTape = "Fanuc B-64014EN/03 p. 21";
 
 inline std::vector<RuleExample> line_examples() {
@@ -57,6 +58,11 @@ inline std::vector<RuleExample> line_examples() {
        "no control: a comment has no effect"},
       {ReaderRule::sender_command, Reader::grbl, "$G\n?\n$#\nG0 X1\nM2\n", "R 1 0 0", "p.nc:1:1",
        kProtocol},
+      // not the end of the program, as a '%' in its middle would be; also in a program with frame
+      {ReaderRule::sender_wait, Reader::grbl, "G0 X1\n%wait\nG1 Y2 F100\nM2\n",
+       "R 1 0 0 | F 1 2 0 f100", "p.nc:2:1", kWait},
+      {ReaderRule::sender_wait, Reader::any, "%\nG0 X1.\n %wait ; idle\nG0 Y2.\n%\n",
+       "R 1 0 0 | R 1 2 0", "p.nc:3:2", kWait},
       {ReaderRule::checksum, Reader::grbl, "N1 G0 X1 *45\nN2 G1 Y2 F100*17\nM2\n",
        "R 1 0 0 | F 1 2 0 f100", "p.nc:1:10", "from memory"},
       {skip_level, Reader::haas, "/2 G0 X1.\n/ G0 X2.\nG0 Y2.\nM2\n", "R 0 2 0", "", "from memory",
