@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -22,6 +23,16 @@ HeidenhainWord make_word(std::string_view text, Place place) {
           std::string(text.substr(letters)), std::move(place)};
 }
 
+// "0" behind FN, or "FN0": what a colon ends, with or without a blank behind it.
+bool is_function(std::string_view text, const std::vector<HeidenhainWord>& before) {
+  if (text.starts_with("FN")) {
+    text.remove_prefix(2);
+  } else if (before.empty() || before.back().text != "FN") {
+    return false;
+  }
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
+}
+
 void append_words(std::string_view text, const Place& line, std::vector<HeidenhainWord>& words) {
   std::size_t at = 0;
   while (at < text.size()) {
@@ -30,7 +41,11 @@ void append_words(std::string_view text, const Place& line, std::vector<Heidenha
       continue;
     }
     std::size_t end = at;
-    while (end < text.size() && !is_space(text[end])) ++end;
+    while (end < text.size() && !is_space(text[end])) {
+      const bool ends_function = text[end] == ':' && is_function(text.substr(at, end - at), words);
+      ++end;
+      if (ends_function) break;
+    }
     words.push_back(
         make_word(text.substr(at, end - at), {line.file, line.line, static_cast<int>(at) + 1}));
     at = end;

@@ -10,7 +10,8 @@
 
 namespace servomill::controllers {
 
-/// One word: "X+10", "IPA-90", "FMAX", "Q339=+1". Words end at white space.
+/// One word: "X+10", "IPA-90", "FMAX", "Q339=+1". Words end at white space,
+/// and the function of "FN 0:Q1=5" at its colon.
 struct HeidenhainWord {
   std::string text;
   std::string address;  // letters at its start

@@ -15,6 +15,7 @@
 #include "sim/input/read_drive.h"
 #include "sim/input/read_encoder.h"
 #include "sim/input/read_errors.h"
+#include "sim/input/read_program.h"
 #include "sim/input/read_servo.h"
 
 namespace servomill::sim::input {
@@ -327,21 +328,6 @@ MachineDescription read_machine_description(const std::string& path,
     if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, config::kLength);
   }
   root.finish();
-  return out;
-}
-
-std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback) {
-  std::vector<std::string> usual;
-  for (const int code : fallback) usual.push_back(fmt::format("M{}", code));
-  std::set<int> out;
-  for (const std::string& text : table.texts_or("ignore_codes", usual)) {
-    const controllers::IgnoredCode code = controllers::ignored_code(text);
-    if (code.fault.empty()) {
-      out.insert(code.number);
-    } else {
-      table.fault("ignore_codes", fmt::format("{}: {}", text, code.fault));
-    }
-  }
   return out;
 }
 

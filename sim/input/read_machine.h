@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -18,9 +17,6 @@ namespace servomill::sim::input {
 /// @param errors   receives the error models that it holds, by name; nullptr: they are but checked
 model::MachineSettings read_machine(config::Reader& machine,
                                     std::map<std::string, plant::ErrorModel>* errors = nullptr);
-
-/// M codes of the key `ignore_codes`; `fallback` where it is absent.
-std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback);
 
 /// A machine file as programs and tables for a real machine need it.
 struct MachineDescription {

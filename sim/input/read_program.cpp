@@ -10,6 +10,7 @@
 
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/called_subroutines.h"
+#include "controllers/gcode/reader.h"
 #include "sim/input/read_cutter.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/scenario_document.h"
@@ -109,6 +110,21 @@ void read_tool(config::Reader& table, model::ProgramSpec& program) {
 }
 
 }  // namespace
+
+std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback) {
+  std::vector<std::string> usual;
+  for (const int code : fallback) usual.push_back(fmt::format("M{}", code));
+  std::set<int> out;
+  for (const std::string& text : table.texts_or("ignore_codes", usual)) {
+    const controllers::IgnoredCode code = controllers::ignored_code(text);
+    if (code.fault.empty()) {
+      out.insert(code.number);
+    } else {
+      table.fault("ignore_codes", fmt::format("{}: {}", text, code.fault));
+    }
+  }
+  return out;
+}
 
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
                                 InputFiles& files) {

@@ -1,6 +1,8 @@
 /// Reads the program of a scenario, its subroutines and its tools.
 #pragma once
 
+#include <set>
+
 #include "plant/vocabulary/axes.h"
 #include "sim/config/reader.h"
 #include "sim/input/input_files.h"
@@ -18,5 +20,8 @@ model::ProgramSpec read_program(config::Reader& table, const model::MachineSetti
 /// Program words such as X_mm = 1.5.
 /// @param layout  of the machine; empty where that could not be read: any words are then taken
 AxisWords read_offsets(config::Reader& table, const JointLayout& layout);
+
+/// M codes of the key `ignore_codes`; `fallback` where it is absent.
+std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fallback);
 
 }  // namespace servomill::sim::input

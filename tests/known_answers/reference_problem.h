@@ -25,7 +25,7 @@ inline constexpr Tick kVolumetric = 6, kCurrent = 10, kVelocity = 20, kPosition 
 inline constexpr Tick kEnd = 1'000'000;
 
 inline std::string file_of(const std::string& name) {
-  return std::string(SERVOMILL_SOURCE_DIR) + "/tests/known_answers/reference_problem/" + name;
+  return SERVOMILL_SOURCE_DIR "/tests/known_answers/reference_problem/" + name;
 }
 
 // Rows "name,number,number,..." behind the comment and the heading.

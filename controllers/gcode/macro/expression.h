@@ -17,8 +17,9 @@ namespace servomill::controllers::macro {
 ///              | + - OR XOR | EQ NE GT GE LT LE; all of them from left to right
 /// AND, OR and XOR work on the bits of whole numbers; a comparison is 1 or 0.
 /// Source: Fanuc B-63684EN/01, chapter 16 (order of operations, from memory); Haas 96-8000, June
-/// 1999, p. 374 to 376; NCT 99M, 2000M programmer's manual, 20.13.2 p. 185 (OR and XOR are additive,
-/// AND is multiplicative; each works on the bits of 32-bit numbers). MOD: differences.cpp.
+/// 1999, p. 374 to 376; NCT 99M, 2000M programmer's manual, 20.13.2 p. 185 (OR and XOR are
+/// additive, AND is multiplicative; each works on the bits of 32-bit numbers). MOD:
+/// differences.cpp.
 class Expression {
  public:
   struct Context {

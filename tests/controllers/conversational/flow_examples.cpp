@@ -27,6 +27,8 @@ std::vector<Example> flow_examples() {
        "FN6: Q1 = SIN+30\nFN7: Q2 = COS+60\nFN 8: Q3 = +3 LEN +4\nFN 13: Q4 = +10 ANG -10\n"
        "L X+Q1 Y+Q2 Z+Q3 FQ4\n",
        "5 feed 0.5 0.5 5 F135\n"},
+      {"FN without a blank behind its colon", "FN 0:Q1=7\nFN1:Q2=+Q1 + +1\nL X+Q1 Y+Q2 FMAX\n",
+       "3 rapid 7 8 0\n"},
       // multiplication before addition: 5 * 3 + 2 * 10 = 35. iTNC 530 ISO (60642x-04) p. 305
       {"order of operations", "Q1 = 5 * 3 + 2 * 10\nQ2 = SQ 10 - 3^3\nL X+Q1 Y+Q2 F100\n",
        "3 feed 35 73 0 F100\n"},

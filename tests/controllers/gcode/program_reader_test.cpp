@@ -161,13 +161,6 @@ const std::vector<Example>& examples() {
        "p.nc:1:1",
        {},
        Reader::mach},
-      // a right angle: the tangent is the radius; 60 deg: R / tan 30 deg = 5 sqrt(3)
-      {ReaderRule::corner, "G0 X0. Y0.\nG1 X30. ,R5. F100.\nY20.\nX0.\nM2\n",
-       "G0 X0 Y0\nG1 X25 F100\nG3 X30 Y5 R5\nG1 Y20\nX0\nM2\n", "p.nc:2:9"},
-      {ReaderRule::corner, "G0 X0. Y0.\nG1 X30. ,R5. F100.\n(up)\n\nX15. Y25.980762113533\nM2\n",
-       "G0 X0 Y0\nG1 X21.339745962156 F100\nG3 X25.669872981078 Y7.5 R5\nG1 X15 "
-       "Y25.980762113533\nM2\n",
-       "p.nc:2:9"},
       {ReaderRule::corner, "G0 X0. Y0.\nG1 Y20. ,C2. F100.\nX30. ,R4\nY0.\nM2\n",
        "G0 X0 Y0\nG1 Y18 F100\nG1 X2 Y20\nX26\nG2 X30 Y16 R4\nG1 Y0\nM2\n", "p.nc:2:9"},
       {ReaderRule::corner, "G18 G0 X0. Z0.\nG1 Z30. ,R5. F100.\nX20.\nM2\n",
