@@ -63,8 +63,8 @@ const std::vector<Style>& styles() {
        0,
        ":8:1: error: G12 or G13: a full circle from the +X side (Mach), or a circle with a way "
        "into the wall of its own (Haas); choose with --reader"},
-      {"heidenhain_hsc.h", {5, 5}, 4, 1.536, 0.616},
-      {"heidenhain_plane.h", {7}, 2, 20.0, 0.0, "", true},
+      {"heidenhain_hsc.H", {5, 5}, 4, 1.536, 0.616},
+      {"heidenhain_plane.H", {7}, 2, 20.0, 0.0, "", true},
       {"hsmworks_3plus2.nc", {4, 7, 8, 11}, 2, 10.0, 0.0},
       {"mastercam_fanuc.nc", {13}, 4, -20.0, 20.0, "", true},
       {"printer.gcode",
