@@ -1,0 +1,218 @@
+#include "sim/identification/fit.h"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace servomill::sim::identification {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDifference = 1e-2;  // of a scale: far above rounding, far below curvature
+
+double rms_of(const Eigen::VectorXd& x) {
+  return x.size() == 0 ? 0.0 : std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
+}
+
+// The residual and its derivatives, in scaled parameters: those that have an effect.
+class Differences {
+ public:
+  Differences(const Prediction& prediction, const Mask& mask)
+      : prediction_(prediction), mask_(mask) {}
+
+  std::optional<Eigen::VectorXd> residual(const Values& at) const {
+    const auto signals = prediction_.simulate({&at, 1});
+    if (!signals.front()) return std::nullopt;
+    return prediction_.residual(*signals.front(), mask_);
+  }
+
+  // Central differences where both sides are possible, else one-sided.
+  // @param steps  0 or NaN: the column is 0
+  std::optional<Eigen::MatrixXd> jacobian(const Values& at, const Values& steps,
+                                          const Eigen::VectorXd& here) const {
+    std::vector<Values> sides;
+    for (std::size_t p = 0; p < steps.size(); ++p) {
+      for (const double sign : {1.0, -1.0}) {
+        sides.push_back(at);
+        if (std::isfinite(steps[p])) sides.back()[p] += sign * steps[p];
+      }
+    }
+    const auto signals = prediction_.simulate(sides);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(here.size(), static_cast<Eigen::Index>(steps.size()));
+    for (std::size_t p = 0; p < steps.size(); ++p) {
+      if (!std::isfinite(steps[p]) || steps[p] == 0.0) continue;
+      const auto& up = signals[2 * p];
+      const auto& down = signals[2 * p + 1];
+      if (!up && !down) return std::nullopt;
+      const Eigen::VectorXd above = up ? prediction_.residual(*up, mask_) : here;
+      const Eigen::VectorXd below = down ? prediction_.residual(*down, mask_) : here;
+      J.col(static_cast<Eigen::Index>(p)) = (above - below) / (steps[p] * (up && down ? 2.0 : 1.0));
+    }
+    return J;
+  }
+
+ private:
+  const Prediction& prediction_;
+  const Mask& mask_;
+};
+
+// First guess of a change that matters.
+double first_step(const Prediction& prediction, std::size_t parameter, double value) {
+  if (parameter >= prediction.estimates()) return 1e-7;  // m, m/s
+  return value != 0.0 ? 1e-4 * std::abs(value) : 1e-6;
+}
+
+// Change of each parameter that moves the feedback by `wanted` (rms); NaN where none does.
+Values find_scales(const Prediction& prediction, const Differences& differences, const Values& at,
+                   const Eigen::VectorXd& here, double wanted) {
+  constexpr int kRounds = 14;
+  constexpr double kFar = 100.0, kNothing = 1e-4;
+  Values steps;
+  for (std::size_t p = 0; p < at.size(); ++p) steps.push_back(first_step(prediction, p, at[p]));
+  Values scales(at.size(), kNaN);
+  for (int round = 0; round < kRounds; ++round) {
+    Values open = steps;
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      if (std::isfinite(scales[p])) open[p] = kNaN;
+    }
+    const auto J = differences.jacobian(at, open, here);
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      if (!std::isfinite(open[p])) continue;
+      const double change = J ? rms_of(J->col(static_cast<Eigen::Index>(p))) * steps[p] : 0.0;
+      const bool is_enough = change > kNothing * wanted;
+      if (is_enough && change < kFar * wanted) {
+        scales[p] = steps[p] * wanted / change;
+      } else if (J) {
+        steps[p] *= is_enough ? wanted / change : 10.0;
+      } else {
+        steps[p] *= 0.1;
+      }
+    }
+  }
+  return scales;
+}
+
+// The cost function as Ceres wants it.
+class Cost : public ceres::CostFunction {
+ public:
+  Cost(const Differences& differences, const Fit& fit, std::vector<std::size_t> active)
+      : differences_(differences), fit_(fit), active_(std::move(active)) {
+    set_num_residuals(static_cast<int>(fit.residual.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(active_.size()));
+    unit_ = std::max(rms_of(fit.residual), std::numeric_limits<double>::min());
+  }
+
+  Values values(const double* y) const {
+    Values at = fit_.values;
+    for (std::size_t k = 0; k < active_.size(); ++k)
+      at[active_[k]] += y[k] * fit_.scales[active_[k]];
+    return at;
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Values at = values(parameters[0]);
+    const auto here = differences_.residual(at);
+    if (!here) return false;
+    Eigen::VectorXd::Map(residuals, here->size()) = *here / unit_;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Values steps(at.size(), kNaN);
+    for (const std::size_t p : active_) steps[p] = kDifference * fit_.scales[p];
+    const auto J = differences_.jacobian(at, steps, *here);
+    if (!J) return false;
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<Rows> into(jacobians[0], here->size(), static_cast<Eigen::Index>(active_.size()));
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      into.col(static_cast<Eigen::Index>(k)) =
+          J->col(static_cast<Eigen::Index>(active_[k])) * (fit_.scales[active_[k]] / unit_);
+    }
+    return true;
+  }
+
+ private:
+  const Differences& differences_;
+  const Fit& fit_;
+  std::vector<std::size_t> active_;
+  double unit_;
+};
+
+void set_bounds(ceres::Problem& problem, double* y, const Prediction& prediction, const Fit& fit,
+                const std::vector<std::size_t>& active) {
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    const auto [lower, upper] = prediction.bounds(active[k]);
+    const double scale = fit.scales[active[k]], value = fit.values[active[k]];
+    const int place = static_cast<int>(k);
+    if (std::isfinite(lower)) problem.SetParameterLowerBound(y, place, (lower - value) / scale);
+    if (std::isfinite(upper)) problem.SetParameterUpperBound(y, place, (upper - value) / scale);
+  }
+}
+
+// One run of the minimiser from fit.values on.
+void minimise(const Prediction& prediction, const Differences& differences, Fit& fit) {
+  std::vector<std::size_t> active;
+  for (std::size_t p = 0; p < fit.values.size(); ++p) {
+    if (std::isfinite(fit.scales[p])) active.push_back(p);
+  }
+  if (active.empty()) return;
+  std::vector<double> y(active.size(), 0.0);
+  ceres::Problem::Options own;
+  own.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  Cost cost(differences, fit, active);
+  ceres::Problem problem(own);
+  problem.AddResidualBlock(&cost, nullptr, y.data());
+  set_bounds(problem, y.data(), prediction, fit, active);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 60;
+  options.function_tolerance = 1e-9;
+  options.parameter_tolerance = 1e-9;
+  options.num_threads = 1;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  fit.values = cost.values(y.data());
+  fit.iterations += static_cast<int>(summary.iterations.size());
+  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.message = summary.message;
+}
+
+}  // namespace
+
+double rms(const Eigen::VectorXd& residual, const Mask& mask) {
+  std::size_t count = 0;
+  for (const auto& record : mask) {
+    count += static_cast<std::size_t>(std::count(record.begin(), record.end(), char{1}));
+  }
+  return count == 0 ? 0.0 : std::sqrt(residual.squaredNorm() / static_cast<double>(count));
+}
+
+Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
+  const Differences differences(prediction, mask);
+  Fit out;
+  out.values = start;
+  const auto first = differences.residual(start);
+  if (!first) {
+    throw InputError({prediction.records().front()->record.name},
+                     "cannot be simulated with the starting values: the machine refuses them, or "
+                     "its friction is too stiff");
+  }
+  // far from the recording the scales are rough: they are found again where it ends
+  constexpr int kRuns = 2;
+  out.residual = *first;
+  for (int run = 0; run < kRuns; ++run) {
+    out.scales =
+        find_scales(prediction, differences, out.values, out.residual, rms_of(out.residual));
+    minimise(prediction, differences, out);
+    out.residual = differences.residual(out.values).value();
+  }
+  Values steps = out.scales;
+  for (double& step : steps) step *= kDifference;
+  out.jacobian = differences.jacobian(out.values, steps, out.residual).value();
+  return out;
+}
+
+}  // namespace servomill::sim::identification

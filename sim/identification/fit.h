@@ -1,0 +1,31 @@
+/// Values of the parameters with which the simulation is nearest to the recordings.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "sim/identification/prediction.h"
+
+namespace servomill::sim::identification {
+
+struct Fit {
+  Values values;
+  Values scales;  // change of each that moves the feedback by the residual's rms; NaN: none does
+  Eigen::VectorXd residual;  // m or rad, simulated less recorded
+  Eigen::MatrixXd jacobian;  // of the residual by the values
+  int iterations = 0;
+  bool converged = false;
+  std::string message;  // of the minimiser
+};
+
+/// Least sum of squares of simulated less recorded feedback, by Ceres Solver (trust region,
+/// Levenberg and Marquardt) within the bounds; derivatives by central differences, all values side
+/// by side. Parameters of which nothing depends stay as they are.
+/// @throws InputError if the starting values cannot be simulated
+Fit fit(const Prediction& prediction, const Values& start, const Mask& mask);
+
+/// Root mean square of a vector over the samples that count.
+double rms(const Eigen::VectorXd& residual, const Mask& mask);
+
+}  // namespace servomill::sim::identification

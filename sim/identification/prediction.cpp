@@ -1,0 +1,106 @@
+#include "sim/identification/prediction.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace servomill::sim::identification {
+
+Prediction::Prediction(const config::Document& document, std::vector<Estimate> estimates,
+                       std::vector<const AxisRecord*> records, unsigned threads)
+    : document_(document),
+      estimates_(std::move(estimates)),
+      records_(std::move(records)),
+      threads_(threads) {
+  for (const AxisRecord* record : records_) samples_ += record->record.size();
+}
+
+Values Prediction::start() const {
+  Values values;
+  for (const Estimate& one : estimates_) values.push_back(one.start);
+  for (const AxisRecord* record : records_) {
+    const StartOfMotion motion = start_of_motion(record->record);
+    values.push_back(motion.position);
+    values.push_back(motion.speed);
+  }
+  return values;
+}
+
+std::pair<double, double> Prediction::bounds(std::size_t parameter) const {
+  const double infinite = std::numeric_limits<double>::infinity();
+  if (parameter >= estimates_.size()) return {-infinite, infinite};
+  return {estimates_[parameter].lower, estimates_[parameter].upper};
+}
+
+Mask Prediction::all_samples() const {
+  Mask mask;
+  for (const AxisRecord* record : records_) {
+    mask.emplace_back(record->record.size(), char{1});
+    for (const SampleRange& range : record->record.omitted) {
+      std::fill(mask.back().begin() + static_cast<std::ptrdiff_t>(range.begin),
+                mask.back().begin() + static_cast<std::ptrdiff_t>(range.end), char{0});
+    }
+  }
+  return mask;
+}
+
+std::optional<ModelOfValues> Prediction::model(const Values& values) const {
+  try {
+    return model_of(document_, estimates_, std::span(values).first(estimates_.size()));
+  } catch (const InputError&) {
+    return std::nullopt;  // outside of what a machine can be
+  }
+}
+
+std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
+    std::span<const Values> values) const {
+  std::vector<std::optional<Signals>> out(values.size());
+  std::vector<std::size_t> possible;
+  std::vector<ModelOfValues> models;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    assert(values[n].size() == size());
+    auto one = model(values[n]);
+    if (!one) continue;
+    possible.push_back(n);
+    models.push_back(std::move(*one));
+    out[n].emplace();
+  }
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const auto joint = static_cast<std::size_t>(records_[r]->joint);
+    std::vector<AxisModel> axes;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      const Values& at = values[possible[m]];
+      const std::size_t own = estimates_.size() + 2 * r;
+      axes.push_back({.drive = models[m].machine.drives[joint],
+                      .loop = models[m].loop,
+                      .position = at[own],
+                      .speed = at[own + 1]});
+    }
+    std::vector<Simulated> simulated =
+        identification::simulate(records_[r]->record, axes, threads_);
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      out[possible[m]]->of_record.push_back(std::move(simulated[m]));
+    }
+  }
+  for (auto& signals : out) {
+    const auto is_wrong = [](const Simulated& one) { return !one.resolved; };
+    if (signals && std::any_of(signals->of_record.begin(), signals->of_record.end(), is_wrong)) {
+      signals.reset();
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd Prediction::residual(const Signals& signals, const Mask& mask) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(samples_));
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const std::vector<double>& recorded = records_[r]->record.feedback;
+    for (std::size_t k = 0; k < recorded.size(); ++k) {
+      out[row++] = mask[r][k] != 0 ? signals.of_record[r].feedback[k] - recorded[k] : 0.0;
+    }
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "plant/vocabulary/units.h"
+#include "sim/identification/experiment.h"
+#include "sim/identification/parameter_space.h"
+#include "sim/identification/read_records.h"
+#include "sim/input/input_files.h"
+#include "sim/input/scenario_document.h"
+#include "sim/model/design.h"
+
+namespace servomill::sim::identification {
+namespace {
+
+constexpr std::array<std::string_view, 2> kLoops = {"open", "cascade"};
+
+// The value that the document has at a dotted key, or nullptr.
+const config::Value* value_at(const config::Value& root, const std::string& key) {
+  const config::Value* at = &root;
+  for (std::size_t begin = 0; at != nullptr && begin <= key.size();) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    if (at->type != config::Value::Type::table) return nullptr;
+    at = at->find(key.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return at;
+}
+
+model::WrittenNumber read_number(config::Reader& table, std::string_view key) {
+  const config::Value* value = table.raw(key);
+  const auto number = model::written_number(value->written);
+  if (!number) table.fault(key, "must be a number, or a text such as \"20 N\"");
+  return number.value_or(model::WrittenNumber{});
+}
+
+// A bound in the unit of the start.
+double read_bound(config::Reader& table, std::string_view key, const std::string& unit,
+                  double fallback) {
+  if (!table.has(key)) return fallback;
+  const model::WrittenNumber bound = read_number(table, key);
+  if (bound.unit != unit) {
+    table.fault(key, fmt::format("must be in the unit of the start, \"{}\"", unit));
+  }
+  return bound.value;
+}
+
+// Where it begins: said, or the machine's own value.
+model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
+                                const config::Document& document) {
+  if (table.has("start")) return read_number(table, "start");
+  if (estimate.keys.empty()) return {};
+  const config::Value* value = value_at(document.root(), document_key(estimate.keys.front()));
+  if (value == nullptr) {
+    table.fault(fmt::format("{} is not in the machine or the loop; add start = \"VALUE UNIT\"",
+                            estimate.keys.front()));
+    return {};
+  }
+  const auto number = model::written_number(value->written);
+  if (!number) {
+    table.fault(fmt::format("{} = {} is no number", estimate.keys.front(), value->written));
+  }
+  return number.value_or(model::WrittenNumber{});
+}
+
+std::vector<Estimate> read_estimates(config::Reader& root, const config::Document& document) {
+  std::vector<Estimate> estimates;
+  for (config::Reader& table : root.tables("estimate")) {
+    Estimate one;
+    one.place = table.place("key");
+    if (table.has("keys")) {
+      one.keys = table.texts("keys");
+    } else {
+      one.keys = {table.text("key")};
+    }
+    const model::WrittenNumber start = read_start(table, one, document);
+    one.start = start.value;
+    one.unit = start.unit;
+    one.lower = read_bound(table, "min", one.unit, one.lower);
+    one.upper = read_bound(table, "max", one.unit, one.upper);
+    if (!(one.lower <= one.start && one.start <= one.upper)) {
+      table.fault(fmt::format("start {:g} lies outside of min and max", one.start));
+    }
+    for (const Estimate& other : estimates) {
+      for (const std::string& key : one.keys) {
+        if (std::find(other.keys.begin(), other.keys.end(), key) != other.keys.end()) {
+          table.fault(fmt::format("{} is estimated twice", key));
+        }
+      }
+    }
+    estimates.push_back(std::move(one));
+  }
+  return estimates;
+}
+
+}  // namespace
+
+LoopSettings read_loop(config::Reader& table) {
+  LoopSettings loop;
+  loop.kind = static_cast<LoopKind>(table.choice_or("kind", 1, kLoops));
+  loop.period = table.real("period_ms", config::kTime, {config::above(0.0)});
+  if (loop.kind == LoopKind::open) {
+    loop.dead_time =
+        table.real_or("dead_time_ms", 0.0, config::kTime,
+                      {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
+    return loop;
+  }
+  const double infinite = std::numeric_limits<double>::infinity();
+  loop.Kv = table.real("position_gain", config::kRate, {config::above(0.0)});
+  loop.Kp = table.real("velocity_gain", config::kDamping, {config::above(0.0)});
+  loop.Tn = table.real_or("velocity_reset_time_ms", infinite, config::kTime, {config::above(0.0)});
+  loop.kvf = table.real_or("velocity_feed_forward", 0.0, config::kNumber);
+  loop.kaf = table.real_or("acceleration_feed_forward", 0.0, config::kMass);
+  loop.F_max = table.real_or("force_limit", infinite, config::kForce, {config::above(0.0)});
+  loop.mean_of = static_cast<int>(table.integer_or(
+      "feedback_mean_of", 1, {config::at_least(1.0), config::at_most(kMostMeanOf)}));
+  loop.dead_time =
+      table.real_or("dead_time_ms", 0.0, config::kTime,
+                    {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
+  return loop;
+}
+
+Experiment read_experiment(const std::string& path) {
+  input::InputFiles files;
+  const config::Document own = config::Document::from_file(path);
+  const input::ScenarioDocument whole = input::with_machine(own, {}, files);
+  Experiment out{.name = {},
+                 .path = path,
+                 .machine_path = {},
+                 .document = whole.document,
+                 .loop = {},
+                 .records = {},
+                 .estimates = {}};
+  config::Reader root(out.document);
+  out.name = root.text_or("name", std::filesystem::path(path).stem().string());
+  const config::Value* machine = own.root().find("machine");
+  if (machine != nullptr && machine->type == config::Value::Type::text) {
+    out.machine_path = input::beside(machine->place, machine->text);
+  }
+  config::Reader loop = root.table("loop");
+  out.loop = read_loop(loop);
+  const model::MachineSettings settings = read_axes(root);
+  out.compares_laws = root.boolean_or("compare_laws", false);
+  out.estimates = read_estimates(root, out.document);
+  if (root.faults() == 0) out.records = read_records(root, settings, out.loop);
+  if (root.faults() > 0) root.skip_rest();
+  root.finish();
+  return out;
+}
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,369 @@
+#include "sim/identification/read_records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "sim/config/quantity.h"
+#include "sim/input/scenario_document.h"
+#include "sim/recordings/read_recording.h"
+
+namespace servomill::sim::identification {
+namespace {
+
+constexpr std::array<std::string_view, 2> kUses = {"estimation", "validation"};
+constexpr double kEqualPeriods = 1e-3;  // of a period: clocks of recorder and loop are one clock
+
+// What a channel may be.
+enum class Role : std::uint8_t { command, feedback, force, motor_current, disturbance_force };
+constexpr std::array<std::string_view, 5> kRoles = {"command", "feedback", "force", "motor_current",
+                                                    "disturbance_force"};
+
+config::Quantity quantity_of(Role role, bool linear) {
+  switch (role) {
+    case Role::command:
+    case Role::feedback:
+      return linear ? config::kLength : config::kAngle;
+    case Role::motor_current:
+      return config::kCurrent;
+    default:
+      return linear ? config::kForce : config::kTorque;
+  }
+}
+
+// A channel with its role: SI = factor sample + offset, `delay` late.
+struct ChannelUse {
+  std::string channel;
+  double factor = 1.0, offset = 0.0;
+  double delay = 0.0;
+  bool present = false;
+};
+
+// Factor of the unit: said in the experiment, or in the file, or SI.
+double unit_factor(config::Reader& table, const std::string& unit, config::Quantity quantity) {
+  const config::ParsedUnit parsed = config::parse_unit(unit);
+  if (!parsed.unit) {
+    table.fault("unit", parsed.complaint);
+    return 1.0;
+  }
+  if (!(parsed.unit->quantity == quantity)) {
+    table.fault("unit", fmt::format("is not that of {}", config::name_of(quantity)));
+  }
+  return parsed.unit->factor;
+}
+
+const recordings::Channel* find_channel(config::Reader& at, std::string_view key,
+                                        const recordings::Recording& recording,
+                                        const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const recordings::Channel& channel : recording.channels) {
+    if (channel.name == name) return &channel;
+    names.push_back(channel.name);
+  }
+  at.fault(key, fmt::format("is no channel of {}{}; it has {}", recording.file,
+                            did_you_mean(name, names), fmt::join(names, ", ")));
+  return nullptr;
+}
+
+// Samples of a channel at times that rise, by linear interpolation; missing ones are left out.
+class Interpolated {
+ public:
+  Interpolated(const recordings::Channel& channel, const recordings::Base& base,
+               const ChannelUse& use, double time_factor)
+      : use_(use) {
+    for (std::size_t k = 0; k < channel.samples.size(); ++k) {
+      if (std::isnan(channel.samples[k])) continue;
+      t_.push_back(base.values[k] * time_factor);
+      y_.push_back(use.factor * channel.samples[k] + use.offset);
+    }
+  }
+  bool empty() const { return t_.empty(); }
+  double first() const { return t_.front() - use_.delay; }
+  double last() const { return t_.back() - use_.delay; }
+  // Longest time from one sample to the next around t.
+  double gap(double t) {
+    find(t + use_.delay);
+    return at_ + 1 < t_.size() ? t_[at_ + 1] - t_[at_] : 0.0;
+  }
+  double operator()(double t) {
+    t += use_.delay;
+    find(t);
+    if (at_ + 1 >= t_.size()) return y_.back();
+    const double share = std::clamp((t - t_[at_]) / (t_[at_ + 1] - t_[at_]), 0.0, 1.0);
+    return share == 0.0 ? y_[at_] : y_[at_] + share * (y_[at_ + 1] - y_[at_]);
+  }
+
+ private:
+  void find(double t) {
+    while (at_ > 0 && t_[at_] > t) --at_;
+    while (at_ + 1 < t_.size() && t_[at_ + 1] <= t) ++at_;
+  }
+  ChannelUse use_;
+  std::vector<double> t_, y_;
+  std::size_t at_ = 0;
+};
+
+double median_interval(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                   steps.end());
+  return steps[steps.size() / 2];
+}
+
+// Reads one item of the list `recording`.
+class RecordReader {
+ public:
+  RecordReader(config::Reader& table, const model::MachineSettings& machine,
+               const LoopSettings& loop)
+      : table_(table), machine_(machine), loop_(loop) {}
+
+  std::optional<AxisRecord> read() {
+    out_.place = table_.place("file");
+    out_.record.name = table_.text("file");
+    out_.record.validation = table_.choice_or("use", 0, kUses) == 1;
+    out_.record.period = loop_.period;
+    from_ = table_.real_or("from_s", -kForever, config::kTime);
+    to_ = table_.real_or("to_s", kForever, config::kTime);
+    longest_gap_ =
+        table_.real_or("longest_gap_ms", 1.5 * loop_.period, config::kTime, {config::above(0.0)});
+    const std::string unit = table_.text_or("time_unit", "");
+    if (table_.faults() > 0) return std::nullopt;
+    recording_ = recordings::read_recording(input::beside(out_.place, out_.record.name), unit);
+    read_roles();
+    if (table_.faults() > 0) return std::nullopt;
+    sample();
+    if (table_.faults() > 0) return std::nullopt;
+    refuse_impossible();
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr double kForever = 1e300;
+
+  void read_roles() {
+    config::Reader axes = table_.table("axis");
+    const std::vector<std::string> letters = axes.keys();
+    if (letters.size() != 1) {
+      table_.fault(
+          "needs the channels of one axis, such as axis.X.feedback = \"NAME\"; list the "
+          "file once for each of its axes");
+      return;
+    }
+    out_.joint = -1;
+    for (const int joint : machine_.joints()) {
+      if (letters.front() == std::string(1, machine_.chain.layout.letter_of(joint))) {
+        out_.joint = joint;
+      }
+    }
+    if (out_.joint < 0) {
+      axes.raw(letters.front());
+      axes.fault(letters.front(), "is no axis of the machine");
+      return;
+    }
+    config::Reader axis = axes.table(letters.front());
+    for (std::size_t role = 0; role < kRoles.size(); ++role)
+      read_role(axis, static_cast<Role>(role));
+    const bool cascade = loop_.kind == LoopKind::cascade;
+    const auto needs = [&](Role role, std::string_view why) {
+      const bool by_current = role == Role::force && use(Role::motor_current).present;
+      if (use(role).present || by_current) return;
+      axis.fault(fmt::format("lacks {}, which {}", kRoles[static_cast<std::size_t>(role)], why));
+    };
+    needs(Role::feedback, "is compared with the simulation");
+    if (cascade) needs(Role::command, "drives the loop");
+    if (!cascade) needs(Role::force, "drives the axis; or motor_current");
+    if (use(Role::force).present && use(Role::motor_current).present) {
+      axis.fault("has both force and motor_current; name one of them");
+    }
+  }
+
+  ChannelUse& use(Role role) { return uses_[static_cast<std::size_t>(role)]; }
+
+  void read_role(config::Reader& axis, Role role) {
+    const std::string_view key = kRoles[static_cast<std::size_t>(role)];
+    if (!axis.has(key)) return;
+    ChannelUse& one = use(role);
+    one.present = true;
+    const bool linear = out_.joint < kLinearJoints;
+    const config::Quantity quantity = quantity_of(role, linear);
+    if (axis.is(key, config::Value::Type::text)) {
+      one.channel = axis.text(key);
+      const recordings::Channel* channel = find_channel(axis, key, recording_, one.channel);
+      if (channel == nullptr || channel->unit.empty()) return;
+      const config::ParsedUnit unit = config::parse_unit(channel->unit);
+      if (unit.unit && unit.unit->quantity == quantity) {
+        one.factor = unit.unit->factor;
+      } else {
+        axis.fault(key, fmt::format("has the unit '{}' in the file, which is not that of {}; say "
+                                    "{{ channel = \"{}\", unit = \"...\", factor = ... }}",
+                                    channel->unit, config::name_of(quantity), one.channel));
+      }
+      return;
+    }
+    config::Reader table = axis.table(key);
+    one.channel = table.text("channel");
+    const recordings::Channel* channel = find_channel(table, "channel", recording_, one.channel);
+    const double factor = table.real_or("factor", 1.0, config::kNumber);
+    if (factor == 0.0) table.fault("factor", "must not be 0");
+    const std::string in_file = channel != nullptr ? channel->unit : "";
+    const std::string unit = table.text_or("unit", table.has("factor") ? "" : in_file);
+    one.factor = factor * (unit.empty() ? 1.0 : unit_factor(table, unit, quantity));
+    one.delay = table.real_or("delay_ms", 0.0, config::kTime);
+    one.offset = table.real_or("offset", 0.0, quantity);
+  }
+
+  // Brings the channels to the clock of the loop.
+  void sample() {
+    const recordings::Channel& feedback = *channel_of(Role::feedback);
+    const recordings::Base& base = recording_.bases[feedback.base];
+    const bool counted = base.unit == "1";  // sample numbers: one a period
+    if (base.values.size() < 16) {
+      table_.fault("file", "holds fewer than 16 samples of the feedback");
+      return;
+    }
+    if (!counted && base.unit != "s") {
+      table_.fault("file", fmt::format("has the feedback over {} in '{}', not over time", base.name,
+                                       base.unit));
+      return;
+    }
+    const double interval = counted ? loop_.period : median_interval(base.values);
+    double stretch = counted ? loop_.period : 1.0;
+    if (std::abs(interval / loop_.period - 1.0) < kEqualPeriods) {
+      // two clocks that should be one: samples are counted
+      if (!counted) stretch = loop_.period / interval;
+      if (!counted && std::abs(stretch - 1.0) > 1e-9) {
+        out_.notes.push_back(
+            fmt::format("{}: sampled every {:.6g} ms, taken for the period of the loop, {:g} ms",
+                        out_.record.name, interval * 1e3, loop_.period * 1e3));
+      }
+    } else if (interval > longest_gap_) {
+      longest_gap_ = 1.5 * interval;
+      out_.notes.push_back(
+          fmt::format("{}: sampled every {:.6g} ms, interpolated to the {:g} ms of the loop",
+                      out_.record.name, interval * 1e3, loop_.period * 1e3));
+    }
+    fill(stretch);
+  }
+
+  const recordings::Channel* channel_of(Role role) {
+    if (!use(role).present) return nullptr;
+    for (const recordings::Channel& channel : recording_.channels) {
+      if (channel.name == use(role).channel) return &channel;
+    }
+    return nullptr;
+  }
+
+  void fill(double stretch) {
+    std::array<std::optional<Interpolated>, kRoles.size()> signals;
+    double first = from_, last = to_;
+    for (std::size_t role = 0; role < kRoles.size(); ++role) {
+      const recordings::Channel* channel = channel_of(static_cast<Role>(role));
+      if (channel == nullptr) continue;
+      signals[role].emplace(*channel, recording_.bases[channel->base], uses_[role], stretch);
+      if (signals[role]->empty()) {
+        table_.fault("file", fmt::format("holds no sample of {}", channel->name));
+        return;
+      }
+      first = std::max(first, signals[role]->first());
+      last = std::min(last, signals[role]->last());
+    }
+    const double T = loop_.period;
+    if (!(last - first >= 16.0 * T)) {
+      table_.fault(
+          "file",
+          fmt::format("holds no common part of its channels between {:g} and {:g} s", first, last));
+      return;
+    }
+    const auto count = static_cast<std::size_t>((last - first) / T + 1e-6) + 1;
+    out_.record.start = first;
+    const std::array<std::vector<double>*, kRoles.size()> into = {
+        &out_.record.command, &out_.record.feedback, &out_.record.force, &out_.record.force,
+        &out_.record.disturbance};
+    for (std::size_t role = 0; role < kRoles.size(); ++role) {
+      if (!signals[role]) continue;
+      const double to_force =
+          static_cast<Role>(role) == Role::motor_current ? current_to_force() : 1.0;
+      into[role]->resize(count);
+      for (std::size_t k = 0; k < count; ++k) {
+        (*into[role])[k] = to_force * (*signals[role])(first + T * static_cast<double>(k));
+      }
+    }
+    omit_gaps(*signals[static_cast<std::size_t>(Role::feedback)], first);
+  }
+
+  double current_to_force() const {
+    const plant::FeedDriveParams& drive = machine_.drives[static_cast<std::size_t>(out_.joint)];
+    return drive.Kt / drive.r;
+  }
+
+  void omit_gaps(Interpolated& feedback, double first) {
+    Record& r = out_.record;
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      if (feedback.gap(first + r.period * static_cast<double>(k)) <= longest_gap_) continue;
+      if (r.omitted.empty() || r.omitted.back().end != k) {
+        r.omitted.push_back({k, k});
+        out_.notes.push_back(fmt::format("{}: gap at {:.4g} s, left out", r.name, r.time(k)));
+      }
+      r.omitted.back().end = k + 1;
+    }
+  }
+
+  // What no axis does: nothing moves, or it moves the other way.
+  void refuse_impossible() {
+    const Record& r = out_.record;
+    const auto [least, greatest] = std::minmax_element(r.feedback.begin(), r.feedback.end());
+    if (*greatest == *least) {
+      table_.fault("file", fmt::format("does not move: its feedback is {:g} throughout; there is "
+                                       "nothing to identify",
+                                       *least));
+      return;
+    }
+    if (r.command.empty()) return;
+    double along = 0.0;
+    for (std::size_t k = 1; k < r.size(); ++k) {
+      along += (r.command[k] - r.command[k - 1]) * (r.feedback[k] - r.feedback[k - 1]);
+    }
+    const auto [low, high] = std::minmax_element(r.command.begin(), r.command.end());
+    if (*high > *low && along < 0.0) {
+      table_.fault("file",
+                   "has a feedback that moves against the command: one of them has the "
+                   "wrong sign; give it factor = -1");
+      return;
+    }
+    const double ratio = (*greatest - *least) / (*high - *low);
+    if (*high > *low && (ratio > 30.0 || ratio < 1.0 / 30.0)) {
+      table_.fault("file", fmt::format("has a feedback that moves {:.3g} times as far as the "
+                                       "command: one of them has another unit",
+                                       ratio));
+    }
+  }
+
+  config::Reader& table_;
+  const model::MachineSettings& machine_;
+  const LoopSettings& loop_;
+  AxisRecord out_;
+  double from_ = 0.0, to_ = 0.0, longest_gap_ = 0.0;
+  recordings::Recording recording_;
+  std::array<ChannelUse, kRoles.size()> uses_;
+};
+
+}  // namespace
+
+std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineSettings& machine,
+                                     const LoopSettings& loop) {
+  std::vector<AxisRecord> out;
+  for (config::Reader& table : root.tables("recording")) {
+    if (auto record = RecordReader(table, machine, loop).read()) out.push_back(std::move(*record));
+  }
+  const bool any =
+      std::any_of(out.begin(), out.end(), [](const AxisRecord& r) { return !r.record.validation; });
+  if (root.faults() == 0 && !any)
+    root.fault("every recording is for validation; none to estimate from");
+  return out;
+}
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,23 @@
+#include "sim/identification/record.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace servomill::sim::identification {
+
+StartOfMotion start_of_motion(const Record& record) {
+  constexpr std::size_t kSamples = 12;  // short beside any acceleration, long beside the quantum
+  const std::size_t n = std::min(kSamples, record.size());
+  if (n < 4) return {record.feedback.front(), 0.0};
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(n), 3);
+  Eigen::VectorXd y(static_cast<Eigen::Index>(n));
+  for (Eigen::Index k = 0; k < columns.rows(); ++k) {
+    const double t = static_cast<double>(k);
+    columns.row(k) << 1.0, t, t * t;
+    y[k] = record.feedback[static_cast<std::size_t>(k)] - record.feedback.front();
+  }
+  const Eigen::Vector3d fit = columns.householderQr().solve(y);
+  return {record.feedback.front() + fit[0], fit[1] / record.period};
+}
+
+}  // namespace servomill::sim::identification

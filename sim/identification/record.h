@@ -1,0 +1,40 @@
+/// One recording of one axis as identification uses it: uniform samples in SI.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace servomill::sim::identification {
+
+/// Part of a recording, in samples.
+struct SampleRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Channels of one axis on one clock, one sample a period of the loop. Channels that were not
+/// recorded are empty; the others have `size()` samples.
+struct Record {
+  std::string name;                  // of the file, for messages
+  double period = 0.0;               // s
+  double start = 0.0;                // s, of the first sample, in the time of the file
+  std::vector<double> command;       // m or rad: setpoint of the position loop
+  std::vector<double> feedback;      // m or rad: position that the loop reads
+  std::vector<double> force;         // N or N m: of the drive, towards +x, by its command
+  std::vector<double> disturbance;   // N or N m: from outside on the slide, towards +x
+  std::vector<SampleRange> omitted;  // samples that do not count: gaps, clipped current
+  bool validation = false;           // not used for estimation
+
+  std::size_t size() const { return feedback.size(); }
+  double time(std::size_t sample) const { return start + period * static_cast<double>(sample); }
+};
+
+/// Position and speed of the first sample, from a parabola through the first ones (m, m/s or rad).
+struct StartOfMotion {
+  double position = 0.0, speed = 0.0;
+};
+/// @pre the record has a sample
+StartOfMotion start_of_motion(const Record& record);
+
+}  // namespace servomill::sim::identification

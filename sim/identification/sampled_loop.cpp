@@ -1,0 +1,85 @@
+#include "sim/identification/sampled_loop.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace servomill::sim::identification {
+
+SampledLoop::SampledLoop(const std::vector<LoopSettings>& lanes) : lanes_(lanes) {
+  assert(!lanes.empty() && lanes.size() <= kLaneWidth);
+}
+
+void SampledLoop::start(std::size_t lane, double position, double speed, double force) {
+  const LoopSettings& loop = lanes_[lane];
+  // sample() writes the reading of the instant 0 at place 0: these are the ones before it
+  for (std::size_t back = 1; back < feedback_.size(); ++back) {
+    feedback_[feedback_.size() - back][lane] =
+        position - speed * loop.period * static_cast<double>(back);
+  }
+  newest_ = feedback_.size() - 1;
+  const double held = std::isnan(force) ? 0.0 : force;
+  for (LaneArray& past : past_) past[lane] = held;
+  latest_[lane] = held;
+  integral_[lane] = 0.0;
+  first_force_[lane] = force;
+  first_ = true;
+}
+
+void SampledLoop::remember(const LaneArray& force) {
+  std::copy_backward(past_.begin(), past_.end() - 1, past_.end());
+  past_.front() = latest_ = force;
+}
+
+void SampledLoop::force_sample(double force) {
+  LaneArray all{};
+  all.fill(force);
+  if (first_) past_.fill(all);
+  first_ = false;
+  remember(all);
+}
+
+void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedback) {
+  const std::size_t places = feedback_.size();
+  newest_ = (newest_ + 1) % places;
+  feedback_[newest_] = feedback;
+  LaneArray force{};
+  for (std::size_t l = 0; l < lanes_.size(); ++l) {
+    const LoopSettings& loop = lanes_[l];
+    const auto taps = static_cast<std::size_t>(loop.mean_of);
+    // the difference of two means is that of their ends
+    const double way = feedback[l] - feedback_[(newest_ + places - taps) % places][l];
+    const double speed = way / (loop.period * static_cast<double>(taps));
+    const double v_cmd = loop.Kv * (q - feedback[l]) + loop.kvf * dq;
+    const double error = loop.Kp * (v_cmd - speed);
+    const double wanted = error + integral_[l] + loop.kaf * ddq;
+    force[l] = std::clamp(wanted, -loop.F_max, loop.F_max);
+    const bool has_reset = std::isfinite(loop.Tn);
+    if (first_ && !std::isnan(first_force_[l])) {
+      // the readings and the integral before it are not known, their result is
+      if (has_reset) integral_[l] += first_force_[l] - wanted;
+      force[l] = first_force_[l];
+    }
+    if (has_reset && std::abs(wanted) <= loop.F_max) integral_[l] += error * loop.period / loop.Tn;
+  }
+  first_ = false;
+  remember(force);
+}
+
+void SampledLoop::acting(double from, double to, LaneArray& force) const {
+  for (std::size_t l = 0; l < lanes_.size(); ++l) {
+    const double delay = lanes_[l].dead_time / lanes_[l].period;
+    // past_[n] was computed n periods ago and acts within [delay - n, delay - n + 1)
+    const double begin = from - delay, end = to - delay;
+    double sum = 0.0;
+    for (std::size_t n = 0; n < past_.size(); ++n) {
+      const double acts = -static_cast<double>(n);
+      const double last = n == 0 ? 1.0 : acts + 1.0;
+      const double share = std::min(end, last) - std::max(begin, acts);
+      if (share > 0.0) sum += share * past_[n][l];
+    }
+    force[l] = sum / (to - from);
+  }
+}
+
+}  // namespace servomill::sim::identification

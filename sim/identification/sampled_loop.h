@@ -1,0 +1,80 @@
+/// The position control that a recording was made with, as its own NC computed it: sampled, P over
+/// P or PI. Not the cascade of our NC (controllers/servo/cascade.h), whose rates and delays other
+/// controls do not share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "plant/vocabulary/lanes.h"
+
+namespace servomill::sim::identification {
+
+enum class LoopKind : std::uint8_t {
+  open,     // the recorded force drives the axis
+  cascade,  // position loop P, velocity loop P or PI
+};
+
+/// Constant description of the loop. With q the command and y the feedback of an axis,
+///
+///   v_cmd = Kv (q - y) + kvf dq/dt
+///   v     = (m(n) - m(n - 1)) / period,  m the mean of the last `mean_of` samples of y
+///   F     = Kp (v_cmd - v + 1/Tn integral of the same) + kaf ddq/dt^2,  limited to +-F_max
+///
+/// and F acts from `dead_time` after the sample on, held until the next one acts.
+struct LoopSettings {
+  LoopKind kind = LoopKind::cascade;
+  double period = 1e-3;  // s
+  double Kv = 0.0;       // 1/s
+  double Kp = 0.0;       // N s/m or N m s/rad: force per speed error, at the slide
+  double Tn = std::numeric_limits<double>::infinity();     // s, reset time
+  double kvf = 0.0;                                        // -, velocity feed-forward
+  double kaf = 0.0;                                        // kg or kg m^2
+  double F_max = std::numeric_limits<double>::infinity();  // N or N m
+  double dead_time = 0.0;                                  // s
+  int mean_of = 1;                                         // samples
+
+  bool operator==(const LoopSettings&) const = default;
+};
+
+/// Most samples in the mean of the feedback.
+inline constexpr int kMostMeanOf = 16;
+/// Longest dead time, in periods.
+inline constexpr double kLongestDeadTime = 8.0;
+
+/// Eight such loops side by side.
+class SampledLoop {
+ public:
+  /// @param lanes  one setting a lane, of one kind and period; up to eight
+  explicit SampledLoop(const std::vector<LoopSettings>& lanes);
+
+  /// Has moved at `speed` (m/s) before the first sample, then at `position` (m or rad).
+  /// @param force  that the first sample gives, as it was recorded (N); NaN: not known
+  void start(std::size_t lane, double position, double speed, double force);
+
+  /// Force of the next sample, computed from the feedback (eight lanes).
+  /// @param q, dq, ddq  command with its derivatives (m, m/s, m/s^2)
+  void sample(double q, double dq, double ddq, const LaneArray& feedback);
+  /// The same where the force is given (LoopKind::open).
+  void force_sample(double force);
+
+  /// Force that was computed last (N).
+  const LaneArray& force() const { return latest_; }
+  /// Mean of the force that acts within [from, to) after the sample, as shares of the period.
+  void acting(double from, double to, LaneArray& force) const;
+
+ private:
+  void remember(const LaneArray& force);
+
+  std::vector<LoopSettings> lanes_;
+  std::array<LaneArray, kMostMeanOf + 1> feedback_{};  // ring of past readings
+  std::size_t newest_ = 0;
+  LaneArray integral_{}, first_force_{};
+  std::array<LaneArray, static_cast<std::size_t>(kLongestDeadTime) + 2> past_{};  // newest first
+  LaneArray latest_{};
+  bool first_ = true;
+};
+
+}  // namespace servomill::sim::identification

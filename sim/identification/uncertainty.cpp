@@ -1,0 +1,182 @@
+#include "sim/identification/uncertainty.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+namespace servomill::sim::identification {
+namespace {
+
+// Rows of one record in the stacked residual.
+struct Rows {
+  Eigen::Index begin = 0, count = 0;
+  Eigen::Index counting = 0;  // that the mask lets count
+};
+
+std::vector<Rows> rows_of(const Mask& mask) {
+  std::vector<Rows> out;
+  Eigen::Index begin = 0;
+  for (const auto& record : mask) {
+    const auto count = static_cast<Eigen::Index>(record.size());
+    out.push_back({begin, count, std::count(record.begin(), record.end(), char{1})});
+    begin += count;
+  }
+  return out;
+}
+
+// Directions of unit columns along which nothing changes.
+constexpr double kNothing = 3e-3;  // singular value: what differences of a simulation resolve
+constexpr double kTakesPart = 0.1;
+
+struct Columns {
+  std::vector<std::size_t> parameters;  // that have an effect
+  Eigen::VectorXd norm;
+  Eigen::MatrixXd unit;  // columns of length 1
+};
+
+Columns unit_columns(const Eigen::MatrixXd& jacobian) {
+  Columns out;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(jacobian.cols()); ++p) {
+    if (jacobian.col(static_cast<Eigen::Index>(p)).squaredNorm() > 0.0) out.parameters.push_back(p);
+  }
+  const auto count = static_cast<Eigen::Index>(out.parameters.size());
+  out.norm.resize(count);
+  out.unit.resize(jacobian.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto column =
+        jacobian.col(static_cast<Eigen::Index>(out.parameters[static_cast<std::size_t>(k)]));
+    out.norm[k] = column.norm();
+    out.unit.col(k) = column / out.norm[k];
+  }
+  return out;
+}
+
+// The residual's noise, corrected for what the fit took away.
+// @param U  orthonormal columns of what can be fitted, rows of this record
+// @param G  U' Sigma U over all records
+AutoregressiveNoise corrected(const std::vector<double>& found, const AutoregressiveNoise& guess,
+                              const Eigen::MatrixXd& U, const Eigen::MatrixXd& G,
+                              std::size_t samples) {
+  const std::size_t lags = found.size() - 1;
+  const std::vector<double> once = cross_sums(U, coloured(guess, U), lags);
+  const std::vector<double> twice = cross_sums(U, U * G, lags);
+  std::vector<double> c(found.size());
+  const double n = static_cast<double>(samples);
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    // cross_sums adds both ways, of which `twice` needs one
+    c[lag] = found[lag] + (once[lag] - 0.5 * twice[lag]) / n;
+  }
+  return autoregressive(c, samples);
+}
+
+struct Coloured {
+  std::vector<AutoregressiveNoise> noise;
+  Eigen::MatrixXd G;  // U' Sigma U
+};
+
+Coloured colour_of(const Eigen::VectorXd& residual, const std::vector<Rows>& rows,
+                   const Eigen::MatrixXd& U) {
+  constexpr int kRounds = 3;
+  Coloured out;
+  std::vector<std::vector<double>> found;
+  for (const Rows& r : rows) {
+    const auto n = static_cast<std::size_t>(r.counting);
+    std::vector<double> c = autocovariance(residual.segment(r.begin, r.count), most_lags(n));
+    const double share =
+        static_cast<double>(r.count) / static_cast<double>(std::max<Eigen::Index>(r.counting, 1));
+    for (double& one : c) one *= share;
+    out.noise.push_back(autoregressive(c, n));
+    found.push_back(std::move(c));
+  }
+  const auto update = [&] {
+    out.G = Eigen::MatrixXd::Zero(U.cols(), U.cols());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Eigen::MatrixXd own = U.middleRows(rows[k].begin, rows[k].count);
+      out.G += own.transpose() * coloured(out.noise[k], own);
+    }
+  };
+  update();
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      out.noise[k] = corrected(found[k], out.noise[k], U.middleRows(rows[k].begin, rows[k].count),
+                               out.G, static_cast<std::size_t>(rows[k].counting));
+    }
+    update();
+  }
+  return out;
+}
+
+}  // namespace
+
+double student_95(double degrees_of_freedom) {
+  const boost::math::students_t distribution(std::max(degrees_of_freedom, 1.0));
+  return boost::math::quantile(distribution, 0.975);
+}
+
+double Uncertainty::standard(std::size_t parameter) const {
+  const auto p = static_cast<Eigen::Index>(parameter);
+  return std::sqrt(std::max(covariance(p, p), 0.0));
+}
+
+Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
+                           const Mask& mask) {
+  const Eigen::Index size = jacobian.cols();
+  Uncertainty out;
+  out.covariance = Eigen::MatrixXd::Zero(size, size);
+  out.counted.assign(static_cast<std::size_t>(size), 0.0);
+  out.told.assign(static_cast<std::size_t>(size), false);
+  const Columns columns = unit_columns(jacobian);
+  if (columns.parameters.empty()) return out;
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(columns.unit, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::Index rank = 0;
+  while (rank < svd.singularValues().size() &&
+         svd.singularValues()[rank] > kNothing * svd.singularValues()[0]) {
+    ++rank;
+  }
+  for (const std::size_t p : columns.parameters) out.told[p] = true;
+  for (Eigen::Index k = rank; k < svd.singularValues().size(); ++k) {
+    UntoldDirection one{{}, Eigen::VectorXd::Zero(size)};
+    for (Eigen::Index j = 0; j < svd.matrixV().rows(); ++j) {
+      const std::size_t p = columns.parameters[static_cast<std::size_t>(j)];
+      if (std::abs(svd.matrixV()(j, k)) < kTakesPart) continue;
+      one.parameters.push_back(p);
+      one.direction[static_cast<Eigen::Index>(p)] = svd.matrixV()(j, k) / columns.norm[j];
+      out.told[p] = false;
+    }
+    out.untold.push_back(std::move(one));
+  }
+  const std::vector<Rows> rows = rows_of(mask);
+  const Eigen::MatrixXd U = svd.matrixU().leftCols(rank);
+  Coloured colour = colour_of(residual, rows, U);
+  // values = norm^-1 V s^-1 U' residual
+  const Eigen::MatrixXd back = columns.norm.cwiseInverse().asDiagonal() *
+                               svd.matrixV().leftCols(rank) *
+                               svd.singularValues().head(rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd C = back * colour.G * back.transpose();
+  double samples = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto n = static_cast<std::size_t>(rows[k].counting);
+    samples += static_cast<double>(n);
+    out.effective_samples += colour.noise[k].effective_samples(n);
+  }
+  const double white = residual.squaredNorm() / std::max(samples - static_cast<double>(rank), 1.0);
+  const Eigen::MatrixXd counted = white * back * back.transpose();
+  for (std::size_t a = 0; a < columns.parameters.size(); ++a) {
+    const std::size_t p = columns.parameters[a];
+    if (!out.told[p]) continue;
+    const auto ia = static_cast<Eigen::Index>(a);
+    out.counted[p] = std::sqrt(counted(ia, ia));
+    for (std::size_t b = 0; b < columns.parameters.size(); ++b) {
+      const std::size_t q = columns.parameters[b];
+      if (!out.told[q]) continue;
+      out.covariance(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) =
+          C(ia, static_cast<Eigen::Index>(b));
+    }
+  }
+  out.noise = std::move(colour.noise);
+  out.t_95 = student_95(out.effective_samples - static_cast<double>(rank));
+  return out;
+}
+
+}  // namespace servomill::sim::identification
