@@ -76,9 +76,12 @@ Values find_scales(const Prediction& prediction, const Differences& differences,
   Values scales(at.size(), kNaN);
   for (int round = 0; round < kRounds; ++round) {
     Values open = steps;
+    bool any = false;
     for (std::size_t p = 0; p < at.size(); ++p) {
       if (std::isfinite(scales[p])) open[p] = kNaN;
+      any = any || std::isfinite(open[p]);
     }
+    if (!any) break;
     const auto J = differences.jacobian(at, open, here);
     for (std::size_t p = 0; p < at.size(); ++p) {
       if (!std::isfinite(open[p])) continue;
@@ -195,11 +198,7 @@ Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
   Fit out;
   out.values = start;
   const auto first = differences.residual(start);
-  if (!first) {
-    throw InputError({prediction.records().front()->record.name},
-                     "cannot be simulated with the starting values: the machine refuses them, or "
-                     "its friction is too stiff");
-  }
+  if (!first) prediction.refuse(start);
   // far from the recording the scales are rough: they are found again where it ends
   constexpr int kRuns = 2;
   out.residual = *first;

@@ -31,6 +31,12 @@ struct ModelOfValues {
 ModelOfValues model_of(const config::Document& document, std::span<const Estimate> estimates,
                        std::span<const double> values);
 
+/// The document with the starting values of the estimates set.
+config::Document with_values(const config::Document& document, std::span<const Estimate> estimates);
+
+/// Letter of an axis of the experiment's machine.
+char letter_of(const Experiment& experiment, int joint);
+
 /// "95.11 kg" as TOML has it, with all digits.
 std::string written(double value, const std::string& unit);
 

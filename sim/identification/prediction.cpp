@@ -52,6 +52,13 @@ std::optional<ModelOfValues> Prediction::model(const Values& values) const {
   }
 }
 
+void Prediction::refuse(const Values& values) const {
+  model_of(document_, estimates_, std::span(values).first(estimates_.size()));
+  throw InputError({records_.front()->record.name},
+                   "cannot be simulated with these values: the friction is too stiff for the exact "
+                   "step");
+}
+
 std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
     std::span<const Values> values) const {
   std::vector<std::optional<Signals>> out(values.size());

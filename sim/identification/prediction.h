@@ -50,6 +50,10 @@ class Prediction {
   };
   std::vector<std::optional<Signals>> simulate(std::span<const Values> values) const;
 
+  /// Says why values cannot be simulated.
+  /// @throws InputError, always
+  [[noreturn]] void refuse(const Values& values) const;
+
   /// Simulated less recorded feedback (m or rad), record after record; 0 where the mask is.
   Eigen::VectorXd residual(const Signals& signals, const Mask& mask) const;
 

@@ -27,6 +27,7 @@ SIM_ROOMS = {
     "metrology": [],
     "records": ["system"],
     "recordings": ["records", "system"],
+    "identification": ["config", "input", "model", "recordings", "records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "tables": ["controllers", "strategies", "model"],

@@ -41,6 +41,7 @@ int converge_command(const Arguments& arguments);
 int post_command(const Arguments& arguments);
 int table_command(const Arguments& arguments);
 int compensate_command(const Arguments& arguments);
+int identify_command(const Arguments& arguments);
 int recording_command(const Arguments& arguments);
 
 /// Options of one command: named ones, and words that stand by themselves.

@@ -25,7 +25,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 16> kCommands = {{
+constexpr std::array<Command, 17> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -52,6 +52,8 @@ constexpr std::array<Command, 16> kCommands = {{
      post_command},
     {"recording", "FILE... [-o OUT.h5|OUT.csv]", "prints and converts recordings of real axes",
      recording_command},
+    {"identify", "EXPERIMENT.toml [-o identified.toml]",
+     "finds parameters of drives from recordings of real axes", identify_command},
     {"list", "strategies|machines|scenarios|quantities|keys", "prints what there is", list_command},
 }};
 

@@ -1,0 +1,49 @@
+/// The whole of an identification: starting values, fit, uncertainty, validation, friction laws.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/identification/experiment.h"
+#include "sim/identification/fit.h"
+#include "sim/identification/inverse_dynamics.h"
+#include "sim/identification/uncertainty.h"
+
+namespace servomill::sim::identification {
+
+/// How far the simulation with the identified values is from one recording.
+struct RecordResult {
+  const AxisRecord* record = nullptr;
+  Simulated simulated;
+  double feedback_rms = 0.0;  // m or rad
+  double force_rms = 0.0;     // share of the rms of the recorded force; 0: none was recorded
+  double effective_samples = 0.0;
+};
+
+/// One friction law in the comparison.
+struct LawResult {
+  std::string name;
+  std::size_t parameters = 0;   // estimated, without the starts
+  double rms = 0.0;             // m or rad, of all samples that count
+  double held_out = 0.0;        // m or rad, of parts that the fit did not see
+  double held_out_error = 0.0;  // standard error of that
+  double bic = 0.0;             // by effective samples, relative to the least
+  std::string refused;          // why it could not be fitted; empty: it was
+};
+
+struct Identification {
+  std::vector<InverseDynamics> inverse_dynamics;  // of the first record: symmetric, by direction
+  std::vector<Estimate> estimates;                // with the identified values as start
+  Fit fit;
+  Uncertainty uncertainty;
+  std::vector<RecordResult> estimation, validation;
+  std::vector<LawResult> laws;
+  std::optional<std::size_t> simplest_law;  // that is not worse than the best
+};
+
+/// @param threads  0: one a core
+/// @throws InputError if the starting values cannot be simulated, or a recording tells nothing
+Identification identify(const Experiment& experiment, unsigned threads = 0);
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,202 @@
+#include "sim/identification/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "plant/vocabulary/units.h"
+#include "sim/system/text_table.h"
+
+namespace servomill::sim::identification {
+namespace {
+
+// A table of which all columns but the first are aligned to the right.
+class Lines {
+ public:
+  explicit Lines(std::vector<std::string> heading) { lines_.push_back(std::move(heading)); }
+  void add(std::vector<std::string> line) { lines_.push_back(std::move(line)); }
+  std::string text() const {
+    std::set<std::size_t> right;
+    for (std::size_t k = 1; k < lines_.front().size(); ++k) right.insert(k);
+    return system::text_table(lines_, 0, right);
+  }
+
+ private:
+  std::vector<std::vector<std::string>> lines_;
+};
+
+// Digits that an uncertainty leaves meaning in.
+std::string with_uncertainty(double value, double half_width) {
+  if (!(half_width > 0.0)) return fmt::format("{:.6g}", value);
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(half_width)));
+  if (digits < 0 || digits > 12) return fmt::format("{:.5g}", value);
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string names_of(const Estimate& one) { return fmt::format("{}", fmt::join(one.keys, " = ")); }
+
+std::string parameter_name(const Identification& result, std::size_t p) {
+  if (p < result.estimates.size()) return result.estimates[p].keys.front();
+  const std::size_t own = p - result.estimates.size();
+  return fmt::format("{} at the start of {}", own % 2 == 0 ? "position" : "speed",
+                     result.estimation[own / 2].record->record.name);
+}
+
+std::string parameters(const Identification& result) {
+  Lines table({"parameter", "value", "+- (k = 2)", "unit", "relative", "counted"});
+  for (std::size_t k = 0; k < result.estimates.size(); ++k) {
+    const Estimate& one = result.estimates[k];
+    const double half = 2.0 * result.uncertainty.standard(k);
+    if (!result.uncertainty.told[k]) {
+      table.add({names_of(one), fmt::format("{:.5g}", one.start), "not told", one.unit, "-", "-"});
+      continue;
+    }
+    table.add({names_of(one), with_uncertainty(one.start, half), fmt::format("{:.2g}", half),
+               one.unit, fmt::format("{:.2g} %", 100.0 * half / std::abs(one.start)),
+               fmt::format("{:.2g}", 2.0 * result.uncertainty.counted[k])});
+  }
+  return table.text() +
+         "+- is what the colour of the residual allows; \"counted\" would be claimed if each "
+         "sample "
+         "were independent.\n";
+}
+
+std::string inverse_dynamics_table(const Identification& result) {
+  if (result.inverse_dynamics.empty()) return {};
+  std::string out =
+      "inverse dynamics (filters: position 100 Hz, force 40 Hz, Butterworth of order "
+      "4, forwards and backwards)\n";
+  for (const InverseDynamics& one : result.inverse_dynamics) {
+    Lines table(
+        {one.by_direction ? "by direction" : "symmetric", "value", "+- (k = 2)", "counted"});
+    for (std::size_t k = 0; k < one.values.size(); ++k) {
+      const double half = 2.0 * one.uncertainty.standard(k);
+      table.add({one.names[k], with_uncertainty(one.values[k], half), fmt::format("{:.2g}", half),
+                 fmt::format("{:.2g}", 2.0 * one.uncertainty.counted[k])});
+    }
+    out += table.text() + fmt::format("misfit {:.2f} % of the force\n", 100.0 * one.misfit);
+  }
+  const SymmetryTest test = test_symmetry(result.inverse_dynamics.back());
+  out += fmt::format(
+      "symmetric viscous friction is {}: the directions differ by {:.1f} standard "
+      "deviations\n",
+      test.rejected() ? "rejected" : "not rejected", std::abs(test.viscous));
+  return out;
+}
+
+std::string record_table(const Identification& result) {
+  Lines table({"recording", "use", "duration", "position rms", "force rms", "effective"});
+  const auto add = [&](const RecordResult& one, const char* use) {
+    const Record& r = one.record->record;
+    table.add({r.name, use, fmt::format("{:.3g} s", r.period * static_cast<double>(r.size())),
+               fmt::format("{:.3g} um", one.feedback_rms / um),
+               one.force_rms > 0.0 ? fmt::format("{:.2f} %", 100.0 * one.force_rms) : "-",
+               one.effective_samples > 0.0
+                   ? fmt::format("{:.0f} of {}", one.effective_samples, r.size())
+                   : "-"});
+  };
+  for (const RecordResult& one : result.estimation) add(one, "estimation");
+  for (const RecordResult& one : result.validation) add(one, "validation");
+  return table.text();
+}
+
+std::string law_table(const Identification& result) {
+  if (result.laws.empty()) return {};
+  Lines table({"friction law", "parameters", "rms", "held out", "+-", "BIC"});
+  for (const LawResult& law : result.laws) {
+    if (!law.refused.empty()) {
+      table.add({law.name, "-", "-", "-", "-", law.refused});
+      continue;
+    }
+    table.add({law.name, fmt::format("{}", law.parameters), fmt::format("{:.3f} um", law.rms / um),
+               fmt::format("{:.3f} um", law.held_out / um),
+               fmt::format("{:.3f}", law.held_out_error / um), fmt::format("{:.0f}", law.bic)});
+  }
+  std::string out = "\n" + table.text();
+  if (result.simplest_law) {
+    out += fmt::format("the simplest law that is not worse than the best: {}\n",
+                       result.laws[*result.simplest_law].name);
+  }
+  return out;
+}
+
+// How much of what the axis lags behind its command the model explains.
+double unexplained(const RecordResult& one) {
+  const Record& r = one.record->record;
+  if (r.command.empty()) return 0.0;
+  double sum = 0.0, mean = 0.0;
+  const double n = static_cast<double>(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k) mean += (r.command[k] - r.feedback[k]) / n;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double error = r.command[k] - r.feedback[k] - mean;
+    sum += error * error / n;
+  }
+  return sum > 0.0 ? one.feedback_rms / std::sqrt(sum) : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> untold_sentences(const Identification& result) {
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < result.estimates.size(); ++k) {
+    if (!std::isfinite(result.fit.scales[k])) {
+      out.push_back(
+          fmt::format("{}: the recordings do not depend on it; its value is the one that "
+                      "was started from",
+                      result.estimates[k].keys.front()));
+    }
+  }
+  for (const UntoldDirection& one : result.uncertainty.untold) {
+    std::vector<std::string> names;
+    for (const std::size_t p : one.parameters) names.push_back(parameter_name(result, p));
+    out.push_back(fmt::format(
+        "{}: only {} told; fix one of them, or record a motion that tells "
+        "them apart",
+        fmt::join(names, ", "),
+        names.size() == 2 ? "one combination of the two is" : "combinations of them are"));
+  }
+  return out;
+}
+
+std::vector<std::string> warnings(const Identification& result) {
+  constexpr double kForeignLoop = 0.25;
+  std::vector<std::string> out;
+  if (!result.fit.converged) {
+    out.push_back(fmt::format("the fit has not converged: {}", result.fit.message));
+  }
+  for (std::size_t k = 0; k < result.estimates.size(); ++k) {
+    const Estimate& one = result.estimates[k];
+    if (one.start == one.lower || one.start == one.upper) {
+      out.push_back(
+          fmt::format("{} has ended at its bound {:g} {}", one.keys.front(), one.start, one.unit));
+    }
+  }
+  for (const auto* list : {&result.estimation, &result.validation}) {
+    for (const RecordResult& one : *list) {
+      const double share = unexplained(one);
+      if (share < kForeignLoop) continue;
+      out.push_back(
+          fmt::format("{}: the model leaves {:.0f} % of the following error unexplained; "
+                      "the loop is not that of the recording, or the model lacks something",
+                      one.record->record.name, 100.0 * share));
+    }
+  }
+  return out;
+}
+
+std::string report(const Experiment& experiment, const Identification& result) {
+  std::string out;
+  for (const AxisRecord& record : experiment.records) {
+    for (const std::string& note : record.notes) out += note + "\n";
+  }
+  out += inverse_dynamics_table(result) + "\n";
+  out += parameters(result) + "\n" + record_table(result);
+  for (const std::string& sentence : untold_sentences(result))
+    out += "not told: " + sentence + "\n";
+  for (const std::string& sentence : warnings(result)) out += "warning: " + sentence + "\n";
+  return out + law_table(result);
+}
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,22 @@
+/// An identification in words and tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/identification/identify.h"
+
+namespace servomill::sim::identification {
+
+/// Everything that `servomill identify` prints.
+std::string report(const Experiment& experiment, const Identification& result);
+
+/// Sentences on what the recordings do not tell: parameters without effect, and those of which only
+/// combinations are told.
+std::vector<std::string> untold_sentences(const Identification& result);
+
+/// Sentences on what should make a user doubt: a loop that is not the recording's, values at their
+/// bounds, a fit that did not converge.
+std::vector<std::string> warnings(const Identification& result);
+
+}  // namespace servomill::sim::identification

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/identification/report.h"
+#include "sim/identification/store_identification.h"
+#include "sim/run/store.h"
+#include "sim/system/output_name.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+namespace {
+
+namespace po = boost::program_options;
+
+void add_identify_options(Options& options) {
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
+                "writes the identified machine: the machine that was started from with the "
+                "identified values over it, their uncertainty and covariance");
+  options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
+                "writes measured and simulated signals, residuals and parameters");
+  options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
+  options.add()("force,f", "replaces outputs that exist");
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
+                "threads (default: one a core); results do not depend on it");
+  options.add()("quiet,q", "prints nothing but faults");
+}
+
+std::string output_of(const Options& options, const char* name, const char* suffix) {
+  if (!options.has(name)) return {};
+  const auto out = options.get<std::string>(name);
+  if (!out.ends_with(suffix)) {
+    throw InputError({fmt::format("--{}", name)},
+                     fmt::format("'{}' must end with {}", out, suffix));
+  }
+  sim::system::output_target(out, sim::system::existing_of(options.has("force")));
+  return out;
+}
+
+}  // namespace
+
+int identify_command(const Arguments& arguments) {
+  Options options("identify", "EXPERIMENT.toml [-o identified.toml] [--signals OUT.h5]",
+                  "Finds parameters of drives from recordings of real axes: simulates the control\n"
+                  "that a recording was made with on our drives, varies what the experiment names\n"
+                  "until the simulated feedback is nearest to the recorded one, and says how well\n"
+                  "each value is known, what the recordings cannot tell, and how far recordings\n"
+                  "that the fit has not seen are predicted.",
+                  "EXPERIMENT.toml");
+  add_identify_options(options);
+  if (!options.parse(arguments)) return kDone;
+  const std::string out = output_of(options, "output", ".toml");
+  const std::string signals = output_of(options, "signals", ".h5");
+  if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
+  sim::identification::Experiment experiment = sim::identification::read_experiment(options.word());
+  if (options.has("compare-laws")) experiment.compares_laws = true;
+  const sim::identification::Identification result =
+      sim::identification::identify(experiment, thread_count(options));
+  if (!options.has("quiet")) fmt::print("{}", sim::identification::report(experiment, result));
+  if (!signals.empty()) {
+    sim::identification::store_identification(experiment, result, signals, options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", signals);
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools
