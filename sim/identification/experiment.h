@@ -12,6 +12,7 @@
 #include "sim/config/reader.h"
 #include "sim/identification/record.h"
 #include "sim/identification/sampled_loop.h"
+#include "sim/identification/synthesize.h"
 
 namespace servomill::sim::identification {
 
@@ -47,6 +48,7 @@ struct Experiment {
   LoopSettings loop;
   std::vector<AxisRecord> records;
   std::vector<Estimate> estimates;
+  NoiseSettings noise;  // of recordings that are made up
   bool compares_laws = false;
 };
 

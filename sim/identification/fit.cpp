@@ -172,8 +172,8 @@ void minimise(const Prediction& prediction, const Differences& differences, Fit&
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 60;
-  options.function_tolerance = 1e-9;
-  options.parameter_tolerance = 1e-9;
+  options.function_tolerance = 1e-7;  // of the cost: far below what its noise tells
+  options.parameter_tolerance = 1e-8;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
@@ -199,14 +199,18 @@ Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
   out.values = start;
   const auto first = differences.residual(start);
   if (!first) prediction.refuse(start);
-  // far from the recording the scales are rough: they are found again where it ends
-  constexpr int kRuns = 2;
+  // far from the recording scales are rough, and so are differences by them: they are found again
+  // where that has ended, and what had no effect may have one there
+  constexpr double kFar = 5.0;
+  constexpr int kMostRuns = 4;
   out.residual = *first;
-  for (int run = 0; run < kRuns; ++run) {
-    out.scales =
-        find_scales(prediction, differences, out.values, out.residual, rms_of(out.residual));
+  double wanted = 0.0;
+  for (int run = 0; run < kMostRuns; ++run) {
+    wanted = rms_of(out.residual);
+    out.scales = find_scales(prediction, differences, out.values, out.residual, wanted);
     minimise(prediction, differences, out);
     out.residual = differences.residual(out.values).value();
+    if (rms_of(out.residual) > wanted / kFar) break;
   }
   Values steps = out.scales;
   for (double& step : steps) step *= kDifference;

@@ -17,6 +17,7 @@ namespace servomill::sim::identification {
 namespace {
 
 constexpr std::array<std::string_view, 2> kLoops = {"open", "cascade"};
+constexpr std::array<std::string_view, 2> kSpeedFeedbacks = {"scale", "motor"};
 
 // The value that the document has at a dotted key, or nullptr.
 const config::Value* value_at(const config::Value& root, const std::string& key) {
@@ -96,6 +97,18 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
   return estimates;
 }
 
+NoiseSettings read_noise(config::Reader& root) {
+  NoiseSettings noise;
+  if (!root.has("noise")) return noise;
+  config::Reader table = root.table("noise");
+  noise.force_rms = table.real_or("force_rms", 0.0, config::kForce, {config::at_least(0.0)});
+  noise.force_time = table.real_or("force_time_ms", 5e-3, config::kTime, {config::above(0.0)});
+  noise.feedback_step =
+      table.real_or("feedback_step_nm", 0.0, config::kLength, {config::at_least(0.0)});
+  noise.seed = static_cast<std::uint64_t>(table.integer_or("seed", 1, {config::at_least(0.0)}));
+  return noise;
+}
+
 }  // namespace
 
 LoopSettings read_loop(config::Reader& table) {
@@ -117,6 +130,8 @@ LoopSettings read_loop(config::Reader& table) {
   loop.F_max = table.real_or("force_limit", infinite, config::kForce, {config::above(0.0)});
   loop.mean_of = static_cast<int>(table.integer_or(
       "feedback_mean_of", 1, {config::at_least(1.0), config::at_most(kMostMeanOf)}));
+  loop.speed_feedback =
+      static_cast<SpeedFeedback>(table.choice_or("speed_feedback", 0, kSpeedFeedbacks));
   loop.dead_time =
       table.real_or("dead_time_ms", 0.0, config::kTime,
                     {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
@@ -133,7 +148,8 @@ Experiment read_experiment(const std::string& path) {
                  .document = whole.document,
                  .loop = {},
                  .records = {},
-                 .estimates = {}};
+                 .estimates = {},
+                 .noise = {}};
   config::Reader root(out.document);
   out.name = root.text_or("name", std::filesystem::path(path).stem().string());
   const config::Value* machine = own.root().find("machine");
@@ -143,6 +159,7 @@ Experiment read_experiment(const std::string& path) {
   config::Reader loop = root.table("loop");
   out.loop = read_loop(loop);
   const model::MachineSettings settings = read_axes(root);
+  out.noise = read_noise(root);
   out.compares_laws = root.boolean_or("compare_laws", false);
   out.estimates = read_estimates(root, out.document);
   if (root.faults() == 0) out.records = read_records(root, settings, out.loop);

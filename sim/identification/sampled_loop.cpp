@@ -13,11 +13,11 @@ SampledLoop::SampledLoop(const std::vector<LoopSettings>& lanes) : lanes_(lanes)
 void SampledLoop::start(std::size_t lane, double position, double speed, double force) {
   const LoopSettings& loop = lanes_[lane];
   // sample() writes the reading of the instant 0 at place 0: these are the ones before it
-  for (std::size_t back = 1; back < feedback_.size(); ++back) {
-    feedback_[feedback_.size() - back][lane] =
+  for (std::size_t back = 1; back < past_readings_.size(); ++back) {
+    past_readings_[past_readings_.size() - back][lane] =
         position - speed * loop.period * static_cast<double>(back);
   }
-  newest_ = feedback_.size() - 1;
+  newest_ = past_readings_.size() - 1;
   const double held = std::isnan(force) ? 0.0 : force;
   for (LaneArray& past : past_) past[lane] = held;
   latest_[lane] = held;
@@ -39,16 +39,18 @@ void SampledLoop::force_sample(double force) {
   remember(all);
 }
 
-void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedback) {
-  const std::size_t places = feedback_.size();
+void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedback,
+                         const LaneArray& motor) {
+  const std::size_t places = past_readings_.size();
   newest_ = (newest_ + 1) % places;
-  feedback_[newest_] = feedback;
   LaneArray force{};
   for (std::size_t l = 0; l < lanes_.size(); ++l) {
     const LoopSettings& loop = lanes_[l];
     const auto taps = static_cast<std::size_t>(loop.mean_of);
     // the difference of two means is that of their ends
-    const double way = feedback[l] - feedback_[(newest_ + places - taps) % places][l];
+    double& reading = past_readings_[newest_][l];
+    reading = loop.speed_feedback == SpeedFeedback::motor ? motor[l] : feedback[l];
+    const double way = reading - past_readings_[(newest_ + places - taps) % places][l];
     const double speed = way / (loop.period * static_cast<double>(taps));
     const double v_cmd = loop.Kv * (q - feedback[l]) + loop.kvf * dq;
     const double error = loop.Kp * (v_cmd - speed);

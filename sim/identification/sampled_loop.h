@@ -12,6 +12,9 @@
 
 namespace servomill::sim::identification {
 
+/// Where the velocity loop has its speed from.
+enum class SpeedFeedback : std::uint8_t { scale, motor };
+
 enum class LoopKind : std::uint8_t {
   open,     // the recorded force drives the axis
   cascade,  // position loop P, velocity loop P or PI
@@ -20,7 +23,8 @@ enum class LoopKind : std::uint8_t {
 /// Constant description of the loop. With q the command and y the feedback of an axis,
 ///
 ///   v_cmd = Kv (q - y) + kvf dq/dt
-///   v     = (m(n) - m(n - 1)) / period,  m the mean of the last `mean_of` samples of y
+///   v     = (m(n) - m(n - 1)) / period,  m the mean of the last `mean_of` samples of y, or of the
+///           position of the motor, seen at the slide
 ///   F     = Kp (v_cmd - v + 1/Tn integral of the same) + kaf ddq/dt^2,  limited to +-F_max
 ///
 /// and F acts from `dead_time` after the sample on, held until the next one acts.
@@ -35,6 +39,7 @@ struct LoopSettings {
   double F_max = std::numeric_limits<double>::infinity();  // N or N m
   double dead_time = 0.0;                                  // s
   int mean_of = 1;                                         // samples
+  SpeedFeedback speed_feedback = SpeedFeedback::scale;
 
   bool operator==(const LoopSettings&) const = default;
 };
@@ -56,7 +61,8 @@ class SampledLoop {
 
   /// Force of the next sample, computed from the feedback (eight lanes).
   /// @param q, dq, ddq  command with its derivatives (m, m/s, m/s^2)
-  void sample(double q, double dq, double ddq, const LaneArray& feedback);
+  /// @param motor       position of the motor, seen at the slide (m)
+  void sample(double q, double dq, double ddq, const LaneArray& feedback, const LaneArray& motor);
   /// The same where the force is given (LoopKind::open).
   void force_sample(double force);
 
@@ -69,7 +75,7 @@ class SampledLoop {
   void remember(const LaneArray& force);
 
   std::vector<LoopSettings> lanes_;
-  std::array<LaneArray, kMostMeanOf + 1> feedback_{};  // ring of past readings
+  std::array<LaneArray, kMostMeanOf + 1> past_readings_{};  // ring, of the speed feedback
   std::size_t newest_ = 0;
   LaneArray integral_{}, first_force_{};
   std::array<LaneArray, static_cast<std::size_t>(kLongestDeadTime) + 2> past_{};  // newest first

@@ -55,6 +55,8 @@ Command command_at(const Record& record, std::size_t k) {
   return {q[k], dq, inside ? (q[after] - 2.0 * q[k] + q[before]) / (T * T) : 0.0};
 }
 
+double quantised(double x, double step) { return step > 0.0 ? step * std::round(x / step) : x; }
+
 // Up to eight models.
 class EightModels {
  public:
@@ -111,15 +113,20 @@ class EightModels {
   void look(std::size_t k, std::span<Simulated> out) const {
     const plant::DriveBlock& s = state_.blocks.front();
     for (std::size_t l = 0; l < models_.size(); ++l) {
-      out[l].feedback[k] = s.x[l] - models_[l].reading_delay * s.v[l];
+      out[l].feedback[k] = quantised(s.x[l] - models_[l].reading_delay * s.v[l], models_[l].step);
     }
   }
 
   void close_loop(std::size_t k) {
     if (is_open()) return loop_.force_sample(record_.force[k]);
     const Command c = command_at(record_, k);
-    LaneArray feedback = state_.blocks.front().x;
-    loop_.sample(c.q, c.dq, c.ddq, feedback);
+    const plant::DriveBlock& s = state_.blocks.front();
+    LaneArray feedback{}, motor{};
+    for (std::size_t l = 0; l < models_.size(); ++l) {
+      feedback[l] = quantised(s.x[l], models_[l].step);
+      motor[l] = quantised(s.x[l] + s.delta[l], models_[l].step);
+    }
+    loop_.sample(c.q, c.dq, c.ddq, feedback, motor);
   }
 
   void move(std::size_t k) {

@@ -16,6 +16,7 @@ struct AxisModel {
   LoopSettings loop;
   double position = 0.0, speed = 0.0;  // m or rad, m/s: when the recording begins
   double reading_delay = 0.0;          // s, of the feedback as it was recorded
+  double step = 0.0;                   // m or rad, of the encoders; 0: not quantised
 
   bool operator==(const AxisModel&) const = default;
 };
