@@ -24,6 +24,7 @@ enum class KeyType : std::uint8_t {
   choice,
   numbers,
   texts,
+  rows,
   table,
   tables,
 };

@@ -222,6 +222,28 @@ std::vector<std::string> Reader::strings(const Value& list, std::string_view key
   return out;
 }
 
+std::vector<std::vector<double>> Reader::rows(std::string_view key) {
+  if (logs()) log(key, required_request(KeyType::rows));
+  const Value* list = require(key, Value::Type::list);
+  std::vector<std::vector<double>> out;
+  if (list == nullptr) return out;
+  for (std::size_t i = 0; i < list->children.size(); ++i) {
+    const Value& row = list->children[i];
+    if (row.type != Value::Type::list)
+      note(row, name_of(key, i), "must be a list of numbers, one row");
+    std::vector<double>& numbers = out.emplace_back();
+    for (const Value& item : row.children) {
+      numbers.push_back(item.type == Value::Type::integer ? static_cast<double>(item.integer)
+                                                          : item.real);
+      const bool is_number = item.type == Value::Type::integer || item.type == Value::Type::real;
+      if (is_number && std::isfinite(numbers.back())) continue;
+      note(item, fmt::format("{}[{}]", name_of(key, i), numbers.size() - 1),
+           "must be a finite number");
+    }
+  }
+  return out;
+}
+
 std::vector<std::string> Reader::texts(std::string_view key) {
   if (logs()) log(key, required_request(KeyType::texts));
   const Value* list = require(key, Value::Type::list);

@@ -66,6 +66,8 @@ class Reader {
   std::vector<double> reals_or(std::string_view key, std::vector<double> fallback,
                                Quantity quantity, Rules rules = {});
   std::vector<std::string> texts(std::string_view key);
+  /// A matrix as a list of its rows, of any length.
+  std::vector<std::vector<double>> rows(std::string_view key);
   std::vector<std::string> texts_or(std::string_view key, std::vector<std::string> fallback);
 
   /// A table. Where it is missing or no table, the reader returned finds nothing and complains

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/input/identified_values.h"
 #include "sim/input/input_files.h"
 #include "sim/input/key_help.h"
 #include "sim/input/key_specimens.h"
@@ -70,6 +71,12 @@ std::shared_ptr<config::KeyLog> requests_of_readers() {
     const std::string name(document.root().find("title")->text);
     read_document(with_machine(std::move(document), {}, files), name, files);
   }
+  config::Document identified = config::Document::from_text(identified_specimen(), "specimen");
+  identified.record_keys(log);
+  config::Reader root(identified);
+  config::Reader machine = root.table("machine");
+  read_identified(machine);
+  root.finish();
   return log;
 }
 
@@ -128,6 +135,8 @@ std::string type_of(const config::KeyUse& use) {
       return "list of numbers" + unit;
     case config::KeyType::texts:
       return "list of texts";
+    case config::KeyType::rows:
+      return "list of lists of numbers";
     case config::KeyType::table:
       return "table";
     case config::KeyType::tables:

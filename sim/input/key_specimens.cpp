@@ -381,7 +381,19 @@ text = "M2\n"
 name = "nominal"
 )";
 
+// A machine file with identified values, as a table of a scenario.
+constexpr std::string_view kIdentified = R"([machine]
+based_on = "start_machine.toml"
+solver_tolerance_nm = 0.002
+identified.keys = ["solver_tolerance_nm"]
+identified.units = ["nm"]
+identified.values = [0.002]
+identified.covariance = [[1e-8]]
+)";
+
 }  // namespace
+
+std::string_view identified_specimen() { return kIdentified; }
 
 std::array<std::string_view, 3> key_specimens() { return {kFirst, kSecond, kThird}; }
 

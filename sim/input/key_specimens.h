@@ -11,4 +11,7 @@ namespace servomill::sim::input {
 /// other keys differ between them.
 std::array<std::string_view, 3> key_specimens();
 
+/// Keys that only machine files have, in a table `machine`.
+std::string_view identified_specimen();
+
 }  // namespace servomill::sim::input

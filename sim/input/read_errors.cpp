@@ -8,6 +8,7 @@
 #include <set>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
 
 namespace servomill::sim::input {
@@ -238,12 +239,12 @@ std::map<std::string, plant::ErrorModel> read_error_models(config::Reader& model
 
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
                                                          const JointLayout& layout) {
-  const config::Document document = config::Document::from_file(path);
-  if (document.root().find("structure") != nullptr) {  // a machine file, with its own errors
+  if (is_machine_file(path)) {  // with its own errors
     MachineDescription described = read_machine_description(path);
     if (described.machine.chain.layout == layout) return std::move(described.errors);
     throw InputError({path}, "holds the errors of a machine with other axes");
   }
+  const config::Document document = config::Document::from_file(path);
   config::Reader root(document);
   config::Reader models = root.table("errors");
   auto out = read_error_models(models, layout);

@@ -12,6 +12,7 @@
 #include "plant/drives/drive_rates.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/read_drive.h"
 #include "sim/input/read_encoder.h"
 #include "sim/input/read_errors.h"
@@ -316,8 +317,13 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
 
 MachineDescription read_machine_description(const std::string& path,
                                             const std::vector<std::string>& changes) {
-  config::Document document = config::Document::from_file(path);
+  InputFiles files;
+  config::Document document = machine_document(path, files).document;
   for (const std::string& change : changes) document.set(change);
+  return described(document);
+}
+
+MachineDescription described(const config::Document& document) {
   config::Reader root(document);
   MachineDescription out;
   out.has_drives = describes_drives(document);

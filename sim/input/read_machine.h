@@ -34,6 +34,9 @@ struct MachineDescription {
 MachineDescription read_machine_description(const std::string& path,
                                             const std::vector<std::string>& changes = {});
 
+/// The same of a document that is complete.
+MachineDescription described(const config::Document& document);
+
 /// "X", "Y", ...: the table of an axis and what its quantities are called.
 struct AxisQuantities {
   config::Quantity position, velocity, acceleration, jerk, force, load, stiffness, damping;

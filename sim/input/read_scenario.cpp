@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/config/reader.h"
 #include "sim/input/known_name.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/plugins.h"
 #include "sim/input/read_case.h"
 #include "sim/input/read_cutting.h"
@@ -237,7 +238,8 @@ model::Scenario read_resolved_scenario(const std::string& resolved, const std::s
 }
 
 model::MachineSettings read_machine_file(const std::string& path) {
-  const config::Document document = config::Document::from_file(path);
+  InputFiles files;
+  const config::Document document = machine_document(path, files).document;
   config::Reader root(document);
   model::MachineSettings machine = read_machine(root);
   root.finish();

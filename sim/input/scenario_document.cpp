@@ -6,13 +6,15 @@
 #include <filesystem>
 
 #include "plant/vocabulary/user_file.h"
+#include "sim/input/based_on.h"
+#include "sim/input/machine_document.h"
 
 namespace servomill::sim::input {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostBases = 8;
+constexpr DocumentKind kScenario = {"a scenario", "scenarios"};
 
 // The cases of two documents: one of the same name takes the place of the other, a new one comes
 // behind them.
@@ -38,33 +40,20 @@ config::Value merged_cases(config::Value cases, const config::Value& above) {
 // the cases.
 config::Document with_base(const std::string& path, InputFiles& files, int bases_left) {
   config::Document document = *files.document(path);
-  const config::Value* base = document.root().find("based_on");
-  if (base == nullptr) return document;
-  if (base->type != config::Value::Type::text || base->text.empty()) {
-    throw InputError(base->place, "based_on must be the name of a scenario");
-  }
-  if (bases_left == 0) {
-    throw InputError(base->place,
-                     fmt::format("based_on: more than {} scenarios stand on each other; "
-                                 "is one of them based on itself?",
-                                 kMostBases));
-  }
-  const std::string base_path = beside(base->place, base->text);
-  if (!fs::exists(base_path)) {
-    throw InputError(base->place, fmt::format("based_on = \"{}\"; no such file", base->text));
-  }
-  config::Document below = with_base(base_path, files, bases_left - 1);
   config::Value above = document.root();
-  // done: what comes out needs no other file
-  std::erase_if(above.children, [](const config::Value& child) { return child.key == "based_on"; });
+  const auto base = take_base(above, kScenario, bases_left);
+  if (!base) return document;
+  const config::Document below = with_base(*base, files, bases_left - 1);
+  config::Document out = config::Document::from_text("", path);
+  out.merge(below.root());
   const config::Value* cases = below.root().find("case");
   config::Value* more = above.find("case");
   constexpr auto kList = config::Value::Type::list;
   if (cases != nullptr && more != nullptr && cases->type == kList && more->type == kList) {
     *more = merged_cases(*cases, *more);
   }
-  below.merge(above);
-  return below;
+  out.merge(above);
+  return out;
 }
 
 // Faults of the machine without which no later message would make sense.
@@ -127,7 +116,7 @@ ScenarioDocument with_machine(config::Document scenario, std::span<const std::st
   if (machine != nullptr && machine->type == config::Value::Type::text) {
     const std::string path = beside(machine->place, machine->text);
     out.machine_text = *files.text(path, machine->place, "machine");
-    document.merge(as_machine(files.document(path, out.machine_text)->root()));
+    document.merge(as_machine(machine_document(path, files, machine->place).document.root()));
   }
   if (const config::Value* overrides = document.root().find("machine_override")) {
     if (overrides->type != config::Value::Type::table) {

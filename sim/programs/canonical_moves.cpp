@@ -14,6 +14,7 @@
 #include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
 #include "sim/input/implausible.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/subroutine_files.h"
@@ -53,8 +54,7 @@ void add_program_warnings(const model::Scenario& scenario, std::vector<Fault>& w
 
 void check_toml(const std::string& path, const std::vector<std::string>& changes,
                 std::vector<Fault>* warnings) {
-  const config::Document document = config::Document::from_file(path);
-  if (document.root().find("structure") != nullptr) {
+  if (input::is_machine_file(path)) {
     const model::MachineSettings machine = input::read_machine_file(path);
     warn_of(machine, path, warnings);
     run::check_machine(machine);

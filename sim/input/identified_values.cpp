@@ -1,0 +1,166 @@
+#include "sim/input/identified_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "sim/config/quantity.h"
+#include "sim/model/design.h"
+#include "sim/model/joint_normal.h"
+
+namespace servomill::sim::input {
+namespace {
+
+constexpr double kSameValue = 1e-12;  // relative; the conversion of a unit rounds
+
+std::optional<double> number_in(const config::Value& value) {
+  if (value.type == config::Value::Type::integer) return static_cast<double>(value.integer);
+  if (value.type == config::Value::Type::real && std::isfinite(value.real)) return value.real;
+  return std::nullopt;
+}
+
+// The covariance: as many rows as there are keys, each as long.
+Eigen::MatrixXd read_covariance(config::Reader& table, std::size_t size) {
+  const auto n = static_cast<Eigen::Index>(size);
+  const std::size_t before = table.faults();
+  const auto rows = table.rows("covariance");
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+  if (table.faults() > before) return out;
+  const bool square =
+      rows.size() == size &&
+      std::all_of(rows.begin(), rows.end(), [&](const auto& row) { return row.size() == size; });
+  if (!square) {
+    table.fault("covariance", fmt::format("must be {0} rows of {0} numbers, one a key", size));
+    return out;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    out.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rows[static_cast<std::size_t>(i)].data(), n);
+  }
+  if (const std::string fault = model::covariance_fault(out); !fault.empty()) {
+    table.fault("covariance", fault);
+  }
+  return out;
+}
+
+void refuse_length(config::Reader& table, std::string_view name, std::size_t length,
+                   std::size_t keys) {
+  if (length == keys) return;
+  table.fault(name, fmt::format("has {} items; must have {}, one a key", length, keys));
+}
+
+void refuse_repeated_keys(config::Reader& table, const IdentifiedValues& values) {
+  for (std::size_t k = 0; k < values.keys.size(); ++k) {
+    const auto before = values.keys.begin() + static_cast<std::ptrdiff_t>(k);
+    if (std::find(values.keys.begin(), before, values.keys[k]) != before) {
+      table.fault("keys", fmt::format("names {} twice", values.keys[k]));
+    }
+  }
+  for (const std::string& key : values.unidentifiable) {
+    if (std::find(values.keys.begin(), values.keys.end(), key) == values.keys.end()) continue;
+    table.fault("unidentifiable", fmt::format("names {}, which is one of keys: its value is either "
+                                              "identified or the one that was started from",
+                                              key));
+  }
+}
+
+// The value of a dotted key.
+const config::Value* value_at(const config::Value& root, std::string_view key) {
+  const config::Value* at = &root;
+  while (at != nullptr && !key.empty()) {
+    const std::size_t dot = key.find('.');
+    if (at->type != config::Value::Type::table) return nullptr;
+    at = at->find(key.substr(0, dot));
+    key = dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
+  }
+  return at;
+}
+
+// A value that the file sets, in a unit; nothing if it is no number of this kind.
+std::optional<double> set_value(const config::Value& value, std::string_view key,
+                                const std::string& unit) {
+  const auto wanted = unit == kPlainNumber ? config::Unit{}
+                                           : config::parse_unit(unit).unit.value_or(config::Unit{});
+  if (const auto number = number_in(value)) {
+    if (unit == kPlainNumber) return number;
+    const std::size_t dot = key.rfind('.');
+    const auto own = config::unit_of_key(key.substr(dot + 1), wanted.quantity);
+    return *number * (own ? own->factor : 1.0) / wanted.factor;
+  }
+  if (value.type != config::Value::Type::text) return std::nullopt;
+  const auto written = model::written_number(value.written);
+  if (!written) return std::nullopt;
+  if (written->unit == unit) return written->value;
+  const config::Unit own = *config::parse_unit(written->unit).unit;
+  if (own.quantity != wanted.quantity) return std::nullopt;
+  return written->value * own.factor / wanted.factor;
+}
+
+// The values of the table are those that the machine of the same file has.
+void refuse_other_values(config::Reader& table, const IdentifiedValues& identified,
+                         const config::Value& file) {
+  for (std::size_t k = 0; k < identified.keys.size(); ++k) {
+    const std::string& key = identified.keys[k];
+    const config::Value* set = value_at(file, key);
+    if (set == nullptr || key.starts_with("identified.")) {
+      table.fault("keys", fmt::format("names {}, which this file does not set", key));
+      continue;
+    }
+    const double value = identified.values[k];
+    const std::string& unit = identified.units[k];
+    const auto found = set_value(*set, key, unit);
+    if (found && std::abs(*found - value) <= kSameValue * std::abs(value)) continue;
+    table.fault("values", fmt::format("gives {} the value {}{}; line {} sets {}", key, value,
+                                      unit == kPlainNumber ? "" : " " + unit, set->place.line,
+                                      config::inline_toml(*set)));
+  }
+}
+
+}  // namespace
+
+IdentifiedValues read_identified_table(config::Reader& table) {
+  const std::size_t before = table.faults();
+  IdentifiedValues out;
+  out.keys = table.texts("keys");
+  out.units = table.texts("units");
+  out.values = table.reals("values", config::kNumber);
+  out.unidentifiable = table.texts_or("unidentifiable", {});
+  if (table.faults() == before && out.keys.empty())
+    table.fault("keys", "must name at least one key");
+  if (table.faults() > before) {
+    table.raw("covariance");
+    return {};
+  }
+  refuse_length(table, "units", out.units.size(), out.keys.size());
+  refuse_length(table, "values", out.values.size(), out.keys.size());
+  out.covariance = read_covariance(table, out.keys.size());
+  for (const std::string& unit : out.units) {
+    if (unit == kPlainNumber) continue;
+    const config::ParsedUnit parsed = config::parse_unit(unit);
+    if (!parsed.unit) {
+      table.fault("units", parsed.complaint + "; a number without unit has \"1\"");
+    }
+  }
+  refuse_repeated_keys(table, out);
+  return table.faults() > before ? IdentifiedValues() : out;
+}
+
+std::optional<IdentifiedValues> read_identified(config::Reader& machine) {
+  if (!machine.has("identified")) {
+    for (const std::string& key : machine.keys()) machine.raw(key);
+    return std::nullopt;
+  }
+  config::Reader table = machine.table("identified");
+  IdentifiedValues out = read_identified_table(table);
+  config::Value file;
+  for (const std::string& key : machine.keys()) {
+    if (key == "identified") continue;
+    if (const config::Value* value = machine.raw(key)) file.children.push_back(*value);
+  }
+  refuse_other_values(table, out, file);
+  return out;
+}
+
+}  // namespace servomill::sim::input

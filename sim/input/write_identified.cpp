@@ -1,0 +1,130 @@
+#include "sim/input/write_identified.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "sim/config/value.h"
+#include "sim/input/machine_document.h"
+#include "sim/input/read_machine.h"
+#include "sim/system/write_file.h"
+
+namespace servomill::sim::input {
+namespace {
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit == kPlainNumber ? number : number + " " + unit;
+}
+
+// An uncertainty with two digits: "120", "0.0031".
+std::string two_digits(double value) {
+  return fmt::format("{}", std::strtod(fmt::format("{:.2g}", value).c_str(), nullptr));
+}
+
+std::string value_line(const IdentifiedFile& file, std::size_t k) {
+  const IdentifiedValues& identified = file.identified;
+  const std::string& key = identified.keys[k];
+  const std::string& unit = identified.units[k];
+  const auto i = static_cast<Eigen::Index>(k);
+  const double half =
+      file.half_widths.empty() ? 2.0 * std::sqrt(identified.covariance(i, i)) : file.half_widths[k];
+  const std::string number = fmt::format("{}", identified.values[k]);
+  return fmt::format("{} = {}  # +- {} (k = 2)\n",
+                     config::quoted_key(key.substr(key.rfind('.') + 1)),
+                     unit == kPlainNumber ? number : config::quoted_text(with_unit(number, unit)),
+                     with_unit(two_digits(half), unit));
+}
+
+// "axis.X" of "axis.X.moving_mass"; empty: a key of the root.
+std::string table_of(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
+// Tables in the order of their first key, each once; keys of the root first.
+std::vector<std::string> tables_of(const std::vector<std::string>& keys) {
+  std::vector<std::string> out = {""};
+  for (const std::string& key : keys) {
+    const std::string table = table_of(key);
+    if (std::find(out.begin(), out.end(), table) == out.end()) out.push_back(table);
+  }
+  return out;
+}
+
+std::string list_of_texts(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(config::quoted_text(text));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+std::string identified_table(const IdentifiedValues& identified) {
+  std::vector<std::string> rows;
+  for (const auto& row : identified.covariance.rowwise()) {
+    rows.push_back(fmt::format("[{}]", fmt::join(row.begin(), row.end(), ", ")));
+  }
+  return fmt::format(
+      "\n[identified]\nkeys = {}\nunits = {}\nvalues = [{}]\n"
+      "covariance = [  # products of the units\n  {},\n]\nunidentifiable = {}\n",
+      list_of_texts(identified.keys), list_of_texts(identified.units),
+      fmt::join(identified.values, ", "), fmt::join(rows, ",\n  "),
+      list_of_texts(identified.unidentifiable));
+}
+
+void refuse_incomplete(const std::string& path, const IdentifiedFile& file) {
+  const IdentifiedValues& v = file.identified;
+  const std::size_t n = v.keys.size();
+  const auto rows = static_cast<Eigen::Index>(n);
+  if (v.units.size() == n && v.values.size() == n && v.covariance.rows() == rows &&
+      v.covariance.cols() == rows && (file.half_widths.empty() || file.half_widths.size() == n)) {
+    return;
+  }
+  throw std::logic_error(path + ": lists of identified values differ in length");
+}
+
+bool same(const IdentifiedValues& a, const IdentifiedValues& b) {
+  return a.keys == b.keys && a.units == b.units && a.values == b.values &&
+         a.covariance == b.covariance && a.unidentifiable == b.unidentifiable;
+}
+
+// Reads the text as the machine that it will be.
+void refuse_unreadable(const std::string& text, const std::string& path,
+                       const IdentifiedValues& identified) {
+  InputFiles files;
+  const MachineDocument read = machine_document_of_text(text, path, files);
+  if (!read.identified || !same(*read.identified, identified)) {
+    throw std::logic_error(path + ": identified values are read other than they were written");
+  }
+  described(read.document);
+}
+
+}  // namespace
+
+std::string identified_text(const IdentifiedFile& file) {
+  std::string out;
+  for (const std::string& line : file.comments) {
+    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
+  }
+  out += fmt::format("based_on = {}  # machine that was started from\n",
+                     config::quoted_text(file.based_on));
+  const std::vector<std::string>& keys = file.identified.keys;
+  for (const std::string& table : tables_of(keys)) {
+    if (!table.empty()) out += fmt::format("\n[{}]\n", table);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (table_of(keys[k]) == table) out += value_line(file, k);
+    }
+  }
+  return out + identified_table(file.identified);
+}
+
+void write_identified_file(const std::string& path, const IdentifiedFile& file, bool force) {
+  refuse_incomplete(path, file);
+  system::refuse_unwritable_text(path, force);
+  const std::string text = identified_text(file);
+  refuse_unreadable(text, path, file.identified);
+  system::write_text_file(path, text, force);
+}
+
+}  // namespace servomill::sim::input
