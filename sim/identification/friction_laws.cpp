@@ -250,7 +250,7 @@ void compare_laws(const Experiment& experiment, Identification& out, unsigned th
   const char letter = letter_of(experiment, joint);
   const std::string axis = fmt::format("axis.{}.", letter);
   std::erase_if(records, [&](const AxisRecord* one) { return one->joint != joint; });
-  const InverseDynamics* start = out.inverse_dynamics.empty() ? nullptr : &out.inverse_dynamics[0];
+  const InverseDynamics* start = out.inverse_dynamics.empty() ? nullptr : &out.inverse_dynamics[1];
   std::vector<double> effective;
   for (const Law& law : friction_laws(letter, joint < kLinearJoints, start)) {
     FittedLaw fitted;

@@ -70,6 +70,7 @@ std::vector<RecordResult> validate(const Experiment& experiment,
 void add_inverse_dynamics(const AxisRecord& record, Identification& out) {
   if (record.record.force.empty()) return;
   try {
+    out.inverse_dynamics.push_back(inverse_dynamics(record.record, false, {.held = false}));
     for (const bool by_direction : {false, true}) {
       out.inverse_dynamics.push_back(inverse_dynamics(record.record, by_direction));
     }

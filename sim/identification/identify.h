@@ -33,7 +33,8 @@ struct LawResult {
 };
 
 struct Identification {
-  std::vector<InverseDynamics> inverse_dynamics;  // of the first record: symmetric, by direction
+  std::vector<InverseDynamics> inverse_dynamics;  // of the first record: symmetric as in the
+                                                  // literature, then symmetric, by direction
   std::vector<Estimate> estimates;                // with the identified values as start
   Fit fit;
   Uncertainty uncertainty;

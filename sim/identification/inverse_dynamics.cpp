@@ -55,6 +55,13 @@ Eigen::VectorXd thinned(const Column& signal, std::size_t ends, std::size_t step
   return Eigen::VectorXd::Map(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
+// A force is held from its sample on: around a sample acts the mean of its own and the last one.
+Column around_samples(const Column& held) {
+  Column out = held;
+  for (std::size_t k = 1; k < held.size(); ++k) out[k] = 0.5 * (held[k - 1] + held[k]);
+  return out;
+}
+
 void refuse_idle(const Record& record, const Motion& m) {
   const auto rms = [](const Column& x) {
     double sum = 0.0;
@@ -87,7 +94,8 @@ InverseDynamics inverse_dynamics(const Record& record, bool by_direction,
     return thinned(zero_phase(x, corner, settings.order), ends, step);
   };
   const std::vector<Column> columns = columns_of(m, by_direction);
-  const Eigen::VectorXd force = filtered(record.force);
+  const Eigen::VectorXd force =
+      filtered(settings.held ? around_samples(record.force) : record.force);
   Eigen::MatrixXd X(force.size(), static_cast<Eigen::Index>(columns.size()));
   for (Eigen::Index k = 0; k < X.cols(); ++k)
     X.col(k) = filtered(columns[static_cast<std::size_t>(k)]);
@@ -95,6 +103,7 @@ InverseDynamics inverse_dynamics(const Record& record, bool by_direction,
   const Eigen::VectorXd residual = X * values - force;
   InverseDynamics out;
   out.by_direction = by_direction;
+  out.held = settings.held;
   out.names =
       by_direction
           ? std::vector<std::string>{"mass", "viscous friction +", "viscous friction -",

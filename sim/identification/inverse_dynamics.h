@@ -17,12 +17,15 @@ struct InverseDynamicsSettings {
   double force_corner = 40.0;      // Hz, of force and columns alike (parallel filtering)
   int order = 4;                   // of Butterworth filters, run forwards and backwards
   double ends = 0.2;               // s, left out at both ends
+  /// True: a digital force is held from its sample on, and so acts half a period later than it is
+  /// recorded. False: it is taken as it is recorded, as the literature does.
+  bool held = true;
 };
 
 /// force = M a + Fv v + Fc sgn(v) + offset, or with Fv and Fc of their own for each direction,
 /// where the offset cannot be told from the Coulomb friction.
 struct InverseDynamics {
-  bool by_direction = false;
+  bool by_direction = false, held = true;
   std::vector<std::string>
       names;                   // "mass", "viscous friction", "Coulomb friction", "offset"; "... +"
   std::vector<double> values;  // kg, N s/m, N, N (kg m^2, ... for a rotary axis)

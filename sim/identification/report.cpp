@@ -176,6 +176,12 @@ std::vector<std::string> warnings(const Identification& result) {
   for (const auto* list : {&result.estimation, &result.validation}) {
     for (const RecordResult& one : *list) {
       const double share = unexplained(one);
+      if (one.force_rms > kForeignLoop) {
+        out.push_back(fmt::format(
+            "{}: the simulated force is {:.0f} % off the recorded one; the loop is not that of the "
+            "recording, or the force has another factor",
+            one.record->record.name, 100.0 * one.force_rms));
+      }
       if (share < kForeignLoop) continue;
       out.push_back(
           fmt::format("{}: the model leaves {:.0f} % of the following error unexplained; "

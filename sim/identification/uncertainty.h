@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/identification/fit.h"
-#include "sim/identification/noise.h"
+#include "sim/identification/residual_colour.h"
 
 namespace servomill::sim::identification {
 

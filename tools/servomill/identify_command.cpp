@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/identification/identified_machine.h"
+#include "sim/identification/make_up.h"
 #include "sim/identification/report.h"
 #include "sim/identification/store_identification.h"
 #include "sim/run/store.h"
@@ -19,6 +21,9 @@ void add_identify_options(Options& options) {
                 "identified values over it, their uncertainty and covariance");
   options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
                 "writes measured and simulated signals, residuals and parameters");
+  options.add()("make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
+                "writes what the first recording would hold if the machine were as the experiment "
+                "says, with the disturbances of its table [noise], and identifies nothing");
   options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
   options.add()("force,f", "replaces outputs that exist");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
@@ -51,12 +56,24 @@ int identify_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
   const std::string signals = output_of(options, "signals", ".h5");
+  const std::string made_up = output_of(options, "make-up", "");
   if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
   sim::identification::Experiment experiment = sim::identification::read_experiment(options.word());
   if (options.has("compare-laws")) experiment.compares_laws = true;
+  if (!made_up.empty()) {
+    sim::identification::make_up(experiment, made_up, options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", made_up);
+    return kDone;
+  }
   const sim::identification::Identification result =
       sim::identification::identify(experiment, thread_count(options));
   if (!options.has("quiet")) fmt::print("{}", sim::identification::report(experiment, result));
+  if (!out.empty()) {
+    sim::input::write_identified_file(
+        out, sim::identification::identified_machine(experiment, result, out),
+        options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+  }
   if (!signals.empty()) {
     sim::identification::store_identification(experiment, result, signals, options.has("force"));
     if (!options.has("quiet")) fmt::print("written to {}\n", signals);

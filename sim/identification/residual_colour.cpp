@@ -1,4 +1,4 @@
-#include "sim/identification/noise.h"
+#include "sim/identification/residual_colour.h"
 
 #include <algorithm>
 #include <cmath>

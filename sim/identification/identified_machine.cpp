@@ -1,0 +1,70 @@
+#include "sim/identification/identified_machine.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "sim/identification/report.h"
+
+namespace servomill::sim::identification {
+namespace {
+
+// One key of the machine and the estimate that gives its value.
+struct MachineKey {
+  std::string key;
+  std::size_t estimate;
+};
+
+std::string beside(const std::string& machine, const std::string& path) {
+  const std::filesystem::path folder =
+      std::filesystem::absolute(path).lexically_normal().parent_path();
+  return std::filesystem::absolute(machine).lexically_normal().lexically_relative(folder).string();
+}
+
+}  // namespace
+
+input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,
+                                         const std::string& path) {
+  if (experiment.machine_path.empty()) {
+    throw InputError(
+        {experiment.path},
+        "describes the machine itself; name a machine file (machine = \"FILE\") so that "
+        "the identified values can be laid over it");
+  }
+  input::IdentifiedFile out;
+  out.based_on = beside(experiment.machine_path, path);
+  out.comments.push_back(fmt::format("Identified from {}:", experiment.name));
+  for (const RecordResult& one : result.estimation) {
+    out.comments.push_back(fmt::format("  {}: position rms {:.3g} um", one.record->record.name,
+                                       one.feedback_rms * 1e6));
+  }
+  for (const std::string& sentence : untold_sentences(result)) out.comments.push_back(sentence);
+  std::vector<MachineKey> keys;
+  for (std::size_t k = 0; k < result.estimates.size(); ++k) {
+    const Estimate& one = result.estimates[k];
+    for (const std::string& key : one.keys) {
+      if (key.starts_with("loop.")) continue;
+      if (!result.uncertainty.told[k]) {
+        out.identified.unidentifiable.push_back(key);
+        continue;
+      }
+      keys.push_back({key, k});
+      out.identified.keys.push_back(key);
+      out.identified.units.push_back(one.unit.empty() ? std::string(input::kPlainNumber)
+                                                      : one.unit);
+      out.identified.values.push_back(one.start);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(keys.size());
+  out.identified.covariance.resize(count, count);
+  for (Eigen::Index a = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b < count; ++b) {
+      out.identified.covariance(a, b) = result.uncertainty.covariance(
+          static_cast<Eigen::Index>(keys[static_cast<std::size_t>(a)].estimate),
+          static_cast<Eigen::Index>(keys[static_cast<std::size_t>(b)].estimate));
+    }
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::identification

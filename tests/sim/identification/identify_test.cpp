@@ -1,0 +1,166 @@
+#include "sim/identification/identify.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/identification/identified_machine.h"
+#include "sim/identification/report.h"
+#include "sim/identification/synthesize.h"
+#include "sim/input/identified_values.h"
+#include "sim/input/write_identified.h"
+#include "tests/sim/identification/axis_experiment.h"
+#include "tests/text.h"
+
+namespace servomill::sim::identification::identify_test {
+namespace {
+
+constexpr const char* kFour = R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+start = "70 kg"
+[[estimate]]
+key = "axis.X.slide_viscous_friction"
+start = "100 N s/m"
+[[estimate]]
+keys = ["axis.X.friction.coulomb", "axis.X.friction.breakaway"]
+start = "12 N"
+[[estimate]]
+key = "axis.X.gravity_load"
+)";
+
+AxisModel truth() {
+  AxisModel model{small_axis(), small_loop()};
+  model.drive.M = 88.0;
+  model.drive.b_load = 170.0;
+  model.drive.F_load = 4.0;
+  model.drive.friction.Fc_positive = model.drive.friction.Fc_negative = 17.0;
+  model.drive.friction.Fs_positive = model.drive.friction.Fs_negative = 17.0;
+  return model;
+}
+
+const NoiseSettings kNoise{.force_rms = 1.0, .force_time = 5e-3, .feedback_step = 50e-9};
+
+Identification identified(const AxisExperiment& files, const std::string& rest) {
+  return identify(read_experiment(files.write(rest)), 2);
+}
+
+TEST(Identify, WithoutNoiseTheValuesAreThoseOfTheAxis) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(2.0), truth()));
+  const Identification found = identified(files, kFour);
+  EXPECT_NEAR(found.fit.values[0], 88.0, 1e-3);
+  EXPECT_NEAR(found.fit.values[1], 170.0, 1e-2);
+  EXPECT_NEAR(found.fit.values[2], 17.0, 1e-3);
+  EXPECT_NEAR(found.fit.values[3], 4.0, 1e-3);
+  EXPECT_LT(found.estimation[0].feedback_rms, 1e-9);
+}
+
+TEST(Identify, WithNoiseTheIntervalsHoldTheTruthAndTheMachineIsWritten) {
+  const AxisExperiment files;
+  files.write_recording(synthesize(ramps(4.0), truth(), kNoise));
+  const Experiment experiment = read_experiment(files.write(kFour));
+  const Identification found = identify(experiment, 2);
+  const double true_values[] = {88.0, 170.0, 17.0, 4.0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_TRUE(found.uncertainty.told[k]);
+    EXPECT_NEAR(found.fit.values[k], true_values[k], 2.0 * found.uncertainty.half_width(k)) << k;
+  }
+  EXPECT_EQ(warnings(found), std::vector<std::string>{});
+  const input::IdentifiedFile file = identified_machine(experiment, found, files.path("out.toml"));
+  EXPECT_EQ(file.based_on, "machine.toml");
+  EXPECT_EQ(file.identified.keys.size(), 5u) << "one for each key of the file";
+  EXPECT_EQ(file.identified.covariance(2, 3), file.identified.covariance(2, 2));
+  input::write_identified_file(files.path("out.toml"), file, false);
+}
+
+TEST(Identify, PredictsRecordingsThatItHasNotSeen) {
+  const AxisExperiment files;
+  files.write_recording(synthesize(ramps(3.0), truth(), kNoise));
+  NoiseSettings other = kNoise;
+  other.seed = 2;
+  files.write_recording(synthesize(ramps(2.0), truth(), other), "later.csv");
+  const Identification found = identified(files, std::string(R"(
+[[recording]]
+file = "later.csv"
+use = "validation"
+axis.X = { command = "q", feedback = "y", force = "F" }
+)") + kFour);
+  ASSERT_EQ(found.validation.size(), 1u);
+  EXPECT_NEAR(found.validation[0].feedback_rms / found.estimation[0].feedback_rms, 1.0, 0.25);
+}
+
+// Three experiments that cannot tell what they are asked for.
+TEST(Identify, CoulombFrictionByDirectionAndTheLoadAreToldInCombinationsOnly) {
+  const AxisExperiment files;
+  Record motion = ramps(3.0);
+  files.write_recording(synthesize(motion, truth(), kNoise));
+  const Identification found = identified(files, R"(
+[[estimate]]
+key = "axis.X.gravity_load"
+[[estimate]]
+keys = ["axis.X.friction.coulomb", "axis.X.friction.breakaway"]
+start = "15 N"
+[[estimate]]
+keys = ["axis.X.friction.coulomb_negative", "axis.X.friction.breakaway_negative"]
+start = "15 N"
+)");
+  for (const std::size_t k : {0u, 1u, 2u}) EXPECT_FALSE(found.uncertainty.told[k]) << k;
+  ASSERT_EQ(untold_sentences(found).size(), 1u);
+  EXPECT_NE(untold_sentences(found)[0].find("axis.X.gravity_load, axis.X.friction.coulomb, "
+                                            "axis.X.friction.coulomb_negative: only combinations"),
+            std::string::npos)
+      << untold_sentences(found)[0];
+}
+
+TEST(Identify, MotorInertiaAndMassOfARigidAxisAreOneNumber) {
+  const AxisExperiment files;
+  files.write_recording(synthesize(ramps(2.0), truth(), kNoise));
+  const Identification found = identified(files, R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+[[estimate]]
+key = "axis.X.motor_inertia"
+start = "1e-6 kg m^2"
+)");
+  EXPECT_FALSE(found.uncertainty.told[0] || found.uncertainty.told[1]);
+  ASSERT_EQ(untold_sentences(found).size(), 1u);
+}
+
+TEST(Identify, WhatTheRecordingDoesNotDependOnIsSaid) {
+  const AxisExperiment files;
+  files.write_recording(synthesize(ramps(2.0), truth(), kNoise));
+  const Identification found = identified(files, R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+[[estimate]]
+key = "axis.Y.moving_mass"
+)");
+  EXPECT_TRUE(found.uncertainty.told[0]);
+  EXPECT_FALSE(found.uncertainty.told[1]);
+  EXPECT_EQ(untold_sentences(found),
+            (std::vector<std::string>{"axis.Y.moving_mass: the recordings do not depend on it; its "
+                                      "value is the one that was started from"}));
+}
+
+TEST(Identify, AForeignLoopShowsInTheResidual) {
+  const AxisExperiment files;
+  AxisModel other = truth();
+  other.loop.Kv = 60.0;
+  files.write_recording(recorded(ramps(2.0), other));
+  const auto said = warnings(identified(files, kFour));
+  ASSERT_FALSE(said.empty());
+  EXPECT_NE(said.back().find("off the recorded one; the loop is not that of the recording"),
+            std::string::npos);
+}
+
+TEST(Identify, AMachineInTheExperimentCannotBeLaidOver) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(0.5), truth()));
+  Experiment experiment = read_experiment(files.write(kFour));
+  experiment.machine_path.clear();
+  EXPECT_EQ(fault_messages([&] { identified_machine(experiment, {}, "out.toml"); }),
+            "describes the machine itself; name a machine file (machine = \"FILE\") so that the "
+            "identified values can be laid over it\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::identification::identify_test
