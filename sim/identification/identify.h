@@ -32,6 +32,7 @@ struct LawResult {
   std::string refused;          // why it could not be fitted; empty: it was
 };
 
+/// Points into the experiment.
 struct Identification {
   std::vector<InverseDynamics> inverse_dynamics;  // of the first record: symmetric as in the
                                                   // literature, then symmetric, by direction

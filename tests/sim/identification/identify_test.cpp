@@ -39,14 +39,19 @@ AxisModel truth() {
 
 const NoiseSettings kNoise{.force_rms = 1.0, .force_time = 5e-3, .feedback_step = 50e-9};
 
-Identification identified(const AxisExperiment& files, const std::string& rest) {
-  return identify(read_experiment(files.write(rest)), 2);
-}
+// The result points into the experiment.
+struct Identified {
+  Experiment experiment;
+  Identification found;
+  Identified(const AxisExperiment& files, const std::string& rest)
+      : experiment(read_experiment(files.write(rest))), found(identify(experiment, 2)) {}
+};
 
 TEST(Identify, WithoutNoiseTheValuesAreThoseOfTheAxis) {
   const AxisExperiment files;
   files.write_recording(recorded(ramps(2.0), truth()));
-  const Identification found = identified(files, kFour);
+  const Identified result(files, kFour);
+  const Identification& found = result.found;
   EXPECT_NEAR(found.fit.values[0], 88.0, 1e-3);
   EXPECT_NEAR(found.fit.values[1], 170.0, 1e-2);
   EXPECT_NEAR(found.fit.values[2], 17.0, 1e-3);
@@ -78,12 +83,13 @@ TEST(Identify, PredictsRecordingsThatItHasNotSeen) {
   NoiseSettings other = kNoise;
   other.seed = 2;
   files.write_recording(synthesize(ramps(2.0), truth(), other), "later.csv");
-  const Identification found = identified(files, std::string(R"(
+  const Identified result(files, std::string(R"(
 [[recording]]
 file = "later.csv"
 use = "validation"
 axis.X = { command = "q", feedback = "y", force = "F" }
 )") + kFour);
+  const Identification& found = result.found;
   ASSERT_EQ(found.validation.size(), 1u);
   EXPECT_NEAR(found.validation[0].feedback_rms / found.estimation[0].feedback_rms, 1.0, 0.25);
 }
@@ -93,7 +99,7 @@ TEST(Identify, CoulombFrictionByDirectionAndTheLoadAreToldInCombinationsOnly) {
   const AxisExperiment files;
   Record motion = ramps(3.0);
   files.write_recording(synthesize(motion, truth(), kNoise));
-  const Identification found = identified(files, R"(
+  const Identified result(files, R"(
 [[estimate]]
 key = "axis.X.gravity_load"
 [[estimate]]
@@ -103,6 +109,7 @@ start = "15 N"
 keys = ["axis.X.friction.coulomb_negative", "axis.X.friction.breakaway_negative"]
 start = "15 N"
 )");
+  const Identification& found = result.found;
   for (const std::size_t k : {0u, 1u, 2u}) EXPECT_FALSE(found.uncertainty.told[k]) << k;
   ASSERT_EQ(untold_sentences(found).size(), 1u);
   EXPECT_NE(untold_sentences(found)[0].find("axis.X.gravity_load, axis.X.friction.coulomb, "
@@ -114,13 +121,14 @@ start = "15 N"
 TEST(Identify, MotorInertiaAndMassOfARigidAxisAreOneNumber) {
   const AxisExperiment files;
   files.write_recording(synthesize(ramps(2.0), truth(), kNoise));
-  const Identification found = identified(files, R"(
+  const Identified result(files, R"(
 [[estimate]]
 key = "axis.X.moving_mass"
 [[estimate]]
 key = "axis.X.motor_inertia"
 start = "1e-6 kg m^2"
 )");
+  const Identification& found = result.found;
   EXPECT_FALSE(found.uncertainty.told[0] || found.uncertainty.told[1]);
   ASSERT_EQ(untold_sentences(found).size(), 1u);
 }
@@ -128,12 +136,13 @@ start = "1e-6 kg m^2"
 TEST(Identify, WhatTheRecordingDoesNotDependOnIsSaid) {
   const AxisExperiment files;
   files.write_recording(synthesize(ramps(2.0), truth(), kNoise));
-  const Identification found = identified(files, R"(
+  const Identified result(files, R"(
 [[estimate]]
 key = "axis.X.moving_mass"
 [[estimate]]
 key = "axis.Y.moving_mass"
 )");
+  const Identification& found = result.found;
   EXPECT_TRUE(found.uncertainty.told[0]);
   EXPECT_FALSE(found.uncertainty.told[1]);
   EXPECT_EQ(untold_sentences(found),
@@ -146,7 +155,8 @@ TEST(Identify, AForeignLoopShowsInTheResidual) {
   AxisModel other = truth();
   other.loop.Kv = 60.0;
   files.write_recording(recorded(ramps(2.0), other));
-  const auto said = warnings(identified(files, kFour));
+  const Identified result(files, kFour);
+  const auto said = warnings(result.found);
   ASSERT_FALSE(said.empty());
   EXPECT_NE(said.back().find("off the recorded one; the loop is not that of the recording"),
             std::string::npos);
