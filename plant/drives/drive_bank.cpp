@@ -11,17 +11,24 @@ namespace {
 
 // Bounds of the derivatives of regularised friction, the first to the third: of the Stribeck term
 // alone (0.86, 2, 4 over powers of vs, times its height D) and with tanh (1, 0.77, 2 over powers of
-// v0, times Fs).
+// v0, times the greater of Fs and Fc). Viscous friction adds b v tanh(v / v0), whose derivatives
+// are at most 1.2 b, 2 b / v0 and 4 b / v0^2.
 struct SlopeBounds {
   std::array<double, 3> steep, gentle;
 
   explicit SlopeBounds(const FrictionParams& f) {
-    const double D = std::max(f.Fs_positive - f.Fc_positive, f.Fs_negative - f.Fc_negative);
-    const double A = std::max(f.Fs_positive, f.Fs_negative), a = 1.0 / f.vs, b = 1.0 / f.v0;
+    const double D =
+        std::max(std::abs(f.Fs_positive - f.Fc_positive), std::abs(f.Fs_negative - f.Fc_negative));
+    const double A = std::max({f.Fs_positive, f.Fs_negative, f.Fc_positive, f.Fc_negative});
+    const double a = 1.0 / f.vs, b = 1.0 / f.v0, viscous = std::max(f.b_positive, f.b_negative);
     gentle = {0.86 * D * a, 2.0 * D * a * a, 4.0 * D * a * a * a};
     steep = {
         gentle[0] + A * b, gentle[1] + 2.0 * gentle[0] * b + 0.77 * A * b * b,
         gentle[2] + 3.0 * gentle[1] * b + 3.0 * 0.77 * gentle[0] * b * b + 2.0 * A * b * b * b};
+    steep[0] += 1.2 * viscous;
+    steep[1] += 2.0 * viscous * b;
+    steep[2] += 4.0 * viscous * b * b;
+    gentle[0] += viscous;
   }
 };
 
@@ -156,6 +163,8 @@ void DriveBank::prepare_lane(std::size_t block, std::size_t j, const PreparedDri
   if (drive.exact->has_kink()) c.has_kink |= bit;
   c.Fs_positive[j] = f.Fs_positive;
   c.Fs_negative[j] = f.Fs_negative;
+  c.b_positive[j] = f.b_positive;
+  c.b_negative[j] = f.b_negative;
   c.inverse_vs[j] = 1.0 / f.vs;
   c.inverse_v0[j] = 1.0 / f.v0;
   c.sigma0[j] = f.sigma0;

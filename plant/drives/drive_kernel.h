@@ -65,6 +65,7 @@ struct DriveConstants {
   LaneArray glide_speed{};                 // m/s, struct Gliding; below 0: the drive is linear
   LaneArray Fc_positive{}, Fc_negative{};  // N, FrictionParams
   LaneArray Fs_positive{}, Fs_negative{};  // N
+  LaneArray b_positive{}, b_negative{};    // N s/m
   LaneArray inverse_vs{}, inverse_v0{};    // s/m
   LaneArray sigma0{}, sigma1{};            // N/m, N s/m
   LaneArray inverse_mass{};                // 1/kg, of the slide

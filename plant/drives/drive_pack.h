@@ -18,7 +18,8 @@ template <class Arch>
 struct FrictionPack {
   using P = Pack<Arch>;
   using Mask = PackMask<Arch>;
-  P Fc_positive, Fc_negative, Fs_positive, Fs_negative, sigma0, sigma1, inverse_vs, inverse_v0;
+  P Fc_positive, Fc_negative, Fs_positive, Fs_negative, b_positive, b_negative, sigma0, sigma1,
+      inverse_vs, inverse_v0;
   Mask idle;
 
   FrictionPack(const DriveConstants& c, LaneBits active)
@@ -26,6 +27,8 @@ struct FrictionPack {
         Fc_negative(c.Fc_negative),
         Fs_positive(c.Fs_positive),
         Fs_negative(c.Fs_negative),
+        b_positive(c.b_positive),
+        b_negative(c.b_negative),
         sigma0(c.sigma0),
         sigma1(c.sigma1),
         inverse_vs(c.inverse_vs),

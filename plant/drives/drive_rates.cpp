@@ -23,14 +23,13 @@ std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
   const FrictionParams& f = p.friction;
   const double M = p.slide_mass();
   if (f.kind == FrictionKind::regularised) {
-    return {{std::max(f.Fs_positive, f.Fs_negative) / (f.v0 * M),
+    return {{std::max({f.Fs_positive, f.Fs_negative, f.Fc_positive, f.Fc_negative}) / (f.v0 * M),
              "the slope of the regularised friction, breakaway / (regularisation_velocity mass),"}};
   }
   if (f.kind == FrictionKind::lugre) {
-    const double Fc = std::min(f.Fc_positive, f.Fc_negative);
     return {{std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"},
             {f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"},
-            {f.sigma0 * kStribeckEnd * f.vs / Fc, "6.5 vs sigma0 / Fc"}};
+            {f.sigma0 * kStribeckEnd * f.vs / least_force(f), "6.5 vs sigma0 / Fc"}};
   }
   return {};
 }

@@ -31,7 +31,7 @@ void add(std::array<double, n>& sum, const std::array<double, n>& column, double
 // A drive with cogging nowhere is linear, one with backlash may be but has events there, too.
 Gliding gliding_of(const FeedDriveParams& p) {
   const FrictionParams& f = p.friction;
-  if (p.cogging.T != 0.0 || p.gap > 0.0) return {};
+  if (p.cogging.T != 0.0 || p.gap > 0.0 || f.b_positive > 0.0 || f.b_negative > 0.0) return {};
   Gliding g{.speed = 0.0};
   if (f.kind == FrictionKind::none) return g;
   if (f.Fs_positive != f.Fc_positive || f.Fs_negative != f.Fc_negative) {
@@ -69,14 +69,15 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   // Newton's iteration squares a correction, relative to the speed over which friction bends.
   double bend = f.kind == FrictionKind::regularised ? std::min(f.v0, f.vs) : f.vs;
   if (f.kind == FrictionKind::lugre) {
-    bend = std::min(bend, std::min(f.Fc_positive, f.Fc_negative) / (f.sigma0 * longest));
+    bend = std::min(bend, least_force(f) / (f.sigma0 * longest));
   }
   const double speed_error =
       kNewtonShare * std::min(resolution.tolerance, kSolverTolerance) / kMemory;
   speed_tolerance_ = std::sqrt(bend * speed_error);
   has_kink_ = f.kind == FrictionKind::lugre ||
               (f.kind == FrictionKind::regularised &&
-               (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative));
+               (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative ||
+                f.b_positive != f.b_negative));
   gliding_ = gliding_of(params);
 }
 

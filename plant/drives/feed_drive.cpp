@@ -145,13 +145,13 @@ std::vector<std::string> implausible(const FeedDriveParams& p) {
   const FrictionParams& f = p.friction;
   if (f.kind == FrictionKind::none) return faults;
   demand(f.Fc_positive >= 0.0 && f.Fc_negative >= 0.0, "Fc must be >= 0");
-  demand(f.Fs_positive >= f.Fc_positive && f.Fs_negative >= f.Fc_negative, "Fs must be >= Fc");
+  demand(f.Fs_positive >= 0.0 && f.Fs_negative >= 0.0, "Fs must be >= 0");
+  demand(f.b_positive >= 0.0 && f.b_negative >= 0.0, "b of a direction must be >= 0");
   demand(f.vs > 0.0, "vs must be > 0");
   demand(f.kind != FrictionKind::regularised || f.v0 > 0.0, "v0 must be > 0");
   demand(f.kind != FrictionKind::lugre || f.sigma0 > 0.0, "sigma0 must be > 0");
   demand(f.kind != FrictionKind::lugre || f.sigma1 >= 0.0, "sigma1 must be >= 0");
-  demand(f.kind != FrictionKind::lugre || (f.Fc_positive > 0.0 && f.Fc_negative > 0.0),
-         "Fc must be > 0 (LuGre)");
+  demand(f.kind != FrictionKind::lugre || least_force(f) > 0.0, "Fc and Fs must be > 0 (LuGre)");
   return faults;
 }
 

@@ -1,10 +1,12 @@
-/// Friction of a guideway: Coulomb with Stribeck effect, in three forms. Viscous friction belongs
-/// to the linear part of a drive (b_load, sigma_2 of the LuGre model).
+/// Friction of a guideway: Coulomb with Stribeck effect, in three forms. Viscous friction of both
+/// directions alike belongs to the linear part of a drive (b_load, sigma_2 of the LuGre model);
+/// what a direction has beyond that, to the force when sliding.
 ///
 /// The formulas are templates: of a description p that has the members of FrictionParams, for one
 /// lane or for eight (pack.h), and of its numbers T and truths M.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -35,11 +37,13 @@ inline constexpr double kStribeckEnd = 6.5, kTanhEnd = 20.0;
 struct FrictionParams {
   FrictionKind kind = FrictionKind::none;
   double Fc_positive = 0.0, Fc_negative = 0.0;  // N, Coulomb force, >= 0
-  double Fs_positive = 0.0, Fs_negative = 0.0;  // N, breakaway force, >= Fc
-  double vs = 1.0;                              // m/s, Stribeck velocity
-  double v0 = 1.0;                              // m/s, of the regularisation
-  double sigma0 = 0.0;                          // N/m, stiffness of the bristles
-  double sigma1 = 0.0;                          // N s/m, their damping
+  double Fs_positive = 0.0,
+         Fs_negative = 0.0;  // N, breakaway force; below Fc: friction rises with speed
+  double b_positive = 0.0, b_negative = 0.0;  // N s/m, viscous friction beside b_load
+  double vs = 1.0;                            // m/s, Stribeck velocity
+  double v0 = 1.0;                            // m/s, of the regularisation
+  double sigma0 = 0.0;                        // N/m, stiffness of the bristles
+  double sigma1 = 0.0;                        // N s/m, their damping
 
   /// exp(-(v / vs)^2)
   WithSlope<double> stribeck(double v) const {
@@ -58,14 +62,16 @@ struct FrictionParams {
   bool operator==(const FrictionParams&) const = default;
 };
 
-/// Magnitude of the friction force when sliding in one direction, a smooth and even function of v:
-/// g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2).
+/// Magnitude of the friction force when sliding in one direction:
+/// g(v) = Fc + (Fs - Fc) exp(-(v / vs)^2) + b |v|, |v| = v in the direction +. With a direction it
+/// goes on smoothly beyond v = 0.
 template <class P, class M, class T>
 WithSlope<T> sliding(const P& p, const M& positive, const T& v) {
   const T Fc = select(positive, p.Fc_positive, p.Fc_negative);
   const T drop = select(positive, p.Fs_positive, p.Fs_negative) - Fc;
   const WithSlope<T> bump = p.stribeck(v);
-  return {fma(drop, bump.value, Fc), drop * bump.slope};
+  const T b = select(positive, p.b_positive, -p.b_negative);
+  return {fma(b, v, fma(drop, bump.value, Fc)), fma(drop, bump.slope, b)};
 }
 template <class P, class M, class T>
 T sliding_force(const P& p, const M& positive, const T& v) {
@@ -90,6 +96,11 @@ T regularised_force(const P& p, const M& positive, const T& v) {
 template <class P, class T>
 T regularised_force(const P& p, const T& v) {
   return regularised(p, v).value;
+}
+
+/// Least force when sliding, in either direction (N).
+inline double least_force(const FrictionParams& f) {
+  return std::min({f.Fc_positive, f.Fc_negative, f.Fs_positive, f.Fs_negative});
 }
 
 /// LuGre: dz/dt = v - sigma0 |v| z / g(v) (m/s). Canudas de Wit et al. 1995, equations (2) to (4).

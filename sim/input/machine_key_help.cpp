@@ -153,7 +153,12 @@ constexpr KeyHelp kMachine[] = {
     {"machine.axis.X.friction", "breakaway_negative",
      "breakaway friction, negative direction; required with coulomb_negative"},
     {"machine.axis.X.friction", "stribeck_velocity",
-     "Stribeck velocity; required where breakaway exceeds coulomb"},
+     "Stribeck velocity; required where breakaway differs from coulomb"},
+    {"machine.axis.X.friction", "viscous",
+     "viscous friction of the positive direction, beside slide_viscous_friction"},
+    {"machine.axis.X.friction", "viscous_negative",
+     "viscous friction of the negative direction, beside slide_viscous_friction; default: as "
+     "viscous"},
     {"machine.axis.X.friction", "regularisation_velocity",
      "velocity of the tanh of the regularised model"},
     {"machine.axis.X.friction", "bristle_stiffness",

@@ -56,6 +56,9 @@ void read_friction(config::Reader& axis, const AxisQuantities& q, plant::Frictio
   f.Fs_negative = table.has("breakaway_negative") || table.has("coulomb_negative")
                       ? table.real("breakaway_negative", q.force, {config::at_least(0.0)})
                       : f.Fs_positive;
+  f.b_positive = table.real_or("viscous", 0.0, q.damping, {config::at_least(0.0)});
+  f.b_negative =
+      table.real_or("viscous_negative", f.b_positive, q.damping, {config::at_least(0.0)});
   const bool constant = f.Fs_positive == f.Fc_positive && f.Fs_negative == f.Fc_negative;
   constexpr double kNoMatter = 1e-6;  // m/s: there is nothing that falls with the speed
   f.vs =
@@ -67,14 +70,11 @@ void read_friction(config::Reader& axis, const AxisQuantities& q, plant::Frictio
   f.sigma1 = needed_if(table, f.kind == Kind::lugre, "bristle_damping", 0.0, q.damping,
                        {config::at_least(0.0)});
   if (table.faults() > before) return;
-  if (f.Fs_positive < f.Fc_positive) {
-    table.fault("breakaway", fmt::format("must be >= coulomb = {:g}", f.Fc_positive));
-  } else if (f.Fs_negative < f.Fc_negative) {
-    table.fault("breakaway_negative",
-                fmt::format("must be >= coulomb_negative = {:g}", f.Fc_negative));
-  }
-  if (f.kind == Kind::lugre && f.Fc_positive * f.Fc_negative == 0.0) {
+  if (f.kind != Kind::lugre) return;
+  if (f.Fc_positive * f.Fc_negative == 0.0) {
     table.fault("coulomb", "must be > 0 for the model lugre");
+  } else if (f.Fs_positive * f.Fs_negative == 0.0) {
+    table.fault("breakaway", "must be > 0 for the model lugre");
   }
 }
 

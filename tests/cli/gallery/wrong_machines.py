@@ -43,9 +43,8 @@ def table_of_axis(title, text):
 
 
 AXIS = [
-    table_of_axis("friction: breakaway below Coulomb", FRICTION.replace('"560 N"', '"400 N"')),
-    table_of_axis("friction: breakaway below Coulomb in one direction",
-                  FRICTION + 'coulomb_negative = "500 N"\nbreakaway_negative = "450 N"\n'),
+    table_of_axis("friction: no breakaway for LuGre", FRICTION.replace('"560 N"', '"0 N"')),
+    table_of_axis("friction: viscous friction below 0", FRICTION + 'viscous_negative = "-1 N s/m"\n'),
     table_of_axis("friction: an unknown model", FRICTION.replace("lugre", "luger")),
     table_of_axis("friction: what a model needs is missing", FRICTION.replace('bristle_stiffness = "5e7 N/m"\n', "")
                   .replace('stribeck_velocity = "2 mm/s"\n', "")),

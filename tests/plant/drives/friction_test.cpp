@@ -11,6 +11,8 @@ FrictionParams asymmetric() {
           .Fc_negative = 300,
           .Fs_positive = 560,
           .Fs_negative = 400,
+          .b_positive = 700,
+          .b_negative = 250,
           .vs = 2e-3,
           .v0 = 1e-4,
           .sigma0 = 5e7,
@@ -21,12 +23,21 @@ TEST(Friction, FallsFromBreakawayToCoulomb) {
   const FrictionParams p = asymmetric();
   EXPECT_EQ(sliding_force(p, true, 0.0), 560.0);
   EXPECT_EQ(sliding_force(p, false, 0.0), 400.0);
-  EXPECT_DOUBLE_EQ(sliding_force(p, true, p.vs), 450.0 + 110.0 * std::exp(-1.0));
-  EXPECT_EQ(sliding_force(p, true, -p.vs), sliding_force(p, true, p.vs));
+  EXPECT_DOUBLE_EQ(sliding_force(p, true, p.vs), 450.0 + 110.0 * std::exp(-1.0) + 700.0 * p.vs);
+  EXPECT_DOUBLE_EQ(sliding_force(p, false, -p.vs), 300.0 + 100.0 * std::exp(-1.0) + 250.0 * p.vs);
+}
+
+TEST(Friction, RisesFromABreakawayBelowCoulomb) {
+  FrictionParams p = asymmetric();
+  p.Fs_positive = 200.0;
+  EXPECT_EQ(sliding_force(p, true, 0.0), 200.0);
+  EXPECT_DOUBLE_EQ(sliding_force(p, true, p.vs), 450.0 - 250.0 * std::exp(-1.0) + 700.0 * p.vs);
+  EXPECT_GT(sliding(p, true, p.vs).slope, 700.0);
 }
 
 TEST(Friction, LosesNothingWhereTheStribeckTermEnds) {
-  const FrictionParams p = asymmetric();
+  FrictionParams p = asymmetric();
+  p.b_positive = p.b_negative = 0.0;
   const double inside = kStribeckEnd * p.vs * (1 - 1e-12), outside = kStribeckEnd * p.vs * 1.001;
   EXPECT_EQ(sliding_force(p, true, inside), sliding_force(p, true, outside));
   EXPECT_EQ(regularised_force(p, outside), 450.0);

@@ -59,6 +59,10 @@ inline FeedDriveParams random_drive(Dice& dice) {
   f.v0 = dice.of_size(1e-5, 1e-3);
   f.sigma0 = small * dice.of_size(1e7, 2e8);
   if (!dice.one_in(5)) f.sigma1 = small * dice.of_size(1e3, 1e5);
+  // as measured axes have it: friction that rises from breakaway on, and viscous by direction
+  if (dice.one_in(4)) f.Fs_positive = f.Fc_positive * dice.between(0.3, 1.0);
+  if (dice.one_in(4)) f.b_positive = small * dice.of_size(50.0, 2000.0);
+  if (dice.one_in(4)) f.b_negative = small * dice.of_size(50.0, 2000.0);
   if (rotary && dice.one_in(2)) {
     p.cogging = {dice.between(0.0, Fc), std::floor(dice.between(10.0, 150.0)),
                  dice.between(0.0, 6.0)};

@@ -66,6 +66,7 @@ TEST(KeyList, PrintsNoNumberForADefaultThatFollowsFromOtherKeys) {
   for (const auto& [section, key] : {std::pair{"machine.axis.X", "Kv"},
                                      {"machine.axis.X", "crossover_Hz"},
                                      {"machine.axis.X.friction", "coulomb_negative"},
+                                     {"machine.axis.X.friction", "viscous_negative"},
                                      {"machine.nc", "position_period_us"},
                                      {"program.tool", "flute_length_mm"},
                                      {"probe.circle", "to_deg"},
