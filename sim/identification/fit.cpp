@@ -30,6 +30,37 @@ class Differences {
     return prediction_.residual(*signals.front(), mask_);
   }
 
+  // One-sided differences, to the side that is possible; half the work of central ones.
+  // @param steps  0 or NaN: the column is 0
+  std::optional<Eigen::MatrixXd> slopes(const Values& at, const Values& steps,
+                                        const Eigen::VectorXd& here) const {
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(here.size(), static_cast<Eigen::Index>(steps.size()));
+    std::vector<std::size_t> open;
+    for (std::size_t p = 0; p < steps.size(); ++p) {
+      if (std::isfinite(steps[p]) && steps[p] != 0.0) open.push_back(p);
+    }
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<Values> sides;
+      for (const std::size_t p : open) {
+        sides.push_back(at);
+        sides.back()[p] += sign * steps[p];
+      }
+      const auto signals = prediction_.simulate(sides);
+      std::vector<std::size_t> refused;
+      for (std::size_t n = 0; n < open.size(); ++n) {
+        if (!signals[n]) {
+          refused.push_back(open[n]);
+          continue;
+        }
+        J.col(static_cast<Eigen::Index>(open[n])) =
+            (prediction_.residual(*signals[n], mask_) - here) / (sign * steps[open[n]]);
+      }
+      open = std::move(refused);
+      if (open.empty()) return J;
+    }
+    return std::nullopt;
+  }
+
   // Central differences where both sides are possible, else one-sided.
   // @param steps  0 or NaN: the column is 0
   std::optional<Eigen::MatrixXd> jacobian(const Values& at, const Values& steps,
@@ -82,7 +113,7 @@ Values find_scales(const Prediction& prediction, const Differences& differences,
       any = any || std::isfinite(open[p]);
     }
     if (!any) break;
-    const auto J = differences.jacobian(at, open, here);
+    const auto J = differences.slopes(at, open, here);
     for (std::size_t p = 0; p < at.size(); ++p) {
       if (!std::isfinite(open[p])) continue;
       const double change = J ? rms_of(J->col(static_cast<Eigen::Index>(p))) * steps[p] : 0.0;
@@ -99,11 +130,13 @@ Values find_scales(const Prediction& prediction, const Differences& differences,
   return scales;
 }
 
-// The cost function as Ceres wants it.
+// The cost function as Ceres wants it. Beyond a bound a parameter stays there: the bounds of Ceres
+// make it search along lines, which costs more than it saves.
 class Cost : public ceres::CostFunction {
  public:
-  Cost(const Differences& differences, const Fit& fit, std::vector<std::size_t> active)
-      : differences_(differences), fit_(fit), active_(std::move(active)) {
+  Cost(const Prediction& prediction, const Differences& differences, const Fit& fit,
+       std::vector<std::size_t> active)
+      : prediction_(prediction), differences_(differences), fit_(fit), active_(std::move(active)) {
     set_num_residuals(static_cast<int>(fit.residual.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(active_.size()));
     unit_ = std::max(rms_of(fit.residual), std::numeric_limits<double>::min());
@@ -111,21 +144,29 @@ class Cost : public ceres::CostFunction {
 
   Values values(const double* y) const {
     Values at = fit_.values;
-    for (std::size_t k = 0; k < active_.size(); ++k)
-      at[active_[k]] += y[k] * fit_.scales[active_[k]];
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      const std::size_t p = active_[k];
+      const auto [lower, upper] = prediction_.bounds(p);
+      at[p] = std::clamp(at[p] + y[k] * fit_.scales[p], lower, upper);
+    }
     return at;
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     const Values at = values(parameters[0]);
-    const auto here = differences_.residual(at);
+    // the minimiser asks for the derivatives where it has asked for the residual
+    if (at != known_at_) {
+      known_ = differences_.residual(at);
+      known_at_ = at;
+    }
+    const auto& here = known_;
     if (!here) return false;
     Eigen::VectorXd::Map(residuals, here->size()) = *here / unit_;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     Values steps(at.size(), kNaN);
     for (const std::size_t p : active_) steps[p] = kDifference * fit_.scales[p];
-    const auto J = differences_.jacobian(at, steps, *here);
+    const auto J = differences_.slopes(at, steps, *here);
     if (!J) return false;
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<Rows> into(jacobians[0], here->size(), static_cast<Eigen::Index>(active_.size()));
@@ -137,37 +178,30 @@ class Cost : public ceres::CostFunction {
   }
 
  private:
+  const Prediction& prediction_;
   const Differences& differences_;
   const Fit& fit_;
   std::vector<std::size_t> active_;
   double unit_;
+  mutable Values known_at_;
+  mutable std::optional<Eigen::VectorXd> known_;
 };
 
-void set_bounds(ceres::Problem& problem, double* y, const Prediction& prediction, const Fit& fit,
-                const std::vector<std::size_t>& active) {
-  for (std::size_t k = 0; k < active.size(); ++k) {
-    const auto [lower, upper] = prediction.bounds(active[k]);
-    const double scale = fit.scales[active[k]], value = fit.values[active[k]];
-    const int place = static_cast<int>(k);
-    if (std::isfinite(lower)) problem.SetParameterLowerBound(y, place, (lower - value) / scale);
-    if (std::isfinite(upper)) problem.SetParameterUpperBound(y, place, (upper - value) / scale);
-  }
+bool is_at_bound(const Prediction& prediction, const Fit& fit, std::size_t parameter) {
+  const auto [lower, upper] = prediction.bounds(parameter);
+  return fit.values[parameter] <= lower || fit.values[parameter] >= upper;
 }
 
-// One run of the minimiser from fit.values on.
-void minimise(const Prediction& prediction, const Differences& differences, Fit& fit) {
-  std::vector<std::size_t> active;
-  for (std::size_t p = 0; p < fit.values.size(); ++p) {
-    if (std::isfinite(fit.scales[p])) active.push_back(p);
-  }
+// One run of the minimiser from fit.values on, for the parameters that are given.
+void minimise(const Prediction& prediction, const Differences& differences,
+              const std::vector<std::size_t>& active, Fit& fit) {
   if (active.empty()) return;
   std::vector<double> y(active.size(), 0.0);
   ceres::Problem::Options own;
   own.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  Cost cost(differences, fit, active);
+  Cost cost(prediction, differences, fit, active);
   ceres::Problem problem(own);
   problem.AddResidualBlock(&cost, nullptr, y.data());
-  set_bounds(problem, y.data(), prediction, fit, active);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
@@ -181,6 +215,18 @@ void minimise(const Prediction& prediction, const Differences& differences, Fit&
   fit.iterations += static_cast<int>(summary.iterations.size());
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
   fit.message = summary.message;
+}
+
+// The same for all that have an effect; then without those that have ended at a bound.
+void minimise(const Prediction& prediction, const Differences& differences, Fit& fit) {
+  std::vector<std::size_t> active;
+  for (std::size_t p = 0; p < fit.values.size(); ++p) {
+    if (std::isfinite(fit.scales[p])) active.push_back(p);
+  }
+  minimise(prediction, differences, active, fit);
+  const std::size_t all = active.size();
+  std::erase_if(active, [&](std::size_t p) { return is_at_bound(prediction, fit, p); });
+  if (active.size() < all) minimise(prediction, differences, active, fit);
 }
 
 }  // namespace

@@ -141,6 +141,12 @@ LoopSettings read_loop(config::Reader& table) {
 Experiment read_experiment(const std::string& path) {
   input::InputFiles files;
   const config::Document own = config::Document::from_file(path);
+  if (const config::Value* overrides = own.root().find("machine_override")) {
+    throw InputError(
+        overrides->key_place,
+        "machine_override has no place in an experiment: what is identified is laid over "
+        "a machine file; write one with based_on = \"FILE\" and these keys");
+  }
   const input::ScenarioDocument whole = input::with_machine(own, {}, files);
   Experiment out{.name = {},
                  .path = path,

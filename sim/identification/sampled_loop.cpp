@@ -68,20 +68,33 @@ void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedb
   remember(force);
 }
 
-void SampledLoop::acting(double from, double to, LaneArray& force) const {
-  for (std::size_t l = 0; l < lanes_.size(); ++l) {
-    const double delay = lanes_[l].dead_time / lanes_[l].period;
-    // past_[n] was computed n periods ago and acts within [delay - n, delay - n + 1)
-    const double begin = from - delay, end = to - delay;
-    double sum = 0.0;
+void SampledLoop::set_parts(int parts) {
+  shares_.clear();
+  for (int part = 0; part < parts; ++part) {
     for (std::size_t n = 0; n < past_.size(); ++n) {
-      const double acts = -static_cast<double>(n);
-      const double last = n == 0 ? 1.0 : acts + 1.0;
-      const double share = std::min(end, last) - std::max(begin, acts);
-      if (share > 0.0) sum += share * past_[n][l];
+      Share share{static_cast<std::size_t>(part), n, {}};
+      double any = 0.0;
+      for (std::size_t l = 0; l < lanes_.size(); ++l) {
+        const double delay = lanes_[l].dead_time / lanes_[l].period;
+        // past_[n] was computed n periods ago and acts within [delay - n, delay - n + 1)
+        const double begin = static_cast<double>(part) / parts - delay;
+        const double end = static_cast<double>(part + 1) / parts - delay;
+        const double acts = -static_cast<double>(n);
+        const double within = std::min(end, acts + 1.0) - std::max(begin, acts);
+        any += share.weight[l] = std::max(within, 0.0) * parts;
+      }
+      if (any > 0.0) shares_.push_back(share);
     }
-    force[l] = sum / (to - from);
   }
+}
+
+LaneArray SampledLoop::acting(int part) const {
+  LaneArray force{};
+  for (const Share& share : shares_) {
+    if (share.part != static_cast<std::size_t>(part)) continue;
+    for (std::size_t l = 0; l < kLaneWidth; ++l) force[l] += share.weight[l] * past_[share.n][l];
+  }
+  return force;
 }
 
 }  // namespace servomill::sim::identification

@@ -68,8 +68,10 @@ class SampledLoop {
 
   /// Force that was computed last (N).
   const LaneArray& force() const { return latest_; }
-  /// Mean of the force that acts within [from, to) after the sample, as shares of the period.
-  void acting(double from, double to, LaneArray& force) const;
+  /// Divides a period into so many equal parts, for acting().
+  void set_parts(int parts);
+  /// Mean of the force that acts within a part of the period after the sample.
+  LaneArray acting(int part) const;
 
  private:
   void remember(const LaneArray& force);
@@ -80,6 +82,12 @@ class SampledLoop {
   LaneArray integral_{}, first_force_{};
   std::array<LaneArray, static_cast<std::size_t>(kLongestDeadTime) + 2> past_{};  // newest first
   LaneArray latest_{};
+  // weight of past_[n] in a part of the period: part after part
+  struct Share {
+    std::size_t part, n;
+    LaneArray weight;
+  };
+  std::vector<Share> shares_;
   bool first_ = true;
 };
 

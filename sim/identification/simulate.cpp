@@ -13,8 +13,8 @@ namespace {
 
 constexpr Tick kTicksPerPart = 16;  // the ladder of sub-steps reaches that far down
 // Parts of a period within which the force is the mean of what acts there: the moment of an
-// impulse is off by no more than h^2 / 8 dF / M, some 1e-10 m.
-constexpr int kPartsWithDeadTime = 4;
+// impulse is off by no more than h^2 / 8 dF / M, some 1e-9 m.
+constexpr int kPartsWithDeadTime = 2;
 
 bool has_dead_time(std::span<const AxisModel> models) {
   return std::any_of(models.begin(), models.end(),
@@ -68,7 +68,9 @@ class EightModels {
               std::vector<Tick>{kTicksPerPart}),
         state_(models.size()),
         input_(models.size()),
-        loop_(loops_of(models)) {}
+        loop_(loops_of(models)) {
+    loop_.set_parts(parts_);
+  }
 
   void run(std::span<Simulated> out) {
     start(out);
@@ -133,9 +135,7 @@ class EightModels {
     plant::DriveInputBlock& in = input_.blocks.front();
     in.F.fill(record_.disturbance.empty() ? 0.0 : -record_.disturbance[k]);
     for (int part = 0; part < parts_; ++part) {
-      LaneArray force{};
-      loop_.acting(static_cast<double>(part) / parts_, static_cast<double>(part + 1) / parts_,
-                   force);
+      const LaneArray force = loop_.acting(part);
       for (std::size_t l = 0; l < models_.size(); ++l) {
         in.command[l] = force[l] * models_[l].drive.r / models_[l].drive.Kt;
       }

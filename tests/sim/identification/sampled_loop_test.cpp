@@ -27,11 +27,8 @@ class Loop {
     loop_.sample(q, 0.0, 0.0, feedback, behind);
     return loop_.force()[0];
   }
-  double acting(double from, double to) const {
-    LaneArray force{};
-    loop_.acting(from, to, force);
-    return force[0];
-  }
+  void set_parts(int parts) { loop_.set_parts(parts); }
+  double acting(int part) const { return loop_.acting(part)[0]; }
 
  private:
   SampledLoop loop_;
@@ -111,10 +108,12 @@ TEST(SampledLoop, AForceActsAfterItsDeadTime) {
   loop.start(0.0, 0.0, kNaN);
   loop.sample(1.0, 0.0);  // 1 N
   loop.sample(3.0, 0.0);  // 3 N
-  EXPECT_DOUBLE_EQ(loop.acting(0.0, 0.3), 1.0);
-  EXPECT_DOUBLE_EQ(loop.acting(0.3, 1.0), 3.0);
-  EXPECT_NEAR(loop.acting(0.2, 0.4), 2.0, 1e-12);
-  EXPECT_NEAR(loop.acting(0.0, 1.0), 0.3 * 1.0 + 0.7 * 3.0, 1e-12);
+  loop.set_parts(1);
+  EXPECT_NEAR(loop.acting(0), 0.3 * 1.0 + 0.7 * 3.0, 1e-12);
+  loop.set_parts(5);
+  EXPECT_NEAR(loop.acting(0), 1.0, 1e-12);
+  EXPECT_NEAR(loop.acting(1), 2.0, 1e-12) << "the force changes in its middle";
+  for (const int part : {2, 3, 4}) EXPECT_NEAR(loop.acting(part), 3.0, 1e-12);
 }
 
 TEST(SampledLoop, DeadTimesOfSeveralPeriodsKeepTheImpulse) {
@@ -124,11 +123,12 @@ TEST(SampledLoop, DeadTimesOfSeveralPeriodsKeepTheImpulse) {
     s.mean_of = 1;
     s.dead_time = periods * s.period;
     Loop loop(s);
+    loop.set_parts(1);
     loop.start(0.0, 0.0, kNaN);
     double impulse = 0.0;
     loop.sample(1.0, 0.0);
     for (int n = 0; n < 12; ++n) {
-      impulse += loop.acting(0.0, 1.0);
+      impulse += loop.acting(0);
       loop.sample(0.0, 0.0);
     }
     EXPECT_NEAR(impulse, 1.0, 1e-12) << periods;

@@ -49,8 +49,8 @@ TEST(Simulate, AStepOfForceThatIsLateGivesTheParabolaOfThatTime) {
   const Simulated out = simulate(record, {&model, 1}, 1).front();
   const double a = 19.0 / (model.drive.M + model.drive.J / (model.drive.r * model.drive.r));
   const double t = 49e-3 - 1e-3 - model.loop.dead_time;
-  // within the quarter of a period in which the force changes its mean acts instead
-  constexpr double kPart = 0.25e-3;
+  // within the half of a period in which the force changes its mean acts instead
+  constexpr double kPart = 0.5e-3;
   EXPECT_NEAR(out.feedback[49], 0.5 * a * t * t, 1.01 * a * kPart * kPart / 8.0);
 }
 
