@@ -1,5 +1,5 @@
 /// An experiment: recordings of axes, the control that they were made with, what is to be
-/// estimated. Everything that `servomill identify` is told, read and checked.
+/// estimated. Everything that `servomill identify` reads, checked.
 #pragma once
 
 #include <limits>

@@ -38,13 +38,14 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
     out.comments.push_back(fmt::format("  {}: position rms {:.3g} um", one.record->record.name,
                                        one.feedback_rms * 1e6));
   }
-  for (const std::string& sentence : untold_sentences(result)) out.comments.push_back(sentence);
+  for (const std::string& sentence : unidentifiable_sentences(result))
+    out.comments.push_back(sentence);
   std::vector<MachineKey> keys;
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     const Estimate& one = result.estimates[k];
     for (const std::string& key : one.keys) {
       if (key.starts_with("loop.")) continue;
-      if (!result.uncertainty.told[k]) {
+      if (!result.uncertainty.identifiable[k]) {
         out.identified.unidentifiable.push_back(key);
         continue;
       }

@@ -8,8 +8,8 @@
 
 namespace servomill::sim::identification {
 
-/// What the machine file holds: values of the machine (not of the recording's loop) with their
-/// covariance; those not told by name only.
+/// The machine file: values of the machine (not of the recording's loop) with their
+/// covariance; the unidentifiable by name only.
 /// @param path  of the file, from which the machine that was started from is named
 /// @throws InputError if the machine stands in the experiment, so that there is no file to lay over
 input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,

@@ -23,7 +23,7 @@ struct InverseDynamicsSettings {
 };
 
 /// force = M a + Fv v + Fc sgn(v) + offset, or with Fv and Fc of their own for each direction,
-/// where the offset cannot be told from the Coulomb friction.
+/// where the offset cannot be separated from the Coulomb friction.
 struct InverseDynamics {
   bool by_direction = false, held = true;
   std::vector<std::string>

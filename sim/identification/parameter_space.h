@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/identification/experiment.h"
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 #include "sim/model/machine.h"
 
 namespace servomill::sim::identification {

@@ -1,4 +1,4 @@
-/// What the model of an experiment predicts for values of its parameters, and how far that is from
+/// Prediction by the model of an experiment for values of its parameters, and how far that is from
 /// the recordings.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 #include "sim/identification/experiment.h"
 #include "sim/identification/parameter_space.h"
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 
 namespace servomill::sim::identification {
 

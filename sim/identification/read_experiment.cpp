@@ -49,7 +49,7 @@ double read_bound(config::Reader& table, std::string_view key, const std::string
   return bound.value;
 }
 
-// Where it begins: said, or the machine's own value.
+// The start as written, or the machine's own value.
 model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
                                 const config::Document& document) {
   if (table.has("start")) return read_number(table, "start");

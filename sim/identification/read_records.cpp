@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kUses = {"estimation", "validation"};
 constexpr double kEqualPeriods = 1e-3;  // of a period: clocks of recorder and loop are one clock
 
-// What a channel may be.
+// Roles of channels.
 enum class Role : std::uint8_t { command, feedback, force, motor_current, disturbance_force };
 constexpr std::array<std::string_view, 5> kRoles = {"command", "feedback", "force", "motor_current",
                                                     "disturbance_force"};
@@ -312,7 +312,7 @@ class RecordReader {
     }
   }
 
-  // What no axis does: nothing moves, or it moves the other way.
+  // Nothing moves, or it moves the other way: no axis does that.
   void refuse_impossible() {
     const Record& r = out_.record;
     const auto [least, greatest] = std::minmax_element(r.feedback.begin(), r.feedback.end());

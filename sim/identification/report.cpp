@@ -49,8 +49,9 @@ std::string parameters(const Identification& result) {
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     const Estimate& one = result.estimates[k];
     const double half = 2.0 * result.uncertainty.standard(k);
-    if (!result.uncertainty.told[k]) {
-      table.add({names_of(one), fmt::format("{:.5g}", one.start), "not told", one.unit, "-", "-"});
+    if (!result.uncertainty.identifiable[k]) {
+      table.add(
+          {names_of(one), fmt::format("{:.5g}", one.start), "unidentifiable", one.unit, "-", "-"});
       continue;
     }
     table.add({names_of(one), with_uncertainty(one.start, half), fmt::format("{:.2g}", half),
@@ -69,8 +70,9 @@ std::string inverse_dynamics_table(const Identification& result) {
       "inverse dynamics (filters: position 100 Hz, force 40 Hz, Butterworth of order "
       "4, forwards and backwards)\n";
   for (const InverseDynamics& one : result.inverse_dynamics) {
-    Lines table(
-        {one.by_direction ? "by direction" : "symmetric", "value", "+- (k = 2)", "counted"});
+    Lines table({fmt::format("{}, force {}", one.by_direction ? "by direction" : "symmetric",
+                             one.held ? "held" : "at its sample (literature)"),
+                 "value", "+- (k = 2)", "counted"});
     for (std::size_t k = 0; k < one.values.size(); ++k) {
       const double half = 2.0 * one.uncertainty.standard(k);
       table.add({one.names[k], with_uncertainty(one.values[k], half), fmt::format("{:.2g}", half),
@@ -138,7 +140,7 @@ double unexplained(const RecordResult& one) {
 
 }  // namespace
 
-std::vector<std::string> untold_sentences(const Identification& result) {
+std::vector<std::string> unidentifiable_sentences(const Identification& result) {
   std::vector<std::string> out;
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     if (!std::isfinite(result.fit.scales[k])) {
@@ -148,12 +150,12 @@ std::vector<std::string> untold_sentences(const Identification& result) {
                       result.estimates[k].keys.front()));
     }
   }
-  for (const UntoldDirection& one : result.uncertainty.untold) {
+  for (const UnidentifiableDirection& one : result.uncertainty.unidentifiable) {
     std::vector<std::string> names;
     for (const std::size_t p : one.parameters) names.push_back(parameter_name(result, p));
     out.push_back(fmt::format(
-        "{}: only {} told; fix one of them, or record a motion that tells "
-        "them apart",
+        "{}: only {} identifiable; fix one of them, or record a motion that "
+        "separates them",
         fmt::join(names, ", "),
         names.size() == 2 ? "one combination of the two is" : "combinations of them are"));
   }
@@ -199,8 +201,8 @@ std::string report(const Experiment& experiment, const Identification& result) {
   }
   out += inverse_dynamics_table(result) + "\n";
   out += parameters(result) + "\n" + record_table(result);
-  for (const std::string& sentence : untold_sentences(result))
-    out += "not told: " + sentence + "\n";
+  for (const std::string& sentence : unidentifiable_sentences(result))
+    out += "unidentifiable: " + sentence + "\n";
   for (const std::string& sentence : warnings(result)) out += "warning: " + sentence + "\n";
   return out + law_table(result);
 }

@@ -12,8 +12,8 @@ namespace servomill::sim::identification {
 std::string report(const Experiment& experiment, const Identification& result);
 
 /// Sentences on what the recordings do not tell: parameters without effect, and those of which only
-/// combinations are told.
-std::vector<std::string> untold_sentences(const Identification& result);
+/// combinations can be identified.
+std::vector<std::string> unidentifiable_sentences(const Identification& result);
 
 /// Sentences on what should make a user doubt: a loop that is not the recording's, values at their
 /// bounds, a fit that did not converge.

@@ -12,7 +12,7 @@
 
 namespace servomill::sim::identification {
 
-/// Where the velocity loop has its speed from.
+/// Source of the speed of the velocity loop.
 enum class SpeedFeedback : std::uint8_t { scale, motor };
 
 enum class LoopKind : std::uint8_t {

@@ -58,7 +58,8 @@ void store_parameters(records::Hdf5Group group, const Identification& result) {
     const Estimate& one = result.estimates[k];
     group.attribute(fmt::format("key_{:02}", k), one.keys.front());
     group.attribute(fmt::format("unit_{:02}", k), one.unit.empty() ? "1" : one.unit);
-    group.attribute(fmt::format("told_{:02}", k), result.uncertainty.told[k] ? "yes" : "no");
+    group.attribute(fmt::format("identifiable_{:02}", k),
+                    result.uncertainty.identifiable[k] ? "yes" : "no");
   }
   if (count == 0) return;
   group.list("parameter", number, {"1", "number of the parameter: key_NN, unit_NN"});

@@ -5,11 +5,11 @@
 #include <cstdint>
 
 #include "sim/identification/record.h"
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 
 namespace servomill::sim::identification {
 
-/// What disturbs a recording.
+/// Disturbances of a recording.
 struct NoiseSettings {
   double force_rms = 0.0;      // N or N m: on the slide, Gaussian, correlated over force_time
   double force_time = 5e-3;    // s: the correlation falls to 1/e

@@ -125,7 +125,7 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
   Uncertainty out;
   out.covariance = Eigen::MatrixXd::Zero(size, size);
   out.counted.assign(static_cast<std::size_t>(size), 0.0);
-  out.told.assign(static_cast<std::size_t>(size), false);
+  out.identifiable.assign(static_cast<std::size_t>(size), false);
   const Columns columns = unit_columns(jacobian);
   if (columns.parameters.empty()) return out;
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(columns.unit, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -134,17 +134,17 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
          svd.singularValues()[rank] > kNothing * svd.singularValues()[0]) {
     ++rank;
   }
-  for (const std::size_t p : columns.parameters) out.told[p] = true;
+  for (const std::size_t p : columns.parameters) out.identifiable[p] = true;
   for (Eigen::Index k = rank; k < svd.singularValues().size(); ++k) {
-    UntoldDirection one{{}, Eigen::VectorXd::Zero(size)};
+    UnidentifiableDirection one{{}, Eigen::VectorXd::Zero(size)};
     for (Eigen::Index j = 0; j < svd.matrixV().rows(); ++j) {
       const std::size_t p = columns.parameters[static_cast<std::size_t>(j)];
       if (std::abs(svd.matrixV()(j, k)) < kTakesPart) continue;
       one.parameters.push_back(p);
       one.direction[static_cast<Eigen::Index>(p)] = svd.matrixV()(j, k) / columns.norm[j];
-      out.told[p] = false;
+      out.identifiable[p] = false;
     }
-    out.untold.push_back(std::move(one));
+    out.unidentifiable.push_back(std::move(one));
   }
   const std::vector<Rows> rows = rows_of(mask);
   const Eigen::MatrixXd U = svd.matrixU().leftCols(rank);
@@ -164,12 +164,12 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
   const Eigen::MatrixXd counted = white * back * back.transpose();
   for (std::size_t a = 0; a < columns.parameters.size(); ++a) {
     const std::size_t p = columns.parameters[a];
-    if (!out.told[p]) continue;
+    if (!out.identifiable[p]) continue;
     const auto ia = static_cast<Eigen::Index>(a);
     out.counted[p] = std::sqrt(counted(ia, ia));
     for (std::size_t b = 0; b < columns.parameters.size(); ++b) {
       const std::size_t q = columns.parameters[b];
-      if (!out.told[q]) continue;
+      if (!out.identifiable[q]) continue;
       out.covariance(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) =
           C(ia, static_cast<Eigen::Index>(b));
     }

@@ -11,18 +11,18 @@
 
 namespace servomill::sim::identification {
 
-/// Estimates of which only combinations are told: a direction in which the recordings do not
-/// change.
-struct UntoldDirection {
+/// Estimates of which only combinations can be identified: a direction in which the recordings do
+/// not change.
+struct UnidentifiableDirection {
   std::vector<std::size_t> parameters;  // that take part
   Eigen::VectorXd direction;            // of all values
 };
 
 struct Uncertainty {
-  Eigen::MatrixXd covariance;   // of the values; 0 for those not told
-  std::vector<double> counted;  // standard deviations that counting samples would give
-  std::vector<bool> told;       // one for each value
-  std::vector<UntoldDirection> untold;
+  Eigen::MatrixXd covariance;      // of the values; 0 for the unidentifiable
+  std::vector<double> counted;     // standard deviations that counting samples would give
+  std::vector<bool> identifiable;  // one for each value
+  std::vector<UnidentifiableDirection> unidentifiable;
   std::vector<AutoregressiveNoise> noise;  // of each record
   double effective_samples = 0.0;          // of all records
   double t_95 = 2.0;                       // of Student's distribution, for intervals of 95 %

@@ -66,21 +66,9 @@ void refuse_repeated_keys(config::Reader& table, const IdentifiedValues& values)
   }
 }
 
-// The value of a dotted key.
-const config::Value* value_at(const config::Value& root, std::string_view key) {
-  const config::Value* at = &root;
-  while (at != nullptr && !key.empty()) {
-    const std::size_t dot = key.find('.');
-    if (at->type != config::Value::Type::table) return nullptr;
-    at = at->find(key.substr(0, dot));
-    key = dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
-  }
-  return at;
-}
-
-// A value that the file sets, in a unit; nothing if it is no number of this kind.
-std::optional<double> set_value(const config::Value& value, std::string_view key,
-                                const std::string& unit) {
+// A value in a unit; nothing if it is no number of this kind.
+std::optional<double> value_in(const config::Value& value, std::string_view key,
+                               const std::string& unit) {
   const auto wanted = unit == kPlainNumber ? config::Unit{}
                                            : config::parse_unit(unit).unit.value_or(config::Unit{});
   if (const auto number = number_in(value)) {
@@ -110,12 +98,17 @@ void refuse_other_values(config::Reader& table, const IdentifiedValues& identifi
     }
     const double value = identified.values[k];
     const std::string& unit = identified.units[k];
-    const auto found = set_value(*set, key, unit);
-    if (found && std::abs(*found - value) <= kSameValue * std::abs(value)) continue;
+    if (is_same_number(*set, key, value, unit)) continue;
     table.fault("values", fmt::format("gives {} the value {}{}; line {} sets {}", key, value,
                                       unit == kPlainNumber ? "" : " " + unit, set->place.line,
                                       config::inline_toml(*set)));
   }
+}
+
+std::string list_of_texts(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(config::quoted_text(text));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
 }  // namespace
@@ -145,6 +138,36 @@ IdentifiedValues read_identified_table(config::Reader& table) {
   }
   refuse_repeated_keys(table, out);
   return table.faults() > before ? IdentifiedValues() : out;
+}
+
+const config::Value* value_at(const config::Value& root, std::string_view key) {
+  const config::Value* at = &root;
+  while (at != nullptr && !key.empty()) {
+    const std::size_t dot = key.find('.');
+    if (at->type != config::Value::Type::table) return nullptr;
+    at = at->find(key.substr(0, dot));
+    key = dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
+  }
+  return at;
+}
+
+bool is_same_number(const config::Value& value, std::string_view key, double number,
+                    const std::string& unit) {
+  const auto found = value_in(value, key, unit);
+  return found && std::abs(*found - number) <= kSameValue * std::abs(number);
+}
+
+std::string table_lines(const IdentifiedValues& identified) {
+  std::vector<std::string> rows;
+  for (const auto& row : identified.covariance.rowwise()) {
+    rows.push_back(fmt::format("[{}]", fmt::join(row.begin(), row.end(), ", ")));
+  }
+  return fmt::format(
+      "keys = {}\nunits = {}\nvalues = [{}]\n"
+      "covariance = [  # products of the units\n  {},\n]\nunidentifiable = {}\n",
+      list_of_texts(identified.keys), list_of_texts(identified.units),
+      fmt::join(identified.values, ", "), fmt::join(rows, ",\n  "),
+      list_of_texts(identified.unidentifiable));
 }
 
 std::optional<IdentifiedValues> read_identified(config::Reader& machine) {

@@ -41,6 +41,17 @@ struct IdentifiedValues {
 /// @param machine  all keys of the file; the others are left alone
 std::optional<IdentifiedValues> read_identified(config::Reader& machine);
 
+/// Value at a dotted key; nullptr: there is none.
+const config::Value* value_at(const config::Value& root, std::string_view key);
+
+/// True if a value is a number, in its own unit or that of its key, and the same as one in `unit`
+/// but for rounding.
+bool is_same_number(const config::Value& value, std::string_view key, double number,
+                    const std::string& unit);
+
+/// The lines of the table, with as many digits as it takes to read the same bits again.
+std::string table_lines(const IdentifiedValues& identified);
+
 /// Keys, units, values and covariance of a table alone, not compared with anything.
 IdentifiedValues read_identified_table(config::Reader& table);
 

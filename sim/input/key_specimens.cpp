@@ -232,7 +232,7 @@ sections = ["SECTION"]
 error = "EX0C"
 
 [sweep]
-samples = { design = "sobol", count = 2 }
+samples = { design = "sobol", count = 2, from = "identified.toml", identified = [{ keys = ["axis.Y.moving_mass"], units = ["kg"], values = [300], covariance = [[1]] }] }
 "program.feed_override" = { linear = [0.5, 1.0], count = 2 }
 "machine.nc.Kv" = { log = [10.0, 100.0], count = 2 }
 "errors.NAME.EXX.constant_um" = { normal = [1.0, 0.1] }
@@ -358,6 +358,7 @@ name = "nominal"
 
 constexpr std::string_view kThird = R"(
 title = "third"
+sweep.samples = { count = 2, from = ["a.toml"], identified = [{ keys = ["nc.Kv"], units = ["1/s"], values = [50.0], covariance = [[1]] }] }
 
 [machine]
 structure = "[w b Z t]"
@@ -387,10 +388,7 @@ name = "nominal"
 constexpr std::string_view kIdentified = R"([machine]
 based_on = "start_machine.toml"
 solver_tolerance_nm = 0.002
-identified.keys = ["solver_tolerance_nm"]
-identified.units = ["nm"]
-identified.values = [0.002]
-identified.covariance = [[1e-8]]
+identified = { keys = ["solver_tolerance_nm"], units = ["nm"], values = [0.002], covariance = [[1e-8]] }
 )";
 
 }  // namespace

@@ -6,6 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "sim/input/machine_document.h"
+#include "sim/input/scenario_document.h"
+#include "sim/model/joint_normal.h"
+
 namespace servomill::sim::input {
 namespace {
 
@@ -42,7 +46,9 @@ std::string step(const std::string& path, const std::string& name) {
 
 class DesignReader {
  public:
-  model::SweepDesign read(config::Reader& table) {
+  explicit DesignReader(InputFiles& files) : files_(files) {}
+
+  SweepReading read(config::Reader& table) {
     if (table.has("samples")) {
       config::Reader samples = table.table("samples");
       read_samples(samples);
@@ -62,17 +68,80 @@ class DesignReader {
       table.fault("samples", "has nothing to sample: no key has a distribution");
     }
     if (table.faults() == 0) refuse_too_many(table);
-    return std::move(design_);
+    return {std::move(design_), std::move(identified_)};
   }
 
  private:
   void read_samples(config::Reader& table) {
     has_samples_ = true;
-    design_.samples.sampling = static_cast<model::Sampling>(table.choice("design", kDesigns));
+    design_.samples.sampling = static_cast<model::Sampling>(table.choice_or("design", 0, kDesigns));
     design_.samples.count =
         static_cast<std::uint64_t>(table.integer("count", {config::at_least(1)}));
     design_.samples.seed =
         static_cast<std::uint64_t>(table.integer_or("seed", 1, {config::at_least(0)}));
+    const std::size_t before = table.faults();
+    read_sample_files(table);
+    read_identified_values(table);
+    if (table.faults() > before) return;
+    for (const IdentifiedValues& values : identified_) add_joint(table, values);
+  }
+
+  // from: one name or a list of them.
+  void read_sample_files(config::Reader& table) {
+    if (!table.has("from")) return;
+    std::vector<std::string> names;
+    if (table.is("from", config::Value::Type::text)) {
+      names = {table.text("from")};
+    } else if (table.is("from", config::Value::Type::list)) {
+      names = table.texts("from");
+    } else {
+      table.raw("from");
+      table.fault("from", "must be the name of a file, or a list of names");
+    }
+    for (std::string& name : names) {
+      design_.sample_files.push_back({std::move(name), table.place("from")});
+    }
+  }
+
+  // A complete document holds the values itself.
+  void read_identified_values(config::Reader& table) {
+    if (table.has("identified") && !is_outdated_copy(table, "from", "identified")) {
+      for (config::Reader& one : table.tables("identified")) {
+        identified_.push_back(read_identified_table(one));
+      }
+      return;
+    }
+    if (table.has("identified")) table.raw("identified");
+    for (const model::SampleFile& file : design_.sample_files) {
+      const std::string path = beside(file.place, file.name);
+      MachineDocument machine = machine_document(path, files_, file.place);
+      if (machine.identified) {
+        identified_.push_back(std::move(*machine.identified));
+      } else {
+        table.fault("from", fmt::format("has no table [identified]: there are no values to draw "
+                                        "samples of{}",
+                                        design_.sample_files.size() > 1 ? " in " + file.name : ""));
+      }
+    }
+  }
+
+  // Keys that are drawn together: the first dimensions of the samples.
+  void add_joint(config::Reader& table, const IdentifiedValues& values) {
+    model::JointNormal joint{
+        Eigen::Map<const Eigen::VectorXd>(values.values.data(),
+                                          static_cast<Eigen::Index>(values.values.size())),
+        model::covariance_factor(values.covariance)};
+    const std::string_view source = table.has("from") ? "from" : "identified";
+    for (std::size_t k = 0; k < values.keys.size(); ++k) {
+      const std::string path = "machine." + values.keys[k];
+      if (refuse_key(table, std::string(source), path)) return;
+      const std::string& unit = values.units[k];
+      const model::JointMember member{design_.joint.size(), static_cast<Eigen::Index>(k),
+                                      unit == kPlainNumber ? "" : unit};
+      design_.keys.push_back({path, table.place(source), member, true, design_.sampled_dimensions});
+    }
+    design_.sampled_dimensions += joint.dimensions();
+    design_.joint.push_back(std::move(joint));
   }
 
   void read_key(config::Reader& table, const std::string& key, const std::string& path) {
@@ -111,13 +180,13 @@ class DesignReader {
     if (!fixed && !again) return false;
     table.raw(key);
     table.fault(key, fixed ? fmt::format("is the same at all points; {} cannot be swept", first)
-                           : "is varied twice");
+                     : path.ends_with(key) ? "is varied twice"
+                                           : fmt::format("varies {} a second time", path));
     return true;
   }
 
   void add(config::Reader& table, const std::string& key, const std::string& path,
-           std::variant<model::ValueTexts, model::SweepRange, model::NumberDistribution> values,
-           bool sampled, std::size_t dimension) {
+           model::SweepValues values, bool sampled, std::size_t dimension) {
     design_.keys.push_back({path, table.place(key), std::move(values), sampled, dimension});
   }
 
@@ -259,12 +328,16 @@ class DesignReader {
                     : fmt::format("has {:.3g} points; must be <= {}", points, model::kMostPoints));
   }
 
+  InputFiles& files_;
   model::SweepDesign design_;
+  std::vector<IdentifiedValues> identified_;
   bool has_samples_ = false;
 };
 
 }  // namespace
 
-model::SweepDesign read_sweep(config::Reader& table) { return DesignReader().read(table); }
+SweepReading read_sweep(config::Reader& table, InputFiles& files) {
+  return DesignReader(files).read(table);
+}
 
 }  // namespace servomill::sim::input

@@ -71,12 +71,15 @@ class ScenarioReader {
     }
     if (root.has("sweep")) {
       config::Reader sweep = root.table("sweep");
-      out_.sweep = read_sweep(sweep);
+      SweepReading reading = read_sweep(sweep, files_);
+      out_.sweep = std::move(reading.design);
+      identified_ = std::move(reading.identified);
     }
     root.finish();
     check_plan();
     case_reader.read_machines(document_);
     document_.merge(with_contents_of_files());
+    document_.merge(with_identified_values().root());
     if (!plugins.empty()) document_.set(plugins);
     out_.resolved = document_.to_toml();
   }
@@ -114,6 +117,15 @@ class ScenarioReader {
       root.children.push_back(std::move(part));
     }
     return root;
+  }
+
+  // [[sweep.samples.identified]], in place of the files of samples.from.
+  config::Document with_identified_values() const {
+    std::string toml;
+    for (const IdentifiedValues& one : identified_) {
+      toml += "[[sweep.samples.identified]]\n" + table_lines(one);
+    }
+    return config::Document::from_text(toml, "");
   }
 
   void read_error_models(config::Reader& root) {
@@ -212,8 +224,9 @@ class ScenarioReader {
   config::Document document_;
   InputFiles& files_;
   model::Scenario& out_;
-  std::vector<std::string> error_models_;  // names, as far as read
-  bool hardware_is_chosen_ = false;        // [feedback_hardware] says if it is connected
+  std::vector<std::string> error_models_;     // names, as far as read
+  std::vector<IdentifiedValues> identified_;  // that the sweep draws samples of
+  bool hardware_is_chosen_ = false;           // [feedback_hardware] says if it is connected
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/input/machine_document.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/scenario_document.h"
 
@@ -50,6 +51,16 @@ std::optional<std::uint64_t> ScenarioSource::checksum(const std::string& path) c
     return parts_->files->checksum(path, {}, "file");
   } catch (const InputError&) {
     return std::nullopt;
+  }
+}
+
+std::vector<std::string> ScenarioSource::bases_of_machine(const std::string& path) const {
+  try {
+    std::vector<std::string> files = machine_document(path, *parts_->files).files;
+    files.erase(files.begin());
+    return files;
+  } catch (const InputError&) {
+    return {};
   }
 }
 

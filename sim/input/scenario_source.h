@@ -33,6 +33,9 @@ class ScenarioSource {
   /// it.
   std::optional<std::uint64_t> checksum(const std::string& path) const;
 
+  /// Machine files that one is based on, also those in between; none, if it cannot be read.
+  std::vector<std::string> bases_of_machine(const std::string& path) const;
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

@@ -54,25 +54,6 @@ std::vector<std::string> tables_of(const std::vector<std::string>& keys) {
   return out;
 }
 
-std::string list_of_texts(const std::vector<std::string>& texts) {
-  std::vector<std::string> quoted;
-  for (const std::string& text : texts) quoted.push_back(config::quoted_text(text));
-  return fmt::format("[{}]", fmt::join(quoted, ", "));
-}
-
-std::string identified_table(const IdentifiedValues& identified) {
-  std::vector<std::string> rows;
-  for (const auto& row : identified.covariance.rowwise()) {
-    rows.push_back(fmt::format("[{}]", fmt::join(row.begin(), row.end(), ", ")));
-  }
-  return fmt::format(
-      "\n[identified]\nkeys = {}\nunits = {}\nvalues = [{}]\n"
-      "covariance = [  # products of the units\n  {},\n]\nunidentifiable = {}\n",
-      list_of_texts(identified.keys), list_of_texts(identified.units),
-      fmt::join(identified.values, ", "), fmt::join(rows, ",\n  "),
-      list_of_texts(identified.unidentifiable));
-}
-
 void refuse_incomplete(const std::string& path, const IdentifiedFile& file) {
   const IdentifiedValues& v = file.identified;
   const std::size_t n = v.keys.size();
@@ -116,7 +97,7 @@ std::string identified_text(const IdentifiedFile& file) {
       if (table_of(keys[k]) == table) out += value_line(file, k);
     }
   }
-  return out + identified_table(file.identified);
+  return out + "\n[identified]\n" + table_lines(file.identified);
 }
 
 void write_identified_file(const std::string& path, const IdentifiedFile& file, bool force) {

@@ -56,11 +56,26 @@ std::string sampled(const NumberDistribution& d, double u) {
   return {};
 }
 
-std::string value_of(const SweepKey& key, std::uint64_t index, double u) {
-  if (key.sampled) {
-    const auto* texts = std::get_if<ValueTexts>(&key.values);
-    return texts ? sampled(*texts, u) : sampled(std::get<NumberDistribution>(key.values), u);
+// u: the sample of all dimensions.
+std::string sampled(const SweepKey& key, const std::vector<JointNormal>& joint,
+                    const std::vector<double>& u) {
+  if (const auto* texts = std::get_if<ValueTexts>(&key.values)) {
+    return sampled(*texts, u[key.dimension]);
   }
+  if (const auto* number = std::get_if<NumberDistribution>(&key.values)) {
+    return sampled(*number, u[key.dimension]);
+  }
+  const auto& member = std::get<JointMember>(key.values);
+  const JointNormal& group = joint[member.group];
+  double value = group.mean[member.row];
+  for (std::size_t d = 0; d < group.dimensions(); ++d) {
+    value += group.factor(member.row, static_cast<Eigen::Index>(d)) *
+             normal_quantile(u[key.dimension + d]);
+  }
+  return as_toml(value, member.unit);
+}
+
+std::string value_on_grid(const SweepKey& key, std::uint64_t index) {
   const auto* texts = std::get_if<ValueTexts>(&key.values);
   return texts ? value_at(*texts, index) : value_at(std::get<SweepRange>(key.values), index);
 }
@@ -114,8 +129,7 @@ std::vector<std::string> SweepDesign::point(std::uint64_t index) const {
   std::vector<std::string> values;
   values.reserve(keys.size());
   for (const SweepKey& key : keys) {
-    values.push_back(key.sampled ? value_of(key, 0, u[key.dimension])
-                                 : value_of(key, at[key.dimension], 0.0));
+    values.push_back(key.sampled ? sampled(key, joint, u) : value_on_grid(key, at[key.dimension]));
   }
   return values;
 }
@@ -125,6 +139,7 @@ SweepColumn SweepDesign::column(std::size_t key) const {
   if (const auto* range = std::get_if<SweepRange>(&values)) return {true, range->unit, {}};
   if (const auto* number = std::get_if<NumberDistribution>(&values))
     return {true, number->unit, {}};
+  if (const auto* member = std::get_if<JointMember>(&values)) return {true, member->unit, {}};
   const auto& texts = std::get<ValueTexts>(values);
   const auto first = written_number(texts.front());
   const auto is_alike = [&](const std::string& text) {

@@ -9,6 +9,7 @@
 /// "errors.identified.EYX.harmonic.amplitude_um" = { normal = [150.0, 3.0] }    # mean, deviation
 /// "case.table.strategy.time_constant_ms" = { uniform = [30.0, 50.0] }      # or log_uniform
 /// "case.table.strategy.injection_point" = { choice = ["position_command", "feed_forward"] }
+/// # in samples: from = "identified.toml" adds the identified keys of a machine, drawn together
 ///
 /// [[sweep.zip]]                                     # lists that go together, one value each
 /// "machine.axis.X.v_max" = ["20 m/min", "40 m/min"]
@@ -27,6 +28,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/joint_normal.h"
 #include "sim/model/sampling.h"
 
 namespace servomill::sim::model {
@@ -65,13 +67,30 @@ struct NumberDistribution {
   std::string unit;
 };
 
+/// One of several sampled numbers that are distributed together.
+struct JointMember {
+  std::size_t group = 0;  // of SweepDesign::joint
+  Eigen::Index row = 0;   // of its mean
+  std::string unit;
+};
+
+/// File whose identified values are sampled.
+struct SampleFile {
+  std::string name;  // as written
+  Place place;
+};
+
+using SweepValues = std::variant<ValueTexts, SweepRange, NumberDistribution, JointMember>;
+
 /// One key that a sweep varies.
 struct SweepKey {
   std::string key;  // dotted, as --set takes it
   Place place = {};
-  std::variant<ValueTexts, SweepRange, NumberDistribution> values;
-  bool sampled = false;       // else on the grid
-  std::size_t dimension = 0;  // of the grid or of the samples; keys of one dimension go together
+  SweepValues values;
+  bool sampled = false;  // else on the grid
+  /// Dimension of the grid or of the samples; keys of one dimension go together. Of a JointMember:
+  /// the first one of its group.
+  std::size_t dimension = 0;
 };
 
 /// Common type of the values of one key: numbers of one unit, or one of some texts.
@@ -86,6 +105,8 @@ struct SweepDesign {
   std::vector<std::uint64_t> grid;     // lengths of the dimensions, the last varies fastest
   std::size_t sampled_dimensions = 0;  // of the samples
   SampleSettings samples;
+  std::vector<JointNormal> joint;
+  std::vector<SampleFile> sample_files;
 
   bool empty() const { return keys.empty(); }
   /// Number of points. @pre there are not more than kMostPoints

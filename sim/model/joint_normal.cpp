@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,8 @@ namespace {
 constexpr double kSymmetryTolerance = 1e-12;
 // Eigenvalue of the correlations that rounding to some ten digits may leave below 0.
 constexpr double kDefiniteTolerance = 1e-9;
+// Rounding of correlations that are computed in double precision.
+constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 Eigen::MatrixXd symmetric(const Eigen::MatrixXd& matrix) {
   return 0.5 * (matrix + matrix.transpose());
@@ -25,6 +28,11 @@ Eigen::MatrixXd correlations(const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd out = inverse.asDiagonal() * symmetric(covariance) * inverse.asDiagonal();
   for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, i) = inverse[i] > 0.0 ? 1.0 : 0.0;
   return out;
+}
+
+double least_eigenvalue(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
 }
 
 std::string fault_of_pair(const Eigen::MatrixXd& c, Eigen::Index i, Eigen::Index j) {
@@ -57,9 +65,7 @@ std::string covariance_fault(const Eigen::MatrixXd& covariance) {
       if (!fault.empty()) return fault;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlations(covariance),
-                                                              Eigen::EigenvaluesOnly);
-  const double least = solver.eigenvalues()[0];
+  const double least = least_eigenvalue(correlations(covariance));
   if (least >= -kDefiniteTolerance) return {};
   return fmt::format(
       "must be positive semi-definite; the least eigenvalue of the correlations is {:.3g}", least);
@@ -69,8 +75,10 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
   const Eigen::Index n = covariance.rows();
   Eigen::MatrixXd rest = correlations(covariance);
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(n, n);
-  // Schur complements of a matrix of rank r end in rounding, or in what the definiteness allows
-  const double negligible = static_cast<double>(n) * 2.0 * kDefiniteTolerance;
+  // Schur complements of a singular matrix end in its rounding, which its least eigenvalue shows. A
+  // direction that is well known may matter more than all others: none is left out beyond that.
+  const double negligible =
+      2.0 * static_cast<double>(n) * std::max(kRounding, -least_eigenvalue(rest));
   Eigen::Index rank = 0;
   for (; rank < n; ++rank) {
     Eigen::Index pivot = 0;

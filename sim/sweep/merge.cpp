@@ -49,10 +49,10 @@ void refuse_other(const Shard& one, const Shard& first) {
                                              "say that it wrote all of it: merge with that build",
                                              one.build, run::result_identity()));
   }
-  if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {
     refuse(fmt::format("was run with another file '{}' than", file));
   }
+  if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
   if (one.selection.first != first.selection.first || one.selection.last != first.selection.last) {
     refuse(fmt::format("is of points {} to {}, others than those of", one.selection.first + 1,
                        one.selection.last));

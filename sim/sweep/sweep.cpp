@@ -10,6 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/config/document.h"
+#include "sim/input/identified_values.h"
 #include "sim/input/scenario_document.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
@@ -102,6 +103,30 @@ void refuse_swept(const std::vector<std::string>& changes, const model::Scenario
   if (!faults.empty()) throw InputError(std::move(faults));
 }
 
+// Samples are drawn about the machine that is run.
+void refuse_other_machine(const model::Scenario& base) {
+  const model::SweepDesign& design = base.sweep;
+  const bool sweeps_machine = std::any_of(design.keys.begin(), design.keys.end(),
+                                          [](const auto& one) { return one.key == "machine"; });
+  if (sweeps_machine) return;
+  const config::Document document = config::Document::from_text(base.resolved, "");
+  for (const model::SweepKey& key : design.keys) {
+    const auto* member = std::get_if<model::JointMember>(&key.values);
+    if (member == nullptr) continue;
+    const double mean = design.joint[member->group].mean[member->row];
+    const std::string_view unit = member->unit.empty() ? input::kPlainNumber : member->unit;
+    const config::Value* value = input::value_at(document.root(), key.key);
+    if (value != nullptr && input::is_same_number(*value, key.key, mean, std::string(unit))) {
+      continue;
+    }
+    throw InputError(key.place,
+                     fmt::format("sweep.samples: the mean of {} is {}{}{}, the machine has {}; run "
+                                 "the identified machine: machine = \"FILE\"",
+                                 key.key, mean, member->unit.empty() ? "" : " ", member->unit,
+                                 value == nullptr ? "no such key" : config::inline_toml(*value)));
+  }
+}
+
 // Without the value in it: the same fault at another point has another one.
 std::string without(std::string message, const std::string& value) {
   const std::size_t at = message.find(value);
@@ -121,6 +146,7 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
                      "\"program.feed_override\" = [0.5, 1.0]");
   }
   refuse_swept(changes_, base_);
+  refuse_other_machine(base_);
   base_.swept_files = swept_files();
 }
 
@@ -139,16 +165,24 @@ std::string Sweep::assignment(std::size_t key, const std::string& value) const {
 
 std::string Sweep::swept_files() const {
   std::set<std::string> lines;
+  const auto add = [&](const std::string& name, const std::string& file) {
+    const auto checksum = source_.checksum(file);
+    lines.insert(
+        fmt::format("{} {}", checksum ? fmt::format("{:016x}", *checksum) : "unreadable", name));
+  };
   for (std::size_t key = 0; key < design().keys.size(); ++key) {
     const auto* values = std::get_if<model::ValueTexts>(&design().keys[key].values);
     if (values == nullptr) continue;
     for (const std::string& value : *values) {
       const auto file = named_file(key, value);
       if (!file) continue;
-      const auto checksum = source_.checksum(*file);
-      lines.insert(fmt::format("{} {}", checksum ? fmt::format("{:016x}", *checksum) : "unreadable",
-                               unquoted(value)));
+      add(unquoted(value), *file);
+      if (design().keys[key].key != "machine") continue;
+      for (const std::string& base : source_.bases_of_machine(*file)) add(base, base);
     }
+  }
+  for (const model::SampleFile& file : design().sample_files) {
+    add(file.name, input::beside(file.place, file.name));
   }
   return fmt::format("{}", fmt::join(lines, "\n"));
 }

@@ -22,8 +22,9 @@ class Sweep {
   Sweep(std::string scenario_path, std::vector<std::string> changes);
 
   /// The scenario as it is without its sweep. Its `swept_files` are those that values of the sweep
-  /// name, one line each: "CHECKSUM NAME", or "unreadable NAME"; sorted. They belong to what the
-  /// sweep is: a table of it is not gone on with when they have changed.
+  /// and its samples name, and the machines that these are based on, one line each: "CHECKSUM
+  /// NAME", or "unreadable NAME"; sorted. They belong to what the sweep is: a table of it is not
+  /// gone on with when they have changed.
   const model::Scenario& base() const { return base_; }
   const model::SweepDesign& design() const { return base_.sweep; }
 

@@ -13,15 +13,15 @@ namespace servomill::sim::sweep {
 
 std::string why_other(const SweepHeader& header, const model::Scenario& base,
                       const Selection& selection) {
-  if (header.base.resolved != base.resolved) {
+  const std::string changed = changed_file(header.base.swept_files, base.swept_files);
+  if (header.base.resolved != base.resolved && (changed.empty() || header.base.name != base.name)) {
     return header.base.name == base.name
                ? "holds a sweep of this scenario as it was before it changed"
                : fmt::format("holds a sweep of the scenario '{}'", header.base.name);
   }
-  if (const std::string file = changed_file(header.base.swept_files, base.swept_files);
-      !file.empty()) {
+  if (!changed.empty()) {
     return fmt::format("holds a sweep of this scenario as it was before its file '{}' changed",
-                       file);
+                       changed);
   }
   if (!(header.selection == selection)) {
     const auto said = [](const Selection& s) {
@@ -34,11 +34,12 @@ std::string why_other(const SweepHeader& header, const model::Scenario& base,
 }
 
 std::string changed_file(const std::string& before, const std::string& after) {
-  if (before == after) return {};
+  const auto name_of = [](const std::string& line) { return line.substr(line.find(' ') + 1); };
   const std::vector<std::string> others = run::split_lines(before);
   for (const std::string& line : run::split_lines(after)) {
-    if (std::find(others.begin(), others.end(), line) != others.end()) continue;
-    return line.substr(line.find(' ') + 1);
+    for (const std::string& other : others) {
+      if (line != other && name_of(line) == name_of(other)) return name_of(line);
+    }
   }
   return {};
 }

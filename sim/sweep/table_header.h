@@ -13,8 +13,8 @@ namespace servomill::sim::sweep {
 /// Version of the layout of sweep files; a file of another one is refused.
 inline constexpr int kSweepSchemaVersion = 3;
 
-/// A file of `after` that is not the same in `before` (Scenario::swept_files); empty: there is
-/// none.
+/// A file of both `before` and `after` that is not the same (Scenario::swept_files); empty: there
+/// is none. Lists of other files belong to other scenarios.
 std::string changed_file(const std::string& before, const std::string& after);
 
 /// Content of the header.

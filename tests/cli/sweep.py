@@ -16,6 +16,7 @@ import numpy as np
 
 from sweep_files import BUILD, HERE, PATIENCE, POINTS, SCENARIO, SERVOMILL, SLOW, Sweeps, columns, servomill
 from sweep_merge import *
+from sweep_samples import *
 
 
 class Table(Sweeps):

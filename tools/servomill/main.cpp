@@ -25,7 +25,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 17> kCommands = {{
+constexpr std::array<Command, 18> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -54,6 +54,8 @@ constexpr std::array<Command, 17> kCommands = {{
      recording_command},
     {"identify", "EXPERIMENT.toml [-o identified.toml]",
      "finds parameters of drives from recordings of real axes", identify_command},
+    {"response", "RECORDING --input CHANNEL --output CHANNEL --period S",
+     "frequency response of a real axis from a recording", response_command},
     {"list", "strategies|machines|scenarios|quantities|keys", "prints what there is", list_command},
 }};
 

@@ -33,6 +33,7 @@ int merge_command(const Arguments& arguments) {
   for (const std::string& missing : merged.missing) fmt::print(stderr, "{}: {}\n", out, missing);
   tell_mixed_levels(out, merged.simd_levels);
   if (!options.has("quiet")) {
+    if (merged.missing.empty()) print_statistics(out);
     fmt::print("{} in {}\n", points_by_status(merged.counts), out);
   }
   return kDone;

@@ -29,7 +29,9 @@ namespace po = boost::program_options;
 
 constexpr const char* kSummary =
     "Runs a scenario at the points of its [sweep] table, prints one line for each and writes one "
-    "row a point to one HDF5 file. What an interrupted or killed sweep has left is gone on with. "
+    "row a point to one HDF5 file; of samples it prints the mean, the standard deviation and the "
+    "interval of 95 % of each quantity. What an interrupted or killed sweep has left is gone on "
+    "with. "
     "Exit status 1: at some points the machine stopped or the input was refused; their rows say "
     "why.";
 constexpr const char* kSynopsis = "SCENARIO.toml [-o OUT.h5] [--shard I/N] [--set KEY=VALUE]...";
@@ -212,11 +214,24 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
   }
 }
 
-// Prints what stands at the end of a sweep; the exit status.
+// Prints that nothing is left to be done; the exit status.
+int print_complete(const Options& options, const sim::sweep::SweepTable& table,
+                   const SweepFiles& files, std::uint64_t points) {
+  if (!is_sweep_quiet(options)) {
+    fmt::print("{} holds all {} points already\n", files.table, points);
+    print_statistics(files.table);
+  }
+  return status_of(table.counts());
+}
+
+// Prints the end of a sweep; the exit status.
 int print_sweep_end(const Options& options, const sim::sweep::SweepTable& table,
-                    const SweepFiles& files, std::uint64_t without_signals) {
+                    const sim::model::SweepDesign& design, const SweepFiles& files,
+                    std::uint64_t without_signals) {
+  tell_refused_samples(design, table.counts());
   if (options.has("csv")) print_file(sim::sweep::csv_name(files.table));
   if (!is_sweep_quiet(options)) {
+    print_statistics(files.table);
     fmt::print("{}; written to {}\n", points_by_status(table.counts()), files.table);
   }
   if (without_signals > 0) {
@@ -249,9 +264,7 @@ int sweep_command(const Arguments& arguments) {
   const std::vector<bool> done = points_done(table, selection, sweep, files.signals);
   left.count = std::count(done.begin(), done.end(), false);
   if (table.is_complete() && left.count == 0) {
-    if (!is_sweep_quiet(options))
-      fmt::print("{} holds all {} points already\n", files.table, selection.size());
-    return status_of(table.counts());
+    return print_complete(options, table, files, selection.size());
   }
   tell_before(options, table, files, of_a_point, static_cast<std::uint64_t>(left.count));
 
@@ -286,7 +299,7 @@ int sweep_command(const Arguments& arguments) {
     return kInterrupted;
   }
   if (!table.is_complete()) table.commit();
-  return print_sweep_end(options, table, files, still_without_signals);
+  return print_sweep_end(options, table, sweep.design(), files, still_without_signals);
 }
 
 }  // namespace servomill::tools

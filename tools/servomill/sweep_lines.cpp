@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/sweep/statistics.h"
 #include "sim/system/json.h"
 
 namespace servomill::tools {
@@ -131,6 +132,26 @@ std::string points_by_status(const sim::sweep::StatusCounts& counts) {
     text += fmt::format("{}{} points {}", text.empty() ? "" : ", ", counts[status], name);
   }
   return text;
+}
+
+void print_statistics(const std::string& table) {
+  constexpr std::size_t kMostLines = 100;
+  const auto quantities = sim::sweep::sample_statistics(table);
+  if (quantities.empty()) return;
+  fmt::print("\n{}\n", sim::sweep::format_statistics(quantities, kMostLines));
+}
+
+void tell_refused_samples(const sim::model::SweepDesign& design,
+                          const sim::sweep::StatusCounts& counts) {
+  const auto refused = counts[static_cast<std::size_t>(sim::run::PointStatus::refused)];
+  if (refused == 0 || design.joint.empty()) return;
+  std::vector<std::string> names;
+  for (const auto& file : design.sample_files) names.push_back(file.name);
+  fmt::print(stderr,
+             "{} points refused: samples{} reach values that the machine does not take, and their "
+             "quantities count without them; narrow the interval by recordings that excite these "
+             "keys more, or take the keys out of [identified]\n",
+             refused, names.empty() ? "" : fmt::format(" of {}", fmt::join(names, ", ")));
 }
 
 void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels) {

@@ -52,6 +52,14 @@ class SweepLines {
 /// "98 points done, 2 points refused".
 std::string points_by_status(const sim::sweep::StatusCounts& counts);
 
+/// Prints the distribution of each quantity over the samples of a complete table, where there are
+/// samples.
+void print_statistics(const std::string& table);
+
+/// Says on standard error how many samples of identified values were refused, and what helps.
+void tell_refused_samples(const sim::model::SweepDesign& design,
+                          const sim::sweep::StatusCounts& counts);
+
 /// Says on standard error if points of a table were computed at several levels of instructions.
 void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& levels);
 

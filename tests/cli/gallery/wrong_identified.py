@@ -1,5 +1,5 @@
 """Wrong machine files with identified values, and sweeps over them."""
-from edits import RUN, typed
+from edits import typed
 
 BASED_ON = 'based_on = "machine.toml"\n'
 VALUES = '[axis.X]\nmoving_mass = "95.11 kg"\n[axis.Y]\nmoving_mass = "96 kg"\n'
@@ -41,4 +41,28 @@ IDENTIFIED = [
     identified("identified: wrong, where a scenario names it", "96.0]", "97.0]",
                ["servomill check scenario.toml --set 'machine=\"identified.toml\"'",
                 "servomill compensate part.ngc --machine identified.toml -o out.ngc"]),
+]
+
+
+def samples(title, sweep, machine="identified.toml", values=GOOD, commands=None):
+    """A sweep over the samples of identified.toml."""
+    assert commands is None or "sweep" in commands[0]
+    return {"title": title, "write": {"identified.toml": values}, "about": repr(values) if values != GOOD else "nothing wrong in it",
+            "edit": [("scenario.toml", 'machine = "machine.toml"', f'machine = "{machine}"'),
+                     ("scenario.toml", '[[quantity]]', f"[sweep]\n{sweep}\n\n[[quantity]]")],
+            "commands": commands or ["servomill check scenario.toml"]}
+
+
+FROM = 'samples = { from = "identified.toml", count = 4 }'
+
+IDENTIFIED += [
+    samples("samples: from a file that is not there", FROM.replace("identified.toml", "gone.toml")),
+    samples("samples: from a machine without identified values", FROM.replace("identified.toml", "machine.toml")),
+    samples("samples: from a number", FROM.replace('"identified.toml"', "3")),
+    samples("samples: twice from one file", FROM.replace('"identified.toml"', '["identified.toml", "identified.toml"]')),
+    samples("samples: of a key that varies as well", FROM + "\nmachine.axis.X.moving_mass = [90.0, 100.0]"),
+    samples("samples: about another machine than the one that is run", FROM, "machine.toml"),
+    samples("samples: from a wrong file", FROM, values=GOOD.replace("96.0]", "97.0]")),
+    samples("samples: a value of one that --set changes", FROM,
+            commands=["servomill sweep scenario.toml -q -o out.h5 --set machine.axis.X.moving_mass=100"]),
 ]

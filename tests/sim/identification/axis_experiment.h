@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/identification/record.h"
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 
 namespace servomill::sim::identification {
 

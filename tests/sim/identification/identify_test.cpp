@@ -66,7 +66,7 @@ TEST(Identify, WithNoiseTheIntervalsHoldTheTruthAndTheMachineIsWritten) {
   const Identification found = identify(experiment, 2);
   const double true_values[] = {88.0, 170.0, 17.0, 4.0};
   for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_TRUE(found.uncertainty.told[k]);
+    EXPECT_TRUE(found.uncertainty.identifiable[k]);
     EXPECT_NEAR(found.fit.values[k], true_values[k], 2.0 * found.uncertainty.half_width(k)) << k;
   }
   EXPECT_EQ(warnings(found), std::vector<std::string>{});
@@ -95,7 +95,7 @@ axis.X = { command = "q", feedback = "y", force = "F" }
 }
 
 // Three experiments that cannot tell what they are asked for.
-TEST(Identify, CoulombFrictionByDirectionAndTheLoadAreToldInCombinationsOnly) {
+TEST(Identify, CoulombFrictionByDirectionAndTheLoadAreIdentifiedInCombinationsOnly) {
   const AxisExperiment files;
   Record motion = ramps(3.0);
   files.write_recording(synthesize(motion, truth(), kNoise));
@@ -110,12 +110,12 @@ keys = ["axis.X.friction.coulomb_negative", "axis.X.friction.breakaway_negative"
 start = "15 N"
 )");
   const Identification& found = result.found;
-  for (const std::size_t k : {0u, 1u, 2u}) EXPECT_FALSE(found.uncertainty.told[k]) << k;
-  ASSERT_EQ(untold_sentences(found).size(), 1u);
-  EXPECT_NE(untold_sentences(found)[0].find("axis.X.gravity_load, axis.X.friction.coulomb, "
+  for (const std::size_t k : {0u, 1u, 2u}) EXPECT_FALSE(found.uncertainty.identifiable[k]) << k;
+  ASSERT_EQ(unidentifiable_sentences(found).size(), 1u);
+  EXPECT_NE(unidentifiable_sentences(found)[0].find("axis.X.gravity_load, axis.X.friction.coulomb, "
                                             "axis.X.friction.coulomb_negative: only combinations"),
             std::string::npos)
-      << untold_sentences(found)[0];
+      << unidentifiable_sentences(found)[0];
 }
 
 TEST(Identify, MotorInertiaAndMassOfARigidAxisAreOneNumber) {
@@ -129,8 +129,8 @@ key = "axis.X.motor_inertia"
 start = "1e-6 kg m^2"
 )");
   const Identification& found = result.found;
-  EXPECT_FALSE(found.uncertainty.told[0] || found.uncertainty.told[1]);
-  ASSERT_EQ(untold_sentences(found).size(), 1u);
+  EXPECT_FALSE(found.uncertainty.identifiable[0] || found.uncertainty.identifiable[1]);
+  ASSERT_EQ(unidentifiable_sentences(found).size(), 1u);
 }
 
 TEST(Identify, WhatTheRecordingDoesNotDependOnIsSaid) {
@@ -143,9 +143,9 @@ key = "axis.X.moving_mass"
 key = "axis.Y.moving_mass"
 )");
   const Identification& found = result.found;
-  EXPECT_TRUE(found.uncertainty.told[0]);
-  EXPECT_FALSE(found.uncertainty.told[1]);
-  EXPECT_EQ(untold_sentences(found),
+  EXPECT_TRUE(found.uncertainty.identifiable[0]);
+  EXPECT_FALSE(found.uncertainty.identifiable[1]);
+  EXPECT_EQ(unidentifiable_sentences(found),
             (std::vector<std::string>{"axis.Y.moving_mass: the recordings do not depend on it; its "
                                       "value is the one that was started from"}));
 }

@@ -54,7 +54,7 @@ TEST(SampledLoop, TheMeanOfTwoSamplesIsDifferenced) {
   EXPECT_NEAR(loop.sample(0.0, 3e-6), s.Kp * (s.Kv * -3e-6 - 1.5e-6 / s.period), 1e-9);
 }
 
-TEST(SampledLoop, ReadsTheSpeedFromTheMotorWhereToldSo) {
+TEST(SampledLoop, ReadsTheSpeedFromTheMotorWhereThatIsItsFeedback) {
   LoopSettings s = small_loop();
   s.mean_of = 1;
   s.speed_feedback = SpeedFeedback::motor;

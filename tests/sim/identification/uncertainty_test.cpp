@@ -67,21 +67,21 @@ TEST(Uncertainty, ColumnsThatAreAlikeAreNamedNotGuessed) {
   X.leftCols(3) = columns();
   X.col(3) = 2.0 * X.col(1) - X.col(0);
   const Uncertainty u = uncertainty_of(X, coloured_noise(3), all_of(kSamples));
-  ASSERT_EQ(u.untold.size(), 1u);
-  EXPECT_EQ(u.untold[0].parameters, (std::vector<std::size_t>{0, 1, 3}));
-  EXPECT_FALSE(u.told[0] || u.told[1] || u.told[3]);
-  EXPECT_TRUE(u.told[2]);
+  ASSERT_EQ(u.unidentifiable.size(), 1u);
+  EXPECT_EQ(u.unidentifiable[0].parameters, (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_FALSE(u.identifiable[0] || u.identifiable[1] || u.identifiable[3]);
+  EXPECT_TRUE(u.identifiable[2]);
   EXPECT_EQ(u.standard(1), 0.0) << "no number where there is none";
   EXPECT_GT(u.standard(2), 0.0);
 }
 
-TEST(Uncertainty, AColumnOfZerosIsNotTold) {
+TEST(Uncertainty, AColumnOfZerosIsUnidentifiable) {
   Eigen::MatrixXd X(kSamples, 4);
   X.leftCols(3) = columns();
   X.col(3).setZero();
   const Uncertainty u = uncertainty_of(X, coloured_noise(3), all_of(kSamples));
-  EXPECT_FALSE(u.told[3]);
-  EXPECT_TRUE(u.told[0] && u.told[1] && u.told[2]);
+  EXPECT_FALSE(u.identifiable[3]);
+  EXPECT_TRUE(u.identifiable[0] && u.identifiable[1] && u.identifiable[2]);
 }
 
 TEST(Uncertainty, StudentsQuantilesAreThoseOfTables) {

@@ -18,7 +18,8 @@ model::SweepDesign design_of(const std::string& toml) {
   const config::Document document = config::Document::from_text("[sweep]\n" + toml, "s.toml");
   config::Reader root(document);
   config::Reader table = root.table("sweep");
-  model::SweepDesign design = read_sweep(table);
+  InputFiles files;
+  model::SweepDesign design = read_sweep(table, files).design;
   root.finish();
   return design;
 }

@@ -1,4 +1,4 @@
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "tests/sim/identification/axis_experiment.h"
 
-namespace servomill::sim::identification::simulate_test {
+namespace servomill::sim::identification::simulate_record_test {
 namespace {
 
 AxisModel model_without_friction() {
@@ -98,4 +98,4 @@ TEST(Simulate, EncodersAreReadInTheirSteps) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::identification::simulate_test
+}  // namespace servomill::sim::identification::simulate_record_test

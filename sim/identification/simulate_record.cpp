@@ -1,4 +1,4 @@
-#include "sim/identification/simulate.h"
+#include "sim/identification/simulate_record.h"
 
 #include <algorithm>
 #include <cassert>

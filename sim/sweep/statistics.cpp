@@ -1,0 +1,128 @@
+#include "sim/sweep/statistics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sim/records/input_file.h"
+#include "sim/sweep/table_header.h"
+#include "sim/system/text_table.h"
+
+namespace servomill::sim::sweep {
+namespace {
+
+constexpr double kLow = 0.025, kHigh = 0.975;
+
+// @pre values are sorted, and there are some
+double quantile(std::span<const double> values, double share) {
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  if (below + 1 >= values.size()) return values.back();
+  return values[below] + (at - static_cast<double>(below)) * (values[below + 1] - values[below]);
+}
+
+std::string attribute_of(const TableColumn& column, std::string_view name) {
+  for (const auto& [key, value] : column.attributes) {
+    if (key == name) return value;
+  }
+  return {};
+}
+
+// The keys of the grid with their values at one of its points.
+std::string grid_text(const model::SweepDesign& design, std::uint64_t grid_point) {
+  const std::vector<std::string> values = design.point(grid_point * design.samples.count);
+  std::string out;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (design.keys[k].sampled) continue;
+    out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", design.keys[k].key, values[k]);
+  }
+  return out;
+}
+
+std::string shown_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
+}
+
+}  // namespace
+
+Distribution distribution_of(std::span<const double> values) {
+  std::vector<double> finite;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
+               [](double value) { return std::isfinite(value); });
+  Distribution out{finite.size(), kNoNumber, kNoNumber, kNoNumber, kNoNumber};
+  if (finite.empty()) return out;
+  const auto n = static_cast<double>(finite.size());
+  double sum = 0.0;
+  for (const double value : finite) sum += value;
+  out.mean = sum / n;
+  double squares = 0.0;
+  for (const double value : finite) squares += (value - out.mean) * (value - out.mean);
+  if (finite.size() > 1) out.deviation = std::sqrt(squares / (n - 1.0));
+  if (finite.size() < kLeastForInterval) return out;
+  std::sort(finite.begin(), finite.end());
+  out.low = quantile(finite, kLow);
+  out.high = quantile(finite, kHigh);
+  return out;
+}
+
+std::vector<SampledQuantity> sample_statistics(const std::string& table) {
+  const records::InputFile file(table);
+  const SweepHeader header = read_sweep_header(file);
+  const model::SweepDesign& design = header.base.sweep;
+  if (design.sampled_dimensions == 0) return {};
+  std::map<std::uint64_t, std::vector<std::size_t>> rows;  // by point of the grid
+  for (std::uint64_t place = 0; place < header.selection.size(); ++place) {
+    rows[header.selection.point(place) / design.samples.count].push_back(place);
+  }
+  std::vector<TableColumn> columns = columns_of(file);
+  std::erase_if(columns, [](const auto& one) { return attribute_of(one, "role") != "quantity"; });
+  std::vector<std::vector<double>> values;
+  for (const TableColumn& column : columns) {
+    values.push_back(file.values(kSweepGroup + "/" + column.name));
+  }
+  std::vector<SampledQuantity> out;
+  for (const auto& [grid_point, places] : rows) {
+    const std::string grid = grid_text(design, grid_point);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      std::vector<double> some;
+      for (const std::size_t place : places) some.push_back(values[c].at(place));
+      out.push_back({grid, columns[c], distribution_of(some)});
+    }
+  }
+  return out;
+}
+
+std::string format_statistics(const std::vector<SampledQuantity>& quantities, std::size_t most) {
+  const bool has_grid = !quantities.empty() && !quantities.front().grid.empty();
+  std::vector<std::vector<std::string>> lines = {{"quantity", "axis", "statistic", "section",
+                                                  "case", "unit", "samples", "mean",
+                                                  "standard deviation", "2.5 %", "97.5 %"}};
+  for (const SampledQuantity& one : quantities) {
+    if (lines.size() > most) break;
+    const Distribution& d = one.distribution;
+    const std::string& unit = one.column.meaning.units;
+    lines.push_back({attribute_of(one.column, "quantity"), attribute_of(one.column, "axis"),
+                     attribute_of(one.column, "statistic"), attribute_of(one.column, "sections"),
+                     attribute_of(one.column, "case"), unit == "1" ? "" : unit,
+                     fmt::format("{}", d.count), shown_number(d.mean), shown_number(d.deviation),
+                     shown_number(d.low), shown_number(d.high)});
+  }
+  const std::size_t shown = lines.size() - 1;
+  std::set<std::size_t> right = {6, 7, 8, 9, 10};
+  std::size_t grouped = 4;
+  if (has_grid) {
+    lines.front().insert(lines.front().begin(), "grid");
+    for (std::size_t n = 0; n < shown; ++n) {
+      lines[n + 1].insert(lines[n + 1].begin(), quantities[n].grid);
+    }
+    right = {7, 8, 9, 10, 11};
+    grouped = 5;
+  }
+  std::string out = system::text_table(std::move(lines), grouped, right);
+  if (shown < quantities.size()) out += fmt::format("and {} more\n", quantities.size() - shown);
+  return out;
+}
+
+}  // namespace servomill::sim::sweep
