@@ -10,6 +10,7 @@
 #include <map>
 
 #include "sim/config/reader.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
@@ -61,7 +62,10 @@ void require_own_places(const InputError& error, std::string_view text) {
 }
 
 void read_machine(std::string_view text) {
-  const auto parsed = sim::config::Document::from_text(text, std::string(kDocument));
+  sim::input::InputFiles none;
+  const auto parsed =
+      sim::input::machine_document_of_text(std::string(text), std::string(kDocument), none)
+          .document;
   sim::config::Reader root(parsed);
   sim::input::read_machine(root);
   root.finish();

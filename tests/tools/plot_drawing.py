@@ -149,6 +149,16 @@ class Drawing(WithFiles):
         self.assertIn(f"{lost} of 20 points not done", drawn)
         self.fails(f"{path}: error: curves: the sweep samples its parameters", path, "--figures", "curves")
 
+    def test_identified_values_are_samples(self):
+        path = self.sweep_of("identified.h5", 'samples={count=12,identified=[{keys=["axis.X.moving_mass","nc.Kv"],units=["kg","1/s"],'
+                                              'values=[750.0,60.0],covariance=[[100.0,1.0],[1.0,9.0]]}]},program.feed_override=[1.0,2.0]')
+        with results.open_result(path) as sweep:
+            self.assertEqual([(one.key, one.sampled) for one in sweep.parameters],
+                             [("machine.axis.X.moving_mass", True), ("machine.nc.Kv", True), ("program.feed_override", False)])
+        done = plot(path, "-o", self.out, "--format", "svg", "--figures", "samples")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("nc.Kv, 1/s", (self.out / "identified-samples.svg").read_text())
+
     def fails(self, message, *arguments):
         done = plot(*arguments, "-o", self.out)
         self.assertEqual((done.stderr, done.stdout, done.returncode), (message + "\n", "", 2))

@@ -270,11 +270,13 @@ DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "choice"}
 
 
 def _is_sampled(table, key):
-    """Whether the table [sweep] gives this key a distribution, nested or quoted as it may be."""
+    """Whether the table [sweep] gives this key a distribution, nested or quoted as it may be, or draws it as identified."""
     if not isinstance(table, dict):
         return False
     for name, value in table.items():
         if name == key and isinstance(value, dict) and DISTRIBUTIONS & value.keys():
+            return True
+        if name == "samples" and any(key == f"machine.{one}" for drawn in value.get("identified", []) for one in drawn["keys"]):
             return True
         if key.startswith(name + ".") and _is_sampled(value, key[len(name) + 1:]):
             return True

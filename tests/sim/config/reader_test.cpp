@@ -40,6 +40,12 @@ double real(std::string_view text, std::string_view key, Quantity quantity) {
   return read_one<double>(text, [&](Reader& r) { return r.real(key, quantity); });
 }
 
+TEST(Reader, ReadsRowsOfAnyLength) {
+  using Rows = std::vector<std::vector<double>>;
+  EXPECT_EQ(read_one<Rows>("a = [[1, 2.5], [], [-3e-4]]", [](Reader& r) { return r.rows("a"); }),
+            (Rows{{1.0, 2.5}, {}, {-3e-4}}));
+}
+
 TEST(Reader, ReadsTheExampleOfItsHeader) {
   const Document document = Document::from_text("[drives.Y]\nlead_mm = 20\n[nc]\n", "m.toml");
   Reader root(document);
@@ -202,6 +208,14 @@ TEST(Gallery, WrongTypes) {
       faults("a_mm = [1, 'x', -3]", [](Reader& r) { r.reals("a_mm", kLength, {at_least(0.0)}); }),
       "s.toml:1:12: error: a_mm[1] = 'x'; must be a length such as \"3 mm\"\n"
       "s.toml:1:17: error: a_mm[2] = -3; must be >= 0");
+  const auto read_rows = [](Reader& r) { r.rows("a"); };
+  EXPECT_EQ(faults("a = [[1, 'x'], 3, [nan, {}], []]", read_rows),
+            "s.toml:1:10: error: a[0][1] = 'x'; must be a finite number\n"
+            "s.toml:1:16: error: a[1] = 3; must be a list of numbers, one row\n"
+            "s.toml:1:20: error: a[2][0] = nan; must be a finite number\n"
+            "s.toml:1:25: error: a[2][1] = {...}; must be a finite number");
+  EXPECT_EQ(faults("a = 3", read_rows), "s.toml:1:5: error: a = 3; must be a list");
+  EXPECT_EQ(faults("", read_rows), "s.toml: error: a is missing");
   EXPECT_EQ(faults("cases = ['a', 3]", [](Reader& r) { r.texts("cases"); }),
             "s.toml:1:15: error: cases[1] = 3; must be a text");
 }
