@@ -71,8 +71,13 @@ def section_of(folder, file, table):
     return "machine" if file.parent == folder / "scenarios/machines" else section_of_example(table)
 
 
+def is_experiment(table):
+    """An experiment of `servomill identify` has keys of its own (sim/identification/README.md); its reader refuses others."""
+    return "loop" in table and "recording" in table
+
+
 def section_of_example(table):
-    return "machine" if "structure" in table or "identified" in table else ""
+    return "machine" if {"structure", "identified", "axis"} & set(table) else ""
 
 
 def main():
@@ -81,6 +86,8 @@ def main():
     for file in sorted((root / "scenarios").rglob("*.toml")):
         table = tomllib.loads(file.read_text(encoding="utf-8"))
         files += 1
+        if is_experiment(table):
+            continue
         faults += [f"{file.relative_to(root)}: {key} is not listed by servomill list keys"
                    for key in unknown_keys(table, listed, section_of(root, file, table))]
     for page in readmes.pages(root):
@@ -88,6 +95,8 @@ def main():
             if language == "toml":
                 examples += 1
                 table = tomllib.loads("\n".join(lines))
+                if is_experiment(table):
+                    continue
                 faults += [f"{page.name}:{first}: {key} is not listed by servomill list keys"
                            for key in unknown_keys(table, listed, section_of_example(table))]
     assert files > 30 and examples > 5, f"{files} files, {examples} examples: the tree is laid out differently now"
