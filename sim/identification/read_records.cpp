@@ -10,6 +10,7 @@
 #include "sim/config/quantity.h"
 #include "sim/input/scenario_document.h"
 #include "sim/recordings/read_recording.h"
+#include "sim/recordings/survey.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -292,7 +293,25 @@ class RecordReader {
         (*into[role])[k] = to_force * (*signals[role])(first + T * static_cast<double>(k));
       }
     }
+    note_clipping();
     omit_gaps(*signals[static_cast<std::size_t>(Role::feedback)], first);
+  }
+
+  // A limit of the drive belongs to the loop, one of the recorder to nothing: either way the user
+  // must know.
+  void note_clipping() {
+    for (const Role role : {Role::feedback, Role::force, Role::motor_current}) {
+      const recordings::Channel* channel = channel_of(role);
+      if (channel == nullptr) continue;
+      const recordings::Base& base = recording_.bases[channel->base];
+      for (const recordings::Clipping& one : recordings::clipping(*channel)) {
+        out_.notes.push_back(fmt::format(
+            "{}: {} is clipped at {:g} in {} samples, first at {}; if the drive limits it, say "
+            "loop.force_limit, else what it held there is not known",
+            out_.record.name, channel->name, one.level, one.samples,
+            recordings::at_text(base, one.first)));
+      }
+    }
   }
 
   double current_to_force() const {

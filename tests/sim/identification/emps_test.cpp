@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -21,8 +23,8 @@ class Emps : public testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(kRecording)) GTEST_SKIP() << "no recording of the EMPS";
   }
-  Experiment experiment(const std::string& rest) {
-    std::ofstream(files_.path("emps.toml")) << fmt::format(R"(machine = "machine.toml"
+  Experiment experiment(const std::string& rest, const std::string& machine = "machine.toml") {
+    std::ofstream(files_.path("emps.toml")) << fmt::format(R"(machine = "{}"
 [loop]
 period_ms = 1.0
 position_gain = "160.18 1/s"
@@ -35,7 +37,7 @@ axis.X.command = {{ channel = "qg", unit = "m" }}
 axis.X.feedback = {{ channel = "qm", unit = "m" }}
 axis.X.force = {{ channel = "vir", factor = 35.15 }}
 )",
-                                                           rest, kRecording);
+                                                           machine, rest, kRecording);
     return read_experiment(files_.path("emps.toml"));
   }
   AxisExperiment files_;
@@ -86,6 +88,71 @@ TEST_F(Emps, TheLiteraturesModelLeavesWhatTheLiteratureSays) {
   EXPECT_LT(found.estimation[0].feedback_rms, 1.776e-6);
   EXPECT_LT(found.estimation[0].force_rms, 0.0527);
   EXPECT_NEAR(found.fit.values[0], 95.11, 0.5);
+}
+
+// Ten parameters, from rough guesses.
+constexpr const char* kOwn = R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+start = "80 kg"
+[[estimate]]
+key = "axis.X.friction.viscous"
+start = "180 N s/m"
+[[estimate]]
+key = "axis.X.friction.viscous_negative"
+start = "220 N s/m"
+[[estimate]]
+key = "axis.X.friction.coulomb"
+start = "20 N"
+[[estimate]]
+key = "axis.X.friction.coulomb_negative"
+start = "20 N"
+[[estimate]]
+keys = ["axis.X.friction.breakaway", "axis.X.friction.breakaway_negative"]
+start = "15 N"
+[[estimate]]
+key = "axis.X.friction.stribeck_velocity"
+start = "15 mm/s"
+[[estimate]]
+key = "axis.X.friction.bristle_stiffness"
+start = "1e6 N/m"
+[[estimate]]
+key = "axis.X.friction.bristle_damping"
+start = "2000 N s/m"
+[[estimate]]
+key = "loop.dead_time_ms"
+start = 0.3
+min = 0.0
+)";
+
+TEST_F(Emps, FrictionByDirectionThatRisesWithTheSpeedLeavesHalf) {
+  std::ofstream(files_.path("lugre.toml")) << R"(based_on = "machine.toml"
+[axis.X]
+slide_viscous_friction = "0 N s/m"
+[axis.X.friction]
+model = "lugre"
+breakaway = "15 N"
+breakaway_negative = "15 N"
+coulomb_negative = "20 N"
+stribeck_velocity = "15 mm/s"
+bristle_stiffness = "1e6 N/m"
+bristle_damping = "2000 N s/m"
+)";
+  const Experiment e = experiment(kOwn, "lugre.toml");
+  const auto begin = std::chrono::steady_clock::now();
+  const Identification found = identify(e, 2);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  const RecordResult& record = found.estimation[0];
+  std::printf("position rms %.3f um, force rms %.2f %%, in %.1f s\n", 1e6 * record.feedback_rms,
+              100.0 * record.force_rms, time.count());
+  EXPECT_LE(record.feedback_rms, 1.0e-6);
+  EXPECT_LE(record.force_rms, 0.033);
+  for (std::size_t k = 0; k < found.estimates.size(); ++k) {
+    EXPECT_TRUE(found.uncertainty.identifiable[k]) << k;
+  }
+  EXPECT_GT(found.fit.values[2] - found.fit.values[1], 5.0 * found.uncertainty.standard(1))
+      << "viscous friction by direction";
+  EXPECT_LT(found.fit.values[5], found.fit.values[3]) << "friction falls towards zero speed";
 }
 
 }  // namespace
