@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/recordings/camonitor_reader.h"
 #include "sim/recordings/csv_reader.h"
+#include "sim/recordings/hal_reader.h"
 #include "sim/recordings/hdf5_reader.h"
 #include "sim/recordings/mat_reader.h"
 #include "sim/recordings/sinumerik_frequency.h"
@@ -28,8 +30,9 @@ bool is_hdf5(std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a
 Recording read_hdf5_file(std::string_view, const std::string& path) { return read_hdf5(path); }
 
 // A text has no NUL; UTF-16 and binary files have.
-bool is_table(std::string_view bytes) {
-  return bytes.find('\0') == std::string_view::npos && is_csv(bytes);
+template <bool (*is)(std::string_view)>
+bool is_text(std::string_view bytes) {
+  return bytes.find('\0') == std::string_view::npos && is(bytes);
 }
 
 // The first that fits reads: marks of binary files come before those of texts.
@@ -37,7 +40,10 @@ constexpr std::array kFormats = {
     Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
     Format{"MAT v5 of MATLAB", is_mat, read_mat},
     Format{"Sinumerik frequency measurement", is_sinumerik_frequency, parse_sinumerik_frequency},
-    Format{"CSV", is_table, parse_csv},
+    Format{"halscope", is_halscope, parse_halscope},
+    Format{"camonitor", is_text<is_camonitor>, parse_camonitor},
+    Format{"halsampler", is_text<is_halsampler>, parse_halsampler},
+    Format{"CSV", is_text<is_csv>, parse_csv},
 };
 
 // Kinds of files that are known by their first bytes and not read.
@@ -67,7 +73,6 @@ std::string unread_format(std::string_view bytes) {
     return "a trace of a Sinumerik control";
   }
   if (head.find("%[GLOBAL]") != std::string_view::npos) return "a recording of TNCscope";
-  if (head.starts_with("Sampling period is ")) return "a recording of LinuxCNC's halscope";
   return "";
 }
 

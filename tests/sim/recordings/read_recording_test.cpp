@@ -45,8 +45,6 @@ TEST_F(ReadRecording, OtherKindsAreNamed) {
             "is a trace of a Sinumerik control" + not_read);
   EXPECT_EQ(refusal("%[GLOBAL]\n%[CURVE1]\n%[DATA]\n0;1\n1;2\n"),
             "is a recording of TNCscope" + not_read);
-  EXPECT_EQ(refusal("Sampling period is 1000000 nSec\nx 1.0 y 2.0\n"),
-            "is a recording of LinuxCNC's halscope" + not_read);
   EXPECT_TRUE(refusal("only words\n").starts_with("is no recording of a known kind ("));
 }
 
