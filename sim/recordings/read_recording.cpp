@@ -12,6 +12,8 @@
 #include "sim/recordings/hdf5_reader.h"
 #include "sim/recordings/mat_reader.h"
 #include "sim/recordings/sinumerik_frequency.h"
+#include "sim/recordings/tncscope_reader.h"
+#include "sim/recordings/twincat_reader.h"
 #include "sim/recordings/xml_document.h"
 #include "sim/system/read_file.h"
 
@@ -40,6 +42,9 @@ constexpr std::array kFormats = {
     Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
     Format{"MAT v5 of MATLAB", is_mat, read_mat},
     Format{"Sinumerik frequency measurement", is_sinumerik_frequency, parse_sinumerik_frequency},
+    Format{"TNCscope", is_text<is_tncscope>, parse_tncscope},
+    Format{"TNCscope CSV", is_text<is_tncscope_csv>, parse_tncscope_csv},
+    Format{"TwinCAT Scope", is_text<is_twincat>, parse_twincat},
     Format{"halscope", is_halscope, parse_halscope},
     Format{"camonitor", is_text<is_camonitor>, parse_camonitor},
     Format{"halsampler", is_text<is_halsampler>, parse_halsampler},
@@ -72,7 +77,6 @@ std::string unread_format(std::string_view bytes) {
   if (is_xml(head) && head.find("<traceData") != std::string_view::npos) {
     return "a trace of a Sinumerik control";
   }
-  if (head.find("%[GLOBAL]") != std::string_view::npos) return "a recording of TNCscope";
   return "";
 }
 
