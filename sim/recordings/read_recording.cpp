@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/camonitor_reader.h"
@@ -12,9 +15,9 @@
 #include "sim/recordings/hdf5_reader.h"
 #include "sim/recordings/mat_reader.h"
 #include "sim/recordings/sinumerik_frequency.h"
+#include "sim/recordings/sinumerik_trace.h"
 #include "sim/recordings/tncscope_reader.h"
 #include "sim/recordings/twincat_reader.h"
-#include "sim/recordings/xml_document.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim::recordings {
@@ -27,9 +30,17 @@ struct Format {
   Recording (*read)(std::string_view bytes, const std::string& path);
 };
 
-bool is_hdf5(std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a\n"); }
+constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 
-Recording read_hdf5_file(std::string_view, const std::string& path) { return read_hdf5(path); }
+// By the first bytes alone: the library reads the file itself, which may be larger than the memory.
+bool is_hdf5_file(const std::string& path) {
+  // a pipe would lose these bytes
+  if (std::error_code fault; !std::filesystem::is_regular_file(path, fault)) return false;
+  std::string head(kHdf5.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return file && head == kHdf5;
+}
 
 // A text has no NUL; UTF-16 and binary files have.
 template <bool (*is)(std::string_view)>
@@ -39,9 +50,9 @@ bool is_text(std::string_view bytes) {
 
 // The first that fits reads: marks of binary files come before those of texts.
 constexpr std::array kFormats = {
-    Format{"HDF5 of servomill", is_hdf5, read_hdf5_file},
     Format{"MAT v5 of MATLAB", is_mat, read_mat},
     Format{"Sinumerik frequency measurement", is_sinumerik_frequency, parse_sinumerik_frequency},
+    Format{"Sinumerik trace", is_sinumerik_trace, parse_sinumerik_trace},
     Format{"TNCscope", is_text<is_tncscope>, parse_tncscope},
     Format{"TNCscope CSV", is_text<is_tncscope_csv>, parse_tncscope_csv},
     Format{"TwinCAT Scope", is_text<is_twincat>, parse_twincat},
@@ -69,37 +80,27 @@ std::string refused_kind(std::string_view bytes) {
   return "";
 }
 
-// Recordings of controls that are recognised and not read. Some of them would pass for tables
-// without names.
-std::string unread_format(std::string_view bytes) {
-  constexpr std::size_t kHead = 4096;
-  const std::string_view head = bytes.substr(0, kHead);
-  if (is_xml(head) && head.find("<traceData") != std::string_view::npos) {
-    return "a trace of a Sinumerik control";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string format_names() {
-  std::string out;
+  std::string out = "HDF5 of servomill";
   for (const Format& format : kFormats) {
-    if (!out.empty()) out += ", ";
+    out += ", ";
     out += format.name;
   }
   return out;
 }
 
 Recording read_recording(const std::string& path, const std::string& time_unit) {
+  if (is_hdf5_file(path)) {
+    Recording out = read_hdf5(path);
+    set_time_unit(out, time_unit);
+    return out;
+  }
   const std::string bytes = system::read_file(path, {}, "recording");
   if (bytes.empty()) throw InputError({path}, "is empty");
   if (const std::string kind = refused_kind(bytes); !kind.empty()) {
     throw InputError({path}, fmt::format("is no recording that can be read: it is {}", kind));
-  }
-  if (const std::string kind = unread_format(bytes); !kind.empty()) {
-    throw InputError({path},
-                     fmt::format("is {}, a format that is not read; convert it to CSV", kind));
   }
   for (const Format& format : kFormats) {
     if (!format.is(bytes)) continue;

@@ -23,6 +23,15 @@ XmlDocument::XmlDocument(std::string_view text, const std::string& file)
   }
 }
 
+std::vector<pugi::xml_node> XmlDocument::all(const char* name) const {
+  std::vector<pugi::xml_node> out;
+  for (const pugi::xml_node node : document_.children(name)) out.push_back(node);
+  for (const pugi::xml_node root : document_.children()) {
+    for (const pugi::xml_node node : root.children(name)) out.push_back(node);
+  }
+  return out;
+}
+
 void XmlDocument::fail_at(std::ptrdiff_t offset, const std::string& message) const {
   const auto end = text_.begin() +
                    std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));

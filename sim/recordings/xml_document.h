@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace servomill::sim::recordings {
 
@@ -17,6 +18,9 @@ class XmlDocument {
   XmlDocument(std::string_view text, const std::string& file);
 
   pugi::xml_node child(const char* name) const { return document_.child(name); }
+
+  /// Elements of that name, at the root or directly below it.
+  std::vector<pugi::xml_node> all(const char* name) const;
 
   /// @throws InputError at the element
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
