@@ -207,17 +207,19 @@ class FrequencyFile {
       const Series &x = series_[cross.signal], &y = series_[cross.other];
       if (!can_transform(x, y, lines)) continue;
       const auto S_xy = mean_product(x, y, lines), S_yy = mean_product(y, y, lines);
-      double difference = 0.0, greatest = 0.0;
+      double difference = 0.0, greatest = 0.0, of_line = 0.0;
       for (std::size_t k = 0; k < lines; ++k) {
         const Complex of_control = std::conj(cross.values[k]) / input->values[k];
         const Complex own = std::conj(S_xy[k]) / S_yy[k];
         greatest = std::max(greatest, std::abs(of_control));
         difference = std::max(difference, std::abs(own - of_control));
+        of_line = std::max(of_line, std::abs(own - of_control) / std::abs(of_control));
       }
       out_.notes.push_back(fmt::format(
           "response of signal {} to {}: the transform of the series differs from the control's by "
-          "{:.1e} of the greatest response at most, at equal line",
-          cross.signal, cross.other, difference / greatest));
+          "{:.1e} of the greatest response and by {:.1e} of the response of its line at most, at "
+          "equal line",
+          cross.signal, cross.other, difference / greatest, of_line));
     }
   }
 

@@ -16,8 +16,8 @@ bool is_sinumerik_frequency(std::string_view text);
 /// these the notes give the error: the control divides its bandwidth by the number of lines less
 /// one, but the lines of N samples at intervals T are 1/(N T) apart. Another note gives the
 /// greatest difference between the control's responses conj(S_xy) / S_yy and those of its own
-/// series at equal line, as a share of the greatest response: with X, Y the transforms of the
-/// series, averaged over the series,
+/// series at equal line, as a share of the greatest response and of that of the same
+/// line: with X, Y the transforms of the series, averaged over the series,
 ///     S_yy = 4 mean |Y|^2 / N^2,  S_xy = 4 mean (conj(X) Y) / N^2
 /// @throws InputError
 Recording parse_sinumerik_frequency(std::string_view text, const std::string& file);
