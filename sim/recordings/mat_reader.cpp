@@ -85,6 +85,7 @@ std::string kind_of(const matvar_t& variable) {
   }
 }
 
+constexpr double kMostPerByte = 1032.0;  // values; the greatest ratio of the compression (deflate)
 constexpr std::size_t kHeader = 128, kTag = 8;  // bytes
 
 // Number of four bytes, in the order of the file's mark.
@@ -119,7 +120,8 @@ struct Array {
 
 class MatFile {
  public:
-  explicit MatFile(const std::string& path) : path_(path) {
+  MatFile(const std::string& path, std::size_t bytes)
+      : path_(path), bytes_(static_cast<double>(bytes)) {
     Mat_LogInitFunc("servomill", ignore_log);
     file_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (file_ == nullptr) fail("cannot be read: its header is damaged");
@@ -159,6 +161,11 @@ class MatFile {
     if (rows == 0 || columns == 0) {
       out_.notes.push_back(fmt::format("'{}' is empty: skipped", name));
       return;
+    }
+    // before the library and the copy take memory for all of them
+    if (static_cast<double>(rows) * static_cast<double>(columns) > kMostPerByte * bytes_) {
+      fail(fmt::format("variable '{}' has {} x {} values in a file of {} bytes: it is damaged",
+                       name, rows, columns, bytes_));
     }
     if (Mat_VarReadDataAll(file_.get(), &variable) != 0 || variable.data == nullptr) {
       fail(fmt::format("variable '{}' cannot be read: the file is cut off or damaged", name));
@@ -212,6 +219,7 @@ class MatFile {
   }
 
   std::string path_;
+  double bytes_ = 0.0;  // of the file
   std::unique_ptr<mat_t, MatCloser> file_;
   std::vector<Array> arrays_;
   Recording out_;
@@ -227,7 +235,7 @@ bool is_mat(std::string_view bytes) {
 
 Recording read_mat(std::string_view bytes, const std::string& path) {
   refuse_cut_file(bytes, path);
-  Recording out = MatFile(path).read();
+  Recording out = MatFile(path, bytes.size()).read();
   check(out);
   return out;
 }
