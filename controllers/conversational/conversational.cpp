@@ -15,6 +15,8 @@ constexpr auto kReadings = std::to_array<Reading>({
     {"F in a program in INCH", "tenths of an inch per minute", "all", "TNC 7, Cutting data"},
     {"N before block numbers", "a block number", "none; simulators of controls write it",
      "none needed"},
+    {"TOOL DEF1, CYCL DEF9 .0", "as TOOL DEF 1, CYCL DEF 9.0",
+     "none found; posts of HSC programs write it", "none needed"},
     {"a comment that ends with '~'", "goes on in the next line", "TNC 640", "from memory"},
     {"M140 MB MAX", "to the upper end of travel of Z in the machine file", "iTNC 530, TNC 640",
      "from memory"},

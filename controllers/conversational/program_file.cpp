@@ -64,6 +64,37 @@ void ProgramFile::take_number_with_N(HeidenhainBlock& block) {
   has_numbers_with_N_ = true;
 }
 
+namespace {
+
+bool are_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+}
+
+// "TOOL DEF1" is TOOL DEF 1, and "CYCL DEF9 .0" is CYCL DEF 9.0: posts put blanks as they like.
+void set_blanks_of_definition(HeidenhainBlock& block) {
+  auto& words = block.words;
+  const bool is_definition = words.size() > 1 && words[1].address == "DEF" &&
+                             (words[0].text == "TOOL" || words[0].text == "CYCL");
+  if (!is_definition) return;
+  if (!words[1].rest.empty()) {
+    HeidenhainWord number = words[1];
+    number.address.clear();
+    number.text = number.rest;
+    number.place.column += 3;
+    words[1].text = words[1].address;
+    words[1].rest.clear();
+    words.insert(words.begin() + 2, number);
+  }
+  const bool is_split = words.size() > 3 && are_digits(words[2].text) &&
+                        words[3].text.front() == '.' && are_digits(words[3].text.substr(1));
+  if (!is_split) return;
+  words[2].text += words[3].text;
+  words[2].rest = words[2].text;
+  words.erase(words.begin() + 3);
+}
+
+}  // namespace
+
 std::optional<HeidenhainBlock> ProgramFile::next() {
   const std::string_view rest = std::string_view(text_).substr(at_.offset);
   HeidenhainBlocks blocks(rest, file_, at_.line, true);
@@ -71,7 +102,9 @@ std::optional<HeidenhainBlock> ProgramFile::next() {
   try {
     auto block = blocks.next();
     advance();
-    if (block) take_number_with_N(*block);
+    if (!block) return block;
+    take_number_with_N(*block);
+    set_blanks_of_definition(*block);
     return block;
   } catch (const InputError&) {
     advance();

@@ -272,6 +272,22 @@ void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
   parameters_.enter_scope();
 }
 
+namespace {
+
+bool holds_program_number(ProgramText& text) {
+  bool found = false;
+  for (std::string_view line; !found && text.next(line);) {
+    const std::size_t at = line.find_first_not_of(" \t");
+    if (at == std::string_view::npos || at + 1 >= line.size()) continue;
+    const bool is_label = line[at] == 'O' || line[at] == 'o' || line[at] == ':';
+    found = is_label && line[at + 1] >= '0' && line[at + 1] <= '9';
+  }
+  text.rewind();
+  return found;
+}
+
+}  // namespace
+
 // Looks at its known place, then for a file of its name, then further on in this text.
 void Interpreter::Machine::find_subroutine(const std::string& name) {
   if (const auto known = flow_.labels.find(name); known != flow_.labels.end()) {
@@ -279,8 +295,13 @@ void Interpreter::Machine::find_subroutine(const std::string& name) {
   }
   std::optional<ProgramText> found;
   if (setup_.subroutine_file) found = setup_.subroutine_file(name);
-  skip_to(name);
-  flow_.skips_to_sub = true;
+  const bool is_ngc = found && found->file().ends_with(".ngc");
+  if (found && !is_ngc && !tolerates(ReaderRule::subprogram_file, 0)) found.reset();
+  // a file that has no O number is its subprogram from its first line on
+  if (!found || is_ngc || holds_program_number(*found)) {
+    skip_to(name);
+    flow_.skips_to_sub = true;
+  }
   if (!found) return;
   texts_.push_back({std::move(*found), {}, 0});
   text_ = texts_.size() - 1;

@@ -226,8 +226,9 @@ class LexicalRules {
 
   // End of ",R5." that begins here, if its value is a plain number; else the begin.
   std::size_t corner_end() const {
-    if (upper(at(at_ + 1)) != 'R' && upper(at(at_ + 1)) != 'C') return at_;
-    std::size_t begin = at_ + 2;
+    const std::size_t letter = text().find_first_not_of(" \t", at_ + 1);
+    if (letter == text().npos || (upper(at(letter)) != 'R' && upper(at(letter)) != 'C')) return at_;
+    std::size_t begin = letter + 1;
     while (is_blank_at(at(begin))) ++begin;
     std::size_t end = digits_end(begin);
     if (at(end) == '.') end = digits_end(end + 1);
@@ -237,8 +238,9 @@ class LexicalRules {
 
   void corner() {
     const std::size_t end = corner_end();
-    const std::string value = text().substr(at_ + 2, end - at_ - 2);
-    line_.corner = {upper(at(at_ + 1)), std::strtod(value.c_str(), nullptr),
+    const std::size_t letter = text().find_first_not_of(" \t", at_ + 1);
+    const std::string value = text().substr(letter + 1, end - letter - 1);
+    line_.corner = {upper(at(letter)), std::strtod(value.c_str(), nullptr),
                     static_cast<int>(at_) + 1, value.find('.') != value.npos};
     blank(at_, end);
     at_ = end;

@@ -119,6 +119,9 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      kFanuc | kHaas, "Fanuc B-64124EN/01 p. 137; that the move comes first from memory"},
     {local_subprogram, "M97", "read as a call of the block with the number P", "Haas", kHaas,
      "Haas 96-8000 p. 217"},
+    {subprogram_file, "a subprogram in a file that is called by its number, not *.ngc",
+     "read as the file of that subprogram", "Fanuc, Haas, Mach", kFanuc | kHaas | kMach,
+     "HSC Kontrol, Pulser3, Sub Programs (O9001.cnc); Fanuc, Haas and Mach from memory"},
     {smoothing, "G5.1 Q, G5 P, G8 P, G187 and the like",
      "without effect: smoothing is not simulated", "Fanuc, Haas", kFanuc | kHaas,
      "Fanuc B-63944EN, AI contour control, from memory; E of G187: a list of Haas's "

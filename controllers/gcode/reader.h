@@ -59,6 +59,7 @@ enum class ReaderRule : std::uint8_t {
   subprogram_repeats,
   call_with_words,
   local_subprogram,
+  subprogram_file,
   smoothing,
   machine_function,
   ignored_function,

@@ -1,17 +1,32 @@
 #include "sim/input/subroutine_files.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <utility>
 
 namespace servomill::sim::input {
 namespace {
 
-// LinuxCNC calls *.ngc, conversational programs call their like.
+bool is_number(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("0123456789") == name.npos;
+}
+
+// LinuxCNC calls *.ngc, conversational programs call their like. Of controls with O numbers the
+// file of O15 is called O0015.nc, or as its number.
 std::vector<std::string> file_names(const std::string& program_file, const std::string& name) {
   const std::string extension = std::filesystem::path(program_file).extension().string();
   if (extension == ".h") return {name + ".h", name + ".H"};
   if (extension == ".H") return {name + ".H", name + ".h"};
-  return {name + ".ngc"};
+  std::vector<std::string> names = {name + ".ngc"};
+  if (!is_number(name)) return names;
+  constexpr std::size_t kDigits = 4, kDigitsOfHaas = 5;
+  for (const std::size_t digits : {kDigits, kDigitsOfHaas}) {
+    const std::string zeros(digits - std::min(name.size(), digits), '0');
+    names.push_back("O" + zeros + name + extension);
+  }
+  names.push_back(name + extension);
+  return names;
 }
 
 }  // namespace

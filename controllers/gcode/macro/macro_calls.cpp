@@ -133,6 +133,7 @@ bool MacroSource::find_program(long number) {
   const std::string name = fmt::format("{}", number);
   std::optional<ProgramText> found = subroutine_file_ ? subroutine_file_(name) : std::nullopt;
   if (!found) return false;
+  if (!found->file().ends_with(".ngc")) reading_.apply(ReaderRule::subprogram_file, here(0));
   files_.emplace_back(std::move(*found), skips_optional_);
   file_ = files_.size() - 1;
   if (const auto mark = files_.back().program(number)) text().go_to(*mark);

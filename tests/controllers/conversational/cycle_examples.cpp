@@ -59,6 +59,9 @@ std::vector<Example> cycle_examples() {
        "CYCL DEF 1.4 V.ZEIT 1\nCYCL DEF 1.5 F80\nL Z+2 FMAX\nL X+5 FMAX M99\n",
        "7 rapid 0 0 2\n8 rapid 5 0 2\n8 feed 5 0 -10 F80\n8 rapid 5 0 2\n8 rapid 5 0 -9.4\n"
        "8 feed 5 0 -15 F80\n8 dwell 1\n8 rapid 5 0 2\n"},
+      {"TOOL DEF7 and CYCL DEF9 .0",
+       "TOOL DEF7 L+0 R+3\nCYCL DEF9 .0 VERWEILZEIT\nCYCL DEF9.1 V.ZEIT5\nL X+5 FMAX\n",
+       "3 dwell 5\n4 rapid 5 0 0\n"},
       {"CYCL CALL POS and parameters behind the definition",
        "CYCL DEF 240 Q200=1\nQ343=0\nQ201=-2\nQ206=50\nQ211=0\nQ203=0\nQ204=0\n"
        "CYCL CALL POS X+3 Y+4 FMAX\n",

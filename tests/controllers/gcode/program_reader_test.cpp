@@ -37,6 +37,15 @@ ProgramSetup with_ignored_code() {
   return setup;
 }
 
+ProgramSetup with_subprogram_file() {
+  ProgramSetup setup;
+  setup.subroutine_file = [](const std::string& name) {
+    return name == "7" ? std::optional(ProgramText::of_text("O0007\nG0 X1.\nM99\n", "O0007.nc"))
+                       : std::nullopt;
+  };
+  return setup;
+}
+
 ProgramSetup with_feed() {
   ProgramSetup setup;
   setup.feed = 100.0 * mm_per_min;
@@ -126,6 +135,8 @@ const std::vector<Example>& examples() {
       {ReaderRule::call_with_words, "G0 X2. M98 P100\nM2\nO100\nX1.\nM99\n",
        "G0 X2\nM98 P100\nM2\nO100\nX1\nM99\n", "p.nc:1:8"},
       {ReaderRule::local_subprogram, "M97 P100\nM2\nN100 G0 X1.\nM99\n", "G0 X1\nM2\n", "p.nc:1:1"},
+      {ReaderRule::subprogram_file, "M98 P7\nM2\n", "G0 X1\nM2\n", "p.nc:1",
+       with_subprogram_file()},
       {ReaderRule::local_subprogram, "G91 G0\nM97 P100 L3\nM2\nN100 X1.\nM99\n",
        "G91 G0\nX1\nX1\nX1\nM2\n", "p.nc:2:1"},
       {ReaderRule::smoothing, "G5.1 Q1\nG05 P10000\nG187 P1 E0.01\nG0 X1.\nM2\n", "G0 X1\nM2\n",
@@ -212,10 +223,11 @@ TEST(ReaderRules, AreReadAsTheirPlainFormAndReportedOnce) {
 
 // Rewriters of programs get lines in LinuxCNC's language.
 TEST(ReaderRules, AreGivenOutAsLinesForLinuxCnc) {
-  const std::set<ReaderRule> others = {
-      ReaderRule::tool_without_table, ReaderRule::arc_radii,        ReaderRule::unknown_length,
-      ReaderRule::percent_title,      ReaderRule::local_subprogram, ReaderRule::percent_at_end,
-      ReaderRule::subprogram_repeats, ReaderRule::call_with_words};  // these are unrolled
+  const std::set<ReaderRule> others = {ReaderRule::tool_without_table, ReaderRule::arc_radii,
+                                       ReaderRule::unknown_length,     ReaderRule::percent_title,
+                                       ReaderRule::local_subprogram,   ReaderRule::percent_at_end,
+                                       ReaderRule::subprogram_repeats, ReaderRule::call_with_words,
+                                       ReaderRule::subprogram_file};  // these are unrolled
   for (const Example& one : examples()) {
     if (others.contains(one.rule)) continue;
     SCOPED_TRACE(one.tolerant);

@@ -36,6 +36,7 @@ struct Given {
   double feed = 0.0;                                      // mm/min
   int ignored_code = -1;                                  // M code of the builder
   DecimalPoint decimal_point = DecimalPoint::calculator;  // of Fanuc and Haas
+  std::string O7_file = {};                               // text of O0007.nc
 };
 
 struct RuleExample {
@@ -73,6 +74,11 @@ inline ProgramSetup setup_of(const Given& given, Reader reader) {
   setup.block_delete = given.skips_blocks;
   setup.accepts_unknown_lengths = given.lacks_lengths;
   if (given.ignored_code >= 0) setup.ignored_codes.insert(given.ignored_code);
+  if (!given.O7_file.empty()) {
+    setup.subroutine_file = [text = given.O7_file](const std::string& name) {
+      return name == "7" ? std::optional(ProgramText::of_text(text, "O0007.nc")) : std::nullopt;
+    };
+  }
   if (given.feed > 0.0) setup.feed = given.feed * mm_per_min;
   return setup;
 }

@@ -48,6 +48,22 @@ TEST(SubroutineFiles, BesideTheProgramComeFirst) {
   EXPECT_FALSE(find("more"));
 }
 
+TEST(SubroutineFiles, OfNumbersMayBeCalledAsOtherControlsDo) {
+  const Folder folder;
+  folder.write("O0015.nc", "four digits");
+  folder.write("O00016.nc", "five digits");
+  folder.write("17.nc", "a number");
+  folder.write("17.tap", "of another program");
+  folder.write("hole.nc", "no number");
+  const auto find = subroutine_files(folder.path("plate.nc"), {});
+  EXPECT_EQ(first_line(find("15")), "four digits");
+  EXPECT_EQ(first_line(find("16")), "five digits");
+  EXPECT_EQ(first_line(find("17")), "a number");
+  EXPECT_FALSE(find("hole"));
+  folder.write("17.ngc", "as LinuxCNC");
+  EXPECT_EQ(first_line(find("17")), "as LinuxCNC");
+}
+
 TEST(SubroutineFiles, WhatAProgramCallsIsKnownBeforeItRuns) {
   EXPECT_EQ(controllers::called_subroutines(controllers::ProgramText::of_text(
                 "o<a B> call [1]\no7 call\no#1 call\nM98 P100\no<c> sub\n(o<d> call)\n?\n", "p")),
