@@ -75,6 +75,34 @@ std::string siemens_word(std::string_view line) {
   return name.empty() ? "" : std::string(name) + "=";
 }
 
+// M117 Roughing: a text without brackets behind a code that shows it. V"0.3": a text in quotes.
+std::string text_refusal(std::string_view line) {
+  line = line.substr(0, line.find_first_of(";("));
+  for (const std::string_view code : {"M117", "M118"}) {
+    const std::size_t begin = line.find_first_not_of("N0123456789 \t");
+    if (begin == std::string_view::npos || line.substr(begin, code.size()) != code) continue;
+    const std::size_t text = line.find_first_not_of(" \t", begin + code.size());
+    if (text == std::string_view::npos || !is_letter(line[text])) continue;
+    if (text + 1 < line.size() && !is_letter(line[text + 1]) && line[text + 1] != ' ') continue;
+    return fmt::format(
+        "{} shows a text (Marlin, Duet, Carvera), which is not read without brackets; take the "
+        "line out, or write (MSG, ...)",
+        code);
+  }
+  if (line.find('"') == std::string_view::npos) return {};
+  return "a text in quotes is of RepRapFirmware or Siemens; programs in G-code are read here: take "
+         "the line out if it moves nothing";
+}
+
+// G47 P0 (TEXT) X1. Y1. ... E10.
+bool is_engraving(std::string_view line) {
+  for (std::size_t at = 0; at + 2 < line.size(); ++at) {
+    if (upper(line[at]) != 'G' || line.substr(at + 1, 2) != "47") continue;
+    if (at + 3 == line.size() || (!is_digit(line[at + 3]) && line[at + 3] != '.')) return true;
+  }
+  return false;
+}
+
 bool contains_word(std::string_view line, std::string_view word) {
   const std::size_t at = line.find(word);
   if (at == std::string_view::npos) return false;
@@ -151,10 +179,15 @@ std::string other_language(std::string_view line, int column) {
         name);
   }
   if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;
+  if (std::string text = text_refusal(line); !text.empty()) return text;
   const auto at = static_cast<std::size_t>(column - 1);
   const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
   if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
       (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
+    if (is_engraving(line)) {
+      return "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
+             "write their moves";
+    }
     return "an E word feeds the extruder of a printer, or sets the generator of wire EDM; programs "
            "for "
            "milling are read here";

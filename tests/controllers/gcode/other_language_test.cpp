@@ -49,5 +49,18 @@ TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
   EXPECT_EQ(other_language("G1 X10. F100.", 1), "");
 }
 
+TEST(OtherLanguage, TextsAndEngravingAreNamed) {
+  EXPECT_EQ(other_language("M118 probing with M463 X-10", 6),
+            "M118 shows a text (Marlin, Duet, Carvera), which is not read without brackets; take "
+            "the line out, or write (MSG, ...)");
+  EXPECT_EQ(other_language("M117 P1", 1), "");
+  EXPECT_EQ(other_language("M4005 V\"v0.3.0\"", 7),
+            "a text in quotes is of RepRapFirmware or Siemens; programs in G-code are read here: "
+            "take the line out if it moves nothing");
+  EXPECT_EQ(other_language("G47 P0 (PART) X1. Y2. E10.", 23),
+            "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
+            "write their moves");
+}
+
 }  // namespace
 }  // namespace servomill::controllers::other_language_test
