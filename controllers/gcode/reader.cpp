@@ -189,6 +189,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Fanuc, Haas", kFanuc | kHaas,
      "Haas 96-8000, June 1999, p. 365 to 376; Fanuc B-63944EN, custom macro, from memory, "
      "B-63324EN/03 p. 619 (numbers are double precision)"},
+    {several_statements, "several macro statements in a block", "run from left to right", "Haas",
+     kHaas, "none found: programs with G100 and G101 of Haas have them"},
     {variable_increment, "a variable or an expression in the word of a length or an angle",
      "rounded to 0.001 mm, 0.0001 inch or 0.001 degrees", "Fanuc, Haas", kFanuc | kHaas,
      "Haas 96-8000, June 1999, p. 374 (three places, four in inches); Fanuc B-63944EN, variables "

@@ -82,6 +82,7 @@ enum class ReaderRule : std::uint8_t {
   circular_pocket,
   corner,
   macro_statement,
+  several_statements,
   variable_increment,
   macro_call,
   modal_macro_call,

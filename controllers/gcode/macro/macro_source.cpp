@@ -69,6 +69,7 @@ bool MacroSource::step() {
   if (line_.is_optional && skips_optional_) {
     emit_as_written();
   } else {
+    is_behind_then_ = false;
     run_statement(line_.statement, line_.begin);
   }
   return true;

@@ -65,6 +65,7 @@ class MacroSource final : public LineSource {
   void jump(long number, int column);
   void count_jump();
   void nothing_behind(const Cursor& cursor);
+  bool has_next_statement(const Cursor& cursor);
 
   // ---- calls (macro_calls.cpp)
   void call_codes(std::vector<MacroWord>& words, const WordUnits& units);
@@ -107,6 +108,7 @@ class MacroSource final : public LineSource {
   Place line_place_;
   ExpandedLine out_;
   bool has_line_ = false;
+  bool is_behind_then_ = false;  // the statement that runs
 };
 
 }  // namespace servomill::controllers::macro

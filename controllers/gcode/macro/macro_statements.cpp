@@ -58,6 +58,22 @@ void MacroSource::nothing_behind(const Cursor& cursor) {
                      cursor.peek()));
 }
 
+// #1=2 #3=4, and WHILE[...]DO1 #1=#1+1: an assignment or IF in the same block. Behind THEN it is
+// open whether the condition counts for it.
+bool MacroSource::has_next_statement(const Cursor& cursor) {
+  if (cursor.at_end()) return false;
+  const Statement next = statement_at(line_.body, cursor.at());
+  const bool may_follow = next == Statement::assignment || next == Statement::if_;
+  const bool is_read =
+      !is_behind_then_ && has_rule(reading_.reader(), ReaderRule::several_statements);
+  if (!may_follow || !is_read) {
+    nothing_behind(cursor);
+    return false;
+  }
+  reading_.apply(ReaderRule::several_statements, here(cursor.column()));
+  return true;
+}
+
 void MacroSource::assignment(std::size_t begin) {
   Expression expression(line_.body, begin, context());
   Cursor& cursor = expression.cursor();
@@ -65,10 +81,14 @@ void MacroSource::assignment(std::size_t begin) {
   const long number = expression.variable_number();
   if (!cursor.accept("=")) refuse(cursor.column(), "'=' expected behind a variable");
   const MacroValue value = expression.assigned_value();
-  nothing_behind(cursor);
+  const bool has_next = has_next_statement(cursor);
   const Place place = here(static_cast<int>(begin) + 1);
-  if (variables_.is_of_system(number)) return write_system_variable(number, value, place);
-  variables_.write(number, value, place);
+  if (variables_.is_of_system(number)) {
+    write_system_variable(number, value, place);
+  } else {
+    variables_.write(number, value, place);
+  }
+  if (has_next) run_statement(statement_at(line_.body, cursor.at()), cursor.at());
 }
 
 void MacroSource::write_system_variable(long number, MacroValue value, const Place& place) {
@@ -111,7 +131,10 @@ void MacroSource::condition(std::size_t begin) {
   const bool is_macro = statement == Statement::assignment || statement == Statement::go_to ||
                         statement == Statement::output || statement == Statement::if_;
   if (!is_macro) refuse(cursor.column(), "a macro statement is expected behind THEN");
-  if (holds) run_statement(statement, cursor.at());
+  if (!holds) return;
+  is_behind_then_ = true;
+  run_statement(statement, cursor.at());
+  is_behind_then_ = false;
 }
 
 // [#1 LT 10] M99 P10. Source: Haas 96-8000, June 1999, p. 376.
@@ -151,9 +174,10 @@ void MacroSource::while_line(std::size_t begin) {
   if (!cursor.accept("DO")) refuse(cursor.column(), "DO and its number expected behind WHILE[...]");
   std::uint64_t number = 0;
   cursor.take_digits(number);
-  nothing_behind(cursor);
+  const bool has_next = has_next_statement(cursor);
   const Loop& loop = loop_of_line();
-  if (!holds) text().go_to(loop.behind);
+  if (!holds) return text().go_to(loop.behind);
+  if (has_next) run_statement(statement_at(line_.body, cursor.at()), cursor.at());
 }
 
 void MacroSource::end_of_loop() {

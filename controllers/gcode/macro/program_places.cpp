@@ -13,12 +13,22 @@ namespace {
 
 constexpr int kMostLoops = 3;  // in each other, and their highest number
 
+// The ']' that closes the first '[', or npos: a statement behind DO may have brackets, too.
+std::size_t end_of_condition(const std::string& body, std::size_t begin) {
+  int depth = 0;
+  for (std::size_t at = begin; at < body.size(); ++at) {
+    if (body[at] == '[') ++depth;
+    if (body[at] == ']' && --depth == 0) return at;
+  }
+  return std::string::npos;
+}
+
 // The number behind DO of a line of WHILE or DO, or behind END; 0: none.
 int loop_number(const Line& line) {
   Cursor cursor(line.body);
   cursor.go_to(line.begin);
   if (line.statement == Statement::while_) {
-    const std::size_t close = line.body.find_last_of(']');
+    const std::size_t close = end_of_condition(line.body, line.begin);
     if (close == std::string::npos) return 0;
     cursor.go_to(close);
     cursor.advance();

@@ -183,6 +183,8 @@ const std::vector<Example>& examples() {
        "p.nc:1:1"},
       {ReaderRule::macro_statement, "IF[1EQ1]GOTO9\nG0 X9.\nN9 G0 X1.\nM2\n", "G0 X1\nM2\n",
        "p.nc:1:1"},
+      {ReaderRule::several_statements, "#1=1. #2=2.\nIF[1EQ1]GOTO9\nN9 G0 X#1 Y#2\nM2\n",
+       "G0 X1 Y2\nM2\n", "p.nc:1:7"},
       {ReaderRule::variable_increment,
        "G0 X[POW[1.1,4]]\nM2\n",
        "G0 X1.464\nM2\n",
@@ -210,7 +212,12 @@ TEST(ReaderRules, AreReadAsTheirPlainFormAndReportedOnce) {
     SCOPED_TRACE(one.tolerant);
     const Read tolerant = read(one.tolerant, one.reader, one.setup);
     EXPECT_EQ(tolerant.refusal, "");
-    const std::vector<Fault> warnings = tolerant.warnings;
+    std::vector<Fault> warnings = tolerant.warnings;
+    if (one.rule == ReaderRule::several_statements) {  // which macros alone have
+      std::erase_if(warnings, [](const Fault& warning) {
+        return warning.message.starts_with(sentence(ReaderRule::macro_statement));
+      });
+    }
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(to_string(warnings[0].place), one.place);
     EXPECT_TRUE(warnings[0].message.starts_with(sentence(one.rule))) << warnings[0].message;

@@ -65,6 +65,12 @@ inline std::vector<RuleExample> macro_examples() {
       {macro_statement, Reader::haas,
        "#1=4.\n#2=91\nM98 P100 L2\nG#2 G0 Y#1\nY#1\nM2\nO100\n#1=#1+1\nM99\n", "R 0 6 0 | R 0 12 0",
        "p.nc:1:1", haas365},
+      // from left to right; what follows WHILE runs in every turn
+      {several_statements, Reader::haas, "#1=1. #2=#1+2.\nG0 X#1 Y#2\nGOTO9\nN9 M2\n", "R 1 3 0",
+       "p.nc:1:7", "none found"},
+      {several_statements, Reader::any,
+       "#1=0\n#2=-2.5\nWHILE[#1GT#2]DO1 #1=#1-1. IF[#1LT#2]THEN #1=#2\nG0 Z#1\nEND1\nM2\n",
+       "R 0 0 -1 | R 0 0 -2 | R 0 0 -2.5", "p.nc:3:18", "none found"},
       {variable_increment, Reader::haas, "G20\n#1=.123456\nG0 X#1\nIF[#1GT0]GOTO9\nN9 M2\n",
        "R 3.1369 0 0", "p.nc:3:4", "haascnc.com, address substitution (.1235 inch)"},
       {variable_increment, Reader::any, "#1=.123456\nG0 X-#1\nIF[#1GT0]GOTO9\nN9 M2\n",
