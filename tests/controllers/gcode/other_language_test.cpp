@@ -7,6 +7,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/input_error.h"
+#include "tests/controllers/gcode/tolerant_reading.h"
 
 namespace servomill::controllers::other_language_test {
 namespace {
@@ -60,6 +61,19 @@ TEST(OtherLanguage, TextsAndEngravingAreNamed) {
   EXPECT_EQ(other_language("G47 P0 (PART) X1. Y2. E10.", 23),
             "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
             "write their moves");
+}
+
+TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
+  using program_reader_test::refusal;
+  EXPECT_EQ(
+      refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
+      "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; --reader heidenhain reads it");
+  EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
+            "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
+            "here");
+  EXPECT_EQ(refusal("G1 X1 F100 E0.5\nM2\n"),
+            "p.nc:1:12: error: an E word feeds the extruder of a printer, or sets the generator of "
+            "wire EDM; programs for milling are read here");
 }
 
 }  // namespace

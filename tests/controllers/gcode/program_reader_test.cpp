@@ -37,15 +37,6 @@ ProgramSetup with_ignored_code() {
   return setup;
 }
 
-ProgramSetup with_subprogram_file() {
-  ProgramSetup setup;
-  setup.subroutine_file = [](const std::string& name) {
-    return name == "7" ? std::optional(ProgramText::of_text("O0007\nG0 X1.\nM99\n", "O0007.nc"))
-                       : std::nullopt;
-  };
-  return setup;
-}
-
 ProgramSetup with_feed() {
   ProgramSetup setup;
   setup.feed = 100.0 * mm_per_min;
@@ -393,18 +384,6 @@ TEST(Reader, ATableThatLacksTheNumberShowsASlip) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "p.nc:1:1: error: T5: no such tool in the tool table of 1 tools");
   }
-}
-
-TEST(Reader, OtherLanguagesAreRefusedByName) {
-  EXPECT_EQ(
-      refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
-      "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; --reader heidenhain reads it");
-  EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
-            "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
-            "here");
-  EXPECT_EQ(refusal("G1 X1 F100 E0.5\nM2\n"),
-            "p.nc:1:12: error: an E word feeds the extruder of a printer, or sets the generator of "
-            "wire EDM; programs for milling are read here");
 }
 
 TEST(TolerantLine, KeepsEveryColumn) {

@@ -1,6 +1,7 @@
 /// A program as a reader of tests takes it: its moves, or the first fault.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,16 @@ inline Read read(const std::string& text, Reader reader, ProgramSetup setup = {}
 
 inline std::string refusal(const std::string& text, Reader reader = Reader::any) {
   return read(text, reader).refusal;
+}
+
+/// Has the subprogram 7 in O0007.nc.
+inline ProgramSetup with_subprogram_file() {
+  ProgramSetup setup;
+  setup.subroutine_file = [](const std::string& name) {
+    return name == "7" ? std::optional(ProgramText::of_text("O0007\nG0 X1.\nM99\n", "O0007.nc"))
+                       : std::nullopt;
+  };
+  return setup;
 }
 
 }  // namespace servomill::controllers::program_reader_test
