@@ -97,36 +97,50 @@ double first_step(const Prediction& prediction, std::size_t parameter, double va
   return value != 0.0 ? 1e-4 * std::abs(value) : 1e-6;
 }
 
+// Search for the change of one parameter that matters, round by round.
+class ScaleSearch {
+ public:
+  explicit ScaleSearch(double step) : step_(step) {}
+
+  double scale() const { return scale_; }
+  double step() const { return std::isfinite(scale_) ? kNaN : step_; }
+  // @param change  of the feedback by the step; NaN: the step is refused
+  void look(double change, double wanted) {
+    constexpr double kFar = 100.0, kNothing = 1e-4;
+    if (std::isfinite(scale_)) return;
+    if (std::isnan(change)) {
+      step_ *= 0.1;
+    } else if (change <= kNothing * wanted) {
+      step_ *= 10.0;
+    } else if (change < kFar * wanted) {
+      scale_ = step_ * wanted / change;
+    } else {
+      step_ *= wanted / change;
+    }
+  }
+
+ private:
+  double step_, scale_ = kNaN;
+};
+
 // Change of each parameter that moves the feedback by `wanted` (rms); NaN where none does.
 Values find_scales(const Prediction& prediction, const Differences& differences, const Values& at,
                    const Eigen::VectorXd& here, double wanted) {
   constexpr int kRounds = 14;
-  constexpr double kFar = 100.0, kNothing = 1e-4;
-  Values steps;
-  for (std::size_t p = 0; p < at.size(); ++p) steps.push_back(first_step(prediction, p, at[p]));
-  Values scales(at.size(), kNaN);
+  std::vector<ScaleSearch> searches;
+  for (std::size_t p = 0; p < at.size(); ++p) {
+    searches.emplace_back(first_step(prediction, p, at[p]));
+  }
+  Values steps(at.size()), scales(at.size());
   for (int round = 0; round < kRounds; ++round) {
-    Values open = steps;
-    bool any = false;
+    for (std::size_t p = 0; p < at.size(); ++p) steps[p] = searches[p].step();
+    if (std::none_of(steps.begin(), steps.end(), [](double x) { return std::isfinite(x); })) break;
+    const auto J = differences.slopes(at, steps, here);
     for (std::size_t p = 0; p < at.size(); ++p) {
-      if (std::isfinite(scales[p])) open[p] = kNaN;
-      any = any || std::isfinite(open[p]);
-    }
-    if (!any) break;
-    const auto J = differences.slopes(at, open, here);
-    for (std::size_t p = 0; p < at.size(); ++p) {
-      if (!std::isfinite(open[p])) continue;
-      const double change = J ? rms_of(J->col(static_cast<Eigen::Index>(p))) * steps[p] : 0.0;
-      const bool is_enough = change > kNothing * wanted;
-      if (is_enough && change < kFar * wanted) {
-        scales[p] = steps[p] * wanted / change;
-      } else if (J) {
-        steps[p] *= is_enough ? wanted / change : 10.0;
-      } else {
-        steps[p] *= 0.1;
-      }
+      searches[p].look(J ? rms_of(J->col(static_cast<Eigen::Index>(p))) * steps[p] : kNaN, wanted);
     }
   }
+  for (std::size_t p = 0; p < at.size(); ++p) scales[p] = searches[p].scale();
   return scales;
 }
 

@@ -62,6 +62,36 @@ double fisher_95(std::size_t periods) {
   return 0.5 * nu * (std::pow(0.05, -2.0 / nu) - 1.0);
 }
 
+// Lowest point on the way from a maximum to something higher, on the side where it is higher up.
+double saddle_of(const std::vector<double>& level, std::size_t at) {
+  double saddle = -std::numeric_limits<double>::infinity();
+  for (const int way : {-1, 1}) {
+    double lowest = level[at];
+    for (auto j = static_cast<std::ptrdiff_t>(at);
+         j >= 0 && j < static_cast<std::ptrdiff_t>(level.size()); j += way) {
+      const double there = level[static_cast<std::size_t>(j)];
+      if (there > level[at]) break;
+      lowest = std::min(lowest, there);
+    }
+    saddle = std::max(saddle, lowest);
+  }
+  return saddle;
+}
+
+// Maxima of a level, each with the parabola through its neighbours.
+void add_maxima(const std::vector<double>& level, const MeasuredResponse& response, bool is_maximum,
+                std::vector<Extreme>& out) {
+  for (std::size_t k = 1; k + 1 < level.size(); ++k) {
+    const double here = level[k], before = level[k - 1], after = level[k + 1];
+    if (!(here > before && here >= after)) continue;
+    const double bend = before - 2.0 * here + after;
+    const double shift = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
+    const double step = response.lines[k + 1].frequency - response.lines[k].frequency;
+    out.push_back({response.lines[k].frequency + shift * step, std::exp(here - saddle_of(level, k)),
+                   is_maximum});
+  }
+}
+
 }  // namespace
 
 MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<const double> output,
@@ -101,34 +131,14 @@ MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<con
 }
 
 std::vector<Extreme> extremes(const MeasuredResponse& response) {
-  std::vector<double> level;
-  for (const ResponseLine& line : response.lines) level.push_back(std::log(std::abs(line.value)));
-  std::vector<Extreme> out;
-  for (const bool is_maximum : {true, false}) {
-    const double sign = is_maximum ? 1.0 : -1.0;
-    for (std::size_t k = 1; k + 1 < level.size(); ++k) {
-      const double here = sign * level[k], before = sign * level[k - 1],
-                   after = sign * level[k + 1];
-      if (!(here > before && here >= after)) continue;
-      // height above the higher of the two lowest points on the way to something higher
-      double saddle = -std::numeric_limits<double>::infinity();
-      for (const int way : {-1, 1}) {
-        double lowest = here;
-        for (auto j = static_cast<std::ptrdiff_t>(k);
-             j >= 0 && j < static_cast<std::ptrdiff_t>(level.size()); j += way) {
-          const double there = sign * level[static_cast<std::size_t>(j)];
-          if (there > here) break;
-          lowest = std::min(lowest, there);
-        }
-        saddle = std::max(saddle, lowest);
-      }
-      const double bend = before - 2.0 * here + after;
-      const double shift = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
-      const double step = response.lines[k + 1].frequency - response.lines[k].frequency;
-      out.push_back(
-          {response.lines[k].frequency + shift * step, std::exp(here - saddle), is_maximum});
-    }
+  std::vector<double> level, turned;
+  for (const ResponseLine& line : response.lines) {
+    level.push_back(std::log(std::abs(line.value)));
+    turned.push_back(-level.back());
   }
+  std::vector<Extreme> out;
+  add_maxima(level, response, true, out);
+  add_maxima(turned, response, false, out);
   std::sort(out.begin(), out.end(),
             [](const Extreme& a, const Extreme& b) { return a.prominence > b.prominence; });
   return out;

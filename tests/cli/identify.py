@@ -29,8 +29,8 @@ class Way(unittest.TestCase):
         cls.folder = tempfile.mkdtemp()
         for name in ("identification", "machines"):
             shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-        cls.cwd = os.path.join(cls.folder, "identification")
-        cls.run_in_folder("run", "motion.toml", "-o", "motion.h5", "-q")
+        cls.cwd = os.path.join(cls.folder, "identification", "experiments")
+        cls.run_in_folder("run", "../motion.toml", "-o", "motion.h5", "-q")
         cls.run_in_folder("identify", "record.toml", "--make-up", "recording.csv")
         cls.printed = cls.run_in_folder("identify", "identify.toml", "-o", "again.toml", "--signals", "signals.h5").stdout
 
@@ -60,7 +60,7 @@ class Way(unittest.TestCase):
 
     def test_the_shipped_result_is_what_comes_out(self):
         keys, values, covariance = self.identified("again.toml")
-        shipped = self.identified("identified.toml")
+        shipped = self.identified("../machines/identified.toml")
         self.assertEqual(keys, shipped[0])
         np.testing.assert_allclose(values, shipped[1], rtol=1e-3)
         np.testing.assert_allclose(np.diag(covariance), np.diag(shipped[2]), rtol=2e-2)

@@ -112,8 +112,9 @@ start = "15 N"
   const Identification& found = result.found;
   for (const std::size_t k : {0u, 1u, 2u}) EXPECT_FALSE(found.uncertainty.identifiable[k]) << k;
   ASSERT_EQ(unidentifiable_sentences(found).size(), 1u);
-  EXPECT_NE(unidentifiable_sentences(found)[0].find("axis.X.gravity_load, axis.X.friction.coulomb, "
-                                            "axis.X.friction.coulomb_negative: only combinations"),
+  EXPECT_NE(unidentifiable_sentences(found)[0].find(
+                "axis.X.gravity_load, axis.X.friction.coulomb, "
+                "axis.X.friction.coulomb_negative: only combinations"),
             std::string::npos)
       << unidentifiable_sentences(found)[0];
 }
