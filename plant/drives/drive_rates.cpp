@@ -22,16 +22,21 @@ struct FrictionRate {
 std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
   const FrictionParams& f = p.friction;
   const double M = p.slide_mass();
+  std::vector<FrictionRate> rates;
+  const double b = std::max(f.b_positive, f.b_negative);
+  if (b > 0.0) rates.push_back({b / M, "the viscous friction of a direction, viscous / mass,"});
   if (f.kind == FrictionKind::regularised) {
-    return {{std::max({f.Fs_positive, f.Fs_negative, f.Fc_positive, f.Fc_negative}) / (f.v0 * M),
-             "the slope of the regularised friction, breakaway / (regularisation_velocity mass),"}};
+    rates.push_back(
+        {std::max({f.Fs_positive, f.Fs_negative, f.Fc_positive, f.Fc_negative}) / (f.v0 * M),
+         "the slope of the regularised friction, breakaway / (regularisation_velocity mass),"});
   }
   if (f.kind == FrictionKind::lugre) {
-    return {{std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"},
-            {f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"},
-            {f.sigma0 * kStribeckEnd * f.vs / least_force(f), "6.5 vs sigma0 / Fc"}};
+    rates.push_back(
+        {std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"});
+    rates.push_back({f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"});
+    rates.push_back({f.sigma0 * kStribeckEnd * f.vs / least_force(f), "6.5 vs sigma0 / Fc"});
   }
-  return {};
+  return rates;
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   has_kink_ = f.kind == FrictionKind::lugre ||
               (f.kind == FrictionKind::regularised &&
                (f.Fs_positive != f.Fs_negative || f.Fc_positive != f.Fc_negative ||
-                f.b_positive != f.b_negative));
+                f.b_positive > 0.0 || f.b_negative > 0.0));
   gliding_ = gliding_of(params);
 }
 

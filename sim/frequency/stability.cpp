@@ -14,6 +14,8 @@ model::MachineSettings linearised(const model::MachineSettings& machine) {
     plant::FeedDriveParams& drive = linear.drives[j];
     drive.F_load = 0.0;
     drive.gap = 0.0;
+    // what both directions have is linear
+    drive.b_load += std::min(drive.friction.b_positive, drive.friction.b_negative);
     drive.friction = {};
     drive.cogging = {};
     linear.scale[j] = linear.motor[j] = {};

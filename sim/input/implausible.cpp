@@ -57,6 +57,8 @@ void add_friction(const model::MachineSettings& machine, std::size_t j, bool lin
       rows.end(),
       {{"friction.coulomb", f.Fc_positive, 1e-2, 1e6, force, linear ? "450 N" : "8 Nm"},
        {"friction.breakaway", f.Fs_positive, 1e-2, 1e6, force, linear ? "560 N" : "9 Nm"},
+       {"friction.viscous", std::max(f.b_positive, f.b_negative), 1e-3, 1e8,
+        linear ? "N s/m" : "Nms/rad", linear ? "1.5 N s/mm" : "5 Nms/rad"},
        {"friction.stribeck_velocity", falls ? f.vs : 0.0, 1e-7, v_max, speed, slow},
        {"friction.regularisation_velocity", is_regularised ? f.v0 : 0.0, 1e-9, v_max, speed, slow},
        {"friction.bristle_stiffness", is_lugre ? f.sigma0 : 0.0, linear ? 1e4 : 1.0, 1e13,

@@ -66,6 +66,49 @@ TEST(Simulate, SlidingAtConstantSpeedNeedsViscousAndCoulombFriction) {
   EXPECT_NEAR(record.command.back() - out.feedback.back(), lag, 1e-9);
 }
 
+// F = Fc + (b_load + b of the direction) v, for each form of friction.
+TEST(Simulate, AConstantForceEndsAtTheSpeedOfItsDirection) {
+  for (const auto kind : {plant::FrictionKind::set_valued, plant::FrictionKind::regularised,
+                          plant::FrictionKind::lugre}) {
+    for (const double sign : {1.0, -1.0}) {
+      Record record = still(6000);
+      record.force.assign(record.size(), sign * 60.0);
+      AxisModel model{small_axis(), small_loop()};
+      model.loop.kind = LoopKind::open;
+      plant::FrictionParams& f = model.drive.friction;
+      f.kind = kind;
+      f.b_positive = 100.0;
+      f.b_negative = 300.0;
+      f.Fc_negative = f.Fs_negative = 25.0;
+      f.v0 = 1e-4;
+      f.sigma0 = 1e6;
+      f.sigma1 = 1e3;
+      const Simulated out = simulate(record, {&model, 1}, 1).front();
+      const double speed = (out.feedback.back() - out.feedback[out.feedback.size() - 2]) / 1e-3;
+      const double expected = sign > 0.0 ? 40.0 / 300.0 : -35.0 / 500.0;
+      EXPECT_NEAR(speed, expected, 1e-6) << static_cast<int>(kind);
+    }
+  }
+}
+
+// M dv/dt = -Fc - b v from v on: stops after M/b ln(1 + b v / Fc).
+TEST(Simulate, ASlideLeftAloneStopsWhenTheFormulaSays) {
+  Record record = still(1200);
+  record.force.assign(record.size(), 0.0);
+  AxisModel model{small_axis(), small_loop()};
+  model.loop.kind = LoopKind::open;
+  model.drive.friction.b_positive = 100.0;
+  model.speed = 0.1;
+  const Simulated out = simulate(record, {&model, 1}, 1).front();
+  const double M = model.drive.slide_mass(), b = 300.0, Fc = 20.0;
+  const double stop = M / b * std::log(1.0 + b * 0.1 / Fc);
+  const double way = M / b * 0.1 - Fc / b * stop;
+  EXPECT_NEAR(out.feedback.back(), way, 1e-9);
+  const auto before = static_cast<std::size_t>(stop / 1e-3);
+  EXPECT_GT(out.feedback[before + 1] - out.feedback[before], 0.0);
+  EXPECT_EQ(out.feedback[before + 3], out.feedback.back());
+}
+
 TEST(Simulate, AForceFromOutsideIsHeldByTheLoop) {
   Record record = still(2000);
   record.disturbance.assign(2000, 50.0);
