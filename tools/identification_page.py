@@ -1,0 +1,197 @@
+#!/usr/bin/python3
+"""Draws an identification as one self-contained HTML page, from the file that `servomill identify --signals` writes.
+
+    tools/identification_page.py SIGNALS.h5 [-o PAGE.html] [--force]
+
+Values with their intervals, measured against simulated signals, the residual and its colour, the correlation of the values, friction
+laws and validation recordings as far as the file holds them. Exit status: 0 written, 2 a file cannot be read or written.
+"""
+import argparse
+import base64
+import html
+import io
+import os
+import sys
+
+import h5py
+import matplotlib
+import numpy as np
+
+from command_line import InputError, run
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+MEASURED, SIMULATED, LIMIT = "#1f77b4", "#d62728", "#7f7f7f"
+MOST_POINTS = 4000  # of a curve: more cannot be seen
+STYLE = """body{font:15px/1.45 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#222}
+table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;border-bottom:1px solid #ccc;text-align:right}
+td:first-child,th:first-child{text-align:left}img{max-width:100%}h2{margin-top:2em}.no{color:#b00}"""
+
+
+def thinned(x):
+    """A slice that keeps at most MOST_POINTS."""
+    return slice(None, None, max(1, -(-len(x) // MOST_POINTS)))
+
+
+def picture(figure, caption):
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=110, bbox_inches="tight", metadata={"Software": None})
+    plt.close(figure)
+    text = base64.b64encode(out.getvalue()).decode()
+    return f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{text}"><figcaption>{html.escape(caption)}</figcaption></figure>'
+
+
+def table(head, rows):
+    def cells(tag, row):
+        return "".join(f"<{tag}>{cell}</{tag}>" for cell in row)
+    return f"<table><tr>{cells('th', head)}</tr>" + "".join(f"<tr>{cells('td', row)}</tr>" for row in rows) + "</table>"
+
+
+def parameters(group):
+    """Key, unit, identifiable, value, half-width, half-width by counting, one row a parameter."""
+    count = len(group["value"]) if "value" in group else 0
+    text = [[group.attrs[f"{name}_{k:02}"] for name in ("key", "unit", "identifiable")] for k in range(count)]
+    numbers = np.column_stack([group[name][:] for name in ("value", "half_width", "half_width_counted")]) if count else []
+    return [(*words, *values) for words, values in zip(text, numbers)]
+
+
+def value_table(rows):
+    body = []
+    for key, unit, identifiable, value, half, counted in rows:
+        unit = "" if unit == "1" else html.escape(unit)
+        if identifiable != "yes":
+            body.append((html.escape(key), f"{value:.5g}", '<span class="no">cannot be identified</span>', unit, "", ""))
+            continue
+        share = f"{100 * half / abs(value):.2g} %" if value else ""
+        body.append((html.escape(key), f"{value:.6g}", f"{half:.2g}", unit, share, f"{counted:.2g}"))
+    return table(("parameter", "value", "&plusmn; (k = 2)", "unit", "relative", "counting samples"), body)
+
+
+def correlation(group, rows):
+    covariance = group["covariance"][:]
+    known = [k for k, row in enumerate(rows) if row[2] == "yes" and covariance[k, k] > 0]
+    if len(known) < 2:
+        return ""
+    part = covariance[np.ix_(known, known)]
+    deviation = np.sqrt(np.diag(part))
+    figure, axes = plt.subplots(figsize=(1.2 + 0.65 * len(known), 1 + 0.6 * len(known)))
+    drawn = axes.imshow(part / np.outer(deviation, deviation), vmin=-1, vmax=1, cmap="RdBu_r")
+    names = [rows[k][0].split(".", 2)[-1] for k in known]
+    axes.set_xticks(range(len(known)), names, rotation=60, ha="right")
+    axes.set_yticks(range(len(known)), names)
+    figure.colorbar(drawn, ax=axes, label="correlation")
+    return picture(figure, "Correlation of the identified values")
+
+
+def scaled(unit):
+    """Factor and name of a unit in which a residual is read."""
+    return {"m": (1e6, "um"), "rad": (1e6, "urad")}.get(unit, (1.0, unit))
+
+
+def motion(group):
+    t = group["time"][:]
+    unit = group["feedback"].attrs["units"]
+    factor, name = scaled(unit)
+    some = thinned(t)
+    has_command, has_force = "command" in group, "force" in group
+    figure, axes = plt.subplots(1 + has_command + has_force, 1, figsize=(10, 2.6 * (1 + has_command + has_force)), sharex=True, squeeze=False)
+    axes = list(axes[:, 0])
+    if has_command:
+        axis = axes.pop(0)
+        for signal, colour, label in (("feedback", MEASURED, "measured"), ("simulated_feedback", SIMULATED, "simulated")):
+            axis.plot(t[some], factor * (group["command"][some] - group[signal][some]), colour, lw=0.8, label=label)
+        axis.set_ylabel(f"command less\nfeedback / {name}")
+        axis.legend(loc="upper right")
+    axis = axes.pop(0)
+    axis.plot(t[some], factor * group["residual"][some], "#444", lw=0.6)
+    axis.set_ylabel(f"residual / {name}")
+    if has_force:
+        axis = axes.pop(0)
+        axis.plot(t[some], group["force"][some], MEASURED, lw=0.8, label="measured")
+        axis.plot(t[some], group["simulated_force"][some], SIMULATED, lw=0.8, label="simulated")
+        axis.set_ylabel(f"force / {group['force'].attrs['units']}")
+        axis.legend(loc="upper right")
+    axis.set_xlabel("time / s")
+    return picture(figure, "Measured and simulated: what the axis lags behind its command, the residual, the force")
+
+
+def colour(group):
+    """Autocorrelation of the residual, and that of the process which the intervals are computed with."""
+    lag, model = group["lag"][:], group["residual_autocovariance"][:]
+    residual = group["residual"][:]
+    count = min(len(lag), len(residual) // 2)
+    shown = min(count, max(20, int(np.argmax(np.abs(model) < 0.02 * model[0]) or count) * 3))
+    size = 2 ** int(np.ceil(np.log2(2 * len(residual))))
+    power = np.abs(np.fft.rfft(residual, size)) ** 2
+    found = np.fft.irfft(power)[:shown] / len(residual)
+    figure, axis = plt.subplots(figsize=(10, 2.8))
+    axis.plot(1e3 * lag[:shown], found / found[0], MEASURED, label="of the residual")
+    axis.plot(1e3 * lag[:shown], model[:shown] / model[0], SIMULATED, label="autoregressive, corrected for the fit")
+    axis.axhline(0, color=LIMIT, lw=0.5)
+    axis.set(xlabel="lag / ms", ylabel="autocorrelation")
+    axis.legend()
+    return picture(figure, "Colour of the residual: independent samples would be 0 from the first lag on")
+
+
+def laws(group):
+    names = [group.attrs[f"law_{k:02}"] for k in range(len(group["law"]))]
+    fitted = [k for k in range(len(names)) if group["rms"][k] > 0]
+    rows = [(html.escape(names[k]), int(group["parameters"][k]), f"{1e6 * group['rms'][k]:.3f}", f"{1e6 * group['held_out_rms'][k]:.3f}",
+             f"{1e6 * group['held_out_error'][k]:.3f}", f"{group['bic'][k]:.0f}") for k in fitted]
+    figure, axis = plt.subplots(figsize=(10, 0.5 + 0.38 * len(fitted)))
+    axis.barh(range(len(fitted)), 1e6 * group["held_out_rms"][:][fitted], xerr=2e6 * group["held_out_error"][:][fitted], color=MEASURED)
+    axis.set_yticks(range(len(fitted)), [names[k] for k in fitted])
+    axis.invert_yaxis()
+    axis.set_xlabel("rms of parts that the fit did not see / um")
+    return table(("friction law", "parameters", "rms / um", "held out / um", "&plusmn; / um", "BIC"), rows) + \
+        picture(figure, "Friction laws by the parts of the recordings that their fit did not see, with two standard errors")
+
+
+def page(file):
+    title = html.escape(str(file.attrs["name"]))
+    rows = parameters(file["parameters"])
+    out = [f"<!DOCTYPE html><html lang=en><meta charset=utf-8><title>{title}</title><style>{STYLE}</style><h1>Identification: {title}</h1>",
+           "<p>&plusmn; is the expanded uncertainty (k = 2) that the colour of the residual allows; counting samples as if each were "
+           "independent would claim what stands in the last column.</p>", value_table(rows)]
+    if rows:
+        out.append(correlation(file["parameters"], rows))
+    for name in sorted(key for key in file if key.startswith("recording_")):
+        group = file[name]
+        factor, unit = scaled(group["feedback"].attrs["units"])
+        rms = factor * np.sqrt(np.mean(group["residual"][:] ** 2))
+        use = "for validation: the fit has not seen it" if group.attrs["use"] == "validation" else "for estimation"
+        out.append(f"<h2>{html.escape(os.path.basename(str(group.attrs['recording'])))}</h2><p>{use}; residual {rms:.3g} {unit} rms</p>")
+        out.append(motion(group))
+        if "residual_autocovariance" in group:
+            out.append(colour(group))
+    if "laws" in file:
+        out += ["<h2>Friction laws</h2>", laws(file["laws"])]
+    return "\n".join(out) + "</html>\n"
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", metavar="SIGNALS.h5")
+    parser.add_argument("-o", "--output", metavar="PAGE.html", help="default: beside SIGNALS.h5, with the ending .html")
+    parser.add_argument("-f", "--force", action="store_true", help="replaces PAGE.html if it exists")
+    options = parser.parse_args(arguments)
+    out = options.output or os.path.splitext(options.file)[0] + ".html"
+    if os.path.exists(out) and os.path.exists(options.file) and os.path.samefile(out, options.file):
+        raise InputError(f"identification_page.py: error: {out} is the input, which is never overwritten")
+    if os.path.exists(out) and not options.force:
+        raise InputError(f"identification_page.py: error: {out} exists; use --force to overwrite")
+    try:
+        with h5py.File(options.file) as file:
+            if file.attrs.get("kind") != "identification":
+                raise InputError(f"identification_page.py: error: {options.file} is no file of servomill identify --signals")
+            text = page(file)
+    except OSError as error:
+        raise InputError(f"identification_page.py: error: {options.file}: {error}") from error
+    with open(out, "w", encoding="utf-8") as file:
+        file.write(text)
+    print(f"written to {out}")
+
+
+if __name__ == "__main__":
+    sys.exit(run(main, sys.argv[1:]))
