@@ -27,6 +27,7 @@ SIM_ROOMS = {
     "metrology": [],
     "records": ["system"],
     "recordings": ["records", "system"],
+    "readings": ["config", "recordings"],
     "responses": ["system"],
     "model": ["controllers", "strategies", "config", "metrology", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],

@@ -1,0 +1,282 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "plant/kinematics/structure.h"
+#include "plant/vocabulary/units.h"
+#include "plant/vocabulary/user_file.h"
+#include "sim/config/document.h"
+#include "sim/config/reader.h"
+#include "sim/readings/read_rows.h"
+#include "sim/readings/readings.h"
+
+namespace servomill::sim::readings {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 6> kAxisNames = {"X", "Y", "Z", "A", "B", "C"};
+constexpr std::array<std::string_view, 2> kTools = {"unknown", "adjusted"};
+constexpr std::int64_t kTargets = 11;
+constexpr std::int64_t kMostTargets = 10'000;
+constexpr double kSteel = 11.5e-6;  // 1/K
+
+std::string beside(const std::string& file, const std::string& path) {
+  return (fs::path(file).parent_path() / path).lexically_normal().string();
+}
+
+// One item of the list `group`.
+class GroupReader {
+ public:
+  GroupReader(config::Reader& table, const Readings& all, const plant::MachineChain& chain)
+      : table_(table), all_(all), layout_(chain.layout) {}
+
+  Group read(std::size_t number) {
+    group_.place = table_.place("kind");
+    group_.name = table_.text_or("name", fmt::format("group {}", number));
+    const std::size_t before = table_.faults();
+    group_.kind = static_cast<Kind>(table_.choice("kind", kKinds));
+    if (table_.faults() > before) {
+      table_.skip_rest();
+      return group_;
+    }
+    read_axes();
+    read_place();
+    read_lengths();
+    read_uncertainty();
+    read_expansion();
+    group_.drifts = table_.boolean_or("drift", false);
+    if (group_.kind == Kind::squareness) {
+      read_squareness();
+    } else {
+      group_.file = beside(all_.path, table_.text("readings"));
+    }
+    return group_;
+  }
+
+ private:
+  std::optional<Axis> read_axis(std::string_view key) {
+    const auto axis = static_cast<Axis>(table_.choice(key, kAxisNames));
+    if (layout_.joint_of(axis)) return axis;
+    table_.fault(key, "is an axis that the machine lacks");
+    return std::nullopt;
+  }
+
+  void read_axes() {
+    switch (group_.kind) {
+      case Kind::positioning:
+        if (table_.has("axis")) group_.axis = read_axis("axis");
+        return;
+      case Kind::straightness:
+      case Kind::angle: {
+        group_.axis = read_axis("axis");
+        const auto direction = static_cast<Axis>(table_.choice("direction", kAxisNames));
+        group_.direction = direction;
+        const bool wants_linear = group_.kind == Kind::straightness;
+        if (is_linear(direction) != wants_linear) {
+          table_.fault("direction", wants_linear ? "must be X, Y or Z" : "must be A, B or C");
+        } else if (wants_linear && group_.axis == group_.direction) {
+          table_.fault("direction", "is that of the axis itself: kind = \"positioning\"");
+        }
+        return;
+      }
+      case Kind::circle:
+        read_plane("plane");
+        return;
+      case Kind::squareness:
+        read_plane("axes");
+        return;
+      default:
+        return;
+    }
+  }
+
+  void read_plane(std::string_view key) {
+    const std::string text = table_.text(key);
+    const bool two = text.size() == 2 && axis_of(text[0]) && axis_of(text[1]);
+    if (!two || text[0] == text[1] || !is_linear(*axis_of(text[0])) ||
+        !is_linear(*axis_of(text[1]))) {
+      table_.fault(key, "must be two linear axes, such as \"XY\"");
+      return;
+    }
+    group_.plane = {*axis_of(text[0]), *axis_of(text[1])};
+    for (const Axis axis : group_.plane) {
+      if (!layout_.joint_of(axis)) table_.fault(key, "names an axis that the machine lacks");
+    }
+  }
+
+  void read_place() {
+    config::Reader at = table_.table_or_empty("at");
+    for (const Axis axis : kAllAxes) {
+      const auto joint = layout_.joint_of(axis);
+      if (!joint) continue;
+      const bool linear = is_linear(axis);
+      const std::string key = fmt::format("{}_{}", letter(axis), linear ? "mm" : "deg");
+      group_.stands[static_cast<std::size_t>(*joint)] = at.has(key);
+      group_.at[*joint] = at.real_or(key, 0.0, linear ? config::kLength : config::kAngle);
+    }
+    group_.p_ST = read_point("point_mm");
+    if (group_.kind == Kind::ball_bar || group_.kind == Kind::r_test ||
+        group_.kind == Kind::sphere) {
+      group_.tool_is_known = table_.choice_or("tool", 0, kTools) == 1;
+    }
+  }
+
+  Eigen::Vector3d read_point(std::string_view key) {
+    const auto numbers = table_.reals(key, config::kLength);
+    if (numbers.size() == 3) return {numbers[0], numbers[1], numbers[2]};
+    if (!numbers.empty()) table_.fault(key, "must be three numbers, X, Y and Z");
+    return Eigen::Vector3d::Zero();
+  }
+
+  void read_lengths() {
+    if (group_.kind == Kind::circle) {
+      group_.radius = table_.real("radius_mm", config::kLength, {config::above(0.0)});
+    } else if (group_.kind == Kind::ball_bar) {
+      group_.length = table_.real("length_mm", config::kLength, {config::above(0.0)});
+      group_.ball_W = read_point("ball_mm");
+    } else {
+      return;
+    }
+    const std::string_view key =
+        group_.kind == Kind::circle ? "radius_uncertainty_um" : "length_uncertainty_um";
+    if (table_.has(key)) {
+      group_.size_uncertainty = table_.real(key, config::kLength, {config::above(0.0)});
+    }
+  }
+
+  void read_uncertainty() {
+    if (table_.has("instrument")) {
+      const std::string name = table_.text("instrument");
+      const auto found = std::find_if(all_.instruments.begin(), all_.instruments.end(),
+                                      [&](const Instrument& one) { return one.name == name; });
+      if (found == all_.instruments.end()) {
+        std::vector<std::string_view> names;
+        for (const Instrument& one : all_.instruments) names.push_back(one.name);
+        table_.fault("instrument",
+                     fmt::format("is not in the list [[instrument]]{}", did_you_mean(name, names)));
+      } else {
+        group_.instrument = static_cast<std::size_t>(found - all_.instruments.begin());
+      }
+    }
+    if (table_.is("uncertainty", config::Value::Type::text) &&
+        table_.text("uncertainty") == "estimate") {
+      return;
+    }
+    const bool angular = is_angular(group_.kind, group_.axis);
+    group_.uncertainty =
+        table_.real(angular ? "uncertainty_urad" : "uncertainty_um",
+                    angular ? config::kAngle : config::kLength, {config::above(0.0)});
+  }
+
+  void read_expansion() {
+    if (!table_.has("expansion")) return;
+    config::Reader table = table_.table("expansion");
+    Expansion expansion;
+    expansion.coefficient = table.real_or("coefficient_per_K", kSteel, config::kExpansion);
+    expansion.coefficient_uncertainty = table.real_or("coefficient_uncertainty_per_K", 0.0,
+                                                      config::kExpansion, {config::at_least(0.0)});
+    expansion.temperature_uncertainty = table.real_or(
+        "temperature_uncertainty_K", 0.0, config::kTemperature, {config::at_least(0.0)});
+    group_.expansion = expansion;
+  }
+
+  void read_squareness() {
+    for (int j = 0; j < kJoints; ++j) {
+      if (layout_.has(j) && !group_.stands[static_cast<std::size_t>(j)]) {
+        table_.fault(fmt::format("does not give the position of {}; add it to the table at",
+                                 layout_.letter_of(j)));
+      }
+    }
+    const auto legs = table_.reals("lengths_mm", config::kLength);
+    if (legs.size() == 2 && legs[0] != 0.0 && legs[1] != 0.0) {
+      group_.legs = {legs[0], legs[1]};
+    } else if (!legs.empty()) {
+      table_.fault("lengths_mm", "must be the lengths of the two lines, along each axis");
+    }
+    group_.targets = static_cast<int>(table_.integer_or(
+        "targets", kTargets, {config::at_least(2.0), config::at_most(double(kMostTargets))}));
+    Reading reading;
+    reading.Q = group_.at;
+    reading.deviation[0] =
+        table_.real("deviation_urad", config::kAngle,
+                    {config::at_least(-kLargestAngle), config::at_most(kLargestAngle)});
+    reading.line = table_.place("deviation_urad").line;
+    group_.rows.push_back(reading);
+  }
+
+  config::Reader& table_;
+  const Readings& all_;
+  const JointLayout& layout_;
+  Group group_;
+};
+
+void read_instruments(config::Reader& root, Readings& out) {
+  for (config::Reader& table : root.tables_or_none("instrument")) {
+    Instrument one;
+    one.name = table.text("name");
+    one.scale_uncertainty =
+        table.real_or("scale_uncertainty_um_per_m", 0.0, config::kNumber, {config::at_least(0.0)});
+    const bool twice = std::any_of(out.instruments.begin(), out.instruments.end(),
+                                   [&](const Instrument& other) { return other.name == one.name; });
+    if (twice) table.fault("name", "appears twice");
+    out.instruments.push_back(std::move(one));
+  }
+}
+
+}  // namespace
+
+int numbers_of(Kind kind) { return kind == Kind::r_test || kind == Kind::sphere ? 3 : 1; }
+
+bool is_angular(Kind kind, std::optional<Axis> axis) {
+  return kind == Kind::angle || kind == Kind::squareness ||
+         (kind == Kind::positioning && axis && !is_linear(*axis));
+}
+
+std::string place_of(const Group& group, const Reading& reading) {
+  const std::string& file = group.file.empty() ? group.place.file : group.file;
+  return to_string(Place{file, reading.line, 0});
+}
+
+std::string named_machine(const std::string& path) {
+  const config::Document document = config::Document::from_file(path);
+  const config::Value* machine = document.root().find("machine");
+  if (machine == nullptr || machine->type != config::Value::Type::text) return {};
+  return beside(path, machine->text);
+}
+
+Readings read_readings(const std::string& path, const plant::MachineChain& chain,
+                       const Joints& lower, const Joints& upper) {
+  const config::Document document = config::Document::from_file(path);
+  config::Reader root(document);
+  Readings out;
+  out.path = path;
+  if (root.has("machine")) out.machine = root.text("machine");
+  root.raw("adjustment");  // belongs to the calibration
+  read_instruments(root, out);
+  for (config::Reader& table : root.tables("group")) {
+    out.groups.push_back(GroupReader(table, out, chain).read(out.groups.size() + 1));
+    const std::string& name = out.groups.back().name;
+    const bool twice = std::any_of(out.groups.begin(), out.groups.end() - 1,
+                                   [&](const Group& other) { return other.name == name; });
+    if (twice) table.fault("name", fmt::format("\"{}\" appears twice", name));
+  }
+  root.finish();
+
+  std::vector<Fault> faults;
+  for (Group& group : out.groups) {
+    if (group.file.empty()) continue;
+    try {
+      read_rows(group, chain, lower, upper, faults);
+    } catch (const InputError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  return out;
+}
+
+}  // namespace servomill::sim::readings

@@ -1,0 +1,60 @@
+#include "sim/readings/columns.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/readings/reading_files.h"
+#include "tests/text.h"
+
+namespace servomill::sim::readings::columns_test {
+namespace {
+
+class Columns : public testing::Test {
+ protected:
+  Table read(const std::string& text) { return read_table(files_.write("a.csv", text)); }
+  std::string faults(const std::string& text) {
+    return fault_messages([&] { read(text); });
+  }
+  ReadingFiles files_;
+};
+
+TEST_F(Columns, TakesTheUnitFromTheEndOfTheName) {
+  EXPECT_EQ(parse_column("deviation_um", 1).name, "deviation");
+  EXPECT_EQ(parse_column("deviation_um", 1).unit.factor, 1e-6);
+  EXPECT_EQ(parse_column("C_deg", 1).name, "C");
+  EXPECT_EQ(parse_column("temperature_degC", 1).name, "temperature_degC");
+  EXPECT_EQ(parse_column("p1", 1).name, "p1");
+}
+
+TEST_F(Columns, ReadsAnySeparatorAndADecimalComma) {
+  for (const char* text : {"X_mm,deviation_um\n1.5,-2\n", "X_mm;deviation_um\n1,5;-2\n",
+                           "X_mm\tdeviation_um\n1.5\t-2\n", "X_mm deviation_um\n1.5 -2\n",
+                           "# made\nX_mm; deviation_um\n\n1.5; -2\n"}) {
+    const Table table = read(text);
+    std::vector<Fault> faults;
+    ASSERT_EQ(table.rows.size(), 1u) << text;
+    EXPECT_EQ(table.number(table.rows[0], *table.find("X"), faults), 1.5e-3) << text;
+    EXPECT_EQ(table.number(table.rows[0], *table.find("deviation"), faults), -2e-6) << text;
+    EXPECT_TRUE(faults.empty());
+  }
+}
+
+TEST_F(Columns, NamesLineAndColumnOfTextAmongNumbers) {
+  const Table table = read("X_mm,deviation_um\n1.5,two\n");
+  std::vector<Fault> faults;
+  table.number(table.rows[0], *table.find("deviation"), faults);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(to_string(faults[0]),
+            files_.path("a.csv") + ":2:5: error: deviation_um = two; must be a number");
+}
+
+TEST_F(Columns, RefusesRowsOfAnotherLengthAndNamesThatAppearTwice) {
+  EXPECT_EQ(faults("X_mm,X_um,deviation_um\n1,2\n1,2,3,4\n"),
+            "column X_um appears twice\n"
+            "has 2 fields; the line of names has 3\n"
+            "has 4 fields; the line of names has 3\n");
+  EXPECT_EQ(faults("# nothing\n"), "is empty; a line of names is expected\n");
+  EXPECT_EQ(faults("X_mm,deviation_um\n"), "has no readings under its line of names\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::readings::columns_test

@@ -1,0 +1,166 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/readings/readings.h"
+#include "tests/sim/readings/reading_files.h"
+#include "tests/text.h"
+
+namespace servomill::sim::readings::read_readings_test {
+namespace {
+
+// The groups of README.md, each with rows.
+constexpr const char* kLaser = R"([[group]]
+name = "X, laser"
+kind = "positioning"
+axis = "X"
+readings = "x.csv"
+at = { Y_mm = 200, Z_mm = 100 }
+point_mm = [0, 0, -120]
+uncertainty_um = 0.5
+)";
+
+class ReadReadings : public testing::Test {
+ protected:
+  ReadReadings() {
+    files_.write("x.csv", "target_mm,direction,run,deviation_um\n0,+,1,0\n500,-,2,3\n");
+  }
+  Readings read(const std::string& text) {
+    return read_three_axis(files_.write("readings.toml", text));
+  }
+  std::string faults(const std::string& text) {
+    return fault_messages([&] { read(text); });
+  }
+  ReadingFiles files_;
+};
+
+TEST_F(ReadReadings, PutsPositioningWhereItWasMeasured) {
+  const Readings all = read(kLaser);
+  ASSERT_EQ(all.groups.size(), 1u);
+  const Group& group = all.groups[0];
+  EXPECT_EQ(group.axis, Axis::X);
+  EXPECT_EQ(group.uncertainty, 0.5e-6);
+  EXPECT_EQ(group.p_ST, Eigen::Vector3d(0.0, 0.0, -0.12));
+  ASSERT_EQ(group.rows.size(), 2u);
+  Joints Q = Joints::Zero();
+  Q.head<3>() << 0.5, 0.2, 0.1;
+  EXPECT_EQ(group.rows[1].Q, Q);
+  EXPECT_EQ(group.rows[1].deviation[0], 3e-6);
+  EXPECT_EQ(group.rows[1].direction[0], -1);
+  EXPECT_EQ(group.rows[1].run, 1);
+  EXPECT_EQ(place_of(group, group.rows[1]), files_.path("x.csv") + ":3");
+}
+
+TEST_F(ReadReadings, ReadsPositionsOfRunsBesideTheirTarget) {
+  files_.write("x.csv",
+               "direction,target_mm,p1,p2\nforward,10,10.001,10.002\nbackward,10,9.999,10\n");
+  const Group group = read(kLaser).groups.at(0);
+  ASSERT_EQ(group.rows.size(), 4u);
+  EXPECT_NEAR(group.rows[1].deviation[0], 2e-6, 1e-15);
+  EXPECT_EQ(group.rows[1].run, 1);
+  EXPECT_NEAR(group.rows[2].deviation[0], -1e-6, 1e-15);
+  EXPECT_EQ(group.rows[2].direction[0], -1);
+}
+
+TEST_F(ReadReadings, PutsACircleRoundItsCentreAndGivesAxesTheirDirections) {
+  files_.write("c.csv", "angle_deg,direction,deviation_um\n45,ccw,1\n45,cw,2\n");
+  const Group group = read(
+                          "[[group]]\nkind = \"circle\"\nplane = \"XY\"\nradius_mm = 100\n"
+                          "at = { X_mm = 300, Y_mm = 300, Z_mm = 0 }\npoint_mm = [0, 0, 0]\n"
+                          "uncertainty_um = 0.5\nreadings = \"c.csv\"\n")
+                          .groups.at(0);
+  ASSERT_EQ(group.rows.size(), 2u);
+  EXPECT_NEAR(group.rows[0].Q[0], 0.3 + 0.1 * std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(group.rows[0].direction[0], -1);  // counter-clockwise at 45 degrees: -X, +Y
+  EXPECT_EQ(group.rows[0].direction[1], 1);
+  EXPECT_EQ(group.rows[1].direction[0], 1);
+}
+
+TEST_F(ReadReadings, GivesEverySphereItsPlaceInTheOrderOfTheRows) {
+  files_.write("s.csv", "sphere,X_mm,Y_mm,Z_mm\nleft,1,2,3\nright,4,5,6\nleft,1,2,3\n");
+  const Group group = read(
+                          "[[group]]\nkind = \"sphere\"\npoint_mm = [0, 0, -50]\n"
+                          "uncertainty_um = 1\nreadings = \"s.csv\"\n")
+                          .groups.at(0);
+  ASSERT_EQ(group.rows.size(), 3u);
+  EXPECT_EQ(group.spheres, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(group.rows[2].sphere, 0u);
+}
+
+TEST_F(ReadReadings, WantsToKnowWhereEveryAxisStood) {
+  std::string text = kLaser;
+  text.replace(text.find("at = "), text.find("point") - text.find("at = "),
+               "at = { Y_mm = 200 }\n");
+  EXPECT_EQ(faults(text),
+            "group \"X, laser\" does not give the position of Z; add Z_mm to its table at, "
+            "or a column to " +
+                files_.path("x.csv") + "\n");
+}
+
+TEST_F(ReadReadings, NamesAllThatIsWrongWithRowsAtOnce) {
+  files_.write("x.csv",
+               "target_mm,direction,deviation_um,temperature_degC\n"
+               "0,left,0,20\n"
+               "1500,+,0,20\n"
+               "100,+,7000,20\n"
+               "200,+,,20\n"
+               "300,+,1,68\n");
+  EXPECT_EQ(faults(kLaser),
+            "direction = left; must be forward or backward (up, down, +, -, cw, ccw)\n"
+            "X = 1500 mm is outside the travel of the machine, 0 to 1000 mm\n"
+            "deviation of 7 mm; must be at most 5 mm: check unit and sign of target and position\n"
+            "deviation_um is empty\n"
+            "temperature_degC = 68; must lie between -10 and 50 degC (is it in Fahrenheit?)\n");
+}
+
+TEST_F(ReadReadings, RefusesColumnsThatAKindDoesNotHaveAndUnitsOfAnotherQuantity) {
+  files_.write("x.csv", "target_mm,deviaton_um\n0,0\n");
+  EXPECT_EQ(faults(kLaser),
+            "column deviaton_um is unknown in readings of kind positioning; did you mean "
+            "'deviation'?; known are direction, run, time, temperature_degC, X, Y, Z, deviation, "
+            "position, target\n"
+            "no column of values; expected one of deviation, position\n");
+  files_.write("x.csv", "target_mm,deviation_urad\n0,0\n");
+  EXPECT_EQ(faults(kLaser),
+            "column deviation_urad must name a length in its unit, such as deviation_mm\n");
+}
+
+TEST_F(ReadReadings, NamesTheRunThatIsMissing) {
+  files_.write("x.csv", "direction,target_mm,p1,p2\nforward,10,10.001,\n");
+  EXPECT_EQ(faults(kLaser),
+            "run 2 is missing at this target; a row for each reading (columns target, run, "
+            "position) may leave readings out\n");
+}
+
+TEST_F(ReadReadings, SharesTheScaleOfAnInstrument) {
+  const Readings all =
+      read("[[instrument]]\nname = \"laser\"\nscale_uncertainty_um_per_m = 0.25\n" +
+           std::string(kLaser) + "instrument = \"laser\"\n");
+  ASSERT_EQ(all.instruments.size(), 1u);
+  EXPECT_EQ(all.instruments[0].scale_uncertainty, 0.25e-6);
+  EXPECT_EQ(all.groups[0].instrument, 0u);
+  EXPECT_EQ(faults("[[instrument]]\nname = \"laser\"\n" + std::string(kLaser) +
+                   "instrument = \"lasr\"\n"),
+            "group[0].instrument = \"lasr\"; is not in the list [[instrument]]; did you mean "
+            "'laser'?\n");
+}
+
+TEST_F(ReadReadings, EstimatesAnUncertaintyOnlyWhereItIsAskedTo) {
+  std::string text = kLaser;
+  text.replace(text.find("uncertainty_um = 0.5"), 20, "uncertainty = \"estimate\"");
+  EXPECT_FALSE(read(text).groups[0].uncertainty);
+  text.replace(text.find("uncertainty = "), 24, "");
+  EXPECT_EQ(faults(text), "group[0].uncertainty_um is missing\n");
+}
+
+TEST_F(ReadReadings, RefusesAxesThatTheMachineLacksAndDirectionsOfTheAxisItself) {
+  EXPECT_EQ(faults("[[group]]\nkind = \"straightness\"\naxis = \"X\"\ndirection = \"X\"\n"
+                   "readings = \"x.csv\"\npoint_mm = [0, 0, 0]\nuncertainty_um = 1\n"),
+            "group[0].direction = \"X\"; is that of the axis itself: kind = \"positioning\"\n");
+  EXPECT_EQ(faults("[[group]]\nkind = \"angle\"\naxis = \"C\"\ndirection = \"A\"\n"
+                   "readings = \"x.csv\"\npoint_mm = [0, 0, 0]\nuncertainty_urad = 1\n"),
+            "group[0].axis = \"C\"; is an axis that the machine lacks\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::readings::read_readings_test
