@@ -62,6 +62,21 @@ TEST_F(ReadReadings, ReadsPositionsOfRunsBesideTheirTarget) {
   EXPECT_EQ(group.rows[2].direction[0], -1);
 }
 
+TEST_F(ReadReadings, TakesTheTargetFromAPosition) {
+  files_.write("x.csv", "target_mm,position_mm\n10,10.001\n");
+  EXPECT_NEAR(read(kLaser).groups.at(0).rows.at(0).deviation[0], 1e-6, 1e-15);
+}
+
+TEST_F(ReadReadings, ReadsThreeNumbersOfAnRTest) {
+  files_.write("r.csv", "X_mm,Y_mm,Z_mm,dx_um,dy_um,dz_um\n1,2,3,4,5,6\n");
+  const Group group = read(
+                          "[[group]]\nkind = \"r_test\"\npoint_mm = [0, 0, -50]\n"
+                          "uncertainty_um = 1\ntool = \"adjusted\"\nreadings = \"r.csv\"\n")
+                          .groups.at(0);
+  EXPECT_TRUE(group.tool_is_known);
+  EXPECT_NEAR((group.rows.at(0).deviation - 1e-6 * Eigen::Vector3d(4, 5, 6)).norm(), 0.0, 1e-18);
+}
+
 TEST_F(ReadReadings, PutsACircleRoundItsCentreAndGivesAxesTheirDirections) {
   files_.write("c.csv", "angle_deg,direction,deviation_um\n45,ccw,1\n45,cw,2\n");
   const Group group = read(
