@@ -1,0 +1,85 @@
+/// Adjustment: the errors of a machine and the unknowns of all set-ups from all readings at once,
+/// by weighted least squares, with what the readings cannot tell.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plant/geometry/error_model.h"
+#include "sim/calibration/function_basis.h"
+#include "sim/calibration/observations.h"
+
+namespace servomill::sim::calibration {
+
+/// A component error that is looked for.
+struct SoughtFunction {
+  plant::ErrorName name;
+  FunctionBasis basis;
+  int first = 0;  // unknown, in Adjustment::values
+};
+
+/// The unknowns in their order: set-up, location errors, functions. Of unknowns that the readings
+/// know only in combination, the later one is left out (0), so that the earlier one holds the
+/// combination.
+struct Unknowns {
+  std::vector<SetUpUnknown> set_up;
+  std::vector<plant::ErrorName> locations;
+  std::vector<SoughtFunction> functions;
+
+  int first_location() const { return static_cast<int>(set_up.size()); }
+  int first_function() const { return first_location() + static_cast<int>(locations.size()); }
+  int size() const;
+  /// "EC0Y", "EXX", "X, laser: zero"
+  std::string name(int unknown, const readings::Readings& readings) const;
+};
+
+/// An unknown that is left out, and those that hold it: its effect on the readings is the sum of
+/// theirs by these factors. Without parts it has no effect.
+struct LeftOut {
+  int unknown = 0;
+  std::vector<std::pair<int, double>> parts;  // unknown, effect of that size relative to its own
+};
+
+struct GroupResult {
+  double uncertainty = 0.0;  // m or rad; stated or estimated, of one number
+  double rms = 0.0;          // of the residuals
+  double redundancy = 0.0;   // numbers less unknowns that they determine
+  std::size_t numbers = 0;
+  /// Variance of the residuals over that of the uncertainty; 1 is expected.
+  double ratio() const;
+};
+
+struct Outlier {
+  std::size_t observation = 0;
+  double standardized = 0.0;  // residual over its standard uncertainty
+};
+
+struct Adjustment {
+  Unknowns unknowns;
+  Eigen::VectorXd values;      // SI; 0 of those left out
+  Eigen::MatrixXd covariance;  // of the values; 0 of those left out
+  std::vector<LeftOut> left_out;
+  std::vector<double> residuals;     // observed less adjusted
+  std::vector<double> standardized;  // residuals over their standard uncertainty; 0: uncontrolled
+  std::vector<GroupResult> groups;
+  plant::ErrorModel errors;  // as adjusted
+  double squares = 0.0;      // of whitened residuals and of priors
+  double redundancy = 0.0;
+  int iterations = 0;
+};
+
+struct AdjustmentOptions {
+  bool robust = false;  // Huber's weights
+};
+
+/// @param locations, functions  what is looked for; `first` is set here
+Adjustment adjust(const readings::Readings& readings, const Observations& observations,
+                  const plant::MachineChain& chain, std::vector<plant::ErrorName> locations,
+                  std::vector<SoughtFunction> functions, const AdjustmentOptions& options = {});
+
+/// An unknown of which less than this share is its own counts as a combination of others.
+inline constexpr double kOwnShare = 1e-4;
+
+}  // namespace servomill::sim::calibration

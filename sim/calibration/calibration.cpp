@@ -1,0 +1,213 @@
+#include "sim/calibration/calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "sim/metrology/location_errors.h"
+
+namespace servomill::sim::calibration {
+namespace {
+
+using plant::ErrorName;
+
+constexpr std::size_t kMostTargets = 51;  // knots, where readings stand in as many places
+constexpr int kDefaultKnots = 17;         // where they stand in more
+constexpr double kSamePlace = 1e-6;       // m, rad
+constexpr double kContradiction = 6.0;    // standard deviations of the whitened squares
+constexpr double kMuchBetter = 0.3;       // of the contradiction is left by the other sign
+
+bool is_sought(const CalibrationSettings& settings, const ErrorName& name) {
+  const auto& errors = settings.errors;
+  return errors.empty() || std::find(errors.begin(), errors.end(), name) != errors.end();
+}
+
+// Places of one joint among the readings, ascending; of the groups that are about its axis, if any.
+std::vector<double> places_of(const readings::Readings& readings, const Observations& observations,
+                              Axis axis, int joint) {
+  std::vector<double> own, all;
+  for (const Observation& one : observations.all) {
+    for (const Pose& pose : one.poses) {
+      all.push_back(pose.Q[joint]);
+      if (readings.groups[one.group].axis == axis) own.push_back(pose.Q[joint]);
+    }
+  }
+  const auto distinct = [](std::vector<double> places) {
+    std::sort(places.begin(), places.end());
+    std::vector<double> out;
+    for (const double place : places) {
+      if (out.empty() || place > out.back() + kSamePlace) out.push_back(place);
+    }
+    return out;
+  };
+  all = distinct(std::move(all));
+  own = distinct(std::move(own));
+  if (own.size() < 2 || own.size() > kMostTargets) {
+    if (all.size() <= 1) return all;
+    if (own.size() < 2 && all.size() <= std::size_t(kDefaultKnots)) return all;
+    return {all.front(), all.back()};
+  }
+  // the knots reach as far as any reading
+  if (all.front() < own.front() - kSamePlace) own.insert(own.begin(), all.front());
+  if (all.back() > own.back() + kSamePlace) own.push_back(all.back());
+  return own;
+}
+
+std::vector<double> equally_spaced(double lower, double upper, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(lower + (upper - lower) * i / (count - 1));
+  return out;
+}
+
+FunctionForm form_of(const FormSettings& asked, const std::vector<double>& places) {
+  FunctionForm form;
+  form.lower = places.front();
+  form.upper = places.back();
+  form.degree = asked.degree.value_or(0);
+  form.periods = asked.periods;
+  form.reversal_degree = asked.reversal_degree.value_or(-1);
+  form.reversal_distance = asked.reversal_distance.value_or(form.reversal_distance);
+  if (asked.knots) {
+    form.knots = *asked.knots;
+  } else if (asked.number_of_knots) {
+    if (*asked.number_of_knots > 0) {
+      form.knots = equally_spaced(form.lower, form.upper, *asked.number_of_knots);
+    }
+  } else if (!asked.degree && asked.periods.empty()) {
+    form.knots = places.size() > 2 ? places : equally_spaced(form.lower, form.upper, kDefaultKnots);
+  }
+  if (!form.knots.empty()) {
+    form.lower = std::min(form.lower, form.knots.front());
+    form.upper = std::max(form.upper, form.knots.back());
+  }
+  return form;
+}
+
+FormSettings settings_of(const CalibrationSettings& settings, const ErrorName& name) {
+  for (const auto& [of, form] : settings.forms) {
+    if (of == name) return form;
+  }
+  return is_linear(name.axis) ? settings.form_linear : settings.form_rotary;
+}
+
+// The mean of every function belongs to set-up or location; the slope of a straightness, too.
+bool is_without_slope(const ErrorName& name) {
+  return is_linear(name.axis) && is_linear(name.direction) && name.direction != name.axis;
+}
+
+std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
+                                             const Observations& observations,
+                                             const plant::MachineChain& chain,
+                                             const CalibrationSettings& settings) {
+  std::vector<SoughtFunction> out;
+  for (const Axis axis : kAllAxes) {
+    const auto joint = chain.layout.joint_of(axis);
+    if (!joint) continue;
+    const std::vector<double> places = places_of(readings, observations, axis, *joint);
+    if (places.size() < 2) continue;  // the axis has not moved
+    for (const Axis direction : kAllAxes) {
+      const ErrorName name{direction, axis, false};
+      if (!is_sought(settings, name) || plant::why_meaningless(name, chain.layout)) continue;
+      const FunctionForm form = form_of(settings_of(settings, name), places);
+      out.push_back({name, FunctionBasis(form, is_without_slope(name)), 0});
+    }
+  }
+  return out;
+}
+
+std::vector<Outlier> outliers_of(const Adjustment& adjustment) {
+  std::vector<Outlier> out;
+  const double limit = outlier_limit(adjustment.standardized.size());
+  for (std::size_t i = 0; i < adjustment.standardized.size(); ++i) {
+    const double z = adjustment.standardized[i];
+    if (std::abs(z) > limit) out.push_back({i, z});
+  }
+  std::sort(out.begin(), out.end(), [](const Outlier& a, const Outlier& b) {
+    return std::abs(a.standardized) > std::abs(b.standardized);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<ErrorName> sought_locations(const plant::MachineChain& chain,
+                                        const std::array<Axis, 2>& frame) {
+  const auto turn = [](Axis about, Axis of) {
+    return ErrorName{static_cast<Axis>(index_of(about) + index_of(Axis::A)), of, true};
+  };
+  const Axis first = frame[0], second = frame[1];
+  const auto third = static_cast<Axis>(3 - index_of(first) - index_of(second));
+  std::vector<ErrorName> out;
+  for (const ErrorName& name : {turn(third, second), turn(second, third), turn(first, third)}) {
+    if (!plant::why_meaningless(name, chain.layout)) out.push_back(name);
+  }
+  for (const ErrorName& name : metrology::location_errors(chain)) {
+    if (!is_linear(name.axis)) out.push_back(name);
+  }
+  return out;
+}
+
+double outlier_limit(std::size_t n) {
+  return std::sqrt(2.0 * std::log(static_cast<double>(std::max<std::size_t>(n, 1)) / 1e-3));
+}
+
+Calibration calibrate(readings::Readings readings, const plant::MachineChain& chain,
+                      const CalibrationSettings& settings) {
+  Calibration out{.readings = std::move(readings),
+                  .settings = settings,
+                  .observations = {},
+                  .adjustment = {},
+                  .outliers = {},
+                  .sign_suspects = {}};
+  out.observations = observations_of(out.readings, chain);
+  std::vector<ErrorName> locations;
+  for (const ErrorName& name : sought_locations(chain, settings.frame)) {
+    if (is_sought(settings, name)) locations.push_back(name);
+  }
+  const std::vector<SoughtFunction> functions =
+      sought_functions(out.readings, out.observations, chain, settings);
+  const AdjustmentOptions options{.robust = settings.robust};
+  const auto adjusted = [&](const Observations& observations) {
+    return adjust(out.readings, observations, chain, locations, functions, options);
+  };
+  out.adjustment = adjusted(out.observations);
+  out.outliers = outliers_of(out.adjustment);
+  const Adjustment& found = out.adjustment;
+  const double excess = found.squares - found.redundancy;
+  if (!(excess > kContradiction * std::sqrt(2.0 * std::max(found.redundancy, 1.0)))) return out;
+  for (std::size_t group = 0; group < out.readings.groups.size(); ++group) {
+    Observations turned = out.observations;
+    for (Observation& one : turned.all) {
+      if (one.group == group) one.d = -one.d;
+    }
+    const double squares = adjusted(turned).squares;
+    if (squares - found.redundancy < kMuchBetter * excess) {
+      out.sign_suspects.push_back({group, squares});
+    }
+  }
+  return out;
+}
+
+std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points) {
+  std::vector<KnownFunction> out;
+  for (const SoughtFunction& function : adjustment.unknowns.functions) {
+    const int n = function.basis.size();
+    const Eigen::MatrixXd C = adjustment.covariance.block(function.first, function.first, n, n);
+    if (C.isZero(0.0)) continue;
+    const FunctionForm& form = function.basis.form();
+    KnownFunction known{.name = function.name, .s = {}, .value = {}, .sigma = {}};
+    for (const double s : equally_spaced(form.lower, form.upper, points)) {
+      const Eigen::RowVectorXd row = function.basis.row(s, 0.0);
+      known.s.push_back(s);
+      known.value.push_back(row * adjustment.values.segment(function.first, n));
+      known.sigma.push_back(std::sqrt(std::max(0.0, (row * C * row.transpose())(0))));
+    }
+    out.push_back(std::move(known));
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::calibration

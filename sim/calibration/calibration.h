@@ -1,0 +1,80 @@
+/// The whole of a calibration: what is looked for, the adjustment, and what its residuals say of
+/// the readings.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/calibration/adjustment.h"
+
+namespace servomill::sim::calibration {
+
+/// Form of one error, or of all, as the table `adjustment` of a file of readings asks for it.
+struct FormSettings {
+  std::optional<int> degree;
+  std::optional<std::vector<double>> knots;  // m or rad; empty: none
+  std::optional<int> number_of_knots;        // equally spaced over the readings
+  std::vector<double> periods;               // m or rad
+  std::optional<int> reversal_degree;
+  std::optional<double> reversal_distance;  // m or rad
+};
+
+struct CalibrationSettings {
+  /// First axis: straight along itself by convention; second: in the plane of both.
+  std::array<Axis, 2> frame = {Axis::X, Axis::Y};
+  std::vector<plant::ErrorName> errors;   // that are looked for; empty: all
+  FormSettings form_linear, form_rotary;  // of component errors without a form of their own
+  std::vector<std::pair<plant::ErrorName, FormSettings>> forms;
+  bool robust = false;
+};
+
+/// Reads the table `adjustment`; without one, the defaults.
+/// @throws InputError
+CalibrationSettings read_settings(const std::string& path, const JointLayout& layout);
+
+/// Location errors of a machine in a frame that its first two axes define: squarenesses, then tilts
+/// and offsets of the rotary axes. Those of the frame are 0 by convention.
+std::vector<plant::ErrorName> sought_locations(const plant::MachineChain& chain,
+                                               const std::array<Axis, 2>& frame);
+
+struct Suspect {
+  std::size_t group = 0;
+  double squares = 0.0;  // of all whitened residuals with the sign of this group turned round
+};
+
+struct Calibration {
+  readings::Readings readings;
+  CalibrationSettings settings;
+  Observations observations;
+  Adjustment adjustment;
+  std::vector<Outlier> outliers;       // largest first
+  std::vector<Suspect> sign_suspects;  // groups that fit with the other sign
+};
+
+/// @throws InputError where nothing can be adjusted
+Calibration calibrate(readings::Readings readings, const plant::MachineChain& chain,
+                      const CalibrationSettings& settings);
+
+/// Standardized residuals above it are outliers: among n of normal noise, one in a thousand
+/// adjustments has one, since P(|z| > t) <= exp(-t^2/2).
+double outlier_limit(std::size_t n);
+
+/// Component error with its standard uncertainty along the travel.
+struct KnownFunction {
+  plant::ErrorName name;
+  std::vector<double> s;             // m or rad
+  std::vector<double> value, sigma;  // m or rad
+};
+/// Every function of which something is known, at `points` equally spaced places.
+std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points = 41);
+
+/// "EA0C is determined only in combination: EA0Y holds EA0Y + EA0C", one sentence for each
+/// combination; functions without any effect on the readings in one sentence.
+std::vector<std::string> unidentifiable_sentences(const Calibration& calibration);
+
+/// True if a part of an error is left out, or holds what was left out of another.
+bool is_combined(const Adjustment& adjustment, const plant::ErrorName& name);
+
+}  // namespace servomill::sim::calibration

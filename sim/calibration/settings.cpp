@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/calibration/calibration.h"
+#include "sim/config/document.h"
+#include "sim/config/reader.h"
+
+namespace servomill::sim::calibration {
+namespace {
+
+constexpr std::int64_t kMostDegree = 20;
+constexpr std::int64_t kMostKnots = 1000;
+
+// Keys of a form: polynomial, knots, harmonics, reversal; in units of the axis.
+FormSettings read_form(config::Reader& table, bool linear) {
+  FormSettings form;
+  const config::Quantity travel = linear ? config::kLength : config::kAngle;
+  const auto key = [linear](const char* name) {
+    return fmt::format("{}_{}", name, linear ? "mm" : "deg");
+  };
+  if (table.has("polynomial")) {
+    form.degree = static_cast<int>(
+        table.integer("polynomial", {config::at_least(0.0), config::at_most(double(kMostDegree))}));
+  }
+  if (table.has("knots")) {
+    form.number_of_knots = static_cast<int>(
+        table.integer("knots", {config::at_least(0.0), config::at_most(double(kMostKnots))}));
+    if (*form.number_of_knots == 1) table.fault("knots", "must be 0 or at least 2");
+  }
+  if (table.has(key("knots"))) {
+    form.knots = table.reals(key("knots"), travel);
+    if (form.number_of_knots) table.fault(key("knots"), "stands beside knots; only one can count");
+    if (form.knots->size() < 2 ||
+        !std::is_sorted(form.knots->begin(), form.knots->end(), std::less_equal<>())) {
+      table.fault(key("knots"), "must be two places at least, in ascending order");
+    }
+  }
+  form.periods = table.reals_or(key("harmonics"), {}, travel, {config::above(0.0)});
+  if (table.has("reversal")) {
+    form.reversal_degree = static_cast<int>(
+        table.integer("reversal", {config::at_least(0.0), config::at_most(double(kMostDegree))}));
+  }
+  if (table.has(key("reversal_distance"))) {
+    form.reversal_distance = table.real(key("reversal_distance"), travel, {config::above(0.0)});
+  }
+  return form;
+}
+
+std::array<Axis, 2> read_frame(config::Reader& table, const JointLayout& layout) {
+  std::array<Axis, 2> out = {Axis::X, Axis::Y};
+  if (!table.has("frame")) return out;
+  const std::string text = table.text("frame");
+  const auto linear = [&](char c) {
+    const auto axis = axis_of(c);
+    return axis && is_linear(*axis) && layout.joint_of(*axis);
+  };
+  if (text.size() != 2 || text[0] == text[1] || !linear(text[0]) || !linear(text[1])) {
+    table.fault("frame",
+                "must be two linear axes of the machine, such as \"XY\": the first one is "
+                "straight by convention, the second lies in their plane");
+    return out;
+  }
+  return {*axis_of(text[0]), *axis_of(text[1])};
+}
+
+}  // namespace
+
+CalibrationSettings read_settings(const std::string& path, const JointLayout& layout) {
+  const config::Document document = config::Document::from_file(path);
+  config::Reader root(document);
+  for (const std::string& key : root.keys()) {
+    if (key != "adjustment") root.raw(key);
+  }
+  CalibrationSettings out;
+  config::Reader table = root.table_or_empty("adjustment");
+  out.frame = read_frame(table, layout);
+  out.robust = table.boolean_or("robust", false);
+  std::vector<std::string> names = table.texts_or("errors", {});
+  for (const std::string& name : names) {
+    try {
+      out.errors.push_back(plant::parse_error_name(name, layout, table.place("errors")));
+    } catch (const InputError& error) {
+      table.fault("errors", error.faults().front().message);
+    }
+  }
+  config::Reader form = table.table_or_empty("form");
+  for (const std::string& key : form.keys()) {
+    config::Reader one = form.table(key);
+    if (key == "linear" || key == "rotary") {
+      (key == "linear" ? out.form_linear : out.form_rotary) = read_form(one, key == "linear");
+      continue;
+    }
+    try {
+      const plant::ErrorName name = plant::parse_error_name(key, layout, form.place(key));
+      if (name.is_location) form.fault(key, "is a location error, a constant: it has no form");
+      out.forms.emplace_back(name, read_form(one, is_linear(name.axis)));
+    } catch (const InputError& error) {
+      form.fault(key, error.faults().front().message);
+      one.skip_rest();
+    }
+  }
+  root.finish();
+  return out;
+}
+
+}  // namespace servomill::sim::calibration

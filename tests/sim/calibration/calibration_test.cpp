@@ -1,0 +1,201 @@
+#include "sim/calibration/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+
+#include "plant/geometry/volumetric.h"
+#include "sim/calibration/make_up.h"
+#include "tests/number_of.h"
+#include "tests/sim/calibration/shop.h"
+#include "tests/text.h"
+
+namespace servomill::sim::calibration::calibration_test {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using plant::operator""_err;
+
+class Normal {
+ public:
+  explicit Normal(std::uint64_t seed) : generator_(seed) {}
+  double operator()(double sigma) { return sigma * distribution_(generator_); }
+
+ private:
+  boost::random::mt19937_64 generator_;
+  boost::random::normal_distribution<double> distribution_;
+};
+
+// The unknowns of a machine drawn at random, by the conventions of the adjustment.
+struct Truth {
+  VectorXd values;  // of errors; the set-up is not compared
+  plant::ErrorModel errors;
+};
+
+Truth random_truth(const Unknowns& unknowns, Normal& normal) {
+  Truth out;
+  out.values = VectorXd::Zero(unknowns.size());
+  for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
+    const double value = normal(is_linear(unknowns.locations[k].direction) ? 8e-6 : 20e-6);
+    out.values[unknowns.first_location() + int(k)] = value;
+    out.errors.location(unknowns.locations[k]) = value;
+  }
+  for (const SoughtFunction& f : unknowns.functions) {
+    for (int i = 0; i < f.basis.size(); ++i) out.values[f.first + i] = normal(5e-6);
+    out.errors.component(f.name) = f.basis.function(out.values.segment(f.first, f.basis.size()));
+  }
+  return out;
+}
+
+// Expected values of the kept unknowns: they hold those that are left out.
+VectorXd expected_values(const Adjustment& adjustment, const Truth& truth) {
+  VectorXd out = truth.values;
+  for (const LeftOut& one : adjustment.left_out) {
+    for (const auto& [part, factor] : one.parts) out[part] += factor * truth.values[one.unknown];
+    out[one.unknown] = 0.0;
+  }
+  return out;
+}
+
+Calibration calibrated(readings::Readings readings, const CalibrationSettings& settings = {}) {
+  return calibrate(std::move(readings), gantry(), settings);
+}
+
+TEST(Calibration, FindsEveryErrorOfAMachineThatNoInstrumentBlurs) {
+  Normal normal(1);
+  const readings::Readings empty = shop_readings();
+  const Truth truth = random_truth(calibrated(empty).adjustment.unknowns, normal);
+  readings::Readings all = empty;
+  for (readings::Group& group : all.groups) group.uncertainty = 1e-12;
+  all.instruments[0].scale_uncertainty = 1e-12;
+  make_up(all, gantry(), truth.errors, 7);
+  const Calibration found = calibrated(all);
+  EXPECT_TRUE(found.adjustment.left_out.empty()) << unidentifiable_sentences(found).front();
+  for (const double y : {0.1, 0.8}) {
+    for (const double x : {0.0, 0.33, 1.0}) {
+      const Joints Q = (Joints() << x, y, 0.4, 0.0, 0.0).finished();
+      const Eigen::Vector3d p_ST(0.02, -0.03, -0.2);
+      const auto tip = [&](const plant::ErrorModel& errors) {
+        return plant::VolumetricModel(gantry(), errors).error(Q, p_ST).dp_W;
+      };
+      EXPECT_NEAR((tip(truth.errors) - tip(found.adjustment.errors)).norm(), 0.0, 1e-10);
+    }
+  }
+}
+
+// Normal noise of the stated sizes: the whitened error has as many squares as numbers were found,
+// and 95 % intervals hold 95 % of the errors.
+TEST(Calibration, KnowsHowWellItKnows) {
+  const int machines = static_cast<int>(number_of("SERVOMILL_CALIBRATIONS", 30));
+  const readings::Readings empty = shop_readings();
+  const Unknowns unknowns = calibrated(empty).adjustment.unknowns;
+  Normal normal(2);
+  double squares = 0.0, rank = 0.0, chi_squares = 0.0, redundancy = 0.0;
+  int inside = 0, all = 0;
+  for (int machine = 0; machine < machines; ++machine) {
+    const Truth truth = random_truth(unknowns, normal);
+    readings::Readings taken = empty;
+    make_up(taken, gantry(), truth.errors, 100 + std::uint64_t(machine));
+    const Adjustment found = calibrated(taken).adjustment;
+    const int first = found.unknowns.first_location(), n = found.unknowns.size() - first;
+    const VectorXd error = (found.values - expected_values(found, truth)).tail(n);
+    const MatrixXd S = found.covariance.bottomRightCorner(n, n);
+    squares += error.dot(S.ldlt().solve(error));
+    rank += n;
+    chi_squares += found.squares;
+    redundancy += found.redundancy;
+    for (int i = 0; i < n; ++i) {
+      inside += std::abs(error[i]) <= 1.96 * std::sqrt(S(i, i)) ? 1 : 0;
+      ++all;
+    }
+  }
+  // four standard deviations of sums of squares and of counts; numbers of one machine depend on
+  // each other, so that the count is taken for a tenth of what it is
+  EXPECT_NEAR(squares / rank, 1.0, 4.0 * std::sqrt(2.0 / rank));
+  EXPECT_NEAR(chi_squares / redundancy, 1.0, 4.0 * std::sqrt(2.0 / redundancy));
+  EXPECT_NEAR(double(inside) / all, 0.95, 4.0 * std::sqrt(0.95 * 0.05 / (0.1 * all)));
+  std::printf("whitened %.3f, chi squares %.3f, intervals of 95 %% hold %.2f %%\n", squares / rank,
+              chi_squares / redundancy, 100.0 * inside / all);
+}
+
+// Straightness at tools across tells the roll, too, but for its slope: every line has a slope of
+// its own.
+TEST(Calibration, NamesTheRollThatLevelsDoNotSee) {
+  readings::Readings all = shop_readings(false);
+  make_up(all, gantry(), {}, 3);
+  const Calibration found = calibrated(all);
+  EXPECT_TRUE(is_combined(found.adjustment, "ECZ"_err));
+  ASSERT_EQ(unidentifiable_sentences(found).size(), 1u);
+  EXPECT_TRUE(unidentifiable_sentences(found)[0].starts_with(
+      "a part of ECZ cannot be separated from the set-up (zero of \"X "))
+      << unidentifiable_sentences(found)[0];
+  std::erase_if(all.groups, [](const readings::Group& group) {
+    return group.axis == Axis::Z && group.p_ST.head<2>().norm() > 0.0;
+  });
+  const Calibration less = calibrated(all);
+  ASSERT_EQ(unidentifiable_sentences(less).size(), 1u);
+  EXPECT_TRUE(unidentifiable_sentences(less)[0].starts_with(
+      "ECZ cannot be separated from the set-up (zero of \"X "))
+      << unidentifiable_sentences(less)[0];
+}
+
+TEST(Calibration, FindsTheGroupWhoseSignIsWrong) {
+  Normal normal(4);
+  readings::Readings all = shop_readings();
+  const Truth truth = random_truth(calibrated(all).adjustment.unknowns, normal);
+  make_up(all, gantry(), truth.errors, 5);
+  for (readings::Reading& reading : all.groups[4].rows) reading.deviation *= -1.0;
+  const Calibration found = calibrated(all);
+  ASSERT_EQ(found.sign_suspects.size(), 1u);
+  EXPECT_EQ(found.sign_suspects[0].group, 4u);
+}
+
+TEST(Calibration, NamesAnOutlierOfATenthOfAMillimetre) {
+  readings::Readings all = shop_readings();
+  make_up(all, gantry(), {}, 6);
+  all.groups[1].rows[3].deviation[0] += 0.1e-3;
+  const Calibration found = calibrated(all);
+  ASSERT_FALSE(found.outliers.empty());
+  const Observation& worst = found.observations.all[found.outliers[0].observation];
+  EXPECT_EQ(worst.group, 1u);
+  EXPECT_EQ(worst.row, 3u);
+  EXPECT_GT(found.outliers[0].standardized, 50.0);
+}
+
+TEST(Calibration, EstimatesTheUncertaintyOfAGroup) {
+  Normal normal(8);
+  readings::Readings all = shop_readings();
+  const Truth truth = random_truth(calibrated(all).adjustment.unknowns, normal);
+  for (readings::Group& group : all.groups) {
+    if (group.kind == readings::Kind::straightness) group.uncertainty = 2.5e-6;
+  }
+  make_up(all, gantry(), truth.errors, 9);
+  for (readings::Group& group : all.groups) {
+    if (group.kind == readings::Kind::straightness) group.uncertainty.reset();
+  }
+  const Calibration found = calibrated(all);
+  double mean = 0.0;
+  int count = 0;
+  for (std::size_t g = 0; g < all.groups.size(); ++g) {
+    if (all.groups[g].kind != readings::Kind::straightness) continue;
+    mean += found.adjustment.groups[g].uncertainty;
+    ++count;
+  }
+  EXPECT_NEAR(mean / count, 2.5e-6, 0.3e-6);
+}
+
+TEST(Calibration, TakesTheFrameThatIsAskedFor) {
+  const auto names = [](std::array<Axis, 2> frame) {
+    std::string out;
+    for (const auto& name : sought_locations(gantry(), frame)) out += to_string(name) + " ";
+    return out;
+  };
+  EXPECT_EQ(names({Axis::X, Axis::Y}), "EC0Y EB0Z EA0Z ");
+  EXPECT_EQ(names({Axis::Z, Axis::X}), "EB0X EA0Y EC0Y ");
+}
+
+}  // namespace
+}  // namespace servomill::sim::calibration::calibration_test

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "sim/calibration/calibration.h"
+#include "tests/sim/calibration/shop.h"
+#include "tests/sim/readings/reading_files.h"
+#include "tests/text.h"
+
+namespace servomill::sim::calibration::settings_test {
+namespace {
+
+using plant::operator""_err;
+
+class Settings : public testing::Test {
+ protected:
+  CalibrationSettings read(const std::string& text) {
+    return read_settings(files_.write("readings.toml", text), gantry().layout);
+  }
+  std::string faults(const std::string& text) {
+    return fault_messages([&] { read(text); });
+  }
+  readings::ReadingFiles files_;
+};
+
+TEST_F(Settings, AreDefaultsWithoutTheTable) {
+  const CalibrationSettings settings = read("[[group]]\nkind = \"angle\"\n");
+  EXPECT_TRUE(settings.errors.empty());
+  EXPECT_FALSE(settings.robust);
+  EXPECT_EQ(settings.frame, (std::array{Axis::X, Axis::Y}));
+}
+
+TEST_F(Settings, GiveEveryErrorItsForm) {
+  const CalibrationSettings settings = read(R"([adjustment]
+errors = ["EXX", "EC0Y"]
+frame = "YX"
+robust = true
+[adjustment.form]
+linear = { knots_mm = [0, 250, 1000], reversal = 1, reversal_distance_mm = 0.05 }
+EXX = { polynomial = 3, harmonics_mm = [5, 10] }
+EYX = { knots = 9 }
+)");
+  EXPECT_EQ(settings.errors, (std::vector{"EXX"_err, "EC0Y"_err}));
+  EXPECT_EQ(settings.frame, (std::array{Axis::Y, Axis::X}));
+  EXPECT_TRUE(settings.robust);
+  EXPECT_EQ(*settings.form_linear.knots, (std::vector{0.0, 0.25, 1.0}));
+  EXPECT_EQ(settings.form_linear.reversal_distance, 0.05e-3);
+  ASSERT_EQ(settings.forms.size(), 2u);
+  EXPECT_EQ(settings.forms[0].second.degree, 3);
+  EXPECT_EQ(settings.forms[0].second.periods, (std::vector{5e-3, 10e-3}));
+  EXPECT_EQ(settings.forms[1].second.number_of_knots, 9);
+}
+
+TEST_F(Settings, NameAllThatIsWrong) {
+  EXPECT_EQ(
+      faults("[adjustment]\nerrors = [\"EXX\", \"EQX\"]\nframe = \"XX\"\n[adjustment.form]\n"
+             "EC0Y = { polynomial = 1 }\nEXX = { knots = 1 }\n"
+             "EYX = { knots_mm = [3, 3] }\nEZX = { polynomal = 3 }\n"),
+      "adjustment.errors = [\"EXX\", \"EQX\"]; 'EQX' is not an error name; did you mean "
+      "'EXX'?\n"
+      "adjustment.frame = \"XX\"; must be two linear axes of the machine, such as \"XY\": the "
+      "first one is straight by convention, the second lies in their plane\n"
+      "adjustment.form.EC0Y = {...}; is a location error, a constant: it has no "
+      "form\n"
+      "adjustment.form.EXX.knots = 1; must be 0 or at least 2\n"
+      "adjustment.form.EYX.knots_mm = [3, 3]; must be two places at least, in ascending "
+      "order\n"
+      "adjustment.form.EZX.polynomal is not known; did you mean 'polynomial'?\n");
+}
+
+}  // namespace
+}  // namespace servomill::sim::calibration::settings_test
