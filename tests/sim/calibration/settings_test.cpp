@@ -54,8 +54,9 @@ TEST_F(Settings, NameAllThatIsWrong) {
       faults("[adjustment]\nerrors = [\"EXX\", \"EQX\"]\nframe = \"XX\"\n[adjustment.form]\n"
              "EC0Y = { polynomial = 1 }\nEXX = { knots = 1 }\n"
              "EYX = { knots_mm = [3, 3] }\nEZX = { polynomal = 3 }\n"),
-      "adjustment.errors = [\"EXX\", \"EQX\"]; 'EQX' is not an error name; did you mean "
-      "'EXX'?\n"
+      "adjustment.errors = [\"EXX\", \"EQX\"]; 'EQX' is no error of ISO 230-1; must be like EYX or "
+      "EC0Y; "
+      "did you mean 'EXX'?\n"
       "adjustment.frame = \"XX\"; must be two linear axes of the machine, such as \"XY\": the "
       "first one is straight by convention, the second lies in their plane\n"
       "adjustment.form.EC0Y = {...}; is a location error, a constant: it has no "
