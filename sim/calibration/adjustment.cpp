@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/calibration/normal_equations.h"
-
 namespace servomill::sim::calibration {
 namespace {
 
@@ -15,7 +13,6 @@ using Eigen::VectorXd;
 
 constexpr double kUnitError = 1e-6;            // m, rad; effects are proportional to it
 constexpr double kStartingUncertainty = 1e-6;  // m, rad, of one that is estimated
-constexpr double kLeastEffect = 1.0;           // whitened, of an error of 1 m or 1 rad
 constexpr int kMostIterations = 30;
 constexpr double kSettled = 1e-4;     // relative, of estimated uncertainties
 constexpr double kStill = 1e-12;      // m, rad, of the last step
@@ -45,15 +42,20 @@ class Adjuster {
   }
 
   Adjustment run() {
+    VectorXd expected = VectorXd::Zero(size_);
+    for (int u = out_.unknowns.first_location(); u < size_; ++u) {
+      const double size = *out_.unknowns.prior(u);
+      expected[u] = 1.0 / (size * size);
+    }
     for (out_.iterations = 1;; ++out_.iterations) {
       set_residuals();
-      const MatrixXd A = normal_matrix();
-      const NormalEquations equations(A, kOwnShare, kLeastEffect);
+      const NormalEquations equations(normal_matrix(), kOwnShare, expected);
       const VectorXd step = equations.solve(right_side());
       out_.values += step;
-      set_left_out(equations);
+      out_.left_out = equations.left_out();
       const bool settled = update_weights(equations);
-      if ((settled && largest_effect(step) < kStill) || out_.iterations == kMostIterations) {
+      out_.converged = settled && largest_effect(step) < kStill;
+      if (out_.converged || out_.iterations == kMostIterations) {
         out_.covariance = equations.inverse();
         break;
       }
@@ -80,9 +82,9 @@ class Adjuster {
 
   std::vector<Deviations> unit_effects() const {
     std::vector<Deviations> out;
-    for (const plant::ErrorName& name : out_.unknowns.locations) {
+    for (const SoughtLocation& location : out_.unknowns.locations) {
       plant::ErrorModel errors;
-      errors.location(name) = kUnitError;
+      errors.location(location.name) = kUnitError;
       out.emplace_back(chain_, errors);
     }
     for (const SoughtFunction& function : out_.unknowns.functions) {
@@ -146,7 +148,7 @@ class Adjuster {
     out_.errors = plant::ErrorModel();
     const Unknowns& unknowns = out_.unknowns;
     for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
-      out_.errors.location(unknowns.locations[k]) =
+      out_.errors.location(unknowns.locations[k].name) =
           out_.values[unknowns.first_location() + static_cast<int>(k)];
     }
     for (const SoughtFunction& function : unknowns.functions) {
@@ -189,9 +191,9 @@ class Adjuster {
     const MatrixXd cross = A.topRightCorner(size_, P_.rows()) * P_;
     out -= cross + cross.transpose();
     out += P_.transpose() * A.bottomRightCorner(P_.rows(), P_.rows()) * P_;
-    for (std::size_t u = 0; u < out_.unknowns.set_up.size(); ++u) {
-      const auto& prior = out_.unknowns.set_up[u].prior;
-      if (prior) out(Eigen::Index(u), Eigen::Index(u)) += 1.0 / (*prior * *prior);
+    for (int u = 0; u < out_.unknowns.first_location(); ++u) {
+      const auto prior = out_.unknowns.prior(u);
+      if (prior) out(u, u) += 1.0 / (*prior * *prior);
     }
     return out;
   }
@@ -205,18 +207,11 @@ class Adjuster {
       }
     }
     VectorXd b = all.head(size_) - P_.transpose() * all.tail(P_.rows());
-    for (std::size_t u = 0; u < out_.unknowns.set_up.size(); ++u) {
-      const auto& prior = out_.unknowns.set_up[u].prior;
-      if (prior) b[Eigen::Index(u)] -= out_.values[Eigen::Index(u)] / (*prior * *prior);
+    for (int u = 0; u < size_; ++u) {
+      const auto prior = out_.unknowns.prior(u);
+      if (prior) b[u] -= out_.values[u] / (*prior * *prior);
     }
     return b;
-  }
-
-  void set_left_out(const NormalEquations& equations) {
-    out_.left_out.clear();
-    for (const NormalEquations::Dependent& one : equations.left_out()) {
-      out_.left_out.push_back({one.unknown, one.parts});
-    }
   }
 
   // Share of each number that the unknowns take up: row (J' W J)^-1 row' weight.
@@ -341,12 +336,11 @@ class Adjuster {
       out_.redundancy += group.redundancy;
       if (group.numbers > 0) group.rms = std::sqrt(group.rms / double(group.numbers));
     }
-    for (std::size_t u = 0; u < out_.unknowns.set_up.size(); ++u) {
-      const auto& prior = out_.unknowns.set_up[u].prior;
+    for (int u = 0; u < out_.unknowns.first_location(); ++u) {
+      const auto prior = out_.unknowns.prior(u);
       if (!prior) continue;
-      const auto k = Eigen::Index(u);
-      out_.squares += out_.values[k] * out_.values[k] / (*prior * *prior);
-      out_.redundancy += 1.0 - out_.covariance(k, k) / (*prior * *prior);
+      out_.squares += out_.values[u] * out_.values[u] / (*prior * *prior);
+      out_.redundancy += 1.0 - out_.covariance(u, u) / (*prior * *prior);
     }
   }
 
@@ -368,7 +362,7 @@ class Adjuster {
 }  // namespace
 
 Adjustment adjust(const readings::Readings& readings, const Observations& observations,
-                  const plant::MachineChain& chain, std::vector<plant::ErrorName> locations,
+                  const plant::MachineChain& chain, std::vector<SoughtLocation> locations,
                   std::vector<SoughtFunction> functions, const AdjustmentOptions& options) {
   Unknowns unknowns{.set_up = observations.set_up,
                     .locations = std::move(locations),

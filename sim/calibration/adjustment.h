@@ -9,15 +9,25 @@
 
 #include "plant/geometry/error_model.h"
 #include "sim/calibration/function_basis.h"
+#include "sim/calibration/normal_equations.h"
 #include "sim/calibration/observations.h"
 
 namespace servomill::sim::calibration {
+
+/// A location error that is looked for. What is expected of its size counts for little where
+/// readings determine it; where they hardly do, it keeps the estimate from going astray, and the
+/// exact machine from being evaluated far from where it is.
+struct SoughtLocation {
+  plant::ErrorName name;
+  double size = 1e-3;  // m or rad; standard deviation about 0 that is expected of it
+};
 
 /// A component error that is looked for.
 struct SoughtFunction {
   plant::ErrorName name;
   FunctionBasis basis;
-  int first = 0;  // unknown, in Adjustment::values
+  double size = 0.3e-3;  // m or rad; expected of each of its coefficients
+  int first = 0;         // unknown, in Adjustment::values
 };
 
 /// The unknowns in their order: set-up, location errors, functions. Of unknowns that the readings
@@ -25,22 +35,20 @@ struct SoughtFunction {
 /// combination.
 struct Unknowns {
   std::vector<SetUpUnknown> set_up;
-  std::vector<plant::ErrorName> locations;
+  std::vector<SoughtLocation> locations;
   std::vector<SoughtFunction> functions;
 
   int first_location() const { return static_cast<int>(set_up.size()); }
   int first_function() const { return first_location() + static_cast<int>(locations.size()); }
   int size() const;
+  /// Standard deviation that is expected of an unknown, about 0.
+  std::optional<double> prior(int unknown) const;
   /// "EC0Y", "EXX", "X, laser: zero"
   std::string name(int unknown, const readings::Readings& readings) const;
 };
 
-/// An unknown that is left out, and those that hold it: its effect on the readings is the sum of
-/// theirs by these factors. Without parts it has no effect.
-struct LeftOut {
-  int unknown = 0;
-  std::vector<std::pair<int, double>> parts;  // unknown, effect of that size relative to its own
-};
+/// An unknown that is left out, and those that hold it.
+using LeftOut = NormalEquations::Dependent;
 
 struct GroupResult {
   double uncertainty = 0.0;  // m or rad; stated or estimated, of one number
@@ -65,9 +73,10 @@ struct Adjustment {
   std::vector<double> standardized;  // residuals over their standard uncertainty; 0: uncontrolled
   std::vector<GroupResult> groups;
   plant::ErrorModel errors;  // as adjusted
-  double squares = 0.0;      // of whitened residuals and of priors
+  double squares = 0.0;      // of whitened residuals and of what is known of set-ups
   double redundancy = 0.0;
   int iterations = 0;
+  bool converged = false;
 };
 
 struct AdjustmentOptions {
@@ -76,7 +85,7 @@ struct AdjustmentOptions {
 
 /// @param locations, functions  what is looked for; `first` is set here
 Adjustment adjust(const readings::Readings& readings, const Observations& observations,
-                  const plant::MachineChain& chain, std::vector<plant::ErrorName> locations,
+                  const plant::MachineChain& chain, std::vector<SoughtLocation> locations,
                   std::vector<SoughtFunction> functions, const AdjustmentOptions& options = {});
 
 /// An unknown of which less than this share is its own counts as a combination of others.

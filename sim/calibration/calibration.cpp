@@ -90,6 +90,7 @@ FormSettings settings_of(const CalibrationSettings& settings, const ErrorName& n
   for (const auto& [of, form] : settings.forms) {
     if (of == name) return form;
   }
+  if (name.is_location) return {};
   return is_linear(name.axis) ? settings.form_linear : settings.form_rotary;
 }
 
@@ -111,8 +112,11 @@ std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
     for (const Axis direction : kAllAxes) {
       const ErrorName name{direction, axis, false};
       if (!is_sought(settings, name) || plant::why_meaningless(name, chain.layout)) continue;
-      const FunctionForm form = form_of(settings_of(settings, name), places);
-      out.push_back({name, FunctionBasis(form, is_without_slope(name)), 0});
+      const FormSettings asked = settings_of(settings, name);
+      SoughtFunction function{
+          .name = name, .basis = FunctionBasis(form_of(asked, places), is_without_slope(name))};
+      function.size = asked.size.value_or(function.size);
+      out.push_back(std::move(function));
     }
   }
   return out;
@@ -163,9 +167,12 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
                   .outliers = {},
                   .sign_suspects = {}};
   out.observations = observations_of(out.readings, chain);
-  std::vector<ErrorName> locations;
+  std::vector<SoughtLocation> locations;
   for (const ErrorName& name : sought_locations(chain, settings.frame)) {
-    if (is_sought(settings, name)) locations.push_back(name);
+    if (!is_sought(settings, name)) continue;
+    SoughtLocation location{.name = name};
+    location.size = settings_of(settings, name).size.value_or(location.size);
+    locations.push_back(location);
   }
   const std::vector<SoughtFunction> functions =
       sought_functions(out.readings, out.observations, chain, settings);
@@ -174,6 +181,11 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
     return adjust(out.readings, observations, chain, locations, functions, options);
   };
   out.adjustment = adjusted(out.observations);
+  if (!out.adjustment.converged) {
+    throw InputError({out.readings.path},
+                     "the adjustment does not converge: readings stand in the wrong places or have "
+                     "errors of millimetres; leave groups out to find which");
+  }
   out.outliers = outliers_of(out.adjustment);
   const Adjustment& found = out.adjustment;
   const double excess = found.squares - found.redundancy;
@@ -198,12 +210,13 @@ std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, 
     const Eigen::MatrixXd C = adjustment.covariance.block(function.first, function.first, n, n);
     if (C.isZero(0.0)) continue;
     const FunctionForm& form = function.basis.form();
-    KnownFunction known{.name = function.name, .s = {}, .value = {}, .sigma = {}};
+    KnownFunction known{.name = function.name, .s = {}, .value = {}, .sigma = {}, .expected = {}};
     for (const double s : equally_spaced(form.lower, form.upper, points)) {
       const Eigen::RowVectorXd row = function.basis.row(s, 0.0);
       known.s.push_back(s);
       known.value.push_back(row * adjustment.values.segment(function.first, n));
       known.sigma.push_back(std::sqrt(std::max(0.0, (row * C * row.transpose())(0))));
+      known.expected.push_back(function.size * row.norm());
     }
     out.push_back(std::move(known));
   }

@@ -19,6 +19,7 @@ struct FormSettings {
   std::vector<double> periods;               // m or rad
   std::optional<int> reversal_degree;
   std::optional<double> reversal_distance;  // m or rad
+  std::optional<double> size;               // m or rad; standard deviation that is expected
 };
 
 struct CalibrationSettings {
@@ -66,6 +67,7 @@ struct KnownFunction {
   plant::ErrorName name;
   std::vector<double> s;             // m or rad
   std::vector<double> value, sigma;  // m or rad
+  std::vector<double> expected;      // m or rad; sigma without any reading
 };
 /// Every function of which something is known, at `points` equally spaced places.
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points = 41);

@@ -188,8 +188,8 @@ plant::ErrorFunction FunctionBasis::function(const Eigen::VectorXd& coefficients
   for (std::size_t i = 0; i < form_.periods.size(); ++i) {
     const double sine = coefficients[first_wave_ + 2 * static_cast<int>(i)];
     const double cosine = coefficients[first_wave_ + 2 * static_cast<int>(i) + 1];
-    if (sine == 0.0 && cosine == 0.0) continue;
-    out.harmonics.push_back({std::hypot(sine, cosine), form_.periods[i], std::atan2(cosine, sine)});
+    out.harmonics.push_back({sine, form_.periods[i], 0.0});
+    out.harmonics.push_back({cosine, form_.periods[i], 0.5 * std::numbers::pi});
   }
   if (form_.reversal_degree >= 0) {
     const Eigen::VectorXd w = coefficients.tail(form_.reversal_degree + 1);

@@ -1,5 +1,6 @@
 #include "sim/calibration/normal_equations.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace servomill::sim::calibration {
@@ -8,11 +9,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-NormalEquations::NormalEquations(const MatrixXd& A, double own_share, double least_effect)
+NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const VectorXd& expected)
     : size_(A.rows()), scale_(A.diagonal().cwiseMax(0.0).cwiseSqrt()) {
+  const auto has_effect = [&](Index j) { return scale_[j] > kNoEffect; };
   MatrixXd rows = MatrixXd::Zero(size_, size_);  // of all unknowns, in the columns of those kept
   for (Index j = 0; j < size_; ++j) {
-    if (!(scale_[j] > least_effect)) {
+    if (!has_effect(j)) {
       left_out_.push_back({static_cast<int>(j), {}});
       continue;
     }
@@ -25,7 +27,7 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, double lea
     const Index below = size_ - j;
     VectorXd column = A.col(j).tail(below) / scale_[j];
     for (Index i = 0; i < below; ++i) {
-      column[i] = scale_[j + i] > least_effect ? column[i] / scale_[j + i] : 0.0;
+      column[i] = has_effect(j + i) ? column[i] / scale_[j + i] : 0.0;
     }
     column.noalias() -= rows.block(j, 0, below, k) * rows.row(j).head(k).transpose();
     rows.col(k).tail(below) = column / std::sqrt(own);
@@ -35,17 +37,26 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, double lea
   L_.resize(n, n);
   for (Index i = 0; i < n; ++i) L_.row(i) = rows.row(kept_[static_cast<std::size_t>(i)]).head(n);
   for (Dependent& one : left_out_) {
-    if (!(scale_[one.unknown] > least_effect)) continue;
+    if (!has_effect(one.unknown)) continue;
     // only those kept before it have numbers in its row
     VectorXd share = rows.row(one.unknown).head(n).transpose();
     L_.transpose().triangularView<Eigen::Upper>().solveInPlace(share);
     for (Index i = 0; i < n; ++i) {
       const int unknown = kept_[static_cast<std::size_t>(i)];
       if (std::abs(share[i]) > own_share) {
-        one.parts.emplace_back(unknown, share[i] * scale_[one.unknown] / scale_[unknown]);
+        one.parts.push_back({.unknown = unknown,
+                             .factor = share[i] * scale_[one.unknown] / scale_[unknown],
+                             .share = share[i]});
       }
     }
   }
+  if (expected.isZero(0.0)) return;
+  MatrixXd whole = L_ * L_.transpose();
+  for (Index i = 0; i < n; ++i) {
+    const int unknown = kept_[static_cast<std::size_t>(i)];
+    whole(i, i) += expected[unknown] / (scale_[unknown] * scale_[unknown]);
+  }
+  L_ = whole.llt().matrixL();
 }
 
 VectorXd NormalEquations::solve(const VectorXd& b) const {

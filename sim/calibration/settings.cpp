@@ -12,6 +12,13 @@ namespace {
 constexpr std::int64_t kMostDegree = 20;
 constexpr std::int64_t kMostKnots = 1000;
 
+// Size that is expected of errors along (um) or about (urad).
+std::optional<double> read_size(config::Reader& table, bool is_length) {
+  const std::string_view key = is_length ? "size_um" : "size_urad";
+  if (!table.has(key)) return std::nullopt;
+  return table.real(key, is_length ? config::kLength : config::kAngle, {config::above(0.0)});
+}
+
 // Keys of a form: polynomial, knots, harmonics, reversal; in units of the axis.
 FormSettings read_form(config::Reader& table, bool linear) {
   FormSettings form;
@@ -93,8 +100,10 @@ CalibrationSettings read_settings(const std::string& path, const JointLayout& la
     }
     try {
       const plant::ErrorName name = plant::parse_error_name(key, layout, form.place(key));
-      if (name.is_location) form.fault(key, "is a location error, a constant: it has no form");
-      out.forms.emplace_back(name, read_form(one, is_linear(name.axis)));
+      FormSettings settings;
+      if (!name.is_location) settings = read_form(one, is_linear(name.axis));
+      settings.size = read_size(one, is_linear(name.direction));
+      out.forms.emplace_back(name, settings);
     } catch (const InputError& error) {
       form.fault(key, error.faults().front().message);
       one.skip_rest();

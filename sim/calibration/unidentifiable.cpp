@@ -61,6 +61,7 @@ class Sentences {
       const auto found = functions_.find(plant::to_string(function.name));
       if (found != functions_.end()) add_sentence(function, found->second);
     }
+    add_hardly_determined();
     if (!without_effect_.empty()) {
       out_.push_back(fmt::format("no reading depends on {}", list(without_effect_)));
     }
@@ -77,9 +78,48 @@ class Sentences {
     return fmt::format("{}, {} and {} more", names[0], names[1], names.size() - kShown);
   }
 
+  // The parts that matter to a reader.
+  static std::vector<NormalEquations::Part> shown(const LeftOut& one) {
+    constexpr double kShown = 0.1;
+    std::vector<NormalEquations::Part> out;
+    double most = 0.0;
+    for (const auto& part : one.parts) most = std::max(most, std::abs(part.share));
+    for (const auto& part : one.parts) {
+      if (std::abs(part.share) >= kShown * most) out.push_back(part);
+    }
+    return out;
+  }
+
+  // Errors of which the readings say little more than what was expected of them.
+  void add_hardly_determined() {
+    constexpr double kHardly = 0.5;  // of the expected standard deviation
+    std::vector<std::string> whole, part;
+    const Adjustment& adjustment = calibration_.adjustment;
+    for (std::size_t k = 0; k < unknowns_.locations.size(); ++k) {
+      const int unknown = unknowns_.first_location() + static_cast<int>(k);
+      const SoughtLocation& location = unknowns_.locations[k];
+      if (std::sqrt(adjustment.covariance(unknown, unknown)) > kHardly * location.size) {
+        whole.push_back(plant::to_string(location.name));
+      }
+    }
+    for (const KnownFunction& known : functions_along_travel(adjustment)) {
+      std::size_t hardly = 0;
+      for (std::size_t i = 0; i < known.s.size(); ++i) {
+        hardly += known.sigma[i] > kHardly * known.expected[i] ? 1 : 0;
+      }
+      if (hardly == 0) continue;
+      (hardly == known.s.size() ? whole : part).push_back(plant::to_string(known.name));
+    }
+    constexpr std::string_view kWhy = "the uncertainty is that of the size which is expected of it";
+    if (!whole.empty()) out_.push_back(fmt::format("hardly determined: {}; {}", list(whole), kWhy));
+    if (!part.empty()) {
+      out_.push_back(fmt::format("hardly determined in places: {}; {} there", list(part), kWhy));
+    }
+  }
+
   void add_set_up(const LeftOut& one) {
     std::vector<std::string> names;
-    for (const auto& [part, factor] : one.parts) names.push_back(name(part));
+    for (const auto& part : shown(one)) names.push_back(name(part.unknown));
     out_.push_back(names.empty() ? fmt::format("{} is not determined", name(one.unknown))
                                  : fmt::format("{} is determined only together with {}",
                                                name(one.unknown), some(names)));
@@ -91,12 +131,12 @@ class Sentences {
       return;
     }
     std::vector<std::string> set_up, errors;
-    for (const auto& [part, factor] : one.parts) {
-      if (is_error(unknowns_, part)) {
-        errors.push_back(
-            fmt::format("{0} holds {0} {1}", name(part), term(factor, name(one.unknown))));
+    for (const auto& part : shown(one)) {
+      if (is_error(unknowns_, part.unknown)) {
+        errors.push_back(fmt::format("{0} holds {0} {1}", name(part.unknown),
+                                     term(part.factor, name(one.unknown))));
       } else {
-        set_up.push_back(name(part));
+        set_up.push_back(name(part.unknown));
       }
     }
     if (!set_up.empty()) errors.push_back("the set-up does (" + some(set_up) + ")");
@@ -107,9 +147,10 @@ class Sentences {
   void add_function(const LeftOut& one) {
     LeftOutOfFunction& function = functions_[name(one.unknown)];
     ++function.functions;
-    for (const auto& [part, factor] : one.parts) {
-      if (name(part) == name(one.unknown)) continue;
-      add_once(is_error(unknowns_, part) ? function.errors : function.set_up, name(part));
+    for (const auto& part : shown(one)) {
+      const std::string other = name(part.unknown);
+      if (other == name(one.unknown)) continue;
+      add_once(is_error(unknowns_, part.unknown) ? function.errors : function.set_up, other);
     }
   }
 
@@ -151,7 +192,7 @@ bool is_combined(const Adjustment& adjustment, const plant::ErrorName& name) {
   const auto is_of = [&](int unknown) {
     if (name.is_location) {
       return is_location(unknowns, unknown) &&
-             unknowns.locations[std::size_t(unknown - unknowns.first_location())] == name;
+             unknowns.locations[std::size_t(unknown - unknowns.first_location())].name == name;
     }
     return std::any_of(
         unknowns.functions.begin(), unknowns.functions.end(), [&](const SoughtFunction& f) {
@@ -162,7 +203,7 @@ bool is_combined(const Adjustment& adjustment, const plant::ErrorName& name) {
                      [&](const LeftOut& one) {
                        if (is_of(one.unknown)) return true;
                        return std::any_of(one.parts.begin(), one.parts.end(),
-                                          [&](const auto& part) { return is_of(part.first); });
+                                          [&](const auto& part) { return is_of(part.unknown); });
                      });
 }
 

@@ -19,13 +19,24 @@ std::string Unknowns::name(int unknown, const readings::Readings& readings) cons
                      : one.name;
   }
   if (unknown < first_function()) {
-    return plant::to_string(locations[static_cast<std::size_t>(unknown - first_location())]);
+    return plant::to_string(locations[static_cast<std::size_t>(unknown - first_location())].name);
   }
   const auto found =
       std::find_if(functions.begin(), functions.end(), [&](const SoughtFunction& function) {
         return unknown < function.first + function.basis.size();
       });
   return plant::to_string(found->name);
+}
+
+std::optional<double> Unknowns::prior(int unknown) const {
+  if (unknown < first_location()) return set_up[static_cast<std::size_t>(unknown)].prior;
+  if (unknown < first_function()) {
+    return locations[static_cast<std::size_t>(unknown - first_location())].size;
+  }
+  const auto found = std::find_if(functions.begin(), functions.end(), [&](const SoughtFunction& f) {
+    return unknown < f.first + f.basis.size();
+  });
+  return found->size;
 }
 
 double GroupResult::ratio() const {

@@ -66,6 +66,23 @@ void refuse_repeated_keys(config::Reader& table, const IdentifiedValues& values)
   }
 }
 
+// "value_um[3]" as "value_um" and 3; without an index: the whole.
+std::pair<std::string_view, std::optional<std::size_t>> name_and_index(std::string_view part) {
+  const std::size_t bracket = part.find('[');
+  if (bracket == std::string_view::npos || part.back() != ']') return {part, std::nullopt};
+  std::size_t index = 0;
+  for (const char digit : part.substr(bracket + 1, part.size() - bracket - 2)) {
+    if (digit < '0' || digit > '9') return {part, std::nullopt};
+    index = 10 * index + static_cast<std::size_t>(digit - '0');
+  }
+  return {part.substr(0, bracket), index};
+}
+
+const config::Value* item_of(const config::Value* list, std::size_t index) {
+  if (list == nullptr || list->type != config::Value::Type::list) return nullptr;
+  return index < list->children.size() ? &list->children[index] : nullptr;
+}
+
 // A value in a unit; nothing if it is no number of this kind.
 std::optional<double> value_in(const config::Value& value, std::string_view key,
                                const std::string& unit) {
@@ -74,7 +91,8 @@ std::optional<double> value_in(const config::Value& value, std::string_view key,
   if (const auto number = number_in(value)) {
     if (unit == kPlainNumber) return number;
     const std::size_t dot = key.rfind('.');
-    const auto own = config::unit_of_key(key.substr(dot + 1), wanted.quantity);
+    const auto own =
+        config::unit_of_key(name_and_index(key.substr(dot + 1)).first, wanted.quantity);
     return *number * (own ? own->factor : 1.0) / wanted.factor;
   }
   if (value.type != config::Value::Type::text) return std::nullopt;
@@ -144,8 +162,10 @@ const config::Value* value_at(const config::Value& root, std::string_view key) {
   const config::Value* at = &root;
   while (at != nullptr && !key.empty()) {
     const std::size_t dot = key.find('.');
+    const auto [name, index] = name_and_index(key.substr(0, dot));
     if (at->type != config::Value::Type::table) return nullptr;
-    at = at->find(key.substr(0, dot));
+    at = at->find(name);
+    if (index) at = item_of(at, *index);
     key = dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
   }
   return at;

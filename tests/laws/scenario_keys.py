@@ -68,12 +68,17 @@ def unknown_keys(table, listed, section=""):
 
 def section_of(folder, file, table):
     """A machine file, or one laid over it, has the keys of the section machine at its top, a scenario its own."""
-    return "machine" if file.parent == folder / "scenarios/machines" else section_of_example(table)
+    return "machine" if file.parent == folder / "scenarios/machines" or file.name == "machine.toml" else section_of_example(table)
 
 
 def is_experiment(table):
     """An experiment of `servomill identify` has keys of its own (sim/identification/README.md); its reader refuses others."""
     return "loop" in table and "recording" in table
+
+
+def is_readings(table):
+    """A file of readings, or a part of one, has keys of its own (sim/readings/README.md); its reader refuses others."""
+    return "group" in table or "adjustment" in table
 
 
 def section_of_example(table):
@@ -86,7 +91,7 @@ def main():
     for file in sorted((root / "scenarios").rglob("*.toml")):
         table = tomllib.loads(file.read_text(encoding="utf-8"))
         files += 1
-        if is_experiment(table):
+        if is_experiment(table) or is_readings(table):
             continue
         faults += [f"{file.relative_to(root)}: {key} is not listed by servomill list keys"
                    for key in unknown_keys(table, listed, section_of(root, file, table))]
@@ -95,7 +100,7 @@ def main():
             if language == "toml":
                 examples += 1
                 table = tomllib.loads("\n".join(lines))
-                if is_experiment(table):
+                if is_experiment(table) or is_readings(table):
                     continue
                 faults += [f"{page.name}:{first}: {key} is not listed by servomill list keys"
                            for key in unknown_keys(table, listed, section_of_example(table))]

@@ -41,6 +41,7 @@ int converge_command(const Arguments& arguments);
 int post_command(const Arguments& arguments);
 int table_command(const Arguments& arguments);
 int compensate_command(const Arguments& arguments);
+int calibrate_command(const Arguments& arguments);
 int identify_command(const Arguments& arguments);
 int recording_command(const Arguments& arguments);
 int response_command(const Arguments& arguments);
@@ -98,6 +99,11 @@ class ProgressBar {
 void add_plugin_option(Options& options);
 /// @throws InputError
 void load_plugins(const Options& options);
+
+/// Value of an option that names an output, empty without it.
+/// @param suffix  that the name must have; empty: any
+/// @throws InputError if it has another one, exists without --force, or is an input
+std::string output_of(const Options& options, const char* name, const char* suffix);
 
 /// Value of --threads. @throws InputError
 unsigned thread_count(const Options& options);

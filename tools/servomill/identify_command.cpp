@@ -6,7 +6,6 @@
 #include "sim/identification/report.h"
 #include "sim/identification/store_identification.h"
 #include "sim/run/store.h"
-#include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -29,17 +28,6 @@ void add_identify_options(Options& options) {
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("quiet,q", "prints nothing but faults");
-}
-
-std::string output_of(const Options& options, const char* name, const char* suffix) {
-  if (!options.has(name)) return {};
-  const auto out = options.get<std::string>(name);
-  if (!out.ends_with(suffix)) {
-    throw InputError({fmt::format("--{}", name)},
-                     fmt::format("'{}' must end with {}", out, suffix));
-  }
-  sim::system::output_target(out, sim::system::existing_of(options.has("force")));
-  return out;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/input/plugins.h"
+#include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -146,6 +147,17 @@ std::string output_name(const Options& options, const std::string& scenario_name
                         std::string_view suffix) {
   if (options.has("output")) return options.get<std::string>("output");
   return fmt::format("{}{}.h5", scenario_name, suffix);
+}
+
+std::string output_of(const Options& options, const char* name, const char* suffix) {
+  if (!options.has(name)) return {};
+  const auto out = options.get<std::string>(name);
+  if (!out.ends_with(suffix)) {
+    throw InputError({fmt::format("--{}", name)},
+                     fmt::format("'{}' must end with {}", out, suffix));
+  }
+  sim::system::output_target(out, sim::system::existing_of(options.has("force")));
+  return out;
 }
 
 }  // namespace servomill::tools

@@ -39,9 +39,9 @@ Truth random_truth(const Unknowns& unknowns, Normal& normal) {
   Truth out;
   out.values = VectorXd::Zero(unknowns.size());
   for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
-    const double value = normal(is_linear(unknowns.locations[k].direction) ? 8e-6 : 20e-6);
+    const double value = normal(is_linear(unknowns.locations[k].name.direction) ? 8e-6 : 20e-6);
     out.values[unknowns.first_location() + int(k)] = value;
-    out.errors.location(unknowns.locations[k]) = value;
+    out.errors.location(unknowns.locations[k].name) = value;
   }
   for (const SoughtFunction& f : unknowns.functions) {
     for (int i = 0; i < f.basis.size(); ++i) out.values[f.first + i] = normal(5e-6);
@@ -54,7 +54,7 @@ Truth random_truth(const Unknowns& unknowns, Normal& normal) {
 VectorXd expected_values(const Adjustment& adjustment, const Truth& truth) {
   VectorXd out = truth.values;
   for (const LeftOut& one : adjustment.left_out) {
-    for (const auto& [part, factor] : one.parts) out[part] += factor * truth.values[one.unknown];
+    for (const auto& part : one.parts) out[part.unknown] += part.factor * truth.values[one.unknown];
     out[one.unknown] = 0.0;
   }
   return out;

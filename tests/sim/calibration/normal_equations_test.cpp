@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace servomill::sim::calibration::normal_equations_test {
 namespace {
 
@@ -18,19 +20,19 @@ MatrixXd effects() {
     J(i, 3) = (i % 3) * 1e6;
   }
   J.col(0) *= 1e-6;
-  return J;
+  return 1e9 * J;
 }
 
 TEST(NormalEquations, LeaveOutTheLaterOfDependentUnknownsAndSayWhatHoldsIt) {
   const MatrixXd J = effects();
-  const NormalEquations equations(J.transpose() * J, 1e-6, 1e-9);
+  const NormalEquations equations(J.transpose() * J, 1e-6, VectorXd::Zero(5));
   EXPECT_EQ(equations.kept(), (std::vector<int>{0, 1, 3}));
   ASSERT_EQ(equations.left_out().size(), 2u);
   EXPECT_EQ(equations.left_out()[0].unknown, 2);
   ASSERT_EQ(equations.left_out()[0].parts.size(), 2u);
-  EXPECT_EQ(equations.left_out()[0].parts[0].first, 0);
-  EXPECT_NEAR(equations.left_out()[0].parts[0].second, 2e6, 1.0);
-  EXPECT_NEAR(equations.left_out()[0].parts[1].second, -1.0, 1e-6);
+  EXPECT_EQ(equations.left_out()[0].parts[0].unknown, 0);
+  EXPECT_NEAR(equations.left_out()[0].parts[0].factor, 2e6, 1.0);
+  EXPECT_NEAR(equations.left_out()[0].parts[1].factor, -1.0, 1e-6);
   EXPECT_EQ(equations.left_out()[1].unknown, 4);
   EXPECT_TRUE(equations.left_out()[1].parts.empty());
 }
@@ -39,7 +41,7 @@ TEST(NormalEquations, SolveForTheKeptUnknownsWhichHoldTheOthers) {
   const MatrixXd J = effects();
   VectorXd x(5);
   x << 1e5, -2.0, 3.0, 4e-6, 7.0;
-  const NormalEquations equations(J.transpose() * J, 1e-6, 1e-9);
+  const NormalEquations equations(J.transpose() * J, 1e-6, VectorXd::Zero(5));
   const VectorXd solved = equations.solve(J.transpose() * (J * x));
   EXPECT_NEAR(solved[0], 1e5 + 3.0 * 2e6, 1e-3);
   EXPECT_NEAR(solved[1], -5.0, 1e-6);
@@ -51,7 +53,7 @@ TEST(NormalEquations, SolveForTheKeptUnknownsWhichHoldTheOthers) {
 TEST(NormalEquations, InverseIsThatOfTheKeptUnknowns) {
   const MatrixXd J = effects();
   const MatrixXd A = J.transpose() * J;
-  const MatrixXd inverse = NormalEquations(A, 1e-6, 1e-9).inverse();
+  const MatrixXd inverse = NormalEquations(A, 1e-6, VectorXd::Zero(5)).inverse();
   MatrixXd kept = MatrixXd::Zero(5, 5);
   for (const int i : {0, 1, 3}) kept(i, i) = 1.0;
   const VectorXd size = A.diagonal().cwiseSqrt().cwiseMax(1e-300);  // of an effect
@@ -60,6 +62,21 @@ TEST(NormalEquations, InverseIsThatOfTheKeptUnknowns) {
   EXPECT_NEAR((scaled - kept).cwiseAbs().maxCoeff(), 0.0, 1e-9);
   EXPECT_EQ(inverse.row(2).norm(), 0.0);
   EXPECT_EQ(inverse.col(4).norm(), 0.0);
+}
+
+TEST(NormalEquations, ExpectationsDrawToZeroButDecideNothing) {
+  const MatrixXd J = effects();
+  const MatrixXd A = J.transpose() * J;
+  const VectorXd expected = (VectorXd(5) << 0.0, 3e18, 1e30, 0.0, 1.0).finished();
+  const NormalEquations equations(A, 1e-6, expected);
+  EXPECT_EQ(equations.kept(), (std::vector<int>{0, 1, 3}));
+  const VectorXd b = A * (VectorXd(5) << 1e5, -2.0, 0.0, 4e-6, 0.0).finished();
+  const VectorXd x = equations.solve(b);
+  MatrixXd whole = A;
+  whole.diagonal() += expected;
+  VectorXd left = b - whole * x;
+  for (const int i : {0, 1, 3}) EXPECT_NEAR(left[i] / b[i], 0.0, 1e-9);
+  EXPECT_LT(std::abs(x[1]), 2.0);
 }
 
 }  // namespace

@@ -1,0 +1,284 @@
+#include "sim/calibration/identified_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "plant/vocabulary/units.h"
+#include "sim/calibration/report.h"
+#include "sim/input/machine_document.h"
+#include "sim/input/read_machine.h"
+#include "sim/system/write_file.h"
+
+namespace servomill::sim::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using plant::ErrorFunction;
+using plant::ErrorName;
+
+constexpr double kSame = 1e-13;  // m, rad; units round
+
+// One number of a function in the file: its key behind the name, its size in SI.
+struct Entry {
+  std::string key;   // "table.value_um[3]"
+  std::string unit;  // "um"; of coefficients of powers "1"
+  double si = 1.0;   // SI of one
+};
+
+struct Names {
+  std::string value;   // "um", "urad"
+  std::string travel;  // "mm", "deg"
+  double travel_si;    // m, rad
+};
+
+Names names_of(const ErrorName& name) {
+  const bool linear = is_linear(name.axis);
+  return {is_linear(name.direction) ? "um" : "urad", linear ? "mm" : "deg", linear ? mm : deg};
+}
+
+std::size_t powers_of(const FunctionForm& form, bool in_polynomial) {
+  return in_polynomial ? static_cast<std::size_t>(std::max(2, form.degree + 1)) : 0;
+}
+
+// A function has a polynomial beside a table only for its degrees above 1.
+bool has_polynomial(const FunctionForm& form) { return form.knots.empty() || form.degree > 1; }
+
+std::vector<Entry> entries_of(const ErrorName& name, const FunctionForm& form) {
+  const Names names = names_of(name);
+  std::vector<Entry> out;
+  double power = um;
+  for (std::size_t k = 0; k < powers_of(form, has_polynomial(form)); ++k) {
+    out.push_back({fmt::format("polynomial_{}[{}]", names.value, k), "1", power});
+    power /= names.travel_si;
+  }
+  for (std::size_t k = 0; k < form.knots.size(); ++k) {
+    out.push_back({fmt::format("table.value_{}[{}]", names.value, k), names.value, um});
+  }
+  for (std::size_t k = 0; k < 2 * form.periods.size(); ++k) {
+    out.push_back({fmt::format("harmonic[{}].amplitude_{}", k, names.value), names.value, um});
+  }
+  power = um;
+  for (int k = 0; k <= form.reversal_degree; ++k) {
+    out.push_back({fmt::format("reversal.width_polynomial_{}[{}]", names.value, k), "1", power});
+    power /= names.travel_si;
+  }
+  return out;
+}
+
+// The numbers of a function in the order of its entries, in their units.
+VectorXd numbers_of(const ErrorFunction& f, const FunctionForm& form,
+                    const std::vector<Entry>& entries) {
+  std::vector<double> si = f.polynomial;
+  si.resize(powers_of(form, has_polynomial(form)), 0.0);
+  if (!form.knots.empty()) {
+    si.insert(si.end(), f.tables.at(0).error.begin(), f.tables.at(0).error.end());
+  }
+  for (const plant::Harmonic& wave : f.harmonics) si.push_back(wave.amplitude);
+  std::vector<double> width = f.reversals.empty() ? std::vector<double>() : f.reversals[0].width;
+  width.resize(static_cast<std::size_t>(form.reversal_degree + 1), 0.0);
+  si.insert(si.end(), width.begin(), width.end());
+  VectorXd out(Index(entries.size()));
+  for (std::size_t k = 0; k < entries.size(); ++k) out[Index(k)] = si.at(k) / entries[k].si;
+  return out;
+}
+
+std::string list(const double* numbers, std::size_t count) {
+  return fmt::format("[{}]", fmt::join(numbers, numbers + count, ", "));
+}
+
+std::string line_of(const ErrorName& name, const FunctionForm& form, const VectorXd& numbers) {
+  const Names names = names_of(name);
+  std::vector<std::string> parts;
+  const double* at = numbers.data();
+  if (const std::size_t powers = powers_of(form, has_polynomial(form)); powers > 0) {
+    parts.push_back(fmt::format("polynomial_{} = {}", names.value, list(at, powers)));
+    at += powers;
+  }
+  if (!form.knots.empty()) {
+    std::vector<double> knots = form.knots;
+    for (double& knot : knots) knot /= names.travel_si;
+    parts.push_back(fmt::format("table = {{ at_{} = {}, value_{} = {} }}", names.travel,
+                                list(knots.data(), knots.size()), names.value,
+                                list(at, knots.size())));
+    at += knots.size();
+  }
+  std::vector<std::string> waves;
+  for (const double period : form.periods) {
+    for (const int phase : {0, 90}) {
+      waves.push_back(fmt::format("{{ amplitude_{} = {}, period_{} = {}, phase_deg = {} }}",
+                                  names.value, *at++, names.travel, period / names.travel_si,
+                                  phase));
+    }
+  }
+  if (!waves.empty()) parts.push_back(fmt::format("harmonic = [{}]", fmt::join(waves, ", ")));
+  if (form.reversal_degree >= 0) {
+    parts.push_back(fmt::format("reversal = {{ width_polynomial_{} = {}, distance_{} = {} }}",
+                                names.value, list(at, std::size_t(form.reversal_degree + 1)),
+                                names.travel, form.reversal_distance / names.travel_si));
+  }
+  return fmt::format("{} = {{ {} }}", plant::to_string(name), fmt::join(parts, ", "));
+}
+
+// Collects keys, units, values and the linear map from the unknowns to the numbers.
+class Collector {
+ public:
+  Collector(const Adjustment& adjustment, const std::string& model)
+      : adjustment_(adjustment), model_(model) {}
+
+  IdentifiedErrors collect() {
+    const Unknowns& unknowns = adjustment_.unknowns;
+    for (std::size_t k = 0; k < unknowns.locations.size(); ++k) add_location(k);
+    for (const SoughtFunction& function : unknowns.functions) add_function(function);
+    const auto n = Index(out_.values.values.size());
+    MatrixXd G = MatrixXd::Zero(n, unknowns.size());
+    for (const auto& [row, column, factor] : map_) G(row, column) += factor;
+    const MatrixXd C = G * adjustment_.covariance * G.transpose();
+    out_.values.covariance = 0.5 * (C + C.transpose());
+    return std::move(out_);
+  }
+
+ private:
+  bool is_known(int first, int count) const {
+    return !adjustment_.covariance.block(first, first, count, count).isZero(0.0);
+  }
+
+  Index add_number(const std::string& key, const std::string& unit, double value) {
+    out_.values.keys.push_back(fmt::format("errors.{}.{}", model_, key));
+    out_.values.units.push_back(unit);
+    out_.values.values.push_back(value);
+    return Index(out_.values.values.size()) - 1;
+  }
+
+  void add_location(std::size_t k) {
+    const ErrorName& name = adjustment_.unknowns.locations[k].name;
+    const int unknown = adjustment_.unknowns.first_location() + int(k);
+    if (!is_known(unknown, 1)) return;
+    const std::string unit = is_linear(name.direction) ? "um" : "urad";
+    const double value = adjustment_.values[unknown] / um;
+    const Index row =
+        add_number(fmt::format("{}.constant_{}", plant::to_string(name), unit), unit, value);
+    map_.push_back({row, unknown, 1.0 / um});
+    const double sigma = std::sqrt(adjustment_.covariance(unknown, unknown)) / um;
+    out_.lines.push_back(fmt::format("{} = {{ constant_{} = {} }}  # +- {:.2g} {} (k = 2)",
+                                     plant::to_string(name), unit, value, 2.0 * sigma, unit));
+  }
+
+  void add_function(const SoughtFunction& function) {
+    const int n = function.basis.size();
+    if (!is_known(function.first, n)) return;
+    const FunctionForm& form = function.basis.form();
+    const std::vector<Entry> entries = entries_of(function.name, form);
+    const VectorXd coefficients = adjustment_.values.segment(function.first, n);
+    const VectorXd numbers = numbers_of(function.basis.function(coefficients), form, entries);
+    const Index first = Index(out_.values.values.size());
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      add_number(plant::to_string(function.name) + "." + entries[k].key, entries[k].unit,
+                 numbers[Index(k)]);
+    }
+    for (int i = 0; i < n; ++i) {
+      const VectorXd column =
+          numbers_of(function.basis.function(VectorXd::Unit(n, i)), form, entries);
+      for (Index k = 0; k < column.size(); ++k) {
+        if (column[k] != 0.0) map_.push_back({first + k, function.first + i, column[k]});
+      }
+    }
+    out_.lines.push_back(line_of(function.name, form, numbers));
+  }
+
+  struct Part {
+    Index row;
+    int column;
+    double factor;
+  };
+  const Adjustment& adjustment_;
+  const std::string& model_;
+  std::vector<Part> map_;
+  IdentifiedErrors out_;
+};
+
+std::string relative_to(const std::string& machine, const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+  return fs::absolute(machine).lexically_normal().lexically_relative(folder).string();
+}
+
+std::string text_of(const Calibration& calibration, const IdentifiedErrors& errors,
+                    const std::string& machine, const std::string& model) {
+  std::string out =
+      fmt::format("# Errors identified from {}\n",
+                  std::filesystem::path(calibration.readings.path).filename().string());
+  for (const std::string& sentence : unidentifiable_sentences(calibration)) {
+    out += fmt::format("# {}\n", sentence);
+  }
+  out += fmt::format("based_on = {}  # machine that was measured\n\n[errors.{}]\n",
+                     config::quoted_text(machine), model);
+  for (const std::string& line : errors.lines) out += line + "\n";
+  if (errors.values.keys.size() > std::size_t(kMostCovarianceNumbers)) {
+    return out + fmt::format("# The covariance of these {} numbers is not written: at most {}.\n",
+                             errors.values.keys.size(), kMostCovarianceNumbers);
+  }
+  return out + "\n[identified]\n" + input::table_lines(errors.values);
+}
+
+bool same_functions(const Adjustment& adjustment, const plant::ErrorModel& read) {
+  for (const auto& [name, size] : adjustment.unknowns.locations) {
+    if (std::abs(read.location(name) - adjustment.errors.location(name)) > kSame) return false;
+  }
+  for (const KnownFunction& known : functions_along_travel(adjustment)) {
+    for (const double direction : {-1.0, 0.0, 1.0}) {
+      const auto one = plant::travelling(read.component(known.name), direction);
+      const auto other = plant::travelling(adjustment.errors.component(known.name), direction);
+      for (const double s : known.s) {
+        if (std::abs(one.value(s) - other.value(s)) > kSame) return false;
+      }
+    }
+  }
+  return true;
+}
+
+void refuse_unreadable(const std::string& text, const std::string& path,
+                       const Calibration& calibration, const IdentifiedErrors& errors,
+                       const std::string& model) {
+  input::InputFiles files;
+  const input::MachineDocument read = input::machine_document_of_text(text, path, files);
+  const input::MachineDescription machine = input::described(read.document);
+  const auto found = machine.errors.find(model);
+  if (found == machine.errors.end() || !same_functions(calibration.adjustment, found->second)) {
+    throw std::logic_error(path + ": the error model is read other than it was written");
+  }
+  if (read.identified && (read.identified->values != errors.values.values ||
+                          read.identified->covariance != errors.values.covariance)) {
+    throw std::logic_error(path + ": the covariance is read other than it was written");
+  }
+}
+
+}  // namespace
+
+IdentifiedErrors identified_errors(const Calibration& calibration, const std::string& model) {
+  return Collector(calibration.adjustment, model).collect();
+}
+
+void write_identified_errors(const std::string& path, const Calibration& calibration,
+                             const std::string& machine, const std::string& model, bool force) {
+  system::refuse_unwritable_text(path, force);
+  if (input::read_machine_description(machine).errors.contains(model)) {
+    throw InputError(
+        {machine},
+        fmt::format("has an error model {} already; name another one with --model", model));
+  }
+  const IdentifiedErrors errors = identified_errors(calibration, model);
+  if (errors.values.keys.empty()) {
+    throw InputError({calibration.readings.path}, "determines no error at all");
+  }
+  const std::string text = text_of(calibration, errors, relative_to(machine, path), model);
+  refuse_unreadable(text, path, calibration, errors, model);
+  system::write_text_file(path, text, force);
+}
+
+}  // namespace servomill::sim::calibration

@@ -1,0 +1,142 @@
+#include "sim/calibration/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plant/vocabulary/units.h"
+#include "sim/system/text_table.h"
+
+namespace servomill::sim::calibration {
+namespace {
+
+using plant::ErrorName;
+using Lines = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kShownOutliers = 10;
+constexpr double kWrongRatio = 2.0;   // of variances, where the redundancy makes it significant
+constexpr double kSignificant = 5.0;  // standard deviations of a ratio
+
+const readings::Group& group_of(const Calibration& calibration, std::size_t group) {
+  return calibration.readings.groups[group];
+}
+
+bool is_angular(const readings::Group& group) {
+  return readings::is_angular(group.kind, group.axis);
+}
+
+// "0.52 um"
+std::string in_unit(double value, bool angular) {
+  return fmt::format("{:.3g} {}", value / um, angular ? "urad" : "um");
+}
+
+std::string group_table(const Calibration& calibration) {
+  Lines lines = {
+      {"group", "kind", "numbers", "uncertainty", "residual rms", "redundancy", "variance ratio"}};
+  for (std::size_t g = 0; g < calibration.readings.groups.size(); ++g) {
+    const readings::Group& group = group_of(calibration, g);
+    const GroupResult& result = calibration.adjustment.groups[g];
+    lines.push_back(
+        {group.name, std::string(readings::kKinds[std::size_t(group.kind)]),
+         std::to_string(result.numbers),
+         in_unit(result.uncertainty, is_angular(group)) + (group.uncertainty ? "" : " (estimated)"),
+         in_unit(result.rms, is_angular(group)), fmt::format("{:.1f}", result.redundancy),
+         result.redundancy > 0.5 ? fmt::format("{:.2f}", result.ratio()) : "-"});
+  }
+  return system::text_table(std::move(lines), 0, {2, 3, 4, 5, 6});
+}
+
+std::string error_table(const Calibration& calibration) {
+  const Adjustment& adjustment = calibration.adjustment;
+  Lines lines = {{"error", "value", "+- (k = 2)", "unit", "over", ""}};
+  const auto remark = [&](const ErrorName& name) {
+    return is_combined(adjustment, name) ? std::string("in combination") : std::string();
+  };
+  const Unknowns& unknowns = adjustment.unknowns;
+  for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
+    const int unknown = unknowns.first_location() + int(k);
+    const double variance = adjustment.covariance(unknown, unknown);
+    const ErrorName& name = unknowns.locations[k].name;
+    if (!(variance > 0.0)) continue;
+    lines.push_back({plant::to_string(name), fmt::format("{:.3f}", adjustment.values[unknown] / um),
+                     fmt::format("{:.2g}", 2.0 * std::sqrt(variance) / um),
+                     is_linear(name.direction) ? "um" : "urad", "", remark(name)});
+  }
+  for (const KnownFunction& known : functions_along_travel(adjustment)) {
+    const auto [least, most] = std::minmax_element(known.value.begin(), known.value.end());
+    const double sigma = *std::max_element(known.sigma.begin(), known.sigma.end());
+    const bool linear = is_linear(known.name.axis);
+    const double unit = linear ? mm : deg;
+    lines.push_back(
+        {plant::to_string(known.name), fmt::format("{:.3f} to {:.3f}", *least / um, *most / um),
+         fmt::format("{:.2g}", 2.0 * sigma / um), is_linear(known.name.direction) ? "um" : "urad",
+         fmt::format("{:g} to {:g} {}", known.s.front() / unit, known.s.back() / unit,
+                     linear ? "mm" : "deg"),
+         remark(known.name)});
+  }
+  return system::text_table(std::move(lines), 0, {1, 2});
+}
+
+std::string outlier_sentence(const Calibration& calibration, const Outlier& outlier) {
+  const Observation& one = calibration.observations.all[outlier.observation];
+  const readings::Group& group = group_of(calibration, one.group);
+  return fmt::format(
+      "{}: reading of \"{}\" is off by {}, {:.1f} times its standard uncertainty",
+      readings::place_of(group, group.rows[one.row]), group.name,
+      in_unit(calibration.adjustment.residuals[outlier.observation], is_angular(group)),
+      std::abs(outlier.standardized));
+}
+
+std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
+  return fmt::format(
+      "\"{}\": its residuals are {:.1f} times as large as its uncertainty of {} lets expect; the "
+      "uncertainty, the form of the errors (knots) or the set-up is not as stated",
+      group.name, std::sqrt(result.ratio()), in_unit(result.uncertainty, is_angular(group)));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Calibration& calibration) {
+  std::vector<std::string> out;
+  for (const Suspect& suspect : calibration.sign_suspects) {
+    out.push_back(
+        fmt::format("\"{}\" contradicts the other groups; with the opposite sign it would "
+                    "agree with them: check the sign of its readings",
+                    group_of(calibration, suspect.group).name));
+  }
+  for (std::size_t g = 0; g < calibration.adjustment.groups.size(); ++g) {
+    const GroupResult& result = calibration.adjustment.groups[g];
+    const double spread = std::sqrt(2.0 / std::max(result.redundancy, 1e-9));
+    if (result.redundancy > 0.5 && result.ratio() > kWrongRatio &&
+        result.ratio() > 1.0 + kSignificant * spread) {
+      out.push_back(ratio_sentence(group_of(calibration, g), result));
+    }
+  }
+  const std::size_t shown = std::min(kShownOutliers, calibration.outliers.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    out.push_back(outlier_sentence(calibration, calibration.outliers[i]));
+  }
+  if (shown < calibration.outliers.size()) {
+    out.push_back(
+        fmt::format("{} more readings are outliers", calibration.outliers.size() - shown));
+  }
+  return out;
+}
+
+std::string report(const Calibration& calibration) {
+  const Adjustment& adjustment = calibration.adjustment;
+  std::string out = group_table(calibration) + "\n" + error_table(calibration);
+  out += fmt::format(
+      "\n{} numbers, {} unknowns, {} left out; whitened residuals {:.2f} (1 expected)\n",
+      calibration.observations.all.size(), adjustment.unknowns.size(), adjustment.left_out.size(),
+      adjustment.redundancy > 0.0 ? std::sqrt(adjustment.squares / adjustment.redundancy) : 0.0);
+  const std::vector<std::string> sentences = unidentifiable_sentences(calibration);
+  if (!sentences.empty()) {
+    out += "\nNot determined by the readings:\n";
+    for (const std::string& sentence : sentences) out += "  " + sentence + "\n";
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::calibration

@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""Errors of machines from readings, as their owners find them.
+
+    calibrate.py SERVOMILL
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+import numpy as np
+
+SERVOMILL = os.path.abspath(sys.argv.pop(1))
+SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenarios")
+
+
+class Way(unittest.TestCase):
+    """The shipped ways, in a copy of their folders."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        for name in ("calibration", "machines", "programs"):
+            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
+        cls.printed = cls.run_in("router", "calibrate", "readings.toml", "-o", "again.toml").stdout
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def path(cls, *names):
+        return os.path.join(cls.folder, "calibration", *names)
+
+    @classmethod
+    def run_in(cls, machine, *arguments, status=0):
+        done = subprocess.run([SERVOMILL, *arguments], cwd=cls.path(machine), capture_output=True, text=True, check=False)
+        assert done.returncode == status, f"{arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
+        return done
+
+    def identified(self, *names):
+        with open(self.path(*names), "rb") as file:
+            return tomllib.load(file)
+
+    def test_the_shipped_result_is_what_the_readings_give(self):
+        again, shipped = self.identified("router", "again.toml"), self.identified("router", "identified.toml")
+        self.assertEqual(again["identified"]["keys"], shipped["identified"]["keys"])
+        np.testing.assert_allclose(again["identified"]["values"], shipped["identified"]["values"], rtol=1e-6, atol=1e-6)
+
+    def test_squareness_and_the_period_of_the_screw_are_found(self):
+        table = self.identified("router", "again.toml")["identified"]
+        for key, actual in {"errors.identified.EC0Y.constant_urad": 180.0, "errors.identified.EYY.harmonic[0].amplitude_um": 12.0}.items():
+            k = table["keys"].index(key)
+            self.assertLess(abs(table["values"][k] - actual), 3 * np.sqrt(table["covariance"][k][k]), key)
+
+    def test_the_report_names_what_the_instruments_cannot_tell(self):
+        self.assertIn("no reading depends on ECY and ECZ", self.printed)
+        self.assertRegex(self.printed, r"EAX +\S+ to \S+ +\S+ +urad .* in combination")
+        whitened = re.search(r"whitened residuals ([\d.]+)", self.printed)
+        self.assertAlmostEqual(float(whitened[1]), 1.0, delta=0.05)
+
+    def test_tables_and_programs_take_the_result(self):
+        with open(self.path("router", "part.ngc"), "w", encoding="utf-8") as file:
+            file.write("G21 G90 G17 G94 F1000\nG0 X100 Y100 Z-50\nG1 X300 Y300\nM2\n")
+        self.run_in("router", "compensate", "part.ngc", "--machine", "again.toml", "--model", "identified", "-o", "out.ngc",
+                    "--work-offset", "X=0,Y=0,Z=0")
+
+    def test_the_block_comes_out_better(self):
+        printed = self.run_in("router", "run", "part.toml", "-o", "part.h5").stdout
+        values = [float(v) for v in re.findall(r"(?:as_it_is|corrected) +(-?[\d.]+) um", printed)]
+        squareness_is, squareness, roundness_is, roundness = values[2], values[3], values[4], values[5]
+        self.assertLess(abs(squareness), 0.5 * abs(squareness_is))
+        self.assertLess(roundness, 0.2 * roundness_is)
+
+    def test_the_trunnion_gives_its_eight_location_errors(self):
+        printed = self.run_in("trunnion", "calibrate", "readings.toml", "-o", "identified.toml").stdout
+        table = self.identified("trunnion", "identified.toml")["identified"]
+        actual = {"EC0Y": 18.0, "EA0Z": -12.0, "EB0Z": 25.0, "EB0A": -31.0, "EC0A": 22.0, "EA0C": 27.0, "EB0C": -19.0}
+        for name, value in actual.items():
+            k = table["keys"].index(f"errors.identified.{name}.constant_urad")
+            self.assertLess(abs(table["values"][k] - value), 3 * np.sqrt(table["covariance"][k][k]), name)
+        k = table["keys"].index("errors.identified.EY0C.constant_um")  # holds EY0C - EY0A
+        self.assertLess(abs(table["values"][k] - 7.0), 3 * np.sqrt(table["covariance"][k][k]))
+        self.assertIn("EY0A is determined only in combination: EY0C holds EY0C - EY0A", printed)
+        self.assertIn("EX0C is determined only in combination: the set-up does (stylus X of", printed)
+
+    def test_readings_made_up_are_read_again(self):
+        os.mkdir(self.path("router", "readings"))
+        made_up = ("calibrate", "readings.toml", "--make-up", "readings", "--truth", "measured", "--seed", "2")
+        self.run_in("router", *made_up)
+        self.assertIn("exists", self.run_in("router", *made_up, status=2).stderr)
+        printed = self.run_in("router", "calibrate", "readings/readings.toml").stdout
+        self.assertAlmostEqual(float(re.search(r"whitened residuals ([\d.]+)", printed)[1]), 1.0, delta=0.05)
+
+    def test_a_group_of_the_wrong_sign_and_an_outlier_are_named(self):
+        for name in ("readings.toml", *(f for f in os.listdir(self.path("router")) if f.endswith(".csv"))):
+            os.makedirs(self.path("wrong"), exist_ok=True)
+            shutil.copy(self.path("router", name), self.path("wrong", name))
+        with open(self.path("wrong", "ball_bar_XY2.csv"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        turned = [lines[0]] + [line.rsplit(",", 1)[0] + "," + str(-float(line.rsplit(",", 1)[1])) for line in lines[1:]]
+        with open(self.path("wrong", "ball_bar_XY2.csv"), "w", encoding="utf-8") as file:
+            file.write("\n".join(turned) + "\n")
+        warnings = self.run_in("wrong", "calibrate", "readings.toml", "-q").stderr
+        self.assertIn('"ball bar XY 2" contradicts the other groups; with the opposite sign it would agree', warnings)
+        place, value = lines[10].rsplit(",", 1)
+        lines[10] = f"{place},{float(value) + 100}"
+        with open(self.path("wrong", "ball_bar_XY2.csv"), "w", encoding="utf-8") as file:
+            file.write("\n".join(lines) + "\n")
+        warnings = self.run_in("wrong", "calibrate", "readings.toml", "-q").stderr
+        self.assertIn("ball_bar_XY2.csv:11: reading of \"ball bar XY 2\" is off by", warnings)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/calibration/identified_errors.h"
+#include "sim/calibration/make_up.h"
+#include "sim/calibration/report.h"
+#include "sim/calibration/write_readings.h"
+#include "sim/input/read_machine.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+namespace {
+
+namespace po = boost::program_options;
+namespace calibration = sim::calibration;
+
+void add_calibrate_options(Options& options) {
+  options.add()("machine", po::value<std::string>()->value_name("MACHINE.toml"),
+                "machine that was measured (default: the one that the readings name)");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
+                "writes the machine with the identified errors over it, their uncertainty and "
+                "covariance");
+  options.add()("model", po::value<std::string>()->default_value("identified")->value_name("NAME"),
+                "name of the error model in it: [errors.NAME]");
+  options.add()("make-up", po::value<std::string>()->value_name("FOLDER"),
+                "writes readings there as they would be on the machine with the errors of --truth, "
+                "and calibrates nothing");
+  options.add()("truth", po::value<std::string>()->value_name("NAME"),
+                "error model of the machine file, for --make-up");
+  options.add()("seed", po::value<int>()->default_value(1)->value_name("N"),
+                "of the noise of --make-up");
+  options.add()("force,f", "replaces outputs that exist");
+  options.add()("quiet,q", "prints nothing but faults and warnings");
+}
+
+std::string machine_of(const Options& options) {
+  if (options.has("machine")) return options.get<std::string>("machine");
+  std::string named = sim::readings::named_machine(options.word());
+  if (!named.empty()) return named;
+  throw InputError({options.word()}, "names no machine; add machine = \"FILE\", or pass --machine");
+}
+
+const plant::ErrorModel& truth_of(const Options& options,
+                                  const sim::input::MachineDescription& machine) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, model] : machine.errors) names.push_back(name);
+  if (!options.has("truth")) {
+    throw InputError({"--truth"}, fmt::format("is missing; the machine has the error models {}",
+                                              fmt::join(names, ", ")));
+  }
+  const auto& name = options.get<std::string>("truth");
+  const auto found = machine.errors.find(name);
+  if (found != machine.errors.end()) return found->second;
+  throw InputError({"--truth"}, fmt::format("'{}' is no error model of the machine{}", name,
+                                            did_you_mean(name, names)));
+}
+
+// Travel of a machine; an axis without one has no end.
+std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {
+  Joints lower = machine.nc.lower, upper = machine.nc.upper;
+  for (int j = 0; j < kJoints; ++j) {
+    if (lower[j] < upper[j]) continue;
+    lower[j] = -std::numeric_limits<double>::infinity();
+    upper[j] = std::numeric_limits<double>::infinity();
+  }
+  return {lower, upper};
+}
+
+}  // namespace
+
+int calibrate_command(const Arguments& arguments) {
+  Options options(
+      "calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
+      "Finds the geometric errors of a machine from readings of lasers, squares, ball\n"
+      "bars, R-tests and touch probes: adjusts all of them at once, says how well each\n"
+      "error is known, which ones the readings cannot tell apart, and which readings\n"
+      "contradict the others. The kinds of readings: sim/readings/README.md.",
+      "READINGS.toml");
+  add_calibrate_options(options);
+  if (!options.parse(arguments)) return kDone;
+  const std::string out = output_of(options, "output", ".toml");
+  const std::string file = options.word(), machine_file = machine_of(options);
+  const sim::input::MachineDescription description =
+      sim::input::read_machine_description(machine_file);
+  const plant::MachineChain& chain = description.machine.chain;
+  const auto [lower, upper] = travel_of(description.machine);
+  sim::readings::Readings readings = sim::readings::read_readings(file, chain, lower, upper);
+  const calibration::CalibrationSettings settings = calibration::read_settings(file, chain.layout);
+  if (options.has("make-up")) {
+    const auto& folder = options.get<std::string>("make-up");
+    calibration::make_up(readings, chain, truth_of(options, description),
+                         static_cast<std::uint64_t>(options.get<int>("seed")));
+    calibration::write_readings(folder, readings, chain, machine_file, options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", folder);
+    return kDone;
+  }
+  const calibration::Calibration result =
+      calibration::calibrate(std::move(readings), chain, settings);
+  if (!options.has("quiet")) fmt::print("{}", calibration::report(result));
+  for (const std::string& warning : calibration::warnings(result)) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  if (!out.empty()) {
+    calibration::write_identified_errors(out, result, machine_file,
+                                         options.get<std::string>("model"), options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools
