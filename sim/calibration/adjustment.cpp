@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/calibration/error_effects.h"
+
 namespace servomill::sim::calibration {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUnitError = 1e-6;            // m, rad; effects are proportional to it
 constexpr double kStartingUncertainty = 1e-6;  // m, rad, of one that is estimated
 constexpr int kMostIterations = 30;
 constexpr double kSettled = 1e-4;     // relative, of estimated uncertainties
@@ -31,9 +32,10 @@ class Adjuster {
            const plant::MachineChain& chain, Unknowns unknowns, const AdjustmentOptions& options)
       : readings_(readings), observations_(observations), chain_(chain), options_(options) {
     out_.unknowns = std::move(unknowns);
-    size_ = out_.unknowns.size();
-    set_lines();
-    set_rows();
+    const ErrorEffects effects(chain, out_.unknowns);
+    size_ = effects.size();
+    P_ = effects.projection();
+    set_rows(effects);
     weights_ = VectorXd::Ones(Eigen::Index(observations.all.size()));
     for (const readings::Group& group : readings.groups) {
       out_.groups.push_back({.uncertainty = group.uncertainty.value_or(kStartingUncertainty)});
@@ -66,37 +68,7 @@ class Adjuster {
   }
 
  private:
-  // Lines behind the unknowns, and what each unknown takes of them: P.
-  void set_lines() {
-    int lines = 0;
-    for (const SoughtFunction& function : out_.unknowns.functions) lines += function.basis.lines();
-    P_ = MatrixXd::Zero(lines, size_);
-    int line = 0;
-    for (const SoughtFunction& function : out_.unknowns.functions) {
-      line_of_.push_back(size_ + line);
-      P_.block(line, function.first, function.basis.lines(), function.basis.size()) =
-          function.basis.projection();
-      line += function.basis.lines();
-    }
-  }
-
-  std::vector<Deviations> unit_effects() const {
-    std::vector<Deviations> out;
-    for (const SoughtLocation& location : out_.unknowns.locations) {
-      plant::ErrorModel errors;
-      errors.location(location.name) = kUnitError;
-      out.emplace_back(chain_, errors);
-    }
-    for (const SoughtFunction& function : out_.unknowns.functions) {
-      plant::ErrorModel errors;
-      errors.component(function.name) = plant::constant(kUnitError);
-      out.emplace_back(chain_, errors);
-    }
-    return out;
-  }
-
-  void set_rows() {
-    const std::vector<Deviations> unit = unit_effects();
+  void set_rows(const ErrorEffects& effects) {
     VectorXd dense = VectorXd::Zero(size_ + P_.rows());
     for (const Observation& one : observations_.all) {
       SparseRow row;
@@ -106,7 +78,7 @@ class Adjuster {
         dense[column] += value;
       };
       for (const SetUpPart& part : one.set_up) add(static_cast<int>(part.unknown), part.factor);
-      for (const Pose& pose : one.poses) add_pose(pose, unit, add);
+      for (const Pose& pose : one.poses) effects.visit(pose, add);
       std::sort(row.columns.begin(), row.columns.end());
       row.columns.erase(std::unique(row.columns.begin(), row.columns.end()), row.columns.end());
       for (const int column : row.columns) {
@@ -114,32 +86,6 @@ class Adjuster {
         dense[column] = 0.0;
       }
       rows_.push_back(std::move(row));
-    }
-  }
-
-  template <class Add>
-  void add_pose(const Pose& pose, const std::vector<Deviations>& unit, const Add& add) {
-    const Unknowns& unknowns = out_.unknowns;
-    std::size_t k = 0;
-    for (; k < unknowns.locations.size(); ++k) {
-      add(unknowns.first_location() + static_cast<int>(k),
-          pose.weight * unit[k].first_order_at(pose) / kUnitError);
-    }
-    std::vector<BasisValue> values;
-    for (std::size_t f = 0; f < unknowns.functions.size(); ++f) {
-      const SoughtFunction& function = unknowns.functions[f];
-      const double effect = pose.weight * unit[k + f].first_order_at(pose) / kUnitError;
-      if (std::abs(effect) < kNothing) continue;
-      const int joint = *chain_.layout.joint_of(function.name.axis);
-      values.clear();
-      function.basis.evaluate(pose.Q[joint], pose.direction[static_cast<std::size_t>(joint)],
-                              values);
-      for (const BasisValue& value : values) {
-        const int column = value.index < function.basis.size()
-                               ? function.first + value.index
-                               : line_of_[f] + value.index - function.basis.size();
-        add(column, effect * value.value);
-      }
     }
   }
 
@@ -344,7 +290,6 @@ class Adjuster {
     }
   }
 
-  static constexpr double kNothing = 1e-12;           // m per m, of an effect that is rounding
   static constexpr double kLeastUncertainty = 1e-12;  // m, rad
 
   const readings::Readings& readings_;
@@ -352,8 +297,7 @@ class Adjuster {
   const plant::MachineChain& chain_;
   const AdjustmentOptions& options_;
   int size_ = 0;
-  MatrixXd P_;                // lines x unknowns
-  std::vector<int> line_of_;  // first column of the lines of each function
+  MatrixXd P_;  // lines x unknowns
   std::vector<SparseRow> rows_;
   VectorXd weights_;  // of robustness
   Adjustment out_;

@@ -84,4 +84,39 @@ inline readings::Readings shop_readings(bool roll_of_Z = true) {
   return out;
 }
 
+/// An AC table below a spindle that moves along X, Y, Z; A turns 50 mm above C.
+inline plant::MachineChain trunnion() {
+  plant::MachineChain chain = plant::make_chain(plant::parse_structure("[w C' A' b X Y Z (C1) t]"));
+  chain.at(Axis::A).centre.z() = 0.05;
+  return chain;
+}
+
+/// Three spheres on the table of a trunnion, touched by an adjusted stylus at 56 poses each.
+inline void add_spheres(readings::Readings& all, const plant::MachineChain& chain) {
+  // the lines of the shop say where A and C stood: at 0
+  readings::Group group;
+  group.kind = readings::Kind::sphere;
+  group.name = "spheres";
+  group.p_ST = {0.0, 0.0, -0.15};
+  group.uncertainty = 0.5e-6;
+  group.tool_is_known = true;
+  group.spheres = {"outer", "upper", "middle"};
+  const Eigen::Vector3d places[] = {{0.2, 0.0, 0.05}, {-0.1, 0.15, 0.25}, {0.02, -0.03, 0.15}};
+  for (std::size_t sphere = 0; sphere < 3; ++sphere) {
+    for (int a = -3; a <= 3; ++a) {
+      for (int c = 0; c < 8; ++c) {
+        Joints rotary = Joints::Zero();
+        rotary[3] = 0.35 * a;
+        rotary[4] = 0.7853981633974483 * c + 0.1 * a;
+        readings::Reading reading;
+        reading.Q = *plant::inverse_fixed_rotary(chain, places[sphere], rotary, group.p_ST);
+        reading.sphere = sphere;
+        reading.line = static_cast<int>(group.rows.size()) + 2;
+        group.rows.push_back(reading);
+      }
+    }
+  }
+  all.groups.push_back(std::move(group));
+}
+
 }  // namespace servomill::sim::calibration

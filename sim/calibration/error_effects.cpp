@@ -1,0 +1,80 @@
+#include "sim/calibration/error_effects.h"
+
+#include <cmath>
+
+namespace servomill::sim::calibration {
+namespace {
+
+constexpr double kUnitError = 1e-6;  // m, rad; effects are proportional to it
+constexpr double kNothing = 1e-12;   // m per m, of an effect that is rounding
+
+}  // namespace
+
+ErrorEffects::ErrorEffects(const plant::MachineChain& chain, const Unknowns& unknowns)
+    : chain_(chain), unknowns_(unknowns), size_(unknowns.size()) {
+  int lines = 0;
+  for (const SoughtFunction& function : unknowns.functions) {
+    line_of_.push_back(lines);
+    lines += function.basis.lines();
+  }
+  P_ = Eigen::MatrixXd::Zero(lines, size_);
+  for (std::size_t f = 0; f < unknowns.functions.size(); ++f) {
+    const SoughtFunction& function = unknowns.functions[f];
+    P_.block(line_of_[f], function.first, function.basis.lines(), function.basis.size()) =
+        function.basis.projection();
+  }
+  for (const SoughtLocation& location : unknowns.locations) {
+    plant::ErrorModel errors;
+    errors.location(location.name) = kUnitError;
+    unit_.emplace_back(chain, errors);
+  }
+  for (const SoughtFunction& function : unknowns.functions) {
+    plant::ErrorModel errors;
+    errors.component(function.name) = plant::constant(kUnitError);
+    unit_.emplace_back(chain, errors);
+  }
+}
+
+void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)>& add) const {
+  std::size_t k = 0;
+  for (; k < unknowns_.locations.size(); ++k) {
+    add(unknowns_.first_location() + static_cast<int>(k),
+        pose.weight * unit_[k].first_order_at(pose) / kUnitError);
+  }
+  std::vector<BasisValue> values;
+  for (std::size_t f = 0; f < unknowns_.functions.size(); ++f) {
+    const SoughtFunction& function = unknowns_.functions[f];
+    const double effect = pose.weight * unit_[k + f].first_order_at(pose) / kUnitError;
+    if (std::abs(effect) < kNothing) continue;
+    const int joint = *chain_.layout.joint_of(function.name.axis);
+    values.clear();
+    function.basis.evaluate(pose.Q[joint], pose.direction[static_cast<std::size_t>(joint)], values);
+    for (const BasisValue& value : values) {
+      const int column = value.index < function.basis.size()
+                             ? function.first + value.index
+                             : size_ + line_of_[f] + value.index - function.basis.size();
+      add(column, effect * value.value);
+    }
+  }
+}
+
+Eigen::RowVectorXd ErrorEffects::row(const Pose& pose) const {
+  Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(size_ + lines());
+  visit(pose, [&](int column, double value) { all[column] += value; });
+  return all.head(size_) - all.tail(lines()) * P_;
+}
+
+Eigen::Matrix3d tip_covariance(const ErrorEffects& effects, const Adjustment& adjustment,
+                               const Joints& Q, const Eigen::Vector3d& p_ST) {
+  Eigen::MatrixXd J(3, effects.size());
+  for (int k = 0; k < 3; ++k) {
+    Pose pose;
+    pose.Q = Q;
+    pose.p_ST = p_ST;
+    pose.n_W = Eigen::Vector3d::Unit(k);
+    J.row(k) = effects.row(pose);
+  }
+  return J * adjustment.covariance * J.transpose();
+}
+
+}  // namespace servomill::sim::calibration
