@@ -203,6 +203,21 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
   return out;
 }
 
+namespace {
+
+// Enough places to show the shortest period.
+int places_for(const FunctionForm& form, int points) {
+  constexpr double kEachPeriod = 12.0;
+  constexpr double kMost = 2000.0;
+  double most = points;
+  for (const double period : form.periods) {
+    most = std::max(most, kEachPeriod * (form.upper - form.lower) / period);
+  }
+  return static_cast<int>(std::min(most, kMost));
+}
+
+}  // namespace
+
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points) {
   std::vector<KnownFunction> out;
   for (const SoughtFunction& function : adjustment.unknowns.functions) {
@@ -211,7 +226,7 @@ std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, 
     if (C.isZero(0.0)) continue;
     const FunctionForm& form = function.basis.form();
     KnownFunction known{.name = function.name, .s = {}, .value = {}, .sigma = {}, .expected = {}};
-    for (const double s : equally_spaced(form.lower, form.upper, points)) {
+    for (const double s : equally_spaced(form.lower, form.upper, places_for(form, points))) {
       const Eigen::RowVectorXd row = function.basis.row(s, 0.0);
       known.s.push_back(s);
       known.value.push_back(row * adjustment.values.segment(function.first, n));

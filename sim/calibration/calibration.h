@@ -69,7 +69,8 @@ struct KnownFunction {
   std::vector<double> value, sigma;  // m or rad
   std::vector<double> expected;      // m or rad; sigma without any reading
 };
-/// Every function of which something is known, at `points` equally spaced places.
+/// Every function of which something is known, at `points` equally spaced places, more where it has
+/// shorter periods.
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points = 41);
 
 /// "EA0C is determined only in combination: EA0Y holds EA0Y + EA0C", one sentence for each

@@ -124,6 +124,32 @@ std::vector<std::string> warnings(const Calibration& calibration) {
   return out;
 }
 
+std::string function_table(const Calibration& calibration) {
+  const Adjustment& adjustment = calibration.adjustment;
+  const Unknowns& unknowns = adjustment.unknowns;
+  std::string out = "error,position,position_unit,value,standard_uncertainty,unit,in_combination\n";
+  const auto remark = [&](const ErrorName& name) { return is_combined(adjustment, name) ? 1 : 0; };
+  const auto unit = [](const ErrorName& name) { return is_linear(name.direction) ? "um" : "urad"; };
+  for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
+    const int u = unknowns.first_location() + int(k);
+    const ErrorName& name = unknowns.locations[k].name;
+    if (!(adjustment.covariance(u, u) > 0.0)) continue;
+    out +=
+        fmt::format("{},,,{:.6f},{:.6f},{},{}\n", plant::to_string(name), adjustment.values[u] / um,
+                    std::sqrt(adjustment.covariance(u, u)) / um, unit(name), remark(name));
+  }
+  for (const KnownFunction& known : functions_along_travel(adjustment)) {
+    const bool linear = is_linear(known.name.axis);
+    for (std::size_t i = 0; i < known.s.size(); ++i) {
+      out +=
+          fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", plant::to_string(known.name),
+                      known.s[i] / (linear ? mm : deg), linear ? "mm" : "deg", known.value[i] / um,
+                      known.sigma[i] / um, unit(known.name), remark(known.name));
+    }
+  }
+  return out;
+}
+
 std::string report(const Calibration& calibration) {
   const Adjustment& adjustment = calibration.adjustment;
   std::string out = group_table(calibration) + "\n" + error_table(calibration);

@@ -11,6 +11,11 @@ namespace servomill::sim::calibration {
 /// Everything that `servomill calibrate` prints.
 std::string report(const Calibration& calibration);
 
+/// CSV of every error along the travel: name, position (mm or deg; empty for location errors),
+/// value, standard uncertainty (um or urad), and whether it holds others or a part of it is left
+/// out.
+std::string function_table(const Calibration& calibration);
+
 /// Sentences on readings that contradict each other or stand out, with file and line.
 std::vector<std::string> warnings(const Calibration& calibration);
 

@@ -88,6 +88,16 @@ class Way(unittest.TestCase):
         self.assertIn("EY0A is determined only in combination: EY0C holds EY0C - EY0A", printed)
         self.assertIn("EX0C is determined only in combination: the set-up does (stylus X of", printed)
 
+    def test_the_table_of_errors_is_drawn(self):
+        self.run_in("router", "calibrate", "readings.toml", "--table", "errors.csv", "-q")
+        tool = os.path.join(SCENARIOS, "..", "tools", "errors_figure.py")
+        figure = self.path("router", "errors.png")
+        for status, argument in ((0, "errors.csv"), (2, "errors.csv"), (2, "readings.toml")):
+            done = subprocess.run(["/usr/bin/python3", "-B", tool, argument], cwd=self.path("router"), capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, status, done.stderr)
+        self.assertIn("is no table of errors", done.stderr)
+        self.assertGreater(os.path.getsize(figure), 50_000)
+
     def test_readings_made_up_are_read_again(self):
         os.mkdir(self.path("router", "readings"))
         made_up = ("calibrate", "readings.toml", "--make-up", "readings", "--truth", "measured", "--seed", "2")

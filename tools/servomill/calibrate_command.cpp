@@ -8,6 +8,7 @@
 #include "sim/calibration/report.h"
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
+#include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -23,6 +24,8 @@ void add_calibrate_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
                 "writes the machine with the identified errors over it, their uncertainty and "
                 "covariance");
+  options.add()("table", po::value<std::string>()->value_name("OUT.csv"),
+                "writes every error along the travel with its standard uncertainty");
   options.add()("model", po::value<std::string>()->default_value("identified")->value_name("NAME"),
                 "name of the error model in it: [errors.NAME]");
   options.add()("make-up", po::value<std::string>()->value_name("FOLDER"),
@@ -82,6 +85,7 @@ int calibrate_command(const Arguments& arguments) {
   add_calibrate_options(options);
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
+  const std::string table = output_of(options, "table", ".csv");
   const std::string file = options.word(), machine_file = machine_of(options);
   const sim::input::MachineDescription description =
       sim::input::read_machine_description(machine_file);
@@ -102,6 +106,10 @@ int calibrate_command(const Arguments& arguments) {
   if (!options.has("quiet")) fmt::print("{}", calibration::report(result));
   for (const std::string& warning : calibration::warnings(result)) {
     fmt::print(stderr, "warning: {}\n", warning);
+  }
+  if (!table.empty()) {
+    sim::system::write_text_file(table, calibration::function_table(result), options.has("force"));
+    if (!options.has("quiet")) fmt::print("written to {}\n", table);
   }
   if (!out.empty()) {
     calibration::write_identified_errors(out, result, machine_file,
