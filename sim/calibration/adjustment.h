@@ -26,8 +26,10 @@ struct SoughtLocation {
 struct SoughtFunction {
   plant::ErrorName name;
   FunctionBasis basis;
-  double size = 0.3e-3;  // m or rad; expected of each of its coefficients
-  int first = 0;         // unknown, in Adjustment::values
+  double size = 0.3e-3;       // m or rad; expected of each of its coefficients
+  int first = 0;              // unknown, in Adjustment::values
+  bool has_own_knots = true;  // false: knots stand at the targets, and nothing says that the error
+                              // is straight between them
 };
 
 /// The unknowns in their order: set-up, location errors, functions. Of unknowns that the readings
@@ -73,7 +75,9 @@ struct Adjustment {
   std::vector<double> standardized;  // residuals over their standard uncertainty; 0: uncontrolled
   std::vector<GroupResult> groups;
   plant::ErrorModel errors;  // as adjusted
-  double squares = 0.0;      // of whitened residuals and of what is known of set-ups
+  /// Standard uncertainty (m, rad) of each function between its targets (short_waves.h).
+  std::vector<double> short_waves;
+  double squares = 0.0;  // of whitened residuals and of what is known of set-ups
   double redundancy = 0.0;
   int iterations = 0;
   bool converged = false;

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "sim/calibration/short_waves.h"
 #include "sim/metrology/location_errors.h"
 
 namespace servomill::sim::calibration {
@@ -116,6 +117,8 @@ std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
       SoughtFunction function{
           .name = name, .basis = FunctionBasis(form_of(asked, places), is_without_slope(name))};
       function.size = asked.size.value_or(function.size);
+      function.has_own_knots =
+          asked.knots || asked.number_of_knots || asked.degree || !asked.periods.empty();
       out.push_back(std::move(function));
     }
   }
@@ -186,6 +189,7 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
                      "the adjustment does not converge: readings stand in the wrong places or have "
                      "errors of millimetres; leave groups out to find which");
   }
+  out.adjustment.short_waves = short_waves(out.adjustment);
   out.outliers = outliers_of(out.adjustment);
   const Adjustment& found = out.adjustment;
   const double excess = found.squares - found.redundancy;
@@ -220,7 +224,9 @@ int places_for(const FunctionForm& form, int points) {
 
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points) {
   std::vector<KnownFunction> out;
-  for (const SoughtFunction& function : adjustment.unknowns.functions) {
+  for (std::size_t f = 0; f < adjustment.unknowns.functions.size(); ++f) {
+    const SoughtFunction& function = adjustment.unknowns.functions[f];
+    const double wave = adjustment.short_waves[f];
     const int n = function.basis.size();
     const Eigen::MatrixXd C = adjustment.covariance.block(function.first, function.first, n, n);
     if (C.isZero(0.0)) continue;
@@ -230,7 +236,9 @@ std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, 
       const Eigen::RowVectorXd row = function.basis.row(s, 0.0);
       known.s.push_back(s);
       known.value.push_back(row * adjustment.values.segment(function.first, n));
-      known.sigma.push_back(std::sqrt(std::max(0.0, (row * C * row.transpose())(0))));
+      const double between =
+          wave == 0.0 ? 0.0 : wave * wave * interpolation_variance(function.basis, s);
+      known.sigma.push_back(std::sqrt(std::max(0.0, (row * C * row.transpose())(0)) + between));
       known.expected.push_back(function.size * row.norm());
     }
     out.push_back(std::move(known));

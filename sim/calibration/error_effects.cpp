@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/calibration/short_waves.h"
+
 namespace servomill::sim::calibration {
 namespace {
 
@@ -58,6 +60,23 @@ void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)
   }
 }
 
+int ErrorEffects::joint_of(std::size_t f) const {
+  return *chain_.layout.joint_of(unknowns_.functions[f].name.axis);
+}
+
+Eigen::Vector3d ErrorEffects::unit_shift(std::size_t f, const Joints& Q,
+                                         const Eigen::Vector3d& p_ST) const {
+  Eigen::Vector3d out;
+  for (int k = 0; k < 3; ++k) {
+    Pose pose;
+    pose.Q = Q;
+    pose.p_ST = p_ST;
+    pose.n_W = Eigen::Vector3d::Unit(k);
+    out[k] = unit_[unknowns_.locations.size() + f].first_order_at(pose) / kUnitError;
+  }
+  return out;
+}
+
 Eigen::RowVectorXd ErrorEffects::row(const Pose& pose) const {
   Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(size_ + lines());
   visit(pose, [&](int column, double value) { all[column] += value; });
@@ -74,7 +93,16 @@ Eigen::Matrix3d tip_covariance(const ErrorEffects& effects, const Adjustment& ad
     pose.n_W = Eigen::Vector3d::Unit(k);
     J.row(k) = effects.row(pose);
   }
-  return J * adjustment.covariance * J.transpose();
+  Eigen::Matrix3d out = J * adjustment.covariance * J.transpose();
+  for (std::size_t f = 0; f < adjustment.short_waves.size(); ++f) {
+    const double wave = adjustment.short_waves[f];
+    if (wave == 0.0) continue;
+    const Eigen::Vector3d effect = effects.unit_shift(f, Q, p_ST);
+    const SoughtFunction& function = adjustment.unknowns.functions[f];
+    const double s = Q[effects.joint_of(f)];
+    out += wave * wave * interpolation_variance(function.basis, s) * effect * effect.transpose();
+  }
+  return out;
 }
 
 }  // namespace servomill::sim::calibration

@@ -25,6 +25,10 @@ class ErrorEffects {
   /// Calls add(column, effect) for each effect of a pose that is not 0; columns may repeat.
   void visit(const Pose& pose, const std::function<void(int, double)>& add) const;
 
+  int joint_of(std::size_t f) const;  ///< of a function
+  /// Shift of the tip (3, in W) for a value of one of a function.
+  Eigen::Vector3d unit_shift(std::size_t f, const Joints& Q, const Eigen::Vector3d& p_ST) const;
+
   /// Effects of the unknowns at a pose, set-ups included as 0.
   Eigen::RowVectorXd row(const Pose& pose) const;
 
