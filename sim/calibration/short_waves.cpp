@@ -9,7 +9,7 @@ namespace servomill::sim::calibration {
 namespace {
 
 constexpr double kSignificant = 2.0;  // standard deviations of the noise's own roughness
-constexpr double kOwn = 0.25;          // weight of a function's own roughness beside that of all
+constexpr double kOwn = 0.25;         // weight of a function's own roughness beside that of all
 
 struct Roughness {
   double excess = 0.0;  // r'r - tr N
