@@ -40,7 +40,8 @@ int travel_of(const Group& group, const Reading& reading, const JointLayout& lay
 
 class CsvWriter {
  public:
-  CsvWriter(const Group& group, const JointLayout& layout) : group_(group), layout_(layout) {
+  CsvWriter(const Group& group, const JointLayout& layout, bool with_numbers = true)
+      : group_(group), layout_(layout), with_numbers_(with_numbers) {
     for (const Reading& row : group.rows) {
       has_direction_ = has_direction_ || travel_of(group, row, layout) != 0;
       has_run_ = has_run_ || row.run != 0;
@@ -106,14 +107,73 @@ class CsvWriter {
     if (has_time_) out.push_back(number(row.time));
     if (has_temperature_) out.push_back(number(row.temperature));
     const int numbers = group_.kind == Kind::sphere ? 0 : readings::numbers_of(group_.kind);
-    for (int k = 0; k < numbers; ++k) out.push_back(fmt::format("{:.4f}", row.deviation[k] / um));
+    for (int k = 0; k < numbers; ++k) {
+      out.push_back(with_numbers_ ? fmt::format("{:.4f}", row.deviation[k] / um) : std::string());
+    }
     return out;
   }
 
   const Group& group_;
   const JointLayout& layout_;
+  bool with_numbers_;
   bool has_direction_ = false, has_run_ = false, has_time_ = false, has_temperature_ = false;
 };
+
+std::string machine_from(const std::string& folder, const std::string& machine) {
+  const fs::path base = fs::absolute(folder).lexically_normal();
+  return fs::absolute(machine).lexically_normal().lexically_relative(base).string();
+}
+
+// The keys of a group in a file of readings.
+class GroupWriter {
+ public:
+  GroupWriter(const Group& group, const JointLayout& layout) : group_(group), layout_(layout) {}
+
+  std::string text(const std::string& file) const {
+    std::string out =
+        fmt::format("\n[[group]]\nname = {}\nkind = \"{}\"\n", config::quoted_text(group_.name),
+                    readings::kKinds[std::size_t(group_.kind)]);
+    if (group_.axis) out += fmt::format("axis = \"{}\"\n", letter(*group_.axis));
+    if (group_.direction) out += fmt::format("direction = \"{}\"\n", letter(*group_.direction));
+    const std::string plane{letter(group_.plane[0]), letter(group_.plane[1])};
+    if (group_.kind == Kind::circle) {
+      out += fmt::format("plane = \"{}\"\nradius_mm = {:g}\n", plane, group_.radius / mm);
+    }
+    if (group_.kind == Kind::squareness) {
+      out += fmt::format("axes = \"{}\"\nlengths_mm = [{:g}, {:g}]\ntargets = {}\n", plane,
+                         group_.legs[0] / mm, group_.legs[1] / mm, group_.targets);
+    }
+    out += fmt::format(
+        "at = {{ {} }}\npoint_mm = [{:g}, {:g}, {:g}]\n{} = {:g}\n", at(), group_.p_ST.x() / mm,
+        group_.p_ST.y() / mm, group_.p_ST.z() / mm,
+        readings::is_angular(group_.kind, group_.axis) ? "uncertainty_urad" : "uncertainty_um",
+        *group_.uncertainty / um);
+    if (group_.kind == Kind::squareness) return out + "# deviation_urad =\n";
+    return out + fmt::format("readings = {}\n", config::quoted_text(file));
+  }
+
+ private:
+  std::string at() const {
+    std::vector<std::string> out;
+    for (int j = 0; j < kJoints; ++j) {
+      if (!layout_.has(j)) continue;
+      const bool linear = j < kLinearJoints;
+      out.push_back(fmt::format("{}_{} = {:g}", layout_.letter_of(j), linear ? "mm" : "deg",
+                                group_.at[j] / (linear ? mm : deg)));
+    }
+    return fmt::format("{}", fmt::join(out, ", "));
+  }
+
+  const Group& group_;
+  const JointLayout& layout_;
+};
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+void write_all(const Texts& texts, bool force) {
+  for (const auto& [path, text] : texts) system::refuse_unwritable_text(path, force);
+  for (const auto& [path, text] : texts) system::write_text_file(path, text, force);
+}
 
 }  // namespace
 
@@ -122,13 +182,9 @@ void write_readings(const std::string& folder, const readings::Readings& reading
   config::Document document = config::Document::from_file(readings.path);
   const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
   const std::string file = (fs::path(folder) / name_of(readings.path)).string();
-  document.set("machine=" +
-               config::quoted_text(fs::absolute(machine)
-                                       .lexically_normal()
-                                       .lexically_relative(fs::absolute(folder).lexically_normal())
-                                       .string()));
+  document.set("machine=" + config::quoted_text(machine_from(folder, machine)));
   std::set<std::string> names = {file};
-  std::vector<std::pair<std::string, std::string>> texts;
+  Texts texts;
   for (std::size_t g = 0; g < readings.groups.size(); ++g) {
     const Group& group = readings.groups[g];
     if (group.file.empty()) {
@@ -146,8 +202,25 @@ void write_readings(const std::string& folder, const readings::Readings& reading
     texts.emplace_back(path, CsvWriter(group, chain.layout).text());
   }
   texts.emplace_back(file, document.to_toml());
-  for (const auto& [path, text] : texts) system::refuse_unwritable_text(path, force);
-  for (const auto& [path, text] : texts) system::write_text_file(path, text, force);
+  write_all(texts, force);
+}
+
+void write_plan(const std::string& folder, const readings::Readings& plan,
+                const plant::MachineChain& chain, const std::string& machine, bool force) {
+  Texts texts;
+  std::string text =
+      fmt::format("machine = {}\n", config::quoted_text(machine_from(folder, machine)));
+  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+    const Group& group = plan.groups[g];
+    const std::string file =
+        fmt::format("{:02}_{}.csv", g + 1, readings::kKinds[std::size_t(group.kind)]);
+    text += GroupWriter(group, chain.layout).text(file);
+    if (group.kind == Kind::squareness) continue;
+    texts.emplace_back((fs::path(folder) / file).string(),
+                       CsvWriter(group, chain.layout, false).text());
+  }
+  texts.emplace_back((fs::path(folder) / "readings.toml").string(), text);
+  write_all(texts, force);
 }
 
 }  // namespace servomill::sim::calibration

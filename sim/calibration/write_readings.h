@@ -15,4 +15,10 @@ namespace servomill::sim::calibration {
 void write_readings(const std::string& folder, const readings::Readings& readings,
                     const plant::MachineChain& chain, const std::string& machine, bool force);
 
+/// Writes a plan of what to measure as such files: every row with its place, its number missing.
+/// The set-ups are numbered files; reading them as they are is refused, number by number.
+/// @throws InputError if one of them may not be written
+void write_plan(const std::string& folder, const readings::Readings& plan,
+                const plant::MachineChain& chain, const std::string& machine, bool force);
+
 }  // namespace servomill::sim::calibration

@@ -31,8 +31,9 @@ std::string beside(const std::string& file, const std::string& path) {
 // One item of the list `group`.
 class GroupReader {
  public:
-  GroupReader(config::Reader& table, const Readings& all, const plant::MachineChain& chain)
-      : table_(table), all_(all), layout_(chain.layout) {}
+  GroupReader(config::Reader& table, const Readings& all, const plant::MachineChain& chain,
+              Numbers numbers)
+      : table_(table), all_(all), layout_(chain.layout), numbers_(numbers) {}
 
   Group read(std::size_t number) {
     group_.place = table_.place("kind");
@@ -201,9 +202,11 @@ class GroupReader {
         "targets", kTargets, {config::at_least(2.0), config::at_most(double(kMostTargets))}));
     Reading reading;
     reading.Q = group_.at;
-    reading.deviation[0] =
-        table_.real("deviation_urad", config::kAngle,
-                    {config::at_least(-kLargestAngle), config::at_most(kLargestAngle)});
+    if (numbers_ == Numbers::required || table_.has("deviation_urad")) {
+      reading.deviation[0] =
+          table_.real("deviation_urad", config::kAngle,
+                      {config::at_least(-kLargestAngle), config::at_most(kLargestAngle)});
+    }
     reading.line = table_.place("deviation_urad").line;
     group_.rows.push_back(reading);
   }
@@ -211,6 +214,7 @@ class GroupReader {
   config::Reader& table_;
   const Readings& all_;
   const JointLayout& layout_;
+  Numbers numbers_;
   Group group_;
 };
 
@@ -249,7 +253,7 @@ std::string named_machine(const std::string& path) {
 }
 
 Readings read_readings(const std::string& path, const plant::MachineChain& chain,
-                       const Joints& lower, const Joints& upper) {
+                       const Joints& lower, const Joints& upper, Numbers numbers) {
   const config::Document document = config::Document::from_file(path);
   config::Reader root(document);
   Readings out;
@@ -258,7 +262,7 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   root.raw("adjustment");  // belongs to the calibration
   read_instruments(root, out);
   for (config::Reader& table : root.tables("group")) {
-    out.groups.push_back(GroupReader(table, out, chain).read(out.groups.size() + 1));
+    out.groups.push_back(GroupReader(table, out, chain, numbers).read(out.groups.size() + 1));
     const std::string& name = out.groups.back().name;
     const bool twice = std::any_of(out.groups.begin(), out.groups.end() - 1,
                                    [&](const Group& other) { return other.name == name; });
@@ -270,7 +274,7 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   for (Group& group : out.groups) {
     if (group.file.empty()) continue;
     try {
-      read_rows(group, chain, lower, upper, faults);
+      read_rows(group, chain, lower, upper, numbers, faults);
     } catch (const InputError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }

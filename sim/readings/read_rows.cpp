@@ -64,8 +64,9 @@ std::optional<int> run_of(std::string_view name) {
 class RowsReader {
  public:
   RowsReader(Group& group, const plant::MachineChain& chain, const Joints& lower,
-             const Joints& upper, std::vector<Fault>& faults)
+             const Joints& upper, Numbers numbers, std::vector<Fault>& faults)
       : group_(group),
+        numbers_(numbers),
         layout_(chain.layout),
         lower_(lower),
         upper_(upper),
@@ -290,6 +291,7 @@ class RowsReader {
   }
 
   void read_values(const Row& row, const Column* run, Reading& reading) {
+    if (numbers_ == Numbers::ignored) return;
     const bool angular = is_angular(group_.kind, group_.axis);
     if (run != nullptr) {
       const auto actual = table_.number(row, *run, faults_);
@@ -345,6 +347,7 @@ class RowsReader {
 
   static constexpr double kSlack = 1e-9;  // m, rad
   Group& group_;
+  Numbers numbers_;
   const JointLayout& layout_;
   const Joints &lower_, &upper_;
   std::vector<Fault>& faults_;
@@ -356,8 +359,8 @@ class RowsReader {
 }  // namespace
 
 void read_rows(Group& group, const plant::MachineChain& chain, const Joints& lower,
-               const Joints& upper, std::vector<Fault>& faults) {
-  RowsReader(group, chain, lower, upper, faults).read();
+               const Joints& upper, Numbers numbers, std::vector<Fault>& faults) {
+  RowsReader(group, chain, lower, upper, numbers, faults).read();
 }
 
 }  // namespace servomill::sim::readings

@@ -11,6 +11,6 @@ namespace servomill::sim::readings {
 /// @param lower, upper  travel (5; m, rad)
 /// @param faults        receives what is wrong with rows
 void read_rows(Group& group, const plant::MachineChain& chain, const Joints& lower,
-               const Joints& upper, std::vector<Fault>& faults);
+               const Joints& upper, Numbers numbers, std::vector<Fault>& faults);
 
 }  // namespace servomill::sim::readings

@@ -103,12 +103,16 @@ struct Readings {
 /// "laser.csv:7", the place of a row.
 std::string place_of(const Group& group, const Reading& reading);
 
+/// A plan of what to measure has no numbers yet.
+enum class Numbers : std::uint8_t { required, ignored };
+
 /// Reads the groups and their files.
 /// @param chain  of the machine that was measured; rows must name no axis that it lacks
 /// @param lower, upper  travel (5; m, rad); a row beyond it is a fault
 /// @throws InputError with all faults at once
 Readings read_readings(const std::string& path, const plant::MachineChain& chain,
-                       const Joints& lower, const Joints& upper);
+                       const Joints& lower, const Joints& upper,
+                       Numbers numbers = Numbers::required);
 
 /// The machine file that a file of readings names, relative to the folder of that file; empty:
 /// none.

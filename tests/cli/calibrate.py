@@ -88,6 +88,20 @@ class Way(unittest.TestCase):
         self.assertIn("EY0A is determined only in combination: EY0C holds EY0C - EY0A", printed)
         self.assertIn("EX0C is determined only in combination: the set-up does (stylus X of", printed)
 
+    def test_a_plan_is_measured_and_calibrates_the_machine(self):
+        machine = "../../machines/router_3axis.toml"
+        arguments = ("plan-calibration", "--machine", machine, "--instruments", "square,ballbar", "--hours", "4")
+        printed = self.run_in("router", *arguments, "-o", "plan").stdout
+        self.assertRegex(printed, r"this plan +[\d.]+ um")
+        self.assertIn("exists", self.run_in("router", *arguments, "-o", "plan", status=2).stderr)
+        refused = self.run_in("router", "calibrate", "plan/readings.toml", status=2).stderr
+        self.assertRegex(refused, r"deviation_um is empty|deviation_urad is missing")
+        os.mkdir(self.path("router", "taken"))
+        self.run_in("router", "calibrate", "plan/readings.toml", "--make-up", "taken", "--truth", "measured")
+        taken = self.run_in("router", "calibrate", "taken/readings.toml").stdout
+        self.assertIn("EC0Y", taken)
+        self.assertIn("no instrument of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
+
     def test_the_table_of_errors_is_drawn(self):
         self.run_in("router", "calibrate", "readings.toml", "--table", "errors.csv", "-q")
         tool = os.path.join(SCENARIOS, "..", "tools", "errors_figure.py")

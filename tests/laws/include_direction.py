@@ -36,7 +36,7 @@ SIM_ROOMS = {
     "evaluation": ["engine", "metrology", "model", "records", "system"],
     "input": ["controllers", "strategies", "config", "evaluation", "metrology", "model", "system"],
     "identification": ["config", "input", "model", "recordings", "records", "system"],
-    "calibration": ["config", "input", "metrology", "readings", "system"],
+    "calibration": ["config", "input", "metrology", "model", "readings", "system"],
     "preparation": ["controllers", "strategies", "engine", "evaluation", "frequency", "input", "metrology", "model",
                     "system"],
     "run": ["controllers", "strategies", "config", "engine", "evaluation", "frequency", "input", "model", "preparation",

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "plant/vocabulary/input_error.h"
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/make_up.h"
@@ -9,7 +7,7 @@
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
 #include "sim/system/write_file.h"
-#include "tools/servomill/command.h"
+#include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
 
@@ -39,13 +37,6 @@ void add_calibrate_options(Options& options) {
   options.add()("quiet,q", "prints nothing but faults and warnings");
 }
 
-std::string machine_of(const Options& options) {
-  if (options.has("machine")) return options.get<std::string>("machine");
-  std::string named = sim::readings::named_machine(options.word());
-  if (!named.empty()) return named;
-  throw InputError({options.word()}, "names no machine; add machine = \"FILE\", or pass --machine");
-}
-
 const plant::ErrorModel& truth_of(const Options& options,
                                   const sim::input::MachineDescription& machine) {
   std::vector<std::string_view> names;
@@ -59,17 +50,6 @@ const plant::ErrorModel& truth_of(const Options& options,
   if (found != machine.errors.end()) return found->second;
   throw InputError({"--truth"}, fmt::format("'{}' is no error model of the machine{}", name,
                                             did_you_mean(name, names)));
-}
-
-// Travel of a machine; an axis without one has no end.
-std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {
-  Joints lower = machine.nc.lower, upper = machine.nc.upper;
-  for (int j = 0; j < kJoints; ++j) {
-    if (lower[j] < upper[j]) continue;
-    lower[j] = -std::numeric_limits<double>::infinity();
-    upper[j] = std::numeric_limits<double>::infinity();
-  }
-  return {lower, upper};
 }
 
 }  // namespace
@@ -86,12 +66,14 @@ int calibrate_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
   const std::string table = output_of(options, "table", ".csv");
-  const std::string file = options.word(), machine_file = machine_of(options);
+  const std::string file = options.word(), machine_file = measured_machine(options);
   const sim::input::MachineDescription description =
       sim::input::read_machine_description(machine_file);
   const plant::MachineChain& chain = description.machine.chain;
   const auto [lower, upper] = travel_of(description.machine);
-  sim::readings::Readings readings = sim::readings::read_readings(file, chain, lower, upper);
+  sim::readings::Readings readings = sim::readings::read_readings(
+      file, chain, lower, upper,
+      options.has("make-up") ? sim::readings::Numbers::ignored : sim::readings::Numbers::required);
   const calibration::CalibrationSettings settings = calibration::read_settings(file, chain.layout);
   if (options.has("make-up")) {
     const auto& folder = options.get<std::string>("make-up");

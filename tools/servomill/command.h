@@ -38,6 +38,7 @@ int step_command(const Arguments& arguments);
 int tune_command(const Arguments& arguments);
 int budget_command(const Arguments& arguments);
 int converge_command(const Arguments& arguments);
+int plan_calibration_command(const Arguments& arguments);
 int post_command(const Arguments& arguments);
 int table_command(const Arguments& arguments);
 int compensate_command(const Arguments& arguments);

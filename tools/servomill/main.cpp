@@ -25,7 +25,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 19> kCommands = {{
+constexpr std::array<Command, 20> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -54,6 +54,9 @@ constexpr std::array<Command, 19> kCommands = {{
      recording_command},
     {"calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
      "finds the geometric errors of a machine from readings of instruments", calibrate_command},
+    {"plan-calibration", "[READINGS.toml] --machine MACHINE.toml [-o FOLDER]",
+     "plans what to measure next on a machine, for the time that it takes",
+     plan_calibration_command},
     {"identify", "EXPERIMENT.toml [-o identified.toml]",
      "finds parameters of drives from recordings of real axes", identify_command},
     {"response", "RECORDING --input CHANNEL --output CHANNEL --period S",

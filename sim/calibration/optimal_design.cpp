@@ -1,0 +1,218 @@
+#include "sim/calibration/optimal_design.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace servomill::sim::calibration {
+namespace {
+
+using Eigen::MatrixXd;
+
+// The mean of order q of the variances stands for the largest one; q grows while it settles.
+constexpr double kOrders[] = {2.0, 8.0, 32.0, 128.0, 512.0};
+constexpr int kStepsEach = 600;
+constexpr double kFirstPower = 0.5, kMostPower = 1.0, kLeastPower = 1e-4;  // of a step
+constexpr double kEnough = 0.999;     // efficiency at which an order is done
+constexpr double kLeastCount = 1e-9;  // of a candidate that is still looked at
+constexpr int kMostPasses = 8;        // of exchanges
+
+}  // namespace
+
+// Variances, and the gain of the weighted variance by time spent on each candidate.
+struct DesignProblem::State {
+  MatrixXd covariance;
+  std::vector<double> variances;
+  double worst = 0.0;
+
+  // Mean of order q, over the largest.
+  double mean(double q) const {
+    double sum = 0.0;
+    for (const double v : variances) sum += std::pow(v / worst, q);
+    return worst * std::pow(sum / static_cast<double>(variances.size()), 1.0 / q);
+  }
+
+  // Weights of the quantities by the mean of order q, summing to 1.
+  std::vector<double> weights(double q) const {
+    std::vector<double> out;
+    double sum = 0.0;
+    for (const double v : variances) {
+      out.push_back(std::pow(v / worst, q - 1.0));
+      sum += out.back();
+    }
+    for (double& weight : out) weight /= sum;
+    return out;
+  }
+};
+
+DesignProblem::DesignProblem(std::vector<Candidate> candidates, MatrixXd known,
+                             std::vector<MatrixXd> quantities)
+    : candidates_(std::move(candidates)),
+      known_(std::move(known)),
+      quantities_(std::move(quantities)) {}
+
+double DesignProblem::total_time(const std::vector<double>& counts) const {
+  double out = 0.0;
+  for (std::size_t i = 0; i < counts.size(); ++i) out += counts[i] * candidates_[i].time;
+  return out;
+}
+
+DesignProblem::State DesignProblem::state_of(const std::vector<double>& counts) const {
+  MatrixXd M = known_;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0.0) M += counts[i] * candidates_[i].information;
+  }
+  State out;
+  out.covariance = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+  for (const MatrixXd& K : quantities_) {
+    out.variances.push_back((K * out.covariance).cwiseProduct(K).sum());
+    out.worst = std::max(out.worst, out.variances.back());
+  }
+  return out;
+}
+
+std::vector<double> DesignProblem::variances(const std::vector<double>& counts) const {
+  return state_of(counts).variances;
+}
+
+// With weights l on the quantities, V(counts) = sum l v is convex; its slope by candidate i is
+// -tr(M_i Q), Q = sum l C K'K C. All time on the candidate with the steepest slope a second gives
+// the bound  V* >= V + sum counts_i slope_i - time max(slope/time).
+Design DesignProblem::relaxed(double time) const {
+  Design out;
+  double all = 0.0;
+  for (const Candidate& one : candidates_) all += one.time;
+  std::vector<double> counts(candidates_.size(), time / all);
+  State state = state_of(counts);
+  out.counts = counts;
+  out.worst = state.worst;
+  for (const double q : kOrders) {
+    double power = kFirstPower;
+    for (int step = 0; step < kStepsEach && power > kLeastPower; ++step) {
+      const Gains gains = gains_of(state, q, counts, time);
+      out.bound = std::max(out.bound, gains.bound);
+      if (out.efficiency() > kEnough) return out;
+      std::vector<double> next = counts;
+      for (std::size_t i = 0; i < next.size(); ++i) {
+        next[i] *= std::pow(gains.each[i] / gains.steepest, power);
+      }
+      const double scale = time / total_time(next);
+      for (double& count : next) count *= scale;
+      State there = state_of(next);
+      if (there.mean(q) > state.mean(q)) {
+        power *= 0.5;
+        continue;
+      }
+      power = std::min(kMostPower, 1.3 * power);
+      counts = std::move(next);
+      state = std::move(there);
+      if (state.worst < out.worst) {
+        out.worst = state.worst;
+        out.counts = counts;
+      }
+    }
+  }
+  return out;
+}
+
+DesignProblem::Gains DesignProblem::gains_of(const State& state, double q,
+                                             const std::vector<double>& counts, double time) const {
+  const std::vector<double> weights = state.weights(q);
+  MatrixXd Q = MatrixXd::Zero(known_.rows(), known_.cols());
+  double V = 0.0;
+  for (std::size_t p = 0; p < quantities_.size(); ++p) {
+    if (weights[p] < kLeastCount) continue;
+    const MatrixXd KC = quantities_[p] * state.covariance;
+    Q.noalias() += weights[p] * KC.transpose() * KC;
+    V += weights[p] * state.variances[p];
+  }
+  Gains out;
+  double spent = 0.0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    out.each.push_back(candidates_[i].information.cwiseProduct(Q).sum() / candidates_[i].time);
+    out.steepest = std::max(out.steepest, out.each.back());
+    spent += counts[i] * candidates_[i].time * out.each.back();
+  }
+  out.bound = V + spent - time * out.steepest;
+  // without anything known V falls with one over the time: a sharper bound
+  if (known_.isZero(0.0)) out.bound = V * V / (time * out.steepest);
+  return out;
+}
+
+// Adds what lowers the size most for its time, as long as there is time.
+template <class Size>
+void DesignProblem::add_best(std::vector<double>& counts, const std::vector<std::size_t>& useful,
+                             double time, const Size& size_of) const {
+  double size = size_of(counts);
+  for (double left = time - total_time(counts);;) {
+    std::optional<std::size_t> best;
+    double best_gain = 0.0, best_size = 0.0;
+    for (const std::size_t i : useful) {
+      if (candidates_[i].time > left) continue;
+      counts[i] += 1.0;
+      const double smaller = size_of(counts), gain = (size - smaller) / candidates_[i].time;
+      counts[i] -= 1.0;
+      if (gain > best_gain) std::tie(best, best_gain, best_size) = std::tuple(i, gain, smaller);
+    }
+    if (!best) return;
+    counts[*best] += 1.0;
+    left -= candidates_[*best].time;
+    size = best_size;
+  }
+}
+
+// Replaces each candidate that is taken by the one that lowers the size most. True if one did.
+template <class Size>
+bool DesignProblem::exchange(std::vector<double>& counts, const std::vector<std::size_t>& useful,
+                             double time, const Size& size_of) const {
+  bool gained = false;
+  double size = size_of(counts);
+  for (std::size_t from = 0; from < counts.size(); ++from) {
+    if (counts[from] < 1.0) continue;
+    counts[from] -= 1.0;
+    const double left = time - total_time(counts);
+    std::size_t best = from;
+    double best_size = size * (1.0 - 1e-6);
+    for (const std::size_t to : useful) {
+      if (to == from || candidates_[to].time > left) continue;
+      counts[to] += 1.0;
+      const double smaller = size_of(counts);
+      counts[to] -= 1.0;
+      if (smaller < best_size) std::tie(best, best_size) = std::tuple(to, smaller);
+    }
+    counts[best] += 1.0;
+    if (best == from) continue;
+    size = best_size;
+    gained = true;
+  }
+  return gained;
+}
+
+Design DesignProblem::whole(const Design& relaxed, double time) const {
+  Design out;
+  out.bound = relaxed.bound;
+  for (const double count : relaxed.counts) out.counts.push_back(std::floor(count + 1e-9));
+  // worth looking at: what the relaxed design uses at all
+  std::vector<std::size_t> useful;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (relaxed.counts[i] > 1e-3) useful.push_back(i);
+  }
+  // A mean of some order instead of the worst: one candidate alone seldom lowers several worst
+  // ones.
+  for (const double order : {16.0, 64.0}) {
+    const auto size_of = [&](const std::vector<double>& counts) {
+      return state_of(counts).mean(order);
+    };
+    add_best(out.counts, useful, time, size_of);
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      if (!exchange(out.counts, useful, time, size_of)) break;
+      add_best(out.counts, useful, time, size_of);
+    }
+  }
+  out.worst = state_of(out.counts).worst;
+  return out;
+}
+
+}  // namespace servomill::sim::calibration

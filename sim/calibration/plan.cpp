@@ -1,0 +1,239 @@
+#include "sim/calibration/plan.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "plant/vocabulary/units.h"
+#include "sim/calibration/error_effects.h"
+#include "sim/calibration/plan_candidates.h"
+#include "sim/system/text_table.h"
+
+namespace servomill::sim::calibration {
+namespace {
+
+using Eigen::MatrixXd;
+using plant::ErrorName;
+
+// Sizes that are expected before anything is measured: typical ones of machine tools.
+constexpr double kLength = 10e-6, kAngle = 20e-6;                  // m, rad; component errors
+constexpr double kLocationLength = 20e-6, kLocationAngle = 50e-6;  // m, rad
+constexpr int kDegree = 3;
+constexpr double kCorner = 0.05;  // of the travel, between its ends and the tips that count
+
+bool is_endless(const model::MachineSettings& machine, int j) {
+  const double travel = machine.nc.upper[j] - machine.nc.lower[j];
+  return !(travel > 0.0) || !std::isfinite(travel);
+}
+
+FunctionForm form_of(const model::MachineSettings& machine, int j) {
+  FunctionForm form;
+  const bool endless = is_endless(machine, j);
+  form.lower = endless ? 0.0 : machine.nc.lower[j];
+  form.upper = endless ? 2.0 * std::numbers::pi : machine.nc.upper[j];
+  if (j < kLinearJoints || !endless) {
+    form.degree = kDegree;
+  } else {
+    form.periods = {std::numbers::pi, 2.0 * std::numbers::pi / 3.0};
+  }
+  return form;
+}
+
+Unknowns unknowns_of(const model::MachineSettings& machine) {
+  Unknowns out;
+  for (const ErrorName& name : sought_locations(machine.chain, {Axis::X, Axis::Y})) {
+    out.locations.push_back({name, is_linear(name.direction) ? kLocationLength : kLocationAngle});
+  }
+  int first = out.first_function();
+  for (const Axis axis : kAllAxes) {
+    const auto joint = machine.chain.layout.joint_of(axis);
+    if (!joint) continue;
+    for (const Axis direction : kAllAxes) {
+      const ErrorName name{direction, axis, false};
+      if (plant::why_meaningless(name, machine.chain.layout)) continue;
+      const bool sloped = is_linear(axis) && is_linear(direction) && direction != axis;
+      SoughtFunction function{.name = name,
+                              .basis = FunctionBasis(form_of(machine, *joint), sloped),
+                              .size = is_linear(direction) ? kLength : kAngle,
+                              .first = first};
+      first += function.basis.size();
+      out.functions.push_back(std::move(function));
+    }
+  }
+  return out;
+}
+
+// Information of the readings of groups on the errors, their set-ups taken out:
+// J'WJ - J'WS (S'WS + known)^-1 S'WJ.
+MatrixXd information_of(const readings::Readings& readings, const plant::MachineChain& chain,
+                        const ErrorEffects& effects) {
+  const Observations observations = observations_of(readings, chain);
+  const auto m = static_cast<Eigen::Index>(observations.set_up.size());
+  const Eigen::Index n = effects.size();
+  MatrixXd A = MatrixXd::Zero(m + n, m + n);
+  Eigen::RowVectorXd row(m + n);
+  for (const Observation& one : observations.all) {
+    row.setZero();
+    for (const SetUpPart& part : one.set_up) row[Eigen::Index(part.unknown)] += part.factor;
+    for (const Pose& pose : one.poses) row.tail(n) += effects.row(pose);
+    const double sigma = readings.groups[one.group].uncertainty.value_or(1e-6);
+    A.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose(), 1.0 / (sigma * sigma));
+  }
+  A.triangularView<Eigen::StrictlyUpper>() = A.transpose().eval();
+  for (Eigen::Index u = 0; u < m; ++u) {
+    const auto& prior = observations.set_up[std::size_t(u)].prior;
+    // what nothing is known of, and nothing depends on, must not make the matrix singular
+    A(u, u) += prior ? 1.0 / (*prior * *prior) : 1e-6 * std::max(1.0, A(u, u));
+  }
+  if (m == 0) return A;
+  const MatrixXd S = A.topLeftCorner(m, m), B = A.topRightCorner(m, n);
+  return A.bottomRightCorner(n, n) - B.transpose() * S.ldlt().solve(B);
+}
+
+// Joints at the corners of the working volume, rotary axes at either of two angles, and its centre.
+std::vector<Joints> places_of(const model::MachineSettings& machine) {
+  const std::vector<int> joints = machine.joints();
+  const auto at = [&](int j, double share) {
+    const bool endless = is_endless(machine, j);
+    const double lower = endless ? 0.0 : machine.nc.lower[j];
+    const double upper = endless ? 2.0 * std::numbers::pi : machine.nc.upper[j];
+    return lower + share * (upper - lower);
+  };
+  std::vector<Joints> out;
+  for (unsigned corner = 0; corner < 1U << joints.size(); ++corner) {
+    Joints Q = Joints::Zero();
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      Q[joints[k]] = at(joints[k], (corner >> k & 1U) != 0U ? 1.0 - kCorner : kCorner);
+    }
+    out.push_back(Q);
+  }
+  Joints centre = Joints::Zero();
+  for (const int j : joints) centre[j] = at(j, 0.5);
+  out.push_back(centre);
+  return out;
+}
+
+std::vector<MatrixXd> tips_of(const model::MachineSettings& machine, const PlanSettings& settings,
+                              const ErrorEffects& effects) {
+  std::vector<MatrixXd> out;
+  for (const Joints& Q : places_of(machine)) {
+    for (const double length : settings.tool_lengths) {
+      MatrixXd K(3, effects.size());
+      for (int k = 0; k < 3; ++k) {
+        Pose pose;
+        pose.Q = Q;
+        pose.p_ST = {0.0, 0.0, -length};
+        pose.n_W = Eigen::Vector3d::Unit(k);
+        K.row(k) = effects.row(pose);
+      }
+      out.push_back(std::move(K));
+    }
+  }
+  return out;
+}
+
+double worst_of(const std::vector<double>& variances) {
+  return std::sqrt(*std::max_element(variances.begin(), variances.end()));
+}
+
+// Lines through the middle of the travel, in turn, as long as there is time.
+std::vector<double> usual_counts(const std::vector<PlannedSetUp>& set_ups, double time) {
+  std::vector<double> out(set_ups.size(), 0.0);
+  for (bool added = true; added;) {
+    added = false;
+    for (std::size_t i = 0; i < set_ups.size(); ++i) {
+      if (!set_ups[i].through_the_middle || set_ups[i].time > time) continue;
+      out[i] += 1.0;
+      time -= set_ups[i].time;
+      added = true;
+    }
+  }
+  return out;
+}
+
+void require_travel(const model::MachineSettings& machine) {
+  for (int j = 0; j < kLinearJoints; ++j) {
+    if (!machine.chain.layout.has(j) || !is_endless(machine, j)) continue;
+    throw InputError({fmt::format("axis.{}", machine.chain.layout.letter_of(j))},
+                     "has no travel_mm in the machine file; a plan needs it");
+  }
+}
+
+}  // namespace
+
+Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings& settings,
+                      const readings::Readings* taken) {
+  require_travel(machine);
+  Plan out;
+  out.set_ups = plan_candidates(machine, settings);
+  if (out.set_ups.empty()) {
+    throw InputError({"--instruments"}, "none of them can measure anything on this machine");
+  }
+  const Unknowns unknowns = unknowns_of(machine);
+  const ErrorEffects effects(machine.chain, unknowns);
+  MatrixXd known = MatrixXd::Zero(effects.size(), effects.size());
+  for (int u = 0; u < effects.size(); ++u) {
+    const double size = *unknowns.prior(u);
+    known(u, u) = 1.0 / (size * size);
+  }
+  if (taken != nullptr) known += information_of(*taken, machine.chain, effects);
+  std::vector<Candidate> candidates;
+  for (const PlannedSetUp& one : out.set_ups) {
+    readings::Readings single;
+    single.groups = {one.group};
+    candidates.push_back({information_of(single, machine.chain, effects), one.time});
+  }
+  const DesignProblem problem(std::move(candidates), known, tips_of(machine, settings, effects));
+  const Design relaxed = problem.relaxed(settings.time);
+  const Design whole = problem.whole(relaxed, settings.time);
+  for (std::size_t i = 0; i < out.set_ups.size(); ++i) {
+    out.set_ups[i].count = static_cast<int>(std::lround(whole.counts[i]));
+  }
+  out.before = worst_of(problem.variances(std::vector<double>(out.set_ups.size(), 0.0)));
+  out.usual = worst_of(problem.variances(usual_counts(out.set_ups, settings.time)));
+  out.after = std::sqrt(whole.worst);
+  out.bound = std::sqrt(whole.bound);
+  out.efficiency = whole.efficiency();
+  return out;
+}
+
+std::string report(const Plan& plan, const PlanSettings& settings) {
+  std::vector<std::vector<std::string>> lines = {{"set-up", "times", "minutes"}};
+  double spent = 0.0;
+  for (const PlannedSetUp& one : plan.set_ups) {
+    if (one.count == 0) continue;
+    spent += one.count * one.time;
+    lines.push_back({one.group.name, std::to_string(one.count),
+                     fmt::format("{:.0f}", one.count * one.time / minute)});
+  }
+  std::string out = system::text_table(std::move(lines), 0, {1, 2});
+  out += fmt::format("\n{:.1f} h of {:.1f} h; {} set-ups were looked at\n\n", spent / 3600.0,
+                     settings.time / 3600.0, plan.set_ups.size());
+  out += fmt::format(
+      "worst uncertainty of the tip in the working volume (k = 2):\n"
+      "  before                                     {:8.2f} um\n"
+      "  lines through the middle, in the same time {:8.2f} um\n"
+      "  this plan                                  {:8.2f} um\n"
+      "  bound of all plans of these set-ups        {:8.2f} um, efficiency {:.1f} %\n",
+      2.0 * plan.before / um, 2.0 * plan.usual / um, 2.0 * plan.after / um, 2.0 * plan.bound / um,
+      100.0 * plan.efficiency);
+  if (plan.after > 0.98 * plan.usual) out += "no gain over the usual set-ups\n";
+  return out;
+}
+
+readings::Readings planned_readings(const Plan& plan) {
+  readings::Readings out;
+  for (const PlannedSetUp& one : plan.set_ups) {
+    for (int k = 1; k <= one.count; ++k) {
+      readings::Group group = one.group;
+      if (one.count > 1) group.name += fmt::format(" ({})", k);
+      out.groups.push_back(std::move(group));
+    }
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::calibration

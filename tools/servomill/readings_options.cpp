@@ -1,0 +1,30 @@
+#include "tools/servomill/readings_options.h"
+
+#include <limits>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/readings/readings.h"
+
+namespace servomill::tools {
+
+std::string measured_machine(const Options& options) {
+  if (options.has("machine")) return options.get<std::string>("machine");
+  if (options.words().empty()) {
+    throw InputError({"--machine"}, "is missing: the machine that is to be measured");
+  }
+  std::string named = sim::readings::named_machine(options.word());
+  if (!named.empty()) return named;
+  throw InputError({options.word()}, "names no machine; add machine = \"FILE\", or pass --machine");
+}
+
+std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {
+  Joints lower = machine.nc.lower, upper = machine.nc.upper;
+  for (int j = 0; j < kJoints; ++j) {
+    if (lower[j] < upper[j]) continue;
+    lower[j] = -std::numeric_limits<double>::infinity();
+    upper[j] = std::numeric_limits<double>::infinity();
+  }
+  return {lower, upper};
+}
+
+}  // namespace servomill::tools

@@ -1,0 +1,19 @@
+/// Options of the commands that work on readings of real machines.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "sim/model/machine.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+
+/// The machine file of --machine, or the one that the file of readings names.
+/// @throws InputError if there is neither
+std::string measured_machine(const Options& options);
+
+/// Travel of a machine (5 and 5; m, rad); infinite for an axis without one.
+std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine);
+
+}  // namespace servomill::tools
