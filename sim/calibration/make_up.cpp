@@ -2,6 +2,7 @@
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
+#include <vector>
 
 #include "sim/calibration/observations.h"
 
@@ -9,7 +10,6 @@ namespace servomill::sim::calibration {
 namespace {
 
 using readings::Group;
-using readings::Kind;
 
 constexpr double kSetUp = 10.0;  // units in which an unknown is shown, of one that has no prior
 constexpr int kSphereSteps = 3;  // each gains the size of the errors, some 1e-4
@@ -36,9 +36,10 @@ class MakeUp {
       Group& group = readings_.groups[one.group];
       double rest = group.uncertainty.value_or(kMadeUpUncertainty) * normal();
       for (const SetUpPart& part : one.set_up) rest += part.factor * set_up[part.unknown];
-      if (group.kind == Kind::sphere) {
-        sphere_[static_cast<Eigen::Index>(number)] = rest;
-        if (number == 2) find_sphere(group, one);
+      if (readings::is_of_spheres(group.kind)) {
+        if (number == 0) along_.clear();
+        along_.push_back({&one, rest});
+        if (static_cast<int>(along_.size()) == readings::numbers_of(group.kind)) find_joints(group);
       } else {
         group.rows[one.row].deviation[static_cast<Eigen::Index>(number)] =
             machine_.of(one) + rest - one.correction;
@@ -52,19 +53,24 @@ class MakeUp {
     return a.group == b.group && a.row == b.row;
   }
 
-  // The joints with which the tip, with its error and the rest, stands where it nominally stood.
-  void find_sphere(Group& group, const Observation& one) {
-    readings::Reading& reading = group.rows[one.row];
-    const Joints nominal = reading.Q;
+  // A number of a row that holds joints, with what set-up and noise add.
+  struct Along {
+    const Observation* number;
+    double rest;
+  };
+
+  // The joints with which the tip, with its error and the rest, stands where it should.
+  void find_joints(Group& group) {
+    readings::Reading& reading = group.rows[along_.front().number->row];
     const auto tip = [&](const Joints& Q) { return plant::forward(chain_, Q, group.p_ST).p_WT; };
-    const Eigen::Vector3d centre = tip(nominal);
+    const Eigen::Vector3d start = tip(reading.Q);
     for (int step = 0; step < kSphereSteps; ++step) {
-      Eigen::Vector3d missed = tip(reading.Q) - centre + sphere_;
-      for (int k = 0; k < 3; ++k) {
-        Pose pose = one.poses.front();
+      Eigen::Vector3d missed = Eigen::Vector3d::Zero();
+      for (const auto& [number, rest] : along_) {
+        Pose pose = number->poses.front();
         pose.Q = reading.Q;
-        pose.n_W = Eigen::Vector3d::Unit(k);
-        missed[k] += machine_.at(pose);
+        const double shift = pose.n_W.dot(tip(reading.Q) - start);
+        missed += pose.n_W * (shift - number->d + machine_.at(pose) + rest);
       }
       const auto shift = plant::least_squares(plant::linear_jacobian(chain_, reading.Q), missed);
       if (shift.rank < 3) {
@@ -79,7 +85,7 @@ class MakeUp {
   const plant::MachineChain& chain_;
   Deviations machine_;
   Observations observations_;
-  Eigen::Vector3d sphere_ = Eigen::Vector3d::Zero();  // set-up and noise of the row at hand
+  std::vector<Along> along_;  // of the row at hand
   boost::random::mt19937_64 generator_;
   boost::random::normal_distribution<double> distribution_;
 };

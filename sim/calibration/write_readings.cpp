@@ -73,14 +73,15 @@ class CsvWriter {
       }
     }
     if (group_.kind == Kind::circle) out.emplace_back("angle_deg");
-    if (group_.kind == Kind::sphere) out.emplace_back("sphere");
+    if (readings::is_of_spheres(group_.kind)) out.emplace_back("sphere");
+    if (group_.kind == Kind::part) out.insert(out.end(), {"nx", "ny", "nz"});
     if (has_direction_) out.emplace_back("direction");
     if (has_run_) out.emplace_back("run");
     if (has_time_) out.emplace_back("time_s");
     if (has_temperature_) out.emplace_back("temperature_degC");
     if (group_.kind == Kind::r_test) {
       out.insert(out.end(), {"dx_um", "dy_um", "dz_um"});
-    } else if (group_.kind != Kind::sphere) {
+    } else if (!readings::is_of_spheres(group_.kind)) {
       out.emplace_back(is_angular() ? "deviation_urad" : "deviation_um");
     }
     return out;
@@ -98,7 +99,10 @@ class CsvWriter {
       const int a = *layout_.joint_of(group_.plane[0]), b = *layout_.joint_of(group_.plane[1]);
       out.push_back(number(std::atan2(row.Q[b] - group_.at[b], row.Q[a] - group_.at[a]) / deg));
     }
-    if (group_.kind == Kind::sphere) out.push_back(group_.spheres[row.sphere]);
+    if (readings::is_of_spheres(group_.kind)) out.push_back(group_.spheres[row.sphere]);
+    if (group_.kind == Kind::part) {
+      for (const double component : row.normal) out.push_back(number(component));
+    }
     if (has_direction_) {
       const int travel = travel_of(group_, row, layout_);
       out.emplace_back(travel < 0 ? "backward" : "forward");
@@ -106,7 +110,8 @@ class CsvWriter {
     if (has_run_) out.push_back(std::to_string(row.run + 1));
     if (has_time_) out.push_back(number(row.time));
     if (has_temperature_) out.push_back(number(row.temperature));
-    const int numbers = group_.kind == Kind::sphere ? 0 : readings::numbers_of(group_.kind);
+    const int numbers =
+        readings::is_of_spheres(group_.kind) ? 0 : readings::numbers_of(group_.kind);
     for (int k = 0; k < numbers; ++k) {
       out.push_back(with_numbers_ ? fmt::format("{:.4f}", row.deviation[k] / um) : std::string());
     }
@@ -119,9 +124,10 @@ class CsvWriter {
   bool has_direction_ = false, has_run_ = false, has_time_ = false, has_temperature_ = false;
 };
 
-std::string machine_from(const std::string& folder, const std::string& machine) {
+// A file as another file in a folder names it.
+std::string path_from(const std::string& folder, const std::string& file) {
   const fs::path base = fs::absolute(folder).lexically_normal();
-  return fs::absolute(machine).lexically_normal().lexically_relative(base).string();
+  return fs::absolute(file).lexically_normal().lexically_relative(base).string();
 }
 
 // The keys of a group in a file of readings.
@@ -182,7 +188,11 @@ void write_readings(const std::string& folder, const readings::Readings& reading
   config::Document document = config::Document::from_file(readings.path);
   const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
   const std::string file = (fs::path(folder) / name_of(readings.path)).string();
-  document.set("machine=" + config::quoted_text(machine_from(folder, machine)));
+  document.set("machine=" + config::quoted_text(path_from(folder, machine)));
+  for (std::size_t a = 0; a < readings.artefacts.size(); ++a) {
+    document.set(fmt::format("artefact[{}].centres={}", a,
+                             config::quoted_text(path_from(folder, readings.artefacts[a].file))));
+  }
   std::set<std::string> names = {file};
   Texts texts;
   for (std::size_t g = 0; g < readings.groups.size(); ++g) {
@@ -208,8 +218,7 @@ void write_readings(const std::string& folder, const readings::Readings& reading
 void write_plan(const std::string& folder, const readings::Readings& plan,
                 const plant::MachineChain& chain, const std::string& machine, bool force) {
   Texts texts;
-  std::string text =
-      fmt::format("machine = {}\n", config::quoted_text(machine_from(folder, machine)));
+  std::string text = fmt::format("machine = {}\n", config::quoted_text(path_from(folder, machine)));
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const Group& group = plan.groups[g];
     const std::string file =

@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 6> kAxisNames = {"X", "Y", "Z", "A", "B", "C"};
 constexpr std::array<std::string_view, 2> kTools = {"unknown", "adjusted"};
+constexpr std::array<std::string_view, 2> kFeatures = {"surface", "centre"};
+constexpr std::int64_t kMostWaves = 8;
 constexpr std::int64_t kTargets = 11;
 constexpr std::int64_t kMostTargets = 10'000;
 constexpr double kSteel = 11.5e-6;  // 1/K
@@ -49,6 +51,7 @@ class GroupReader {
     read_lengths();
     read_uncertainty();
     read_expansion();
+    read_dead_path();
     group_.drifts = table_.boolean_or("drift", false);
     if (group_.kind == Kind::squareness) {
       read_squareness();
@@ -121,7 +124,7 @@ class GroupReader {
     }
     group_.p_ST = read_point("point_mm");
     if (group_.kind == Kind::ball_bar || group_.kind == Kind::r_test ||
-        group_.kind == Kind::sphere) {
+        is_of_spheres(group_.kind)) {
       group_.tool_is_known = table_.choice_or("tool", 0, kTools) == 1;
     }
   }
@@ -133,35 +136,68 @@ class GroupReader {
     return Eigen::Vector3d::Zero();
   }
 
+  // Lengths of the instrument, and how well they are known.
   void read_lengths() {
-    if (group_.kind == Kind::circle) {
-      group_.radius = table_.real("radius_mm", config::kLength, {config::above(0.0)});
-    } else if (group_.kind == Kind::ball_bar) {
-      group_.length = table_.real("length_mm", config::kLength, {config::above(0.0)});
-      group_.ball_W = read_point("ball_mm");
-    } else {
-      return;
+    const auto length = [this](std::string_view key) {
+      return table_.real(key, config::kLength, {config::above(0.0)});
+    };
+    std::string_view key = "radius_uncertainty_um";
+    switch (group_.kind) {
+      case Kind::circle:
+        group_.radius = length("radius_mm");
+        break;
+      case Kind::ball_bar:
+        group_.length = length("length_mm");
+        group_.ball_W = read_point("ball_mm");
+        key = "length_uncertainty_um";
+        break;
+      case Kind::touch:
+        group_.radius = 0.5 * (length("sphere_mm") + length("stylus_mm"));
+        read_lobes();
+        read_artefact();
+        break;
+      case Kind::sphere:
+        return read_artefact();
+      case Kind::part:
+        group_.is_surface = table_.choice_or("feature", 0, kFeatures) == 0;
+        break;
+      default:
+        return;
     }
-    const std::string_view key =
-        group_.kind == Kind::circle ? "radius_uncertainty_um" : "length_uncertainty_um";
     if (table_.has(key)) {
       group_.size_uncertainty = table_.real(key, config::kLength, {config::above(0.0)});
     }
   }
 
+  void read_lobes() {
+    if (!table_.has("pretravel")) return;
+    config::Reader table = table_.table("pretravel");
+    group_.lobes = static_cast<int>(
+        table.integer("waves", {config::at_least(2.0), config::at_most(double(kMostWaves))}));
+    group_.lobe_size = table.real("size_um", config::kLength, {config::above(0.0)});
+  }
+
+  void read_artefact() {
+    if (!table_.has("artefact")) return;
+    group_.artefact = find_named(all_.artefacts, "artefact");
+  }
+
+  // Index of the item whose name a key holds.
+  template <typename Item>
+  std::optional<std::size_t> find_named(const std::vector<Item>& items, std::string_view key) {
+    const std::string name = table_.text(key);
+    const auto found =
+        std::find_if(items.begin(), items.end(), [&](const Item& one) { return one.name == name; });
+    if (found != items.end()) return static_cast<std::size_t>(found - items.begin());
+    std::vector<std::string_view> names;
+    for (const Item& one : items) names.push_back(one.name);
+    table_.fault(key, fmt::format("is not in the list [[{}]]{}", key, did_you_mean(name, names)));
+    return std::nullopt;
+  }
+
   void read_uncertainty() {
     if (table_.has("instrument")) {
-      const std::string name = table_.text("instrument");
-      const auto found = std::find_if(all_.instruments.begin(), all_.instruments.end(),
-                                      [&](const Instrument& one) { return one.name == name; });
-      if (found == all_.instruments.end()) {
-        std::vector<std::string_view> names;
-        for (const Instrument& one : all_.instruments) names.push_back(one.name);
-        table_.fault("instrument",
-                     fmt::format("is not in the list [[instrument]]{}", did_you_mean(name, names)));
-      } else {
-        group_.instrument = static_cast<std::size_t>(found - all_.instruments.begin());
-      }
+      group_.instrument = find_named(all_.instruments, "instrument");
     }
     if (table_.is("uncertainty", config::Value::Type::text) &&
         table_.text("uncertainty") == "estimate") {
@@ -183,6 +219,17 @@ class GroupReader {
     expansion.temperature_uncertainty = table.real_or(
         "temperature_uncertainty_K", 0.0, config::kTemperature, {config::at_least(0.0)});
     group_.expansion = expansion;
+  }
+
+  void read_dead_path() {
+    if (!table_.has("dead_path")) return;
+    config::Reader table = table_.table("dead_path");
+    group_.dead_path = DeadPath{
+        table.real("length_mm", config::kLength),
+        table.real("wavelength_uncertainty_um_per_m", config::kNumber, {config::above(0.0)})};
+    if (group_.kind != Kind::positioning || (group_.axis && !is_linear(*group_.axis))) {
+      table_.fault("dead_path", "must be one of a laser that measures positions");
+    }
   }
 
   void read_squareness() {
@@ -231,7 +278,32 @@ void read_instruments(config::Reader& root, Readings& out) {
   }
 }
 
+void read_artefacts(config::Reader& root, Readings& out) {
+  for (config::Reader& table : root.tables_or_none("artefact")) {
+    Artefact one;
+    one.name = table.text("name");
+    one.uncertainty =
+        table.real_or("uncertainty_um", 0.0, config::kLength, {config::at_least(0.0)});
+    one.scale_uncertainty =
+        table.real_or("scale_uncertainty_um_per_m", 0.0, config::kNumber, {config::at_least(0.0)});
+    one.file = beside(out.path, table.text("centres"));
+    const bool twice = std::any_of(out.artefacts.begin(), out.artefacts.end(),
+                                   [&](const Artefact& other) { return other.name == one.name; });
+    if (twice) table.fault("name", "appears twice");
+    out.artefacts.push_back(std::move(one));
+  }
+}
+
 }  // namespace
+
+std::optional<std::size_t> Artefact::find(const std::string& ball) const {
+  const auto found =
+      std::find_if(balls.begin(), balls.end(), [&](const Ball& one) { return one.name == ball; });
+  if (found == balls.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - balls.begin());
+}
+
+bool is_of_spheres(Kind kind) { return kind == Kind::sphere || kind == Kind::touch; }
 
 int numbers_of(Kind kind) { return kind == Kind::r_test || kind == Kind::sphere ? 3 : 1; }
 
@@ -261,6 +333,7 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   if (root.has("machine")) out.machine = root.text("machine");
   root.raw("adjustment");  // belongs to the calibration
   read_instruments(root, out);
+  read_artefacts(root, out);
   for (config::Reader& table : root.tables("group")) {
     out.groups.push_back(GroupReader(table, out, chain, numbers).read(out.groups.size() + 1));
     const std::string& name = out.groups.back().name;
@@ -271,13 +344,20 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   root.finish();
 
   std::vector<Fault> faults;
-  for (Group& group : out.groups) {
-    if (group.file.empty()) continue;
+  const auto collect = [&faults](const auto& read) {
     try {
-      read_rows(group, chain, lower, upper, numbers, faults);
+      read();
     } catch (const InputError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
+  };
+  for (Artefact& artefact : out.artefacts) {
+    collect([&] { read_balls(artefact, faults); });
+  }
+  for (Group& group : out.groups) {
+    if (group.file.empty()) continue;
+    collect([&] { read_rows(group, chain, lower, upper, numbers, faults); });
+    if (group.artefact) require_balls(out.artefacts[*group.artefact], group, faults);
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   return out;

@@ -16,6 +16,8 @@ namespace {
 constexpr double kHottest = 50.0;  // degC; above, a temperature is taken to be one in Fahrenheit
 constexpr double kColdest = -10.0;
 constexpr std::string_view kTemperature = "temperature_degC";
+constexpr std::array<std::string_view, 3> kNormal = {"nx", "ny", "nz"};
+constexpr double kUnit = 1e-3;  // off the length of a normal that rounding may put it
 
 // Names of the columns that hold the deviation of a kind, each with whether it is an absolute value
 // from which the nominal one is taken away.
@@ -28,6 +30,7 @@ std::vector<std::string_view> value_columns(Kind kind) {
     case Kind::r_test:
       return {"dx", "dy", "dz"};
     case Kind::sphere:
+    case Kind::touch:
       return {};
     default:
       return {"deviation"};
@@ -108,7 +111,8 @@ class RowsReader {
     for (const std::string_view name : value_columns(group_.kind)) names.push_back(name);
     if (group_.axis) names.emplace_back("target");
     if (group_.kind == Kind::circle) names.emplace_back("angle");
-    if (group_.kind == Kind::sphere) names.emplace_back("sphere");
+    if (is_of_spheres(group_.kind)) names.emplace_back("sphere");
+    if (group_.kind == Kind::part) names.insert(names.end(), kNormal.begin(), kNormal.end());
     return names;
   }
 
@@ -184,6 +188,13 @@ class RowsReader {
   }
 
   void require_positions() {
+    if (group_.kind == Kind::part) {
+      for (const std::string_view name : kNormal) {
+        if (table_.find(name) == nullptr) {
+          fault({table_.file}, fmt::format("column {} is missing", name));
+        }
+      }
+    }
     if (group_.kind == Kind::circle) {
       if (table_.find("angle") == nullptr) fault({table_.file}, "column angle_deg is missing");
       return;
@@ -268,7 +279,8 @@ class RowsReader {
     if (const Column* c = table_.find("run")) reading.run = static_cast<int>(value(row, *c)) - 1;
     if (const Column* c = table_.find("time")) reading.time = value(row, *c);
     if (const Column* c = table_.find(kTemperature)) read_temperature(row, *c, reading);
-    if (group_.kind == Kind::sphere) read_sphere(row, reading);
+    if (is_of_spheres(group_.kind)) read_sphere(row, reading);
+    if (group_.kind == Kind::part) read_normal(row, reading);
     read_values(row, column, reading);
     group_.rows.push_back(reading);
   }
@@ -288,6 +300,18 @@ class RowsReader {
     const auto found = std::find(group_.spheres.begin(), group_.spheres.end(), name);
     reading.sphere = static_cast<std::size_t>(found - group_.spheres.begin());
     if (found == group_.spheres.end()) group_.spheres.push_back(name);
+  }
+
+  void read_normal(const Row& row, Reading& reading) {
+    for (int k = 0; k < 3; ++k) {
+      reading.normal[k] = value(row, *table_.find(kNormal[std::size_t(k)]));
+    }
+    if (std::abs(reading.normal.norm() - 1.0) < kUnit) {
+      reading.normal.normalize();
+      return;
+    }
+    fault({table_.file, row.line},
+          fmt::format("nx, ny, nz have the length {:.3g}; a normal has 1", reading.normal.norm()));
   }
 
   void read_values(const Row& row, const Column* run, Reading& reading) {

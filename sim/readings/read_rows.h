@@ -13,4 +13,10 @@ namespace servomill::sim::readings {
 void read_rows(Group& group, const plant::MachineChain& chain, const Joints& lower,
                const Joints& upper, Numbers numbers, std::vector<Fault>& faults);
 
+/// Reads the file of an artefact's centres; faults are added to `faults`.
+/// @throws InputError if it is no table
+void read_balls(Artefact& artefact, std::vector<Fault>& faults);
+/// Spheres of a group that the artefact does not have are faults.
+void require_balls(const Artefact& artefact, const Group& group, std::vector<Fault>& faults);
+
 }  // namespace servomill::sim::readings

@@ -31,12 +31,17 @@ enum class Kind : std::uint8_t {
   ball_bar,      // length between a ball on the table and one in the spindle, wherever they stand
   r_test,        // shift of a ball in the spindle relative to a nest on the table, three numbers
   sphere,        // joints at which a touch probe has found the centre of a sphere
+  touch,         // joints at which a touch probe has met a sphere
+  part,          // deviation of a surface that the machine has cut, as measured elsewhere
 };
-inline constexpr std::array<std::string_view, 8> kKinds = {
-    "positioning", "straightness", "angle", "squareness", "circle", "ball_bar", "r_test", "sphere"};
+inline constexpr std::array<std::string_view, 10> kKinds = {
+    "positioning", "straightness", "angle",  "squareness", "circle",
+    "ball_bar",    "r_test",       "sphere", "touch",      "part"};
 
 /// Numbers of one reading: three of an R-test and of a sphere, else one.
 int numbers_of(Kind kind);
+/// True if rows name spheres, and hold joints instead of deviations.
+bool is_of_spheres(Kind kind);
 /// True if the readings of a group are angles.
 bool is_angular(Kind kind, std::optional<Axis> axis);
 
@@ -49,13 +54,37 @@ struct Reading {
   double time = std::numeric_limits<double>::quiet_NaN();  // s; NaN: not known
   double temperature = std::numeric_limits<double>::quiet_NaN();  // degC; NaN: not known
   std::size_t sphere = 0;                                         // index into Group::spheres
-  int line = 0;                                                   // of the file
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of a part's surface, in W, outwards; unit
+  int line = 0;                                       // of the file
 };
 
 /// An instrument that several groups may share: its scale is wrong by the same share in all.
 struct Instrument {
   std::string name;
   double scale_uncertainty = 0.0;  // m/m; standard
+};
+
+/// A ball of an artefact.
+struct Ball {
+  std::string name;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m, in the frame of the artefact
+};
+
+/// Balls whose distances are known: a ball plate, a ball beam. Several groups may measure it.
+struct Artefact {
+  std::string name;
+  std::string file;                // of the centres
+  double uncertainty = 0.0;        // m; standard, of each coordinate
+  double scale_uncertainty = 0.0;  // m/m; standard: temperature, calibration
+  std::vector<Ball> balls;
+
+  std::optional<std::size_t> find(const std::string& ball) const;
+};
+
+/// The path of a laser before its measuring range, over which its wavelength counts, too.
+struct DeadPath {
+  double length = 0.0;  // m, from the instrument to the first row; negative: it stands beyond +
+  double change = 0.0;  // m/m; standard, of the wavelength from the first row to the last one
 };
 
 /// Thermal expansion of what a length is compared with.
@@ -76,9 +105,9 @@ struct Group {
   std::optional<std::size_t> instrument;           // index into Readings::instruments
   std::optional<double> uncertainty;  // m or rad; standard, of independent readings; none: estimate
   Joints at = Joints::Zero();         // m, rad; where axes stand that the rows do not name
-  std::array<bool, kJoints> stands{};      // joints that `at` names
-  double radius = 0.0;                     // m, nominal, of a circle
-  double length = 0.0;                     // m, nominal, of a ball bar
+  std::array<bool, kJoints> stands{};  // joints that `at` names
+  double radius = 0.0;                 // m, nominal, of a circle; of sphere and stylus at a touch
+  double length = 0.0;                 // m, nominal, of a ball bar
   std::optional<double> size_uncertainty;  // m; standard, of radius or length; none: not known
   Eigen::Vector3d ball_W = Eigen::Vector3d::Zero();  // m, nominal, on the table
   std::array<double, 2> legs{};                      // m, lengths of the lines of a squareness
@@ -86,8 +115,13 @@ struct Group {
   bool tool_is_known = false;  // the ball or stylus stands at p_ST, adjusted to the spindle
   bool drifts = false;         // linearly in time; without times: from row to row
   std::optional<Expansion> expansion;
-  std::vector<std::string> spheres;  // names, in the order of their first reading
-  std::string file;                  // of the rows; empty: the number stands in the group
+  std::optional<DeadPath> dead_path;
+  std::optional<std::size_t> artefact;  // index into Readings::artefacts; its balls are the spheres
+  int lobes = 0;                        // waves of the pre-travel by direction; below 2: none
+  double lobe_size = 0.0;               // m; standard deviation that is expected of each
+  bool is_surface = true;               // of a part: cut with the side of a tool; else a centre
+  std::vector<std::string> spheres;     // names, in the order of their first reading
+  std::string file;                     // of the rows; empty: the number stands in the group
   Place place;
   std::vector<Reading> rows;
 };
@@ -97,6 +131,7 @@ struct Readings {
   std::string path;
   std::string machine;  // path as named in the file; empty: not named
   std::vector<Instrument> instruments;
+  std::vector<Artefact> artefacts;
   std::vector<Group> groups;
 };
 

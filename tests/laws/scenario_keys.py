@@ -78,7 +78,7 @@ def is_experiment(table):
 
 def is_readings(table):
     """A file of readings, or a part of one, has keys of its own (sim/readings/README.md); its reader refuses others."""
-    return "group" in table or "adjustment" in table
+    return bool({"group", "adjustment", "artefact"} & set(table))
 
 
 def section_of_example(table):

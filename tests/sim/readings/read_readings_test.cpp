@@ -102,6 +102,70 @@ TEST_F(ReadReadings, GivesEverySphereItsPlaceInTheOrderOfTheRows) {
   EXPECT_EQ(group.rows[2].sphere, 0u);
 }
 
+constexpr const char* kTouches = R"([[artefact]]
+name = "plate"
+centres = "plate.csv"
+uncertainty_um = 0.4
+scale_uncertainty_um_per_m = 0.3
+
+[[group]]
+kind = "touch"
+artefact = "plate"
+sphere_mm = 20
+stylus_mm = 6
+pretravel = { waves = 3, size_um = 2 }
+point_mm = [0, 0, -50]
+uncertainty_um = 1
+readings = "s.csv"
+)";
+
+TEST_F(ReadReadings, TouchesBallsOfAnArtefact) {
+  files_.write("plate.csv", "sphere;X_mm;Y_mm;Z_mm\na;0;0;0\nb;100,0002;0;0\n");
+  files_.write("s.csv", "sphere,X_mm,Y_mm,Z_mm\nb,4,5,6\n");
+  const Readings all = read(kTouches);
+  EXPECT_DOUBLE_EQ(all.artefacts.at(0).balls.at(1).centre.x(), 0.1000002);
+  EXPECT_NEAR(all.artefacts[0].scale_uncertainty, 0.3e-6, 1e-18);
+  const Group& group = all.groups.at(0);
+  EXPECT_EQ(group.artefact, 0u);
+  EXPECT_DOUBLE_EQ(group.radius, 0.013);
+  EXPECT_EQ(group.lobes, 3);
+  EXPECT_EQ(group.lobe_size, 2e-6);
+}
+
+TEST_F(ReadReadings, KnowsEveryBallOfAnArtefact) {
+  files_.write("plate.csv", "sphere,X_mm,Y_mm,Z_mm\nball 1,0,0,0\nball 1,100,0,0\n");
+  files_.write("s.csv", "sphere,X_mm,Y_mm,Z_mm\nball 2,4,5,6\n");
+  EXPECT_EQ(faults(kTouches),
+            "sphere ball 1 appears twice\n"
+            "sphere ball 2 is not among the balls of \"plate\" (" +
+                files_.path("plate.csv") + "); did you mean 'ball 1'?\n");
+}
+
+TEST_F(ReadReadings, ReadsTheSurfaceOfAPart) {
+  files_.write("p.csv", "X_mm,Y_mm,Z_mm,nx,ny,nz,deviation_um\n1,2,3,0,0.6,0.8,4\n");
+  const std::string text =
+      "[[group]]\nkind = \"part\"\npoint_mm = [0, 0, -50]\nuncertainty_um = 1\n"
+      "feature = \"centre\"\nreadings = \"p.csv\"\n";
+  const Group group = read(text).groups.at(0);
+  EXPECT_FALSE(group.is_surface);
+  EXPECT_NEAR((group.rows.at(0).normal - Eigen::Vector3d(0.0, 0.6, 0.8)).norm(), 0.0, 1e-15);
+  files_.write("p.csv", "X_mm,Y_mm,Z_mm,nx,ny,nz,deviation_um\n1,2,3,0,0.6,0.6,4\n");
+  EXPECT_EQ(faults(text), "nx, ny, nz have the length 0.849; a normal has 1\n");
+}
+
+TEST_F(ReadReadings, DeadPathsAreThoseOfLasers) {
+  const std::string path =
+      "dead_path = { length_mm = 200, wavelength_uncertainty_um_per_m = 0.2 }\n";
+  const Group group = read(kLaser + path).groups.at(0);
+  EXPECT_EQ(group.dead_path->length, 0.2);
+  EXPECT_NEAR(group.dead_path->change, 0.2e-6, 1e-18);
+  std::string angle = kLaser + path;
+  angle.replace(angle.find("positioning"), 11, "straightness");
+  angle += "direction = \"Y\"\n";
+  EXPECT_EQ(faults(angle),
+            "group[0].dead_path = {...}; must be one of a laser that measures positions\n");
+}
+
 TEST_F(ReadReadings, WantsToKnowWhereEveryAxisStood) {
   std::string text = kLaser;
   text.replace(text.find("at = "), text.find("point") - text.find("at = "),
