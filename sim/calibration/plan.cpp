@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/error_effects.h"
+#include "sim/calibration/information.h"
 #include "sim/calibration/plan_candidates.h"
 #include "sim/system/text_table.h"
 
@@ -64,33 +64,6 @@ Unknowns unknowns_of(const model::MachineSettings& machine) {
     }
   }
   return out;
-}
-
-// Information of the readings of groups on the errors, their set-ups taken out:
-// J'WJ - J'WS (S'WS + known)^-1 S'WJ.
-MatrixXd information_of(const readings::Readings& readings, const plant::MachineChain& chain,
-                        const ErrorEffects& effects) {
-  const Observations observations = observations_of(readings, chain);
-  const auto m = static_cast<Eigen::Index>(observations.set_up.size());
-  const Eigen::Index n = effects.size();
-  MatrixXd A = MatrixXd::Zero(m + n, m + n);
-  Eigen::RowVectorXd row(m + n);
-  for (const Observation& one : observations.all) {
-    row.setZero();
-    for (const SetUpPart& part : one.set_up) row[Eigen::Index(part.unknown)] += part.factor;
-    for (const Pose& pose : one.poses) row.tail(n) += effects.row(pose);
-    const double sigma = readings.groups[one.group].uncertainty.value_or(1e-6);
-    A.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose(), 1.0 / (sigma * sigma));
-  }
-  A.triangularView<Eigen::StrictlyUpper>() = A.transpose().eval();
-  for (Eigen::Index u = 0; u < m; ++u) {
-    const auto& prior = observations.set_up[std::size_t(u)].prior;
-    // what nothing is known of, and nothing depends on, must not make the matrix singular
-    A(u, u) += prior ? 1.0 / (*prior * *prior) : 1e-6 * std::max(1.0, A(u, u));
-  }
-  if (m == 0) return A;
-  const MatrixXd S = A.topLeftCorner(m, m), B = A.topRightCorner(m, n);
-  return A.bottomRightCorner(n, n) - B.transpose() * S.ldlt().solve(B);
 }
 
 // Joints at the corners of the working volume, rotary axes at either of two angles, and its centre.

@@ -22,8 +22,8 @@ constexpr double kLineTime = 1500.0, kLevelTime = 1200.0,
                  kSquareTime = 1200.0;  // s, set-up and all
 constexpr double kCircleTime = 900.0, kSphereTime = 1200.0;
 constexpr double kPositioning = 0.3e-6, kStraightness = 0.5e-6, kCircle = 0.7e-6, kSphere = 0.8e-6;
-constexpr double kAngle = 1e-6, kLevel = 2e-6, kSquare = 2e-6;  // rad
-constexpr double kRadii[] = {0.15, 0.1, 0.05};                  // m, of ball bars
+constexpr double kAngle = 1e-6, kLevel = 2e-6, kSquare = 2e-6, kIndexing = 2e-6;  // rad
+constexpr double kRadii[] = {0.15, 0.1, 0.05};                                    // m, of ball bars
 constexpr int kAnglesOfCircle = 72;
 
 class Candidates {
@@ -53,6 +53,7 @@ class Candidates {
         for (int j = 0; j < kLinearJoints; ++j) {
           if (layout_.has(j)) add_lines(j, instrument == PlanInstrument::level);
         }
+        if (instrument == PlanInstrument::laser) add_rotary_positioning();
         return;
       case PlanInstrument::square:
       case PlanInstrument::ballbar:
@@ -165,6 +166,31 @@ class Candidates {
     push(std::move(line), time, middle);
   }
 
+  // Angles of rotary axes, by an indexing table on them, as long as the tool does not matter.
+  void add_rotary_positioning() {
+    if (p_ST_.z() != -settings_.tool_lengths.front()) return;
+    for (int j = kLinearJoints; j < kJoints; ++j) {
+      if (!layout_.has(j)) continue;
+      Group turns = group(Kind::positioning, at(0, 0.5, 1, 0.5), kIndexing);
+      turns.axis = *layout_.axis[std::size_t(j)];
+      turns.name = fmt::format("positioning of {}", letter(*turns.axis));
+      if (layout_.has(2)) turns.at[2] = place(2, 0.5);
+      const std::vector<double> angles = angles_of(j);
+      for (int run = 0; run < kRuns; ++run) {
+        for (std::size_t k = 0; k < 2 * angles.size(); ++k) {
+          const bool up = k < angles.size();
+          Reading row;
+          row.Q = turns.at;
+          row.Q[j] = angles[up ? k : 2 * angles.size() - 1 - k];
+          row.direction[std::size_t(j)] = up ? 1 : -1;
+          row.run = run;
+          turns.rows.push_back(row);
+        }
+      }
+      push(std::move(turns), kLineTime, true);
+    }
+  }
+
   void add_square(int a, int b) {
     const int c = 3 - a - b;
     Joints Q = at(a, 0.1, b, 0.1);
@@ -252,21 +278,22 @@ class Candidates {
     return true;
   }
 
+  // Angles of a rotary axis at which something is measured; of one that is not there: 0.
+  std::vector<double> angles_of(int j) const {
+    if (!layout_.has(j)) return {0.0};
+    const bool turns = !(travel(j) > 0.0 && travel(j) < 2.0 * std::numbers::pi);
+    const int count = turns ? 8 : 7;
+    const double first = turns ? 0.0 : place(j, 0.2);
+    const double step = turns ? 2.0 * std::numbers::pi / count : 0.6 * travel(j) / (count - 1);
+    std::vector<double> out;
+    for (int k = 0; k < count; ++k) out.push_back(first + k * step);
+    return out;
+  }
+
   std::vector<Joints> rotary_poses() const {
-    const auto angles = [&](int j) {
-      std::vector<double> out = {0.0};
-      if (!layout_.has(j)) return out;
-      const bool turns = !(travel(j) > 0.0 && travel(j) < 2.0 * std::numbers::pi);
-      const int count = turns ? 8 : 7;
-      const double first = turns ? 0.0 : place(j, 0.2);
-      const double step = turns ? 2.0 * std::numbers::pi / count : 0.6 * travel(j) / (count - 1);
-      out.clear();
-      for (int k = 0; k < count; ++k) out.push_back(first + k * step);
-      return out;
-    };
     std::vector<Joints> out;
-    for (const double first : angles(3)) {
-      for (const double second : angles(4)) {
+    for (const double first : angles_of(3)) {
+      for (const double second : angles_of(4)) {
         Joints Q = Joints::Zero();
         Q[3] = first;
         Q[4] = second;

@@ -4,6 +4,7 @@
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/make_up.h"
 #include "sim/calibration/report.h"
+#include "sim/calibration/suggestions.h"
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
 #include "sim/system/write_file.h"
@@ -52,6 +53,12 @@ const plant::ErrorModel& truth_of(const Options& options,
                                             did_you_mean(name, names)));
 }
 
+void print_suggestions(const std::vector<std::string>& suggestions) {
+  if (suggestions.empty()) return;
+  fmt::print("\nWould be determined:\n");
+  for (const std::string& suggestion : suggestions) fmt::print("  {}\n", suggestion);
+}
+
 }  // namespace
 
 int calibrate_command(const Arguments& arguments) {
@@ -85,7 +92,10 @@ int calibrate_command(const Arguments& arguments) {
   }
   const calibration::Calibration result =
       calibration::calibrate(std::move(readings), chain, settings);
-  if (!options.has("quiet")) fmt::print("{}", calibration::report(result));
+  if (!options.has("quiet")) {
+    fmt::print("{}", calibration::report(result));
+    print_suggestions(calibration::suggestions(result, description.machine));
+  }
   for (const std::string& warning : calibration::warnings(result)) {
     fmt::print(stderr, "warning: {}\n", warning);
   }
