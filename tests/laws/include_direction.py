@@ -28,6 +28,7 @@ SIM_ROOMS = {
     "records": ["system"],
     "recordings": ["records", "system"],
     "readings": ["config", "recordings"],
+    "standards": ["config", "metrology", "readings", "system"],
     "responses": ["system"],
     "model": ["controllers", "strategies", "config", "metrology", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],

@@ -46,6 +46,7 @@ int calibrate_command(const Arguments& arguments);
 int identify_command(const Arguments& arguments);
 int recording_command(const Arguments& arguments);
 int response_command(const Arguments& arguments);
+int evaluate_command(const Arguments& arguments);
 
 /// Options of one command: named ones, and words that stand by themselves.
 class Options {

@@ -1,0 +1,150 @@
+#include "sim/standards/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plant/vocabulary/units.h"
+#include "sim/system/json.h"
+#include "sim/system/text_table.h"
+
+namespace servomill::sim::standards {
+namespace {
+
+struct Scale {
+  double factor = 1.0;
+  std::string_view symbol;
+};
+
+constexpr std::string_view si(Dimension dimension) {
+  constexpr std::array<std::string_view, 3> kSymbols = {"m", "rad", "1"};
+  return kSymbols[static_cast<std::size_t>(dimension)];
+}
+
+// Micrometres, or nanometres where the largest value is below one; angles likewise.
+Scale scale_of(Dimension dimension, double largest) {
+  if (dimension == Dimension::count) return {1.0, ""};
+  const bool tiny = largest < um;
+  if (dimension == Dimension::length) return tiny ? Scale{nm, "nm"} : Scale{um, "um"};
+  return tiny ? Scale{1e-9, "nrad"} : Scale{urad, "urad"};
+}
+
+double largest_of(const Report& report, Dimension dimension) {
+  double largest = 0.0;
+  for (const ReportValue& one : report.values) {
+    if (one.dimension != dimension || std::isnan(one.value)) continue;
+    largest = std::max(largest, std::abs(one.value));
+  }
+  for (const ReportColumn& column : report.columns) {
+    if (column.dimension != dimension || column.is_place) continue;
+    for (const double value : column.values) {
+      if (!std::isnan(value)) largest = std::max(largest, std::abs(value));
+    }
+  }
+  return largest;
+}
+
+std::string number(double value, const Scale& scale) {
+  constexpr double kLarge = 1000.0;  // beyond, no decimals
+  if (std::isnan(value)) return "-";
+  const double shown = value / scale.factor;
+  if (scale.symbol.empty()) return fmt::format("{:g}", shown);
+  if (std::abs(shown) >= kLarge) return fmt::format("{:.0f}", shown);
+  return fmt::format("{:.{}f}", shown, scale.symbol.starts_with('n') ? 1 : 2);
+}
+
+std::string values_text(const Report& report) {
+  const bool with_U = std::any_of(report.values.begin(), report.values.end(),
+                                  [](const ReportValue& one) { return !std::isnan(one.U); });
+  std::vector<std::vector<std::string>> lines = {{"parameter", "meaning", "value"}};
+  if (with_U) lines.front().emplace_back("U (k = 2)");
+  lines.front().emplace_back("unit");
+  for (const ReportValue& one : report.values) {
+    const Scale scale = scale_of(one.dimension, largest_of(report, one.dimension));
+    lines.push_back({one.symbol, one.meaning, number(one.value, scale)});
+    if (with_U) lines.back().push_back(number(one.U, scale));
+    lines.back().emplace_back(scale.symbol);
+  }
+  return system::text_table(std::move(lines), 0, {2, with_U ? 3U : 2U});
+}
+
+std::string table_text(const Report& report) {
+  constexpr Scale kDegrees{deg, "deg"}, kMillimetres{mm, "mm"};
+  std::vector<std::vector<std::string>> lines(1);
+  std::set<std::size_t> right;
+  for (const ReportColumn& column : report.columns) {
+    Scale scale = scale_of(column.dimension, largest_of(report, column.dimension));
+    if (column.is_place) scale = column.dimension == Dimension::angle ? kDegrees : kMillimetres;
+    right.insert(right.size());
+    lines.front().push_back(scale.symbol.empty() ? column.name
+                                                 : fmt::format("{} {}", column.name, scale.symbol));
+    lines.resize(std::max(lines.size(), column.values.size() + 1));
+    for (std::size_t i = 0; i < column.values.size(); ++i) {
+      lines[i + 1].push_back(column.is_place
+                                 ? fmt::format("{:.6g}", column.values[i] / scale.factor)
+                                 : number(column.values[i], scale));
+    }
+  }
+  return system::text_table(std::move(lines), 0, right);
+}
+
+}  // namespace
+
+std::string printed(const Report& report, bool with_table) {
+  std::string out = fmt::format("{}, {}: {}\n", report.standard, report.name, report.headline);
+  if (with_table && !report.columns.empty()) out += "\n" + table_text(report);
+  out += "\n" + values_text(report);
+  for (const std::string& remark : report.remarks) out += fmt::format("note: {}\n", remark);
+  return out;
+}
+
+std::string json(const Report& report) {
+  std::vector<std::string> values, columns, remarks;
+  for (const ReportValue& one : report.values) {
+    values.push_back(system::JsonObject()
+                         .text("parameter", one.symbol)
+                         .number("value", one.value)
+                         .number("U", one.U)
+                         .text("unit", si(one.dimension))
+                         .line());
+  }
+  for (const ReportColumn& column : report.columns) {
+    std::vector<std::string> numbers;
+    numbers.reserve(column.values.size());
+    for (const double value : column.values) numbers.push_back(system::json_number(value));
+    columns.push_back(system::JsonObject()
+                          .text("name", column.name)
+                          .text("unit", si(column.dimension))
+                          .raw("values", system::json_list(numbers))
+                          .line());
+  }
+  for (const std::string& remark : report.remarks) remarks.push_back(system::json_text(remark));
+  return system::JsonObject()
+      .text("standard", report.standard)
+      .text("name", report.name)
+      .text("headline", report.headline)
+      .raw("parameters", system::json_list(values))
+      .raw("table", system::json_list(columns))
+      .raw("notes", system::json_list(remarks))
+      .line();
+}
+
+std::string csv(const std::vector<Report>& reports) {
+  const auto cell = [](double value) {
+    return std::isnan(value) ? std::string() : fmt::format("{:.9g}", value);
+  };
+  std::string out = "test,standard,parameter,value,unit,U\n";
+  for (const Report& report : reports) {
+    for (const ReportValue& one : report.values) {
+      std::string name = report.name;
+      std::replace(name.begin(), name.end(), ',', ';');
+      out += fmt::format("{},{},{},{},{},{}\n", name, report.standard, one.symbol, cell(one.value),
+                         si(one.dimension), cell(one.U));
+    }
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::standards
