@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "plant/vocabulary/units.h"
@@ -27,7 +29,7 @@ std::string headline(const PositioningTest& test) {
                      test.angular ? "deg" : "mm", runs);
 }
 
-std::vector<ReportColumn> target_table(const PositioningTest& test) {
+ReportTable target_table(const PositioningTest& test) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const Dimension dimension = test.angular ? Dimension::angle : Dimension::length;
   std::vector<ReportColumn> columns;
@@ -44,12 +46,56 @@ std::vector<ReportColumn> target_table(const PositioningTest& test) {
       columns[k++].values.push_back(value);
     }
   }
-  return columns;
+  return {"target", true, {}, std::move(columns)};
+}
+
+// U of every source alone, for the bi-directional parameters (or those of the one direction).
+ReportTable budget_table(const PositioningTest& test, const PositioningUncertainty& uncertainty) {
+  using enum Positioning;
+  std::vector<Positioning> shown = {B, R, M, E, A};
+  if (!test.bidirectional()) {
+    shown =
+        test.up.cols() > 0 ? std::vector{R_up, E_up, A_up} : std::vector{R_down, E_down, A_down};
+  }
+  ReportTable out{"U (k = 2) of each source", false, {}, {}};
+  for (const std::string_view name : kSourceNames) out.rows.emplace_back(name);
+  for (const Positioning which : shown) {
+    ReportColumn column{std::string(kPositioningNames[static_cast<std::size_t>(which)]),
+                        test.angular ? Dimension::angle : Dimension::length,
+                        false,
+                        {}};
+    for (const PositioningValues& source : uncertainty.alone) {
+      column.values.push_back(at(source, which));
+    }
+    out.columns.push_back(std::move(column));
+  }
+  return out;
+}
+
+// Parameters whose U is not stated, by what is missing for it.
+void report_missing(const PositioningTest& test, const PositioningContributions& contributions,
+                    Report& out) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> missing;
+  for (std::size_t k = 0; k < kPositioningParameters; ++k) {
+    if (std::isnan(out.values[k].value)) continue;
+    const auto keys = missing_for(contributions, test.angular, static_cast<Positioning>(k));
+    if (keys.empty()) continue;
+    const std::string text = fmt::format("{}", fmt::join(keys, ", "));
+    auto found = std::find_if(missing.begin(), missing.end(),
+                              [&](const auto& one) { return one.first == text; });
+    if (found == missing.end()) found = missing.insert(found, {text, {}});
+    found->second.push_back(out.values[k].symbol);
+  }
+  for (const auto& [keys, symbols] : missing) {
+    out.remarks.push_back(
+        fmt::format("U of {} cannot be stated without {}", fmt::join(symbols, ", "), keys));
+  }
 }
 
 }  // namespace
 
-Report positioning_report(const PositioningFile& file) {
+Report positioning_report(const PositioningFile& file,
+                          const std::optional<UncertaintyInput>& uncertainty) {
   Report out;
   out.standard = "ISO 230-2";
   out.name = file.name;
@@ -63,8 +109,15 @@ Report positioning_report(const PositioningFile& file) {
     one.dimension = file.test.angular ? Dimension::angle : Dimension::length;
     out.values.push_back(std::move(one));
   }
-  out.columns = target_table(file.test);
+  out.tables.push_back(target_table(file.test));
   out.remarks = file.remarks;
+  if (uncertainty) {
+    const PositioningUncertainty found =
+        positioning_uncertainty(file.test, uncertainty->contributions, uncertainty->settings);
+    for (std::size_t k = 0; k < kPositioningParameters; ++k) out.values[k].U = found.U[k];
+    out.tables.push_back(budget_table(file.test, found));
+    report_missing(file.test, uncertainty->contributions, out);
+  }
   for (std::string& one : departures(file.test)) out.remarks.push_back(std::move(one));
   return out;
 }

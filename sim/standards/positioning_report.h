@@ -1,11 +1,22 @@
-/// Report of a positioning test (ISO 230-2) or of a diagonal (ISO 230-6).
+/// Report of a positioning test (ISO 230-2).
 #pragma once
 
+#include <optional>
+
 #include "sim/standards/positioning_readings.h"
+#include "sim/standards/positioning_uncertainty.h"
 #include "sim/standards/report.h"
 
 namespace servomill::sim::standards {
 
-Report positioning_report(const PositioningFile& file);
+/// Contributions to the uncertainty and how they are propagated.
+struct UncertaintyInput {
+  PositioningContributions contributions;
+  MonteCarloSettings settings;
+};
+
+/// @param uncertainty  none: the report says that U is not stated
+Report positioning_report(const PositioningFile& file,
+                          const std::optional<UncertaintyInput>& uncertainty);
 
 }  // namespace servomill::sim::standards

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "plant/vocabulary/units.h"
 #include "sim/system/json.h"
@@ -37,7 +38,12 @@ double largest_of(const Report& report, Dimension dimension) {
     if (one.dimension != dimension || std::isnan(one.value)) continue;
     largest = std::max(largest, std::abs(one.value));
   }
-  for (const ReportColumn& column : report.columns) {
+  return largest;
+}
+
+double largest_of(const ReportTable& table, Dimension dimension) {
+  double largest = 0.0;
+  for (const ReportColumn& column : table.columns) {
     if (column.dimension != dimension || column.is_place) continue;
     for (const double value : column.values) {
       if (!std::isnan(value)) largest = std::max(largest, std::abs(value));
@@ -70,14 +76,18 @@ std::string values_text(const Report& report) {
   return system::text_table(std::move(lines), 0, {2, with_U ? 3U : 2U});
 }
 
-std::string table_text(const Report& report) {
+std::string table_text(const ReportTable& table) {
   constexpr Scale kDegrees{deg, "deg"}, kMillimetres{mm, "mm"};
   std::vector<std::vector<std::string>> lines(1);
   std::set<std::size_t> right;
-  for (const ReportColumn& column : report.columns) {
-    Scale scale = scale_of(column.dimension, largest_of(report, column.dimension));
+  if (!table.rows.empty()) {
+    lines.front().push_back(table.name);
+    for (const std::string& row : table.rows) lines.push_back({row});
+  }
+  for (const ReportColumn& column : table.columns) {
+    Scale scale = scale_of(column.dimension, largest_of(table, column.dimension));
     if (column.is_place) scale = column.dimension == Dimension::angle ? kDegrees : kMillimetres;
-    right.insert(right.size());
+    right.insert(lines.front().size());
     lines.front().push_back(scale.symbol.empty() ? column.name
                                                  : fmt::format("{} {}", column.name, scale.symbol));
     lines.resize(std::max(lines.size(), column.values.size() + 1));
@@ -90,27 +100,10 @@ std::string table_text(const Report& report) {
   return system::text_table(std::move(lines), 0, right);
 }
 
-}  // namespace
-
-std::string printed(const Report& report, bool with_table) {
-  std::string out = fmt::format("{}, {}: {}\n", report.standard, report.name, report.headline);
-  if (with_table && !report.columns.empty()) out += "\n" + table_text(report);
-  out += "\n" + values_text(report);
-  for (const std::string& remark : report.remarks) out += fmt::format("note: {}\n", remark);
-  return out;
-}
-
-std::string json(const Report& report) {
-  std::vector<std::string> values, columns, remarks;
-  for (const ReportValue& one : report.values) {
-    values.push_back(system::JsonObject()
-                         .text("parameter", one.symbol)
-                         .number("value", one.value)
-                         .number("U", one.U)
-                         .text("unit", si(one.dimension))
-                         .line());
-  }
-  for (const ReportColumn& column : report.columns) {
+std::string json(const ReportTable& table) {
+  std::vector<std::string> columns, rows;
+  for (const std::string& row : table.rows) rows.push_back(system::json_text(row));
+  for (const ReportColumn& column : table.columns) {
     std::vector<std::string> numbers;
     numbers.reserve(column.values.size());
     for (const double value : column.values) numbers.push_back(system::json_number(value));
@@ -120,13 +113,46 @@ std::string json(const Report& report) {
                           .raw("values", system::json_list(numbers))
                           .line());
   }
+  return system::JsonObject()
+      .text("name", table.name)
+      .raw("rows", system::json_list(rows))
+      .raw("columns", system::json_list(columns))
+      .line();
+}
+
+}  // namespace
+
+std::string printed(const Report& report, bool with_all_tables) {
+  std::string out = fmt::format("{}, {}: {}\n", report.standard, report.name, report.headline);
+  for (const ReportTable& table : report.tables) {
+    if (with_all_tables && table.on_request) out += "\n" + table_text(table);
+  }
+  out += "\n" + values_text(report);
+  for (const ReportTable& table : report.tables) {
+    if (!table.on_request) out += "\n" + table_text(table);
+  }
+  for (const std::string& remark : report.remarks) out += fmt::format("note: {}\n", remark);
+  return out;
+}
+
+std::string json(const Report& report) {
+  std::vector<std::string> values, tables, remarks;
+  for (const ReportValue& one : report.values) {
+    values.push_back(system::JsonObject()
+                         .text("parameter", one.symbol)
+                         .number("value", one.value)
+                         .number("U", one.U)
+                         .text("unit", si(one.dimension))
+                         .line());
+  }
+  for (const ReportTable& table : report.tables) tables.push_back(json(table));
   for (const std::string& remark : report.remarks) remarks.push_back(system::json_text(remark));
   return system::JsonObject()
       .text("standard", report.standard)
       .text("name", report.name)
       .text("headline", report.headline)
       .raw("parameters", system::json_list(values))
-      .raw("table", system::json_list(columns))
+      .raw("tables", system::json_list(tables))
       .raw("notes", system::json_list(remarks))
       .line();
 }

@@ -26,17 +26,24 @@ struct ReportColumn {
   std::vector<double> values;
 };
 
+struct ReportTable {
+  std::string name;
+  bool on_request = false;            // not printed unless asked for
+  std::vector<std::string> rows;      // names, or none
+  std::vector<ReportColumn> columns;  // equally long
+};
+
 struct Report {
   std::string standard;  // "ISO 230-2"
   std::string name;      // of the readings
   std::string headline;  // "5 targets, 5 runs in both directions"
   std::vector<ReportValue> values;
-  std::vector<ReportColumn> columns;  // of one table, equally long
+  std::vector<ReportTable> tables;
   std::vector<std::string> remarks;
 };
 
 /// Text for reading: units of um or nm, urad or nrad, as the values fit.
-std::string printed(const Report& report, bool with_table);
+std::string printed(const Report& report, bool with_all_tables);
 /// One object, numbers in m and rad, null where there is none.
 std::string json(const Report& report);
 /// One parameter a row: test, standard, parameter, value, unit, U (k = 2).

@@ -68,7 +68,7 @@ class Positioning(unittest.TestCase):
 
     def test_printed_table_file_and_json_agree(self):
         found, report = parameters(LINEAR_AXIS, "--standard", "ISO 230-2")
-        self.assertEqual(len(report["table"]), 10)
+        self.assertEqual(len(report["tables"][0]["columns"]), 10)
         out = os.path.join(self.folder.name, "out.csv")
         printed = evaluate(LINEAR_AXIS, "--standard", "230-2", "--table", out).stdout
         for symbol, value in (("B", 12.2), ("R", 68.8), ("M", 27.7), ("E", 36.8), ("A", 88.8)):

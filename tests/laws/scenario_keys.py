@@ -72,8 +72,9 @@ def section_of(folder, file, table):
 
 
 def is_experiment(table):
-    """An experiment of `servomill identify` has keys of its own (sim/identification/README.md); its reader refuses others."""
-    return "loop" in table and "recording" in table
+    """Experiments of `servomill identify` and contributions to an uncertainty have keys of their own (sim/identification/README.md,
+    sim/standards/README.md); their readers refuse others."""
+    return {"loop", "recording"} <= set(table) or "resolution_um" in table
 
 
 def is_readings(table):

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/standards/positioning_report.h"
@@ -22,6 +23,10 @@ void add_evaluate_options(Options& options) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add()("standard", text("NAME"), "iso230-2 (or 230-2, 2)");
   options.add()("table", text("OUT.csv"), "writes the parameters, one a row");
+  options.add()("uncertainty", text("LASER.toml"),
+                "contributions of device, set-up, temperature and environment: prints U (k = 2)");
+  options.add()("seed", po::value<std::uint64_t>()->default_value(1)->value_name("N"),
+                "of the Monte Carlo simulation of U");
   options.add()("targets", "prints the table of the targets, too");
   options.add()("json", "prints one JSON object a test, numbers in m and rad");
   options.add()("force,f", "replaces OUT.csv if it exists");
@@ -62,8 +67,14 @@ int evaluate_command(const Arguments& arguments) {
   if (options.has("table")) {
     sim::system::output_target(options.get<std::string>("table"), sim::system::existing_of(force));
   }
+  std::optional<sim::standards::UncertaintyInput> uncertainty;
+  if (options.has("uncertainty")) {
+    uncertainty.emplace(
+        sim::standards::read_contributions(options.get<std::string>("uncertainty")));
+    uncertainty->settings.seed = options.get<std::uint64_t>("seed");
+  }
   const std::vector<Report> reports = {
-      sim::standards::positioning_report(sim::standards::read_positioning(file))};
+      sim::standards::positioning_report(sim::standards::read_positioning(file), uncertainty)};
   for (const Report& report : reports) {
     fmt::print("{}", options.has("json") ? sim::standards::json(report) + "\n"
                                          : sim::standards::printed(report, options.has("targets")));

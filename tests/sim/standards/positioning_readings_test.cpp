@@ -34,7 +34,7 @@ PositioningTest read(const std::string& text) {
 
 // Numbers of ISO 230-2 for the run of a real axis; the report that it comes from prints others.
 TEST(PositioningReadings, ParametersOfARealAxis) {
-  const Report report = positioning_report(read_positioning(kData));
+  const Report report = positioning_report(read_positioning(kData), std::nullopt);
   const auto value = [&](std::string_view name) {
     for (const ReportValue& one : report.values) {
       if (one.symbol == name) return one.value / nm;
