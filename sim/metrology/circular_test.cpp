@@ -17,8 +17,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kFarthestApart = 2.0 * deg;  // neighbouring points; also what a turn may be off
-constexpr double kNear = 0.1;                 // of the radius: farther away it is another circle
+constexpr double kNear = 0.1;  // of the radius: farther away it is another circle
 
 // arcs about a reversal, in the direction of travel
 constexpr double kBeforeFrom = -15.0 * deg, kBeforeTo = -5.0 * deg;
@@ -123,7 +122,7 @@ double squareness_of(const std::vector<RadialError>& curve, double radius) {
   return 2.0 * x[4] / radius;
 }
 
-std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal) {
+std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal, double spacing) {
   for (const Vector2d& p : points) {
     const double off = std::abs((p - nominal.centre).norm() - nominal.radius);
     if (off <= kNear * nominal.radius) continue;
@@ -131,11 +130,11 @@ std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal) {
                        off / mm);
   }
   const Travel travel = travel_of(points, nominal.centre);
-  if (travel.longest > kFarthestApart) {
+  if (travel.longest > spacing) {
     return fmt::format("has samples {:.3g} deg apart; must be <= {:g} deg", travel.longest / deg,
-                       kFarthestApart / deg);
+                       spacing / deg);
   }
-  if (std::abs(std::abs(travel.turned) - kTurn) > kFarthestApart) {
+  if (std::abs(std::abs(travel.turned) - kTurn) > spacing) {
     return fmt::format("covers {:.4g} deg of the circle; must be one turn, 360 deg",
                        std::abs(travel.turned) / deg);
   }
@@ -148,7 +147,7 @@ Sense sense_of(Points2 points, const Circle& nominal) {
 }
 
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal) {
-  assert(!why_no_turn(points, nominal));
+  assert(!why_no_turn(points, nominal, kWidestSpacing));
   CircularTurn turn;
   turn.sense =
       travel_of(points, nominal.centre).turned > 0.0 ? Sense::counter_clockwise : Sense::clockwise;

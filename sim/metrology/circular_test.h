@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/units.h"
 #include "sim/metrology/circle_fit.h"
 
 namespace servomill::sim::metrology {
@@ -77,15 +78,20 @@ std::vector<RadialError> radial_error(Points2 points, const Circle& circle);
 /// different times give the same ellipse, the other way round in the other direction.
 double squareness_of(const std::vector<RadialError>& curve, double radius);
 
-/// Why these points are no turn that can be evaluated; nullopt if they are. They must go once
-/// around the centre (360 deg to within the two degrees at which the points of a turn may lie
-/// apart) and stay near the circle.
-std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal);
+/// Distance of neighbouring points of a turn: of recorded ones, and of readings, whose number is
+/// that of the instrument. Beyond the latter, the arcs about a reversal hold no line.
+inline constexpr double kRecordedSpacing = 2.0 * deg, kWidestSpacing = 5.001 * deg;
 
-/// @pre why_no_turn(points, nominal) is nullopt
+/// Why these points are no turn that can be evaluated; nullopt if they are. They must go once
+/// around the centre (360 deg to within `spacing`, at which the points of a turn may lie apart) and
+/// stay near the circle.
+std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal,
+                                       double spacing = kRecordedSpacing);
+
+/// @pre why_no_turn(points, nominal, kWidestSpacing) is nullopt
 Sense sense_of(Points2 points, const Circle& nominal);
 
-/// @pre why_no_turn(points, nominal) is nullopt
+/// @pre why_no_turn(points, nominal, kWidestSpacing) is nullopt
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal);
 
 /// @pre two turns, one in each direction

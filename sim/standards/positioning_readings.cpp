@@ -197,6 +197,40 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
+PositioningFile positioning_of(const readings::Group& group, const JointLayout& layout) {
+  // unit vector of the motion: the axis, or the line to the row farthest from the first
+  Joints path = Joints::Zero();
+  const bool angular = group.axis && !is_linear(*group.axis);
+  if (group.axis) {
+    path[*layout.joint_of(*group.axis)] = 1.0;
+  } else {
+    for (const readings::Reading& one : group.rows) {
+      const Joints away = one.Q - group.rows.front().Q;
+      if (away.norm() > path.norm()) path = away;
+    }
+    path.normalize();
+  }
+  const Joints origin = group.axis ? Joints(Joints::Zero()) : group.rows.front().Q;
+  std::vector<TargetReading> all;
+  std::vector<Fault> faults;
+  for (const readings::Reading& one : group.rows) {
+    const Place place{group.file, one.line};
+    double sense = 0.0;
+    for (int j = 0; j < kJoints; ++j) sense += path[j] * one.direction[static_cast<std::size_t>(j)];
+    if (sense == 0.0) {
+      faults.push_back({place, "has no direction; a positioning test needs forward or backward"});
+    }
+    all.push_back({path.dot(one.Q - origin), sense > 0.0 ? 1 : -1, one.run, one.deviation[0],
+                   one.time, place});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  PositioningFile out;
+  out.name = group.name;
+  out.test = arrange(all, angular);
+  out.remarks = outliers(all, angular);
+  return out;
+}
+
 PositioningTest arrange(const std::vector<TargetReading>& readings, bool angular) {
   return Arrangement(readings, angular).test();
 }

@@ -41,10 +41,10 @@ struct PositioningFile {
 /// @throws InputError with all faults
 PositioningFile read_positioning(const std::string& path);
 
-/// A group of kind positioning: of an axis, or of a diagonal, whose targets count from its first
-/// row.
+/// A group of kind positioning: of an axis, or of a diagonal, whose targets count along the line
+/// from its first row.
 /// @throws InputError with all faults
-PositioningFile positioning_of(const readings::Group& group);
+PositioningFile positioning_of(const readings::Group& group, const JointLayout& layout);
 
 /// Readings far from the others of their target and direction (more than ten robust standard
 /// deviations): one sentence each, with the place. They count like all others.

@@ -122,4 +122,18 @@ Report positioning_report(const PositioningFile& file,
   return out;
 }
 
+void add_periodic_error(const PositioningTest& test, double period, Report& report) {
+  const Dimension dimension = test.angular ? Dimension::angle : Dimension::length;
+  for (const auto& [deviations, name] :
+       {std::pair(&test.up, "up"), std::pair(&test.down, "down")}) {
+    if (deviations->cols() == 0) continue;
+    const PeriodicError error = periodic_error(test, *deviations, period);
+    report.values.push_back({fmt::format("P_{}", name),
+                             fmt::format("periodic positioning error, {}wards", name), error.P,
+                             dimension});
+    report.values.push_back({fmt::format("P_amplitude_{}", name), "amplitude of its first harmonic",
+                             error.amplitude, dimension});
+  }
+}
+
 }  // namespace servomill::sim::standards

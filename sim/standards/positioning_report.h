@@ -19,4 +19,8 @@ struct UncertaintyInput {
 Report positioning_report(const PositioningFile& file,
                           const std::optional<UncertaintyInput>& uncertainty);
 
+/// Adds the periodic positioning error of each direction.
+/// @pre why_no_period(test, period) is nullopt
+void add_periodic_error(const PositioningTest& test, double period, Report& report);
+
 }  // namespace servomill::sim::standards

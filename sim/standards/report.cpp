@@ -20,13 +20,14 @@ struct Scale {
 };
 
 constexpr std::string_view si(Dimension dimension) {
-  constexpr std::array<std::string_view, 3> kSymbols = {"m", "rad", "1"};
+  constexpr std::array<std::string_view, 4> kSymbols = {"m", "rad", "m/m", "1"};
   return kSymbols[static_cast<std::size_t>(dimension)];
 }
 
 // Micrometres, or nanometres where the largest value is below one; angles likewise.
 Scale scale_of(Dimension dimension, double largest) {
   if (dimension == Dimension::count) return {1.0, ""};
+  if (dimension == Dimension::ratio) return {um, "um/m"};
   const bool tiny = largest < um;
   if (dimension == Dimension::length) return tiny ? Scale{nm, "nm"} : Scale{um, "um"};
   return tiny ? Scale{1e-9, "nrad"} : Scale{urad, "urad"};

@@ -8,7 +8,7 @@
 
 namespace servomill::sim::standards {
 
-enum class Dimension : std::uint8_t { length, angle, count };
+enum class Dimension : std::uint8_t { length, angle, ratio, count };
 
 /// One parameter.
 struct ReportValue {

@@ -79,4 +79,71 @@ class Positioning(unittest.TestCase):
         self.assertIn("exists", evaluate(LINEAR_AXIS, "--standard", "2", "--table", out, status=2).stderr)
 
 
+class Readings(unittest.TestCase):
+    """Groups of a file of readings, and what no standard evaluates."""
+
+    ROUTER = os.path.join(ROOT, "scenarios", "calibration", "router", "readings.toml")
+
+    def reports(self, standard):
+        return [json.loads(line) for line in evaluate(self.ROUTER, "--standard", standard, "--json").stdout.splitlines()]
+
+    def test_groups_of_the_standard_are_evaluated(self):
+        axes, circles = self.reports("iso230-2"), self.reports("iso230-4")
+        self.assertTrue(all(one["name"].startswith("step gauge") for one in axes))
+        self.assertTrue(all(one["name"].startswith("ball bar") for one in circles))
+        self.assertGreater(min(len(axes), len(circles)), 2)
+        for one in circles:
+            found = {value["parameter"]: value["value"] for value in one["parameters"]}
+            self.assertGreaterEqual(found["G_LSC_ccw"], found["G_ccw"] - 1e-12)
+            self.assertGreaterEqual(found["G_b"], max(found["G_ccw"], found["G_cw"]) - 1e-12)
+
+    def test_a_standard_without_its_groups_is_refused(self):
+        said = evaluate(self.ROUTER, "--standard", "10791-6", status=2).stderr
+        self.assertIn("has no group that iso10791-6 is for", said)
+
+
+class Uncertainty(unittest.TestCase):
+    LASER = os.path.join(ROOT, "scenarios", "standards", "laser.toml")
+
+    def test_of_the_shipped_laser_is_that_of_numpy(self):
+        """The README's U of A, E and B, with another generator."""
+        report = json.loads(evaluate(LINEAR_AXIS, "--standard", "2", "--uncertainty", self.LASER, "--json").stdout)
+        U = {one["parameter"]: one["U"] for one in report["parameters"]}
+        with open(LINEAR_AXIS, encoding="utf-8") as file:
+            rows = [line.split(",") for line in file.read().splitlines() if not line.startswith("#")][1:]
+        table = np.array([[float(x) for x in row[1:]] for row in rows]) * 1e-3
+        x, deviation = table[:5, 0], table[:, 1:] - table[:, :1]
+        value = iso230_2(deviation[:5], deviation[5:])
+        time = np.empty((2, 5, 5))
+        for run in range(5):
+            time[0, :, run] = 10 * run + np.arange(5)
+            time[1, :, run] = 10 * run + 9 - np.arange(5)
+        time /= 49
+        rng = np.random.default_rng(1)
+        squares = dict.fromkeys(value, 0.0)
+        trials = 4000
+        for _ in range(trials):
+            strain = 0.15e-6 * rng.normal() + 0.8 * 1e-6 * rng.normal() + 11.5e-6 * 0.1 * rng.normal() \
+                - 0.5 * np.sum(rng.uniform(-0.5e-3, 0.5e-3, 2) ** 2)
+            error = strain * (x - x[0])[None, :, None] + rng.uniform(-30e-9, 30e-9) * (time - 0.5) \
+                + rng.uniform(-0.5e-9, 0.5e-9, time.shape) + rng.uniform(-10e-9, 10e-9, time.shape)
+            trial = iso230_2(deviation[:5] - error[0], deviation[5:] - error[1])
+            for symbol in squares:
+                squares[symbol] += (trial[symbol] - value[symbol]) ** 2
+        for symbol, square in squares.items():
+            expected = 2 * np.sqrt(square / trials)
+            self.assertAlmostEqual(U[symbol] / expected, 1.0, delta=0.06, msg=symbol)
+
+    def test_what_is_missing_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "laser.toml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("resolution_um = 0.001\nvariation_um = 0.02\n")
+            printed = evaluate(LINEAR_AXIS, "--standard", "2", "--uncertainty", path).stdout
+        self.assertRegex(printed, r"(?m)^R .* 68.8 +\d")
+        self.assertRegex(printed, r"(?m)^A .* 88.8 +-  nm$")
+        self.assertIn("U of E_up, E_down, E, M, A_up, A_down, A cannot be stated without scale_uncertainty or target_uncertainty, misalignment, "
+                      "coefficient, coefficient_uncertainty, temperature, temperature_uncertainty", printed)
+
+
 unittest.main()

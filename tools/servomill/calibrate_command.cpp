@@ -73,7 +73,7 @@ int calibrate_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
   const std::string table = output_of(options, "table", ".csv");
-  const std::string file = options.word(), machine_file = measured_machine(options);
+  const std::string file = options.word(), machine_file = measured_machine(options, options.word());
   const sim::input::MachineDescription description =
       sim::input::read_machine_description(machine_file);
   const plant::MachineChain& chain = description.machine.chain;

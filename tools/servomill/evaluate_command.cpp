@@ -4,36 +4,54 @@
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/input/read_scenario.h"
+#include "sim/standards/ball_test.h"
+#include "sim/standards/circle_test.h"
+#include "sim/standards/diagonal_report.h"
+#include "sim/standards/error_motion.h"
 #include "sim/standards/positioning_report.h"
 #include "sim/system/json.h"
 #include "sim/system/output_name.h"
 #include "sim/system/write_file.h"
+#include "tools/servomill/axis_options.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
 
 namespace {
 
 namespace po = boost::program_options;
-using sim::standards::Report;
+namespace standards = sim::standards;
+using standards::Report;
 
-constexpr std::array<std::string_view, 1> kStandards = {"iso230-2"};
+enum class Standard : std::uint8_t { positioning, circles, diagonals, rotation, balls };
+constexpr std::array<std::string_view, 5> kStandards = {"iso230-2", "iso230-4", "iso230-6",
+                                                        "iso230-7", "iso10791-6"};
 
 void add_evaluate_options(Options& options) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add()("standard", text("NAME"), "iso230-2 (or 230-2, 2)");
+  options.add()("standard", text("NAME"),
+                "iso230-2 (or 2), iso230-4, iso230-6, iso230-7, iso10791-6");
   options.add()("table", text("OUT.csv"), "writes the parameters, one a row");
+  options.add()("machine", text("MACHINE.toml"),
+                "machine of READINGS.toml (default: the one that it names)");
+  options.add()("radius", text("R"), "iso230-4: nominal radius of the circle in CSV files, mm");
+  options.add()("distance", text("D"),
+                "iso230-7: from the sensors x, y to x2, y2 along the axis, mm");
+  options.add()("period", text("P"),
+                "iso230-2: prints the periodic error of this period, mm or deg");
   options.add()("uncertainty", text("LASER.toml"),
                 "contributions of device, set-up, temperature and environment: prints U (k = 2)");
   options.add()("seed", po::value<std::uint64_t>()->default_value(1)->value_name("N"),
                 "of the Monte Carlo simulation of U");
-  options.add()("targets", "prints the table of the targets, too");
+  options.add()("targets", "prints the tables of targets and curves, too");
   options.add()("json", "prints one JSON object a test, numbers in m and rad");
   options.add()("force,f", "replaces OUT.csv if it exists");
 }
 
 // "2", "230-2", "ISO230-2" and "iso 230-2" are iso230-2.
-std::string_view standard_of(const Options& options) {
+Standard standard_of(const Options& options) {
   const Place place{"--standard"};
   if (!options.has("standard")) {
     throw InputError(place, fmt::format("must be given: {}", fmt::join(kStandards, ", ")));
@@ -43,45 +61,168 @@ std::string_view standard_of(const Options& options) {
   for (const char c : given) {
     if (c != ' ') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
-  for (const std::string_view name : kStandards) {
+  for (std::size_t k = 0; k < kStandards.size(); ++k) {
+    const std::string_view name = kStandards[k];
     const std::string_view number = name.substr(std::string_view("iso").size());
-    if (word == name || word == number) return name;
+    if (word == name || word == number) return static_cast<Standard>(k);
     if (number.starts_with("230-") && word == number.substr(std::string_view("230-").size())) {
-      return name;
+      return static_cast<Standard>(k);
     }
   }
   throw InputError(place, fmt::format("'{}' is not known{}; known are {}", given,
                                       did_you_mean(word, kStandards), fmt::join(kStandards, ", ")));
 }
 
+double radius_of(const Options& options) {
+  const auto radius = positive_option(options, "radius", sim::config::kLength, "mm");
+  if (!radius) {
+    throw InputError({"--radius"},
+                     "must be given: the nominal radius of the circle, such as "
+                     "\"100 mm\"");
+  }
+  return *radius;
+}
+
+std::optional<standards::UncertaintyInput> uncertainty_of(const Options& options,
+                                                          Standard standard) {
+  if (!options.has("uncertainty")) return std::nullopt;
+  const auto& file = options.get<std::string>("uncertainty");
+  if (standard != Standard::positioning) {
+    throw InputError({"--uncertainty"}, "states U of the parameters of iso230-2 only");
+  }
+  standards::UncertaintyInput out{standards::read_contributions(file), {}};
+  out.settings.seed = options.get<std::uint64_t>("seed");
+  return out;
+}
+
+Report with_period(Report report, const standards::PositioningFile& file, const Options& options) {
+  const auto quantity = file.test.angular ? sim::config::kAngle : sim::config::kLength;
+  const auto period = positive_option(options, "period", quantity, bare_unit(quantity));
+  if (!period) return report;
+  if (const auto why = standards::why_no_period(file.test, *period)) {
+    throw InputError({"--period"}, fmt::format("{}: {}", file.name, *why));
+  }
+  standards::add_periodic_error(file.test, *period, report);
+  return report;
+}
+
+std::vector<Report> positioning_reports(const std::vector<standards::PositioningFile>& files,
+                                        Standard standard, const Options& options) {
+  const auto uncertainty = uncertainty_of(options, standard);
+  if (standard == Standard::diagonals) return {standards::diagonal_report(files)};
+  std::vector<Report> out;
+  out.reserve(files.size());
+  for (const standards::PositioningFile& file : files) {
+    out.push_back(with_period(standards::positioning_report(file, uncertainty), file, options));
+  }
+  return out;
+}
+
+// Reports of tables, one test a file.
+std::vector<Report> reports_of_tables(const std::vector<std::string>& files, Standard standard,
+                                      const Options& options) {
+  std::vector<Report> out;
+  std::vector<standards::PositioningFile> runs;
+  for (const std::string& file : files) {
+    switch (standard) {
+      case Standard::positioning:
+      case Standard::diagonals:
+        runs.push_back(standards::read_positioning(file));
+        break;
+      case Standard::circles:
+        out.push_back(standards::circle_report(standards::read_circle(file, radius_of(options))));
+        break;
+      case Standard::rotation:
+        out.push_back(standards::rotation_report(standards::read_rotation(
+            file, positive_option(options, "distance", sim::config::kLength, "mm").value_or(0.0))));
+        break;
+      case Standard::balls:
+        out.push_back(standards::ball_report(standards::read_ball(file)));
+        break;
+    }
+  }
+  return runs.empty() ? out : positioning_reports(runs, standard, options);
+}
+
+// True for the groups that a standard evaluates.
+bool belongs_to(const sim::readings::Group& group, Standard standard) {
+  using sim::readings::Kind;
+  if (standard == Standard::positioning) {
+    return group.kind == Kind::positioning && group.axis.has_value();
+  }
+  if (standard == Standard::diagonals) return group.kind == Kind::positioning && !group.axis;
+  return group.kind == (standard == Standard::circles ? Kind::circle : Kind::r_test);
+}
+
+// Reports of the groups of a file of readings that the standard is for.
+std::vector<Report> reports_of_groups(const std::string& file, Standard standard,
+                                      const Options& options) {
+  if (standard == Standard::rotation) {
+    throw InputError({file},
+                     "iso230-7 is evaluated from a CSV file of sensors; see "
+                     "sim/standards/README.md");
+  }
+  const auto machine = sim::input::read_machine_file(measured_machine(options, file));
+  const auto [lower, upper] = travel_of(machine);
+  const auto all = sim::readings::read_readings(file, machine.chain, lower, upper);
+  const JointLayout& layout = machine.chain.layout;
+  std::vector<Report> out;
+  std::vector<standards::PositioningFile> runs;
+  for (const sim::readings::Group& group : all.groups) {
+    if (!belongs_to(group, standard)) continue;
+    if (group.kind == sim::readings::Kind::positioning) {
+      runs.push_back(standards::positioning_of(group, layout));
+    } else if (group.kind == sim::readings::Kind::r_test) {
+      out.push_back(standards::ball_report(standards::ball_of(group)));
+    } else {
+      for (const auto& test : standards::circles_of(group, layout)) {
+        out.push_back(standards::circle_report(test));
+      }
+    }
+  }
+  if (!runs.empty()) return positioning_reports(runs, standard, options);
+  if (out.empty()) {
+    throw InputError({file}, fmt::format("has no group that {} is for",
+                                         kStandards[static_cast<std::size_t>(standard)]));
+  }
+  return out;
+}
+
+std::vector<Report> reports_of(const Options& options, Standard standard) {
+  const std::vector<std::string> files = options.words();
+  if (files.empty()) options.word();  // throws
+  const bool toml = files.front().ends_with(".toml");
+  if (toml && files.size() > 1) {
+    throw InputError({files[1]}, "several files are CSV files, one test each");
+  }
+  return toml ? reports_of_groups(files.front(), standard, options)
+              : reports_of_tables(files, standard, options);
+}
+
 }  // namespace
 
 int evaluate_command(const Arguments& arguments) {
-  Options options("evaluate", "READINGS.csv --standard iso230-2 [--json]",
-                  "Evaluates readings of a test as its standard has it.", "READINGS.csv");
+  Options options(
+      "evaluate", "READINGS... --standard iso230-2|iso230-4|iso230-6|iso230-7|iso10791-6 [--json]",
+      "Parameters of a test as its standard defines them, from readings of a real machine:\n"
+      "CSV files of one test each, or the groups of one READINGS.toml. Columns and results:\n"
+      "sim/standards/README.md.",
+      "READINGS");
   add_evaluate_options(options);
   if (!options.parse(arguments)) return kDone;
-  const std::string file = options.word();
-  standard_of(options);
+  const Standard standard = standard_of(options);
   const bool force = options.has("force");
   if (options.has("table")) {
     sim::system::output_target(options.get<std::string>("table"), sim::system::existing_of(force));
   }
-  std::optional<sim::standards::UncertaintyInput> uncertainty;
-  if (options.has("uncertainty")) {
-    uncertainty.emplace(
-        sim::standards::read_contributions(options.get<std::string>("uncertainty")));
-    uncertainty->settings.seed = options.get<std::uint64_t>("seed");
-  }
-  const std::vector<Report> reports = {
-      sim::standards::positioning_report(sim::standards::read_positioning(file), uncertainty)};
+  const std::vector<Report> reports = reports_of(options, standard);
   for (const Report& report : reports) {
-    fmt::print("{}", options.has("json") ? sim::standards::json(report) + "\n"
-                                         : sim::standards::printed(report, options.has("targets")));
+    if (!options.has("json") && &report != &reports.front()) fmt::print("\n");
+    fmt::print("{}", options.has("json") ? standards::json(report) + "\n"
+                                         : standards::printed(report, options.has("targets")));
   }
   if (options.has("table")) {
-    sim::system::write_text_file(options.get<std::string>("table"), sim::standards::csv(reports),
-                                 force);
+    sim::system::write_text_file(options.get<std::string>("table"), standards::csv(reports), force);
     if (!options.has("json")) fmt::print("written to {}\n", options.get<std::string>("table"));
   }
   return kDone;

@@ -61,8 +61,8 @@ constexpr std::array<Command, 20> kCommands = {{
      "finds parameters of drives from recordings of real axes", identify_command},
     {"response", "RECORDING --input CHANNEL --output CHANNEL --period S",
      "frequency response of a real axis from a recording", response_command},
-    {"evaluate", "READINGS.csv --standard iso230-2",
-     "evaluates readings of a test as its standard has it", evaluate_command},
+    {"evaluate", "READINGS... --standard iso230-2",
+     "parameters of a test as its standard defines them", evaluate_command},
     {"list", "strategies|machines|scenarios|quantities|keys", "prints what there is", list_command},
 }};
 

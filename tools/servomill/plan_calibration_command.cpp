@@ -69,7 +69,8 @@ int plan_calibration_command(const Arguments& arguments) {
   add_plan_options(options);
   if (!options.parse(arguments)) return kDone;
   const bool has_readings = !options.words().empty();
-  const std::string machine_file = measured_machine(options);
+  const std::string machine_file =
+      measured_machine(options, options.words().empty() ? "" : options.word());
   const calibration::PlanSettings settings = settings_of(options);
   const auto machine = sim::input::read_machine_description(machine_file).machine;
   std::optional<sim::readings::Readings> taken;

@@ -7,14 +7,14 @@
 
 namespace servomill::tools {
 
-std::string measured_machine(const Options& options) {
+std::string measured_machine(const Options& options, const std::string& readings) {
   if (options.has("machine")) return options.get<std::string>("machine");
-  if (options.words().empty()) {
+  if (readings.empty()) {
     throw InputError({"--machine"}, "is missing: the machine that is to be measured");
   }
-  std::string named = sim::readings::named_machine(options.word());
+  std::string named = sim::readings::named_machine(readings);
   if (!named.empty()) return named;
-  throw InputError({options.word()}, "names no machine; add machine = \"FILE\", or pass --machine");
+  throw InputError({readings}, "names no machine; add machine = \"FILE\", or pass --machine");
 }
 
 std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {

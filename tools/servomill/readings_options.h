@@ -9,9 +9,10 @@
 
 namespace servomill::tools {
 
-/// The machine file of --machine, or the one that the file of readings names.
+/// The machine file of --machine, or the one that a file of readings names.
+/// @param readings  empty: none
 /// @throws InputError if there is neither
-std::string measured_machine(const Options& options);
+std::string measured_machine(const Options& options, const std::string& readings);
 
 /// Travel of a machine (5 and 5; m, rad); infinite for an axis without one.
 std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine);

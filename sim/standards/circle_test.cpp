@@ -1,0 +1,274 @@
+#include "sim/standards/circle_test.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "plant/vocabulary/units.h"
+#include "sim/readings/columns.h"
+
+namespace servomill::sim::standards {
+namespace {
+
+using Eigen::Vector2d;
+using metrology::Sense;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::string_view sense_name(Sense sense) {
+  return sense == Sense::counter_clockwise ? "ccw" : "cw";
+}
+
+std::optional<Sense> sense_of_word(std::string_view word) {
+  if (word == "ccw" || word == "+" || word == "1") return Sense::counter_clockwise;
+  if (word == "cw" || word == "-" || word == "-1") return Sense::clockwise;
+  return std::nullopt;
+}
+
+CirclePath& turn_of(CircleTest& test, Sense sense) {
+  for (CirclePath& turn : test.turns) {
+    if (turn.sense == sense) return turn;
+  }
+  return test.turns.emplace_back(CirclePath{sense, {}});
+}
+
+// Refuses arcs, and turns that go the other way than their rows say.
+void check(const CircleTest& test, const std::string& file) {
+  std::vector<Fault> faults;
+  const metrology::Circle nominal{Vector2d::Zero(), test.radius};
+  for (const CirclePath& turn : test.turns) {
+    const std::string_view name = sense_name(turn.sense);
+    if (const auto why = metrology::why_no_turn(turn.points, nominal, metrology::kWidestSpacing)) {
+      faults.push_back(
+          {{file},
+           fmt::format("the turn {} {}; leave out arcs on which feed is reached and lost, "
+                       "and check the radius and its unit",
+                       name, *why)});
+    } else if (metrology::sense_of(turn.points, nominal) != turn.sense) {
+      faults.push_back({{file},
+                        fmt::format("the turn {} goes around the other way; put its rows "
+                                    "in the order of the motion, or correct the direction",
+                                    name)});
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Columns of a table of readings on a circle.
+struct CircleColumns {
+  const readings::Column *direction = nullptr, *angle = nullptr, *deviation = nullptr, *x = nullptr,
+                         *y = nullptr;
+  bool is_ball_bar() const { return angle != nullptr; }
+};
+
+void require_unit(const readings::Table& table, const readings::Column* column,
+                  config::Quantity quantity, std::string_view example, std::vector<Fault>& faults) {
+  if (column == nullptr) {
+    faults.push_back({{table.file}, fmt::format("column {} is missing", example)});
+  } else if (!(column->unit.quantity == quantity)) {
+    faults.push_back(
+        {{table.file},
+         fmt::format("column {} must name its unit, such as {}", column->written, example)});
+  }
+}
+
+CircleColumns columns_of(const readings::Table& table, std::vector<Fault>& faults) {
+  CircleColumns out{table.find("direction"), table.find("angle"), table.find("deviation"),
+                    table.find("x"), table.find("y")};
+  if (out.direction == nullptr) {
+    faults.push_back({{table.file}, "column direction is missing; it must be ccw or cw"});
+  }
+  if (out.is_ball_bar()) {
+    require_unit(table, out.angle, config::kAngle, "angle_deg", faults);
+    require_unit(table, out.deviation, config::kLength, "deviation_um", faults);
+  } else if (out.x != nullptr || out.y != nullptr) {
+    require_unit(table, out.x, config::kLength, "x_mm", faults);
+    require_unit(table, out.y, config::kLength, "y_mm", faults);
+  } else {
+    faults.push_back({{table.file},
+                      "has no circle: columns angle_deg and deviation_um of a ball bar, or x_mm "
+                      "and y_mm of a grid encoder, are missing"});
+  }
+  return out;
+}
+
+Vector2d point_of(const readings::Table& table, const readings::Row& row,
+                  const CircleColumns& columns, double radius, std::vector<Fault>& faults) {
+  const auto number = [&](const readings::Column& column) {
+    const auto value = table.number(row, column, faults);
+    if (!value) {
+      faults.push_back({table.place(row, column), fmt::format("{} is empty", column.written)});
+    }
+    return value.value_or(0.0);
+  };
+  if (!columns.is_ball_bar()) return {number(*columns.x), number(*columns.y)};
+  const double angle = number(*columns.angle), deviation = number(*columns.deviation);
+  if (std::abs(deviation) > readings::kLargestDeviation) {
+    faults.push_back({table.place(row, *columns.deviation),
+                      fmt::format("deviation of {:g} mm; must be at most {:g} mm: check the unit, "
+                                  "and that it is a deviation from the nominal radius",
+                                  deviation / mm, readings::kLargestDeviation / mm)});
+  }
+  return (radius + deviation) * Vector2d(std::cos(angle), std::sin(angle));
+}
+
+// Coefficient of cos 2 theta of the radial deviation about the least-squares centre.
+double second_cosine(const CirclePath& turn, double radius) {
+  const metrology::Circle mine{metrology::least_squares_circle(turn.points).centre, radius};
+  const auto curve = metrology::radial_error(turn.points, mine);
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(curve.size()), 5);
+  Eigen::VectorXd b(A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    const auto [theta, dr] = curve[static_cast<std::size_t>(i)];
+    A.row(i) << 1.0, std::cos(theta), std::sin(theta), std::cos(2.0 * theta), std::sin(2.0 * theta);
+    b[i] = dr;
+  }
+  return A.colPivHouseholderQr().solve(b)[3];
+}
+
+void add_turn(const metrology::CircularTurn& turn, Report& out) {
+  const std::string name(sense_name(turn.sense));
+  const auto add = [&](std::string symbol, std::string meaning, double value) {
+    out.values.push_back({std::move(symbol), std::move(meaning), value});
+  };
+  add("G_" + name, "circular error " + name + ", minimum zone", turn.G);
+  add("G_LSC_" + name, "circular error " + name + ", least-squares centre", turn.G_least_squares);
+  add("F_max_" + name, "largest radial error " + name + ", least-squares centre", turn.F_max);
+  add("F_min_" + name, "smallest radial error " + name + ", least-squares centre", turn.F_min);
+  add("F_max_set_up_" + name, "largest radial error " + name + ", centre of the set-up",
+      turn.F_max_set_up);
+  add("F_min_set_up_" + name, "smallest radial error " + name + ", centre of the set-up",
+      turn.F_min_set_up);
+}
+
+ReportTable reversal_table(const std::vector<metrology::CircularTurn>& turns) {
+  ReportTable out{"reversal", false, {}, {}};
+  for (const char* const name : {"first axis, 0 deg", "second axis, 90 deg", "first axis, 180 deg",
+                                 "second axis, 270 deg"}) {
+    out.rows.emplace_back(name);
+  }
+  for (const metrology::CircularTurn& turn : turns) {
+    ReportColumn step{fmt::format("step {}", sense_name(turn.sense)), Dimension::length, false, {}};
+    ReportColumn spike{
+        fmt::format("spike {}", sense_name(turn.sense)), Dimension::length, false, {}};
+    for (const metrology::Reversal& one : turn.reversals) {
+      step.values.push_back(one.step);
+      spike.values.push_back(one.spike);
+    }
+    out.columns.push_back(std::move(step));
+    out.columns.push_back(std::move(spike));
+  }
+  return out;
+}
+
+// Radial errors about the least-squares centre, as the polar diagram magnifies them.
+ReportTable curve_table(const CirclePath& turn, double radius) {
+  ReportTable out{fmt::format("curve {}", sense_name(turn.sense)), true, {}, {}};
+  out.columns.push_back({"angle", Dimension::angle, true, {}});
+  out.columns.push_back({"radial error", Dimension::length, false, {}});
+  const metrology::Circle mine{metrology::least_squares_circle(turn.points).centre, radius};
+  for (const auto& [theta, dr] : metrology::radial_error(turn.points, mine)) {
+    out.columns[0].values.push_back(theta);
+    out.columns[1].values.push_back(dr);
+  }
+  return out;
+}
+
+}  // namespace
+
+CircleTest read_circle(const std::string& path, double radius) {
+  const readings::Table table = readings::read_table(path);
+  std::vector<Fault> faults;
+  const CircleColumns columns = columns_of(table, faults);
+  if (!faults.empty()) throw InputError(std::move(faults));
+  CircleTest out{path, radius, {}};
+  for (const readings::Row& row : table.rows) {
+    const std::string& word = table.text(row, *columns.direction);
+    const auto sense = sense_of_word(word);
+    if (!sense) {
+      faults.push_back({table.place(row, *columns.direction),
+                        fmt::format("direction = {}; must be ccw or cw", word)});
+      continue;
+    }
+    turn_of(out, *sense).points.push_back(point_of(table, row, columns, radius, faults));
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  check(out, path);
+  return out;
+}
+
+std::vector<CircleTest> circles_of(const readings::Group& group, const JointLayout& layout) {
+  std::map<int, CircleTest> runs;
+  const int a = *layout.joint_of(group.plane[0]), b = *layout.joint_of(group.plane[1]);
+  for (const readings::Reading& one : group.rows) {
+    const Vector2d nominal(one.Q[a] - group.at[a], one.Q[b] - group.at[b]);
+    const Vector2d travel(one.direction[static_cast<std::size_t>(a)],
+                          one.direction[static_cast<std::size_t>(b)]);
+    // moment of the travel about the centre
+    const double sense = nominal.x() * travel.y() - nominal.y() * travel.x();
+    if (sense == 0.0) {
+      throw InputError({group.file, one.line}, "has no direction; a circular test needs ccw or cw");
+    }
+    CircleTest& run =
+        runs.try_emplace(one.run, CircleTest{group.name, group.radius, {}}).first->second;
+    turn_of(run, sense > 0.0 ? Sense::counter_clockwise : Sense::clockwise)
+        .points.emplace_back(nominal.normalized() * (group.radius + one.deviation[0]));
+  }
+  std::vector<CircleTest> out;
+  for (auto& [run, test] : runs) {
+    if (runs.size() > 1) test.name += fmt::format(", run {}", run + 1);
+    check(test, group.file);
+    out.push_back(std::move(test));
+  }
+  return out;
+}
+
+double scale_mismatch(const CircleTest& test) {
+  double sum = 0.0;
+  for (const CirclePath& turn : test.turns) sum += second_cosine(turn, test.radius);
+  return 2.0 * sum / static_cast<double>(test.turns.size()) / test.radius;
+}
+
+Report circle_report(const CircleTest& test) {
+  const metrology::Circle nominal{Vector2d::Zero(), test.radius};
+  Report out;
+  out.standard = "ISO 230-4";
+  out.name = test.name;
+  std::vector<metrology::CircularTurn> turns;
+  double squareness = 0.0;
+  for (const CirclePath& turn : test.turns) {
+    turns.push_back(metrology::evaluate_turn(turn.points, nominal));
+    add_turn(turns.back(), out);
+    squareness += turns.back().squareness / static_cast<double>(test.turns.size());
+  }
+  const bool both = test.turns.size() == 2;
+  double G_b = kNone, D = kNone;
+  if (both) {
+    const auto circle =
+        metrology::evaluate_both(test.turns[0].points, test.turns[1].points, nominal);
+    G_b = circle.G_b;
+    D = circle.D;
+  } else {
+    out.remarks.push_back(
+        fmt::format("one turn, {}: G_b and D need one in the other direction, "
+                    "and squareness includes what follows the direction",
+                    sense_name(test.turns[0].sense)));
+  }
+  out.values.push_back({"G_b", "bi-directional circular error, minimum zone", G_b});
+  out.values.push_back({"D", "mean bi-directional radial error (nominal minus actual)", D});
+  out.values.push_back({"squareness", "(D45 - D135) / (2 R); positive: angle below 90 deg",
+                        squareness, Dimension::angle});
+  out.values.push_back({"scale_mismatch", "scale of the first axis minus that of the second",
+                        scale_mismatch(test), Dimension::ratio});
+  out.headline = fmt::format("radius {:.6g} mm, {}", test.radius / mm,
+                             both ? "one turn in each direction" : "one turn");
+  out.tables.push_back(reversal_table(turns));
+  for (const CirclePath& turn : test.turns) out.tables.push_back(curve_table(turn, test.radius));
+  return out;
+}
+
+}  // namespace servomill::sim::standards

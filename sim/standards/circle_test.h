@@ -1,0 +1,42 @@
+/// Circular tests after ISO 230-4 from a ball bar or a grid encoder.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/metrology/circular_test.h"
+#include "sim/readings/readings.h"
+#include "sim/standards/report.h"
+
+namespace servomill::sim::standards {
+
+/// Points of one turn, in the order in which they were passed.
+struct CirclePath {
+  metrology::Sense sense = metrology::Sense::counter_clockwise;
+  std::vector<Eigen::Vector2d> points;  // m, about the centre of the set-up
+};
+
+struct CircleTest {
+  std::string name;
+  double radius = 0.0;            // m, nominal
+  std::vector<CirclePath> turns;  // one, or one in each direction
+};
+
+/// Reads turns from a table: `direction` (ccw, cw) and either `angle_deg` and `deviation_um` of the
+/// radius (ball bar) or `x_mm` and `y_mm` (grid encoder) about the centre of the set-up.
+/// @param radius  m, nominal
+/// @throws InputError with all faults: a direction there twice, an arc in place of a turn, ...
+CircleTest read_circle(const std::string& path, double radius);
+
+/// A group of kind circle, one test a run. @throws InputError
+std::vector<CircleTest> circles_of(const readings::Group& group, const JointLayout& layout);
+
+/// How far the axes of the plane differ in scale: mean over the turns of 2 a / R, where the
+/// deviation has a cos 2 theta; positive where the first axis moves farther.
+double scale_mismatch(const CircleTest& test);
+
+Report circle_report(const CircleTest& test);
+
+}  // namespace servomill::sim::standards

@@ -1,0 +1,112 @@
+#include "sim/standards/error_motion.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/metrology/circle_fit.h"
+
+namespace servomill::sim::standards {
+namespace {
+
+double range(const Eigen::ArrayXXd& values) { return values.maxCoeff() - values.minCoeff(); }
+
+// Mean and first harmonic by least squares: (mean, cos, sin).
+Eigen::Vector3d first_harmonic(const Eigen::ArrayXd& theta, const Eigen::ArrayXd& r) {
+  Eigen::MatrixXd A(theta.size(), 3);
+  A << Eigen::ArrayXd::Ones(theta.size()), theta.cos(), theta.sin();
+  return A.colPivHouseholderQr().solve(r.matrix());
+}
+
+Eigen::ArrayXd wave(const Eigen::ArrayXd& theta, const Eigen::Vector3d& harmonic) {
+  return harmonic[1] * theta.cos() + harmonic[2] * theta.sin();
+}
+
+// Width of the narrowest ring about the curve, drawn on a circle that is large against it.
+double minimum_zone_width(const Eigen::ArrayXd& theta, const Eigen::ArrayXXd& r) {
+  constexpr double kMagnified = 1e4;  // radius over the largest deviation: the centre is linear
+  const double radius = kMagnified * std::max(r.abs().maxCoeff(), 1e-12);
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(static_cast<std::size_t>(r.size()));
+  for (Eigen::Index j = 0; j < r.cols(); ++j) {
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      points.emplace_back((1.0 + r(i, j) / radius) *
+                          Eigen::Vector2d(std::cos(theta[i]), std::sin(theta[i])));
+    }
+  }
+  return metrology::minimum_zone(points).width() * radius;
+}
+
+}  // namespace
+
+ErrorMotion evaluate_error_motion(const Eigen::ArrayXd& theta, const Eigen::ArrayXXd& r,
+                                  Centre centre) {
+  ErrorMotion out;
+  const Eigen::ArrayXd mean = r.rowwise().mean();
+  const Eigen::Vector3d harmonic = first_harmonic(theta, mean);
+  const Eigen::ArrayXd fundamental = wave(theta, harmonic);
+  out.fundamental = 2.0 * std::hypot(harmonic[1], harmonic[2]);
+  out.residual = range(mean - fundamental);
+  out.asynchronous = (r.rowwise().maxCoeff() - r.rowwise().minCoeff()).maxCoeff();
+  if (centre == Centre::polar_chart) {
+    out.total = range(r);
+    out.synchronous = range(mean);
+    out.total_mrs = out.total;
+  } else {
+    const Eigen::ArrayXXd about = r.colwise() - (fundamental + harmonic[0]);
+    out.total = range(about);
+    out.synchronous = out.residual;
+    out.total_mrs = minimum_zone_width(theta, about);
+  }
+  return out;
+}
+
+Report rotation_report(const RotationTest& test) {
+  Report out;
+  out.standard = "ISO 230-7";
+  out.name = test.name;
+  const auto revolutions = test.channels.front().r.cols();
+  out.headline = fmt::format("{} revolutions of {} angles", revolutions, test.theta.size());
+  for (const RotationTest::Channel& channel : test.channels) {
+    const ErrorMotion one = evaluate_error_motion(test.theta, channel.r, channel.centre);
+    const bool is_axial = channel.centre == Centre::polar_chart;
+    const std::string centre = is_axial ? "" : ", LSC";
+    const auto add = [&](std::string_view symbol, std::string_view meaning, double value) {
+      out.values.push_back({fmt::format("{}_{}", channel.name, symbol),
+                            fmt::format("{} error motion{}", meaning, centre), value,
+                            channel.dimension});
+    };
+    add("total", "total", one.total);
+    add("synchronous", "synchronous", one.synchronous);
+    if (revolutions > 1) add("asynchronous", "asynchronous", one.asynchronous);
+    if (is_axial) {
+      add("fundamental", "fundamental", one.fundamental);
+      add("residual", "residual synchronous", one.residual);
+    } else {
+      out.values.push_back({fmt::format("{}_total_MRS", channel.name),
+                            "total error motion, minimum radial separation", one.total_mrs,
+                            channel.dimension});
+    }
+    ReportTable curve{fmt::format("curve {}", channel.name), true, {}, {}};
+    curve.columns.push_back({"angle", Dimension::angle, true, {}});
+    curve.columns.push_back({"synchronous", channel.dimension, false, {}});
+    const Eigen::ArrayXd mean = channel.r.rowwise().mean();
+    const Eigen::Vector3d harmonic = first_harmonic(test.theta, mean);
+    for (Eigen::Index i = 0; i < mean.size(); ++i) {
+      const double centred =
+          mean[i] - harmonic[0] - (is_axial ? 0.0 : wave(test.theta, harmonic)[i]);
+      curve.columns[0].values.push_back(test.theta[i]);
+      curve.columns[1].values.push_back(centred);
+    }
+    out.tables.push_back(std::move(curve));
+  }
+  if (revolutions < 2) {
+    out.remarks.emplace_back(
+        "one revolution: the asynchronous error motion needs several, and counts as synchronous");
+  }
+  return out;
+}
+
+}  // namespace servomill::sim::standards
