@@ -17,6 +17,7 @@ namespace {
 using Eigen::Vector2d;
 using metrology::Sense;
 
+constexpr double kLikelyRadius = 0.2 * mm;  // difference of a radius that is entered rightly
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view sense_name(Sense sense) {
@@ -242,6 +243,13 @@ Report circle_report(const CircleTest& test) {
   double squareness = 0.0;
   for (const CirclePath& turn : test.turns) {
     turns.push_back(metrology::evaluate_turn(turn.points, nominal));
+    const double off = turns.back().least_squares.radius - test.radius;
+    if (std::abs(off) > kLikelyRadius) {
+      out.remarks.push_back(fmt::format(
+          "the circle {} is {:.3g} mm {} than the nominal radius: "
+          "check the length of the bar and the radius",
+          sense_name(turn.sense), std::abs(off) / mm, off > 0.0 ? "larger" : "smaller"));
+    }
     add_turn(turns.back(), out);
     squareness += turns.back().squareness / static_cast<double>(test.turns.size());
   }

@@ -13,7 +13,8 @@
 namespace servomill::sim::standards {
 namespace {
 
-constexpr double kSameTarget = 1e-9;  // m, rad: rounding of what was written
+constexpr double kSameTarget = 1e-9;    // m, rad: rounding of what was written
+constexpr double kSameReading = 1e-15;  // m, rad
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view direction_name(int direction) { return direction > 0 ? "forward" : "backward"; }
@@ -195,6 +196,38 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+constexpr std::size_t kFewestRuns = 3;  // that tell which of them is off
+
+double standard_deviation(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::ArrayXd> x(values.data(), static_cast<Eigen::Index>(values.size()));
+  return std::sqrt((x - x.mean()).square().sum() / static_cast<double>(values.size() - 1));
+}
+
+// Median of the standard deviations of all targets and directions, which a few outliers do not
+// move. Where most runs repeat exactly, the smallest difference that there is stands for it: a step
+// of the display; if only one target differs, nothing does.
+template <typename Groups>
+double usual_deviation(const Groups& groups) {
+  std::vector<double> all;
+  std::size_t differ = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& [key, values] : groups) {
+    if (values.size() < kFewestRuns) continue;
+    all.push_back(standard_deviation(values));
+    const double middle = median(values);
+    bool has_difference = false;
+    for (const double value : values) {
+      if (std::abs(value - middle) <= kSameReading) continue;
+      smallest = std::min(smallest, std::abs(value - middle));
+      has_difference = true;
+    }
+    differ += has_difference ? 1 : 0;
+  }
+  if (all.empty()) return 0.0;
+  const double s = median(all);
+  return differ > 1 ? std::max(s, smallest) : s;
+}
+
 }  // namespace
 
 PositioningFile positioning_of(const readings::Group& group, const JointLayout& layout) {
@@ -236,10 +269,7 @@ PositioningTest arrange(const std::vector<TargetReading>& readings, bool angular
 }
 
 std::vector<std::string> outliers(const std::vector<TargetReading>& readings, bool angular) {
-  constexpr std::size_t kFewest = 3;   // readings of one target and direction
-  constexpr double kNormal = 1.4826;   // standard deviation of a normal one by its median
-  constexpr double kFar = 10.0;        // standard deviations
-  constexpr double kSmallest = 1e-12;  // m, rad: readings that repeat exactly
+  constexpr double kFar = 10.0;  // standard deviations
   const std::vector<double> targets = distinct_targets(readings);
   const auto key = [&](const TargetReading& one) {
     return std::pair(std::lower_bound(targets.begin(), targets.end(), one.target - kSameTarget) -
@@ -248,26 +278,19 @@ std::vector<std::string> outliers(const std::vector<TargetReading>& readings, bo
   };
   std::map<std::pair<std::ptrdiff_t, int>, std::vector<double>> groups;
   for (const TargetReading& one : readings) groups[key(one)].push_back(one.deviation);
-  std::map<std::pair<std::ptrdiff_t, int>, double> middle;
-  std::vector<double> distances;
-  for (const auto& [where, values] : groups) {
-    if (values.size() < kFewest) continue;
-    middle[where] = median(values);
-    for (const double value : values) distances.push_back(std::abs(value - middle[where]));
-  }
   std::vector<std::string> out;
-  if (distances.empty()) return out;
-  const double s = std::max(kNormal * median(distances), kSmallest);
+  const double s = usual_deviation(groups);
   for (const TargetReading& one : readings) {
-    const auto found = middle.find(key(one));
-    if (found == middle.end()) continue;
-    const double off = one.deviation - found->second;
+    const auto& group = groups.at(key(one));
+    if (group.size() < kFewestRuns) continue;
+    const double off = one.deviation - median(group);
     if (std::abs(off) <= kFar * s) continue;
     out.push_back(fmt::format(
-        "{}: target {}, {}, run {} is {:.4g} {} off the other runs, {:.0f} times their standard "
-        "deviation; it counts like all others: check it at the machine",
+        "{}: target {}, {}, run {} is {:.4g} {} off the other runs, where the standard deviation "
+        "is usually {:.2g}; it counts like all others: check it at the machine",
         to_string(one.place), target_text(one.target, angular), direction_name(one.direction),
-        one.run + 1, off / (angular ? urad : um), angular ? "urad" : "um", std::abs(off) / s));
+        one.run + 1, off / (angular ? urad : um), angular ? "urad" : "um",
+        s / (angular ? urad : um)));
   }
   return out;
 }

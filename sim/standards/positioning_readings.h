@@ -46,8 +46,9 @@ PositioningFile read_positioning(const std::string& path);
 /// @throws InputError with all faults
 PositioningFile positioning_of(const readings::Group& group, const JointLayout& layout);
 
-/// Readings far from the others of their target and direction (more than ten robust standard
-/// deviations): one sentence each, with the place. They count like all others.
+/// Readings far from the others of their target and direction, at least three runs: more than ten
+/// times the standard deviation that is usual at the other targets. One sentence each, with the
+/// place. They count like all others.
 std::vector<std::string> outliers(const std::vector<TargetReading>& readings, bool angular);
 
 }  // namespace servomill::sim::standards

@@ -222,7 +222,7 @@ class PositioningReader {
     if (std::abs(one.deviation) > largest) {
       const double unit = angular_ ? 1e-3 : mm;
       fault(one.place,
-            fmt::format("{} = {:g} at target {:g} deviates by {:.4g} {}; must be at most {:g} {}{}",
+            fmt::format("{} = {:g} at target {:g} deviates by {:.6g} {}; must be at most {:g} {}{}",
                         column.written, *value, one.target / target_factor_, one.deviation / unit,
                         angular_ ? "mrad" : "mm", largest / unit, angular_ ? "mrad" : "mm",
                         &column == deviation_ ? "; check its unit" : unit_hint(si, one.target)));

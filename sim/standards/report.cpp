@@ -69,6 +69,7 @@ std::string values_text(const Report& report) {
   if (with_U) lines.front().emplace_back("U (k = 2)");
   lines.front().emplace_back("unit");
   for (const ReportValue& one : report.values) {
+    if (std::isnan(one.value)) continue;
     const Scale scale = scale_of(one.dimension, largest_of(report, one.dimension));
     lines.push_back({one.symbol, one.meaning, number(one.value, scale)});
     if (with_U) lines.back().push_back(number(one.U, scale));

@@ -42,7 +42,8 @@ struct Report {
   std::vector<std::string> remarks;
 };
 
-/// Text for reading: units of um or nm, urad or nrad, as the values fit.
+/// Text for reading: units of um or nm, urad or nrad, as the values fit; parameters that the
+/// readings do not give are left out.
 std::string printed(const Report& report, bool with_all_tables);
 /// One object, numbers in m and rad, null where there is none.
 std::string json(const Report& report);

@@ -190,7 +190,9 @@ std::vector<Report> reports_of_groups(const std::string& file, Standard standard
 
 std::vector<Report> reports_of(const Options& options, Standard standard) {
   const std::vector<std::string> files = options.words();
-  if (files.empty()) options.word();  // throws
+  if (files.empty()) {
+    throw InputError({"servomill evaluate"}, "needs files of readings; see --help");
+  }
   const bool toml = files.front().ends_with(".toml");
   if (toml && files.size() > 1) {
     throw InputError({files[1]}, "several files are CSV files, one test each");

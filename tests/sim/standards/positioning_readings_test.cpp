@@ -111,7 +111,7 @@ TEST(PositioningReadings, UnitsThatAreMixed) {
             "readings.csv:2:12: error: position_mm = 10001 at target 10 deviates by 9991 mm; must "
             "be at most 5 mm; it is 1000 times the target: columns of different units name each "
             "in its name, such as target_mm, position_um\n"
-            "readings.csv:3:12: error: position_mm = 20003 at target 20 deviates by 1.998e+04 mm; "
+            "readings.csv:3:12: error: position_mm = 20003 at target 20 deviates by 19983 mm; "
             "must be at most 5 mm; it is 1000 times the target: columns of different units name "
             "each in its name, such as target_mm, position_um");
   EXPECT_EQ(message("direction,target_deg,position_mm\nforward,10,10\n"),
@@ -138,6 +138,21 @@ TEST(PositioningReadings, OutliersAreNamedAndCount) {
   EXPECT_NE(read.remarks[0].find("target 30 mm, forward, run 5 is 99.9 um off"), std::string::npos)
       << read.remarks[0];
   EXPECT_NEAR(read.test.up(3, 4), 101.0 * um, 1e-12);
+}
+
+// Runs that differ by a step of the display are none, nor are two runs, of which none is the other.
+TEST(PositioningReadings, StepsOfTheDisplayAreNoOutliers) {
+  const auto remarks = [](const std::string& text) {
+    const ReadingFile file(text);
+    return read_positioning(file.path()).remarks.size();
+  };
+  const std::string head = "direction,target_mm,p1,p2,p3\n";
+  EXPECT_EQ(
+      remarks(head + "+,0,0.001,0.001,0.001\n+,1,1.001,1.001,1.002\n+,2,2,2,2\n+,3,3,3.001,3\n"
+                     "+,4,4,4,4\n"),
+      0U);
+  EXPECT_EQ(remarks(head + "+,0,0.001,0.001,0.001\n+,1,1.001,1.001,1.101\n+,2,2,2,2\n"), 1U);
+  EXPECT_EQ(remarks("direction,target_mm,p1,p2\n+,0,0.001,0.101\n+,1,1,1.001\n"), 0U);
 }
 
 }  // namespace servomill::sim::standards::positioning_readings_test
