@@ -117,20 +117,6 @@ Vector2d point_of(const readings::Table& table, const readings::Row& row,
   return (radius + deviation) * Vector2d(std::cos(angle), std::sin(angle));
 }
 
-// Coefficient of cos 2 theta of the radial deviation about the least-squares centre.
-double second_cosine(const CirclePath& turn, double radius) {
-  const metrology::Circle mine{metrology::least_squares_circle(turn.points).centre, radius};
-  const auto curve = metrology::radial_error(turn.points, mine);
-  Eigen::MatrixXd A(static_cast<Eigen::Index>(curve.size()), 5);
-  Eigen::VectorXd b(A.rows());
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    const auto [theta, dr] = curve[static_cast<std::size_t>(i)];
-    A.row(i) << 1.0, std::cos(theta), std::sin(theta), std::cos(2.0 * theta), std::sin(2.0 * theta);
-    b[i] = dr;
-  }
-  return A.colPivHouseholderQr().solve(b)[3];
-}
-
 void add_turn(const metrology::CircularTurn& turn, Report& out) {
   const std::string name(sense_name(turn.sense));
   const auto add = [&](std::string symbol, std::string meaning, double value) {
@@ -147,7 +133,7 @@ void add_turn(const metrology::CircularTurn& turn, Report& out) {
 }
 
 ReportTable reversal_table(const std::vector<metrology::CircularTurn>& turns) {
-  ReportTable out{"reversal", false, {}, {}};
+  ReportTable out{"reversal", true, {}, {}};
   for (const char* const name : {"first axis, 0 deg", "second axis, 90 deg", "first axis, 180 deg",
                                  "second axis, 270 deg"}) {
     out.rows.emplace_back(name);
@@ -228,10 +214,28 @@ std::vector<CircleTest> circles_of(const readings::Group& group, const JointLayo
   return out;
 }
 
-double scale_mismatch(const CircleTest& test) {
-  double sum = 0.0;
-  for (const CirclePath& turn : test.turns) sum += second_cosine(turn, test.radius);
-  return 2.0 * sum / static_cast<double>(test.turns.size()) / test.radius;
+CircleFit fit_circle(const CircleTest& test) {
+  constexpr int kUnknowns = 7;
+  std::vector<Vector2d> all;
+  for (const CirclePath& turn : test.turns) {
+    all.insert(all.end(), turn.points.begin(), turn.points.end());
+  }
+  const metrology::Circle about{metrology::least_squares_circle(all).centre, test.radius};
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(all.size()), kUnknowns);
+  Eigen::VectorXd b(A.rows());
+  Eigen::Index i = 0;
+  for (const CirclePath& turn : test.turns) {
+    const double sense = turn.sense == Sense::counter_clockwise ? 1.0 : -1.0;
+    for (const auto& [theta, dr] : metrology::radial_error(turn.points, about)) {
+      const double c = std::cos(theta), s = std::sin(theta);
+      const auto sign = [](double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; };
+      A.row(i) << 1.0, c, s, std::cos(2.0 * theta), std::sin(2.0 * theta),
+          0.5 * sign(-sense * s) * c, 0.5 * sign(sense * c) * s;
+      b[i++] = dr;
+    }
+  }
+  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  return {2.0 * x[4] / test.radius, 2.0 * x[3] / test.radius, {x[5], x[6]}};
 }
 
 Report circle_report(const CircleTest& test) {
@@ -240,7 +244,6 @@ Report circle_report(const CircleTest& test) {
   out.standard = "ISO 230-4";
   out.name = test.name;
   std::vector<metrology::CircularTurn> turns;
-  double squareness = 0.0;
   for (const CirclePath& turn : test.turns) {
     turns.push_back(metrology::evaluate_turn(turn.points, nominal));
     const double off = turns.back().least_squares.radius - test.radius;
@@ -251,7 +254,6 @@ Report circle_report(const CircleTest& test) {
           sense_name(turn.sense), std::abs(off) / mm, off > 0.0 ? "larger" : "smaller"));
     }
     add_turn(turns.back(), out);
-    squareness += turns.back().squareness / static_cast<double>(test.turns.size());
   }
   const bool both = test.turns.size() == 2;
   double G_b = kNone, D = kNone;
@@ -268,10 +270,14 @@ Report circle_report(const CircleTest& test) {
   }
   out.values.push_back({"G_b", "bi-directional circular error, minimum zone", G_b});
   out.values.push_back({"D", "mean bi-directional radial error (nominal minus actual)", D});
-  out.values.push_back({"squareness", "(D45 - D135) / (2 R); positive: angle below 90 deg",
-                        squareness, Dimension::angle});
+  const CircleFit fit = fit_circle(test);
+  out.values.push_back({"squareness", "positive: angle between the positive axes below 90 deg",
+                        fit.squareness, Dimension::angle});
   out.values.push_back({"scale_mismatch", "scale of the first axis minus that of the second",
-                        scale_mismatch(test), Dimension::ratio});
+                        fit.scale_mismatch, Dimension::ratio});
+  out.values.push_back(
+      {"B_1", "reversal error of the first axis, upwards minus downwards", fit.B[0]});
+  out.values.push_back({"B_2", "reversal error of the second axis, likewise", fit.B[1]});
   out.headline = fmt::format("radius {:.6g} mm, {}", test.radius / mm,
                              both ? "one turn in each direction" : "one turn");
   out.tables.push_back(reversal_table(turns));

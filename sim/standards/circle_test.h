@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +34,15 @@ CircleTest read_circle(const std::string& path, double radius);
 /// A group of kind circle, one test a run. @throws InputError
 std::vector<CircleTest> circles_of(const readings::Group& group, const JointLayout& layout);
 
-/// How far the axes of the plane differ in scale: mean over the turns of 2 a / R, where the
-/// deviation has a cos 2 theta; positive where the first axis moves farther.
-double scale_mismatch(const CircleTest& test);
+/// Errors of the axes of the plane that a circle shows, by least squares over all turns:
+/// dr = r_0 + c cos + s sin + R mismatch / 2 cos 2 theta + R squareness / 2 sin 2 theta
+///      + B_1 / 2 sgn(v_1) cos + B_2 / 2 sgn(v_2) sin, v the travel of each axis.
+struct CircleFit {
+  double squareness = 0.0;       // rad; positive: angle between the positive axes below 90 deg
+  double scale_mismatch = 0.0;   // scale of the first axis minus that of the second
+  std::array<double, 2> B = {};  // m, reversal as in ISO 230-2: upwards minus downwards
+};
+CircleFit fit_circle(const CircleTest& test);
 
 Report circle_report(const CircleTest& test);
 

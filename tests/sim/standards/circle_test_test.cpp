@@ -16,12 +16,13 @@ namespace servomill::sim::standards::circle_test_test {
 constexpr double kRadius = 100.0 * mm;
 constexpr double kSecondOrder = 1e-9;  // m: squares of 10 um over 100 mm
 
-// Rows of a ball bar, both directions, a reading a degree; dr in m of angle and direction.
+// Rows of a ball bar, both directions, a reading a degree, none at a reversal itself; dr in m of
+// angle and direction.
 std::string ball_bar(const std::function<double(double, int)>& dr) {
   std::string text = "direction,angle_deg,deviation_um\n";
   for (const int direction : {1, -1}) {
     for (int k = 0; k < 360; ++k) {
-      const int degrees = direction * k;
+      const double degrees = direction * (k + 0.5);
       text += fmt::format("{},{},{:.9f}\n", direction > 0 ? "ccw" : "cw", degrees,
                           dr(degrees * deg, direction) / um);
     }
@@ -76,7 +77,8 @@ TEST(CircleTest, SetUpShiftsTheCentreOnly) {
 TEST(CircleTest, ReversalOfTheFirstAxis) {
   constexpr double kBacklash = 6.0 * um;
   const Report report = report_of(ball_bar([](double theta, int direction) {
-    const double sense = -direction * std::sin(theta) < 0.0 ? -1.0 : 1.0;  // of the travel in x
+    const double travel = -direction * std::sin(theta);  // in x
+    const double sense = travel > 1e-9 ? 1.0 : travel < -1e-9 ? -1.0 : 0.0;
     return -0.5 * kBacklash * sense * std::cos(theta);
   }));
   const ReportTable& table = report.tables.front();
@@ -86,6 +88,9 @@ TEST(CircleTest, ReversalOfTheFirstAxis) {
     EXPECT_NEAR(table.columns[column].values[2], kBacklash, 0.1 * kBacklash);
     EXPECT_NEAR(table.columns[column].values[1], 0.0, 0.1 * kBacklash);
   }
+  EXPECT_NEAR(value(report, "B_1"), -kBacklash, 1e-3 * kBacklash);
+  EXPECT_NEAR(value(report, "B_2"), 0.0, 1e-3 * kBacklash);
+  EXPECT_NEAR(value(report, "squareness"), 0.0, 1e-3 * kBacklash / kRadius);
 }
 
 TEST(CircleTest, GridEncoderAndBallBarAreTheSame) {
@@ -161,7 +166,7 @@ TEST(CircleTest, GroupsOfReadingsAreOneTestARun) {
   ASSERT_EQ(tests.size(), 2U);
   EXPECT_EQ(tests[1].name, "bar, run 2");
   EXPECT_NEAR(value(circle_report(tests[1]), "G_cw"), 16.0 * um, 1e-8);
-  EXPECT_NEAR(scale_mismatch(tests[0]), 8.0 * um / kRadius, 1e-9);
+  EXPECT_NEAR(fit_circle(tests[0]).scale_mismatch, 8.0 * um / kRadius, 1e-9);
 }
 
 }  // namespace servomill::sim::standards::circle_test_test
