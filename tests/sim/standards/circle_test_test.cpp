@@ -97,14 +97,15 @@ TEST(CircleTest, GridEncoderAndBallBarAreTheSame) {
   const auto dr = [](double theta) { return 5.0 * um * std::cos(3.0 * theta); };
   std::string grid = "direction,x_mm,y_mm\n";
   for (int k = 0; k < 360; ++k) {
-    const double r = kRadius + dr(k * deg);
-    grid +=
-        fmt::format("ccw,{:.9f},{:.9f}\n", r * std::cos(k * deg) / mm, r * std::sin(k * deg) / mm);
+    const double angle = (k + 0.5) * deg;
+    const double r = kRadius + dr(angle);
+    grid += fmt::format("ccw,{:.9f},{:.9f}\n", r * std::cos(angle) / mm, r * std::sin(angle) / mm);
   }
   const Report one = report_of(grid);
   const Report other = report_of(ball_bar([&](double theta, int) { return dr(theta); }));
   EXPECT_NEAR(value(one, "G_ccw"), value(other, "G_ccw"), 1e-11);
-  EXPECT_NEAR(value(one, "G_ccw"), 10.0 * um, kSecondOrder);
+  EXPECT_NEAR(value(one, "G_ccw"), 10.0 * um * std::cos(1.5 * deg),
+              kSecondOrder);  // half a degree off
   EXPECT_TRUE(std::isnan(value(one, "G_b")));
   ASSERT_EQ(one.remarks.size(), 1U);
 }
