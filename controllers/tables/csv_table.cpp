@@ -28,7 +28,7 @@ void read_locations(const TableText& file, const std::vector<std::string_view>& 
     const std::string name(cells[0]);
     if (out.locations.contains(name)) refuse(file.name, number, name + " is given twice");
     const double unit = unit_of(cells[2], name, file.name, number);
-    out.locations[name] = {number_at(cells[1], file.name, number) * unit, number};
+    out.locations[name] = {number_at(cells[1], file.name, number) * unit, number, file.name};
   }
 }
 

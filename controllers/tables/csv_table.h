@@ -22,11 +22,13 @@ struct ErrorColumn {
 struct LocationValue {
   double value = 0.0;  // m, rad
   int line = 0;
+  std::string file = {};
 };
 
 struct ErrorColumns {
   std::vector<ErrorColumn> components;
   std::map<std::string, LocationValue, std::less<>> locations;  // by name
+  std::vector<std::string> not_read = {};  // parameters of the file that are no errors
 };
 
 /// Rules (RFC 4180): the first line names the columns. A file of component errors begins with the

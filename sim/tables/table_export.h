@@ -40,6 +40,8 @@ struct TableExport {
   std::vector<std::string> coarse;  // what points lie too far apart for
 
   const FormatRules& rules() const { return rules_of(request.format); }
+  /// True if the tables would put the tip further off, somewhere in the travel.
+  bool makes_worse() const { return volume.after > volume.before + rules().length_step; }
   char letter(int joint) const { return source.chain.layout.letter_of(joint); }
 };
 

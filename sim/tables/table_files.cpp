@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "plant/vocabulary/units.h"
+#include "sim/tables/exchange_files.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -323,6 +324,10 @@ std::vector<TextFile> table_files(const TableExport& e) {
       return heidenhain_files(e);
     case TableFormat::siemens:
       return siemens_files(e);
+    case TableFormat::isg:
+      return isg_files(e);
+    case TableFormat::etalon:
+      return etalon_files(e);
     case TableFormat::csv:
       break;
   }

@@ -8,6 +8,8 @@
 ///     siemens     $AA_ENC_COMP: e, added to the actual value, so that a positive value moves the
 ///                 axis in the negative direction; $AN_CEC: -e, added to the setpoint
 ///     csv         e of each component error by its name
+///     isg, etalon e of each component error by its name, every axis as if it carried the tool
+///                 (sim/tables/tool_side_errors.h)
 #pragma once
 
 #include <string>

@@ -3,6 +3,24 @@
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim::tables {
+namespace {
+
+// Files for the volumetric compensation of the ISG kernel.
+FormatRules exchange(std::string_view document) {
+  return {.document = document,
+          .most_points = 10000,
+          .cross = true,
+          .power_of_two = false,
+          .one_turn = false,
+          .wraps = false,
+          .direction = DirectionRule::none,
+          .length_step = 1e-6 * mm,
+          .angle_step = 1e-9,
+          .components = true,
+          .tool_side = true};
+}
+
+}  // namespace
 
 const FormatRules& rules_of(TableFormat format) {
   static const std::array<FormatRules, kTableFormats.size()> kRules = {{
@@ -46,7 +64,13 @@ const FormatRules& rules_of(TableFormat format) {
        .wraps = false,
        .direction = DirectionRule::all,
        .length_step = 1e-4 * um,
-       .angle_step = 1e-4 * urad},
+       .angle_step = 1e-4 * urad,
+       .components = true},
+      exchange("Beckhoff, TF5280 TwinCAT 3 CNC Volumetric Compensation: ISG CSV format "
+               "(296429067.html), Units of measure (296426379.html), List of parameters supported "
+               "(296423819.html)"),
+      exchange("Beckhoff, TF5280 TwinCAT 3 CNC Volumetric Compensation: Etalon Exchange Format "
+               "(296430091.html), variant Vendor; Units of measure (296426379.html)"),
   }};
   return kRules[static_cast<std::size_t>(format)];
 }

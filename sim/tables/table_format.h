@@ -8,14 +8,14 @@
 
 namespace servomill::sim::tables {
 
-enum class TableFormat : std::uint8_t { linuxcnc, heidenhain, siemens, csv };
+enum class TableFormat : std::uint8_t { linuxcnc, heidenhain, siemens, csv, isg, etalon };
 
-inline constexpr std::array<std::string_view, 4> kTableFormats = {"linuxcnc", "heidenhain",
-                                                                  "siemens", "csv"};
+inline constexpr std::array<std::string_view, 6> kTableFormats = {
+    "linuxcnc", "heidenhain", "siemens", "csv", "isg", "etalon"};
 
-/// Dependence on the direction of travel that a format holds: none of a table over another axis
-/// where only `own`.
-enum class DirectionRule : std::uint8_t { own, all };
+/// Dependence on the direction of travel that a format holds: `own`, only of a table over the
+/// position of the compensated axis itself.
+enum class DirectionRule : std::uint8_t { none, own, all };
 
 struct FormatRules {
   std::string_view document;  // that the format follows
@@ -27,6 +27,8 @@ struct FormatRules {
   DirectionRule direction;    // of travel
   double length_step;         // m, last digit written
   double angle_step;          // rad
+  bool components = false;    // holds the errors by their names, not displacements of axes
+  bool tool_side = false;     // every axis counts as carrying the tool (tool_side_errors.h)
 };
 
 const FormatRules& rules_of(TableFormat format);

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 
-#include "controllers/tables/csv_table.h"
 #include "controllers/tables/heidenhain_table.h"
 #include "controllers/tables/linuxcnc_table.h"
 #include "controllers/tables/siemens_table.h"
@@ -16,19 +15,13 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/table_comparison.h"
 
 namespace servomill::sim::tables {
 namespace {
 
 using controllers::ControlTable;
 using Eigen::Vector3d;
-
-constexpr int kPositions = 1000;
-constexpr double kDigitSlack = 1e-6;  // of a digit, for binary fractions
-
-Axis axis_at(const TableExport& e, int joint) {
-  return *e.source.chain.layout.axis[static_cast<std::size_t>(joint)];
-}
 
 // Displacement that one machine with errors needs, from its kinematics alone.
 class Needed {
@@ -89,12 +82,6 @@ class Needed {
   std::unique_ptr<plant::VolumetricModel> model_;
 };
 
-std::vector<controllers::TableText> texts_of(const std::vector<TextFile>& files) {
-  std::vector<controllers::TableText> out;
-  for (const TextFile& file : files) out.push_back({file.name, file.text});
-  return out;
-}
-
 std::vector<ControlTable> read(const TableExport& e, const std::vector<TextFile>& files) {
   const auto texts = texts_of(files);
   std::vector<Axis> joints;
@@ -109,97 +96,6 @@ std::vector<ControlTable> read(const TableExport& e, const std::vector<TextFile>
           texts, e.request.most_points.value_or(e.rules().most_points));
   }
 }
-
-std::string size_of(bool is_angle, double value) {
-  return is_angle ? fmt::format("{:.4f} urad", value / urad) : fmt::format("{:.4f} um", value / um);
-}
-
-// One quantity over the position of one axis: as read, and as needed.
-struct Comparison {
-  std::string file, title;
-  bool is_angle = false;
-  double digit = 0.0;
-  std::function<double(double, int)> read, needed;  // position, direction of travel
-  std::function<int(double)> line_at;
-};
-
-class Verification {
- public:
-  explicit Verification(const TableExport& e) : e_(e) {}
-
-  void check(const TableLine& line, const Comparison& c) {
-    for (const int direction : {1, -1}) {
-      const auto chord = chords(line, c, direction);
-      for (int n = 0; n < kPositions; ++n) {
-        throw_if_interrupted();
-        const double q = line.from + (line.to - line.from) * n / (kPositions - 1);
-        const double read = c.read(q, direction);
-        const double wanted = chord(line.entry_of(q));
-        if (!(std::abs(read - wanted) <= c.digit * (1.0 + kDigitSlack))) {
-          fail(line, c, q, direction, read, wanted);
-        }
-        double& largest = c.is_angle ? result_.angle : result_.length;
-        largest = std::max(largest, std::abs(read - c.needed(q, direction)));
-        ++result_.positions;
-      }
-    }
-  }
-
-  // The points of a file are those that were asked for.
-  void check_points(const TableLine& line, const std::string& file,
-                    const std::vector<controllers::TablePoint>& points) const {
-    const double unit = line.joint < kLinearJoints ? mm : deg;
-    const char* name = line.joint < kLinearJoints ? "mm" : "deg";
-    if (points.size() != line.points) {
-      throw InputError({file}, fmt::format("not as verified: {} points; {} are needed",
-                                           points.size(), line.points));
-    }
-    // last digit of positions: mm, deg
-    const double digit = e_.request.format == TableFormat::heidenhain ? 1e-4 : 1e-6;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::abs(points[i].position - line.entry(i)) <= 0.501 * digit * unit) continue;
-      throw InputError(
-          {file, points[i].line},
-          fmt::format("not as verified: position {:.6f} {}; point {} must be at {:.6f}",
-                      points[i].position / unit, name, i, line.entry(i) / unit));
-    }
-  }
-
-  TableVerification result() const { return result_; }
-
- private:
-  // Linear interpolation between exact values at the requested points.
-  std::function<double(double)> chords(const TableLine& line, const Comparison& c,
-                                       int direction) const {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < line.points; ++i) {
-      values.push_back(c.needed(line.position(line.entry(i)), direction));
-    }
-    return [values, &line](double entry) {
-      const double last = static_cast<double>(values.size() - 1);
-      const double u = std::clamp((entry - line.first) / line.spacing, 0.0, last);
-      const auto i = std::min(static_cast<std::size_t>(u), values.size() - 2);
-      const double share = u - static_cast<double>(i);
-      return (1.0 - share) * values[i] + share * values[i + 1];
-    };
-  }
-
-  [[noreturn]] void fail(const TableLine& line, const Comparison& c, double q, int direction,
-                         double read, double wanted) const {
-    const bool is_linear_base = line.joint < kLinearJoints;
-    throw InputError(
-        {c.file, c.line_at(q)},
-        fmt::format(
-            "not as verified: {} at {}{:.6g} {}, travelling {}: the file gives {}, the error "
-            "model {}",
-            c.title, e_.letter(line.joint), q / (is_linear_base ? mm : deg),
-            is_linear_base ? "mm" : "deg", direction > 0 ? "up" : "down", size_of(c.is_angle, read),
-            size_of(c.is_angle, wanted)));
-  }
-
-  const TableExport& e_;
-  TableVerification result_;
-};
 
 const TableLine* line_of(const TableExport& e, Axis axis) {
   for (const TableLine& line : e.lines) {
@@ -287,89 +183,15 @@ class Displacements {
 
   const TableExport& e_;
   std::vector<ControlTable> tables_;
-  Verification check_;
+  TableComparison check_;
   std::string folder_;
   Joints base_ = Joints::Zero();
-};
-
-// The errors themselves, by their names.
-class Columns {
- public:
-  Columns(const TableExport& e, const std::vector<TextFile>& files)
-      : e_(e), columns_(controllers::read_csv_tables(texts_of(files))), check_(e) {}
-
-  TableVerification run() {
-    for (const TableLine& line : e_.lines) {
-      const Axis axis = axis_at(e_, line.joint);
-      for (const Axis direction : kAllAxes) {
-        if (line.wanted) check_component(line, {direction, axis, false});
-        check_location({direction, axis, true});
-      }
-    }
-    return check_.result();
-  }
-
- private:
-  // The column that holds an error in one direction of travel; empty points: there is none.
-  ControlTable column(const TableLine& line, const plant::ErrorName& name, int direction) const {
-    ControlTable out;
-    for (const controllers::ErrorColumn& one : columns_.components) {
-      const bool is_it = one.name == to_string(name) && one.base_axis == name.axis &&
-                         one.direction * direction >= 0;
-      if (!is_it) continue;
-      check_.check_points(line, one.file, one.points);
-      out.file = one.file;
-      out.points = one.points;
-    }
-    return out;
-  }
-
-  void check_component(const TableLine& line, const plant::ErrorName& name) {
-    const plant::ErrorFunction& error = e_.source.errors.component(name);
-    const std::array<ControlTable, 2> tables = {column(line, name, -1), column(line, name, 1)};
-    if (tables[0].points.empty() && tables[1].points.empty() && error.is_zero()) return;
-    Comparison c;
-    c.file = tables[1].file;
-    c.title = to_string(name);
-    c.is_angle = !is_linear(name.direction);
-    c.digit = c.is_angle ? e_.rules().angle_step : e_.rules().length_step;
-    c.needed = [&](double q, int direction) {
-      return plant::travelling(error, direction).value(q);
-    };
-    c.read = [&](double q, int direction) {
-      const ControlTable& table = tables[direction > 0 ? 1 : 0];
-      return table.points.empty() ? 0.0 : table.at(line.entry_of(q), direction);
-    };
-    c.line_at = [&](double q) {
-      return tables[1].points.empty() ? 0 : tables[1].point_below(line.entry_of(q)).line;
-    };
-    check_.check(line, c);
-  }
-
-  void check_location(const plant::ErrorName& name) const {
-    const double wanted = e_.source.errors.location(name);
-    const auto found = columns_.locations.find(to_string(name));
-    const bool is_there = found != columns_.locations.end();
-    const double read = is_there ? found->second.value : 0.0;
-    const bool is_angle = !is_linear(name.direction);
-    const double digit = is_angle ? e_.rules().angle_step : e_.rules().length_step;
-    if (std::abs(read - wanted) <= digit * (1.0 + kDigitSlack)) return;
-    throw InputError(
-        {"locations.csv", is_there ? found->second.line : 0},
-        fmt::format("not as verified: {}: the file gives {}, the error model {}", to_string(name),
-                    size_of(is_angle, read), size_of(is_angle, wanted)));
-  }
-
-  const TableExport& e_;
-  controllers::ErrorColumns columns_;
-  Verification check_;
 };
 
 }  // namespace
 
 TableVerification verify_tables(const TableExport& e, const std::vector<TextFile>& files) {
-  return e.request.format == TableFormat::csv ? Columns(e, files).run()
-                                              : Displacements(e, files).run();
+  return e.rules().components ? verify_columns(e, files) : Displacements(e, files).run();
 }
 
 std::string to_string(const TableVerification& v) {

@@ -101,13 +101,33 @@ EC0Y = "0.2 mm/m"
 
     def test_every_format_writes_what_it_names(self):
         for name, files in (("linuxcnc", ["compensation.ini", "joint_0_x.comp"]),
-                            ("heidenhain", ["CONFIG.CMA.txt", "X.COM.txt", "notes.txt"]), ("csv", ["notes.txt", "x.csv"])):
+                            ("heidenhain", ["CONFIG.CMA.txt", "X.COM.txt", "notes.txt"]), ("csv", ["notes.txt", "x.csv"]),
+                            ("isg", ["notes.txt", "volcomp.csv"]), ("etalon", ["notes.txt", "volcomp.exc"])):
             out = os.path.join(self.folder, name)
             status, said, faults = servomill("table", SCENARIO, "--set", "errors.imposed.EXX={polynomial_um=[0.0,0.1]}",
                                              "--format", name, "-o", out)
             self.assertEqual((status, faults), (0, ""))
             self.assertEqual(sorted(os.listdir(out)), files)
             self.assertEqual(sorted(said.splitlines()[-1].split()[1:]), [os.path.join(out, file) for file in files])
+
+    def test_imports_what_it_wrote(self):
+        errors = ["--set", "errors.imposed.EXX={polynomial_um=[0.0,0.1]}", "--set", 'errors.imposed.EC0Y="20 urad"']
+        for name, file in (("isg", "volcomp.csv"), ("etalon", "volcomp.exc"), ("csv", "x.csv")):
+            out = os.path.join(self.folder, name)
+            self.assertEqual(servomill("table", SCENARIO, *errors, "--format", name, "-o", out, "-q"), (0, "", ""))
+            inputs = ["--import", os.path.join(out, file)]
+            if name == "csv":
+                inputs += ["--import", os.path.join(out, "locations.csv")]
+            back = os.path.join(self.folder, name + ".toml")
+            command = ["table", *inputs, "--format", name, "--machine", MACHINE, "--model", "imposed", "-o", back]
+            status, said, faults = servomill(*command)
+            self.assertEqual((status, faults), (0, ""))
+            self.assertIn(f"\nverified: 2001 positions, to 2 nm and 2 nrad\nwritten: {back}\n", said)
+            self.assertEqual(servomill(*command), (2, "", f"{back}: error: exists; use --force to overwrite\n"))
+            again = os.path.join(self.folder, name + "_again")
+            self.assertEqual(servomill("table", back, "--machine", MACHINE, "--format", name, "-o", again, "-q"), (0, "", ""))
+            self.assertEqual({k: v for k, v in files_in(again).items() if k != "notes.txt"},
+                             {k: v for k, v in files_in(out).items() if k != "notes.txt"})
 
     def test_a_folder_that_cannot_be_made_is_the_systems_fault(self):
         status, said, faults = servomill("table", SCENARIO, "--format", "csv", "-o", "/proc/none")

@@ -16,6 +16,7 @@
 #include "sim/system/write_file.h"
 #include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/import_errors.h"
 
 namespace servomill::tools {
 namespace {
@@ -128,12 +129,12 @@ void read_axes(const Options& options, const sim::model::MachineSettings& machin
 // Options that would do nothing.
 void refuse_idle_options(const Options& options, const sim::model::MachineSettings& machine,
                          sim::tables::TableFormat format) {
-  if (format == sim::tables::TableFormat::csv) {
+  if (sim::tables::rules_of(format).components) {
     for (const char* name : {"at", "tool-length"}) {
-      if (options.has(name)) {
-        throw InputError({std::string("--") + name},
-                         "means nothing to csv, which holds the errors themselves");
-      }
+      if (!options.has(name)) continue;
+      throw InputError({std::string("--") + name},
+                       fmt::format("means nothing to {}, which holds the errors themselves",
+                                   sim::tables::name_of(format)));
     }
   }
   if (format != sim::tables::TableFormat::linuxcnc && options.has("comp-file-type")) {
@@ -208,8 +209,13 @@ void write(const std::vector<sim::tables::TextFile>& files, const std::string& f
 
 void add_table_options(Options& options) {
   options.add()("format", po::value<std::string>()->value_name("FORMAT"),
-                "linuxcnc, heidenhain, siemens or csv");
-  options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder for the files");
+                "linuxcnc, heidenhain, siemens, csv, isg or etalon");
+  options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
+                "folder for the files; with --import the file of the error model");
+  options.add()("import", po::value<std::vector<std::string>>()->value_name("FILE"),
+                "reads a parameter file of csv, isg or etalon and writes it as a file "
+                "[errors.NAME] of the machine of --machine; NAME is that of --model (measured); "
+                "csv: once for each file");
   options.add()(
       "machine", po::value<std::string>()->value_name("M.toml"),
       "machine file, which needs structure, travel and errors only; instead of a scenario "
@@ -247,13 +253,16 @@ void add_table_options(Options& options) {
 
 int table_command(const Arguments& arguments) {
   Options options(
-      "table", "SCENARIO.toml|--machine M.toml --format linuxcnc|heidenhain|siemens|csv -o FOLDER",
+      "table", "SCENARIO.toml|--machine M.toml --format FORMAT -o FOLDER",
       "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
       "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
       "A table holds the errors on one line along its axis, and 0 at the reference. What it "
       "cannot\n"
-      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv holds the\n"
-      "errors themselves. Every format names the document that it follows. The files are read "
+      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv, isg (ISG "
+      "CSV,\n"
+      "for Beckhoff TF5280) and etalon (exchange format, as TF5280 reads it) hold the errors\n"
+      "themselves, and are read by --import. Every format names the document that it follows. The "
+      "files are read "
       "back\n"
       "by the rules of that document and compared with the error model before they are written.",
       "SCENARIO.toml");
@@ -263,6 +272,8 @@ int table_command(const Arguments& arguments) {
   if (!options.has("output") || options.get<std::string>("output").empty()) {
     throw InputError({"servomill table"}, "needs the name of a folder: -o FOLDER");
   }
+
+  if (options.has("import")) return import_errors(options);
 
   const Inputs inputs = read_inputs(options);
   sim::tables::TableRequest request = request_of(options, inputs.machine);

@@ -111,6 +111,8 @@ POST = [
 
 TABLE = "servomill table scenario.toml --format siemens -o out"
 
+IMPORT = "servomill table --import volcomp.csv --format isg --machine machine.toml -o errors.toml"
+
 TABLES = [
     typed("tables in no format, to no folder, of no model", "servomill table scenario.toml -o out",
           "servomill table scenario.toml --format heidenhein -o out", "servomill table scenario.toml --format csv",
@@ -135,6 +137,14 @@ TABLES = [
           "servomill table errors.toml --machine machine.toml --format csv -o out --set a=1",
           "servomill table errors.toml --machine machine.toml --format csv -o out",
           write={"errors.toml": "[errors.found]\nEXC = { constant_um = 1.0 }\n"}),
+    typed("a parameter file that holds something else", IMPORT, write={"volcomp.csv": "X,EXX\n0,0\n1,0\n"}),
+    typed("a parameter file of two arguments", IMPORT, write={"volcomp.csv": "Z X EXX\n0 0 0\n0 10 0.01\n"}),
+    typed("a parameter file in other units", IMPORT, write={"volcomp.csv": "C0Y\n0.2\n"}),
+    typed("a parameter file of another machine", IMPORT, write={"volcomp.csv": "C ECC\n0 0\n90 1e-5\n"}),
+    typed("options of --import that cannot be", IMPORT.replace(" --machine machine.toml", ""), IMPORT.replace(" --format isg", ""),
+          IMPORT.replace("isg", "siemens"), IMPORT.replace("isg", "etalon"), IMPORT + " --spacing 5", IMPORT + " --model 'a b'",
+          IMPORT + " --import volcomp.csv", IMPORT + " scenario.toml", IMPORT.replace("volcomp", "volcom"), IMPORT + " -a X",
+          write={"volcomp.csv": "C0Y\n0.0001\n"}),
     typed("tables where something stands already", TABLE + " -q", "servomill table scenario.toml --format siemens -o part.ngc",
           write={"out/NC_CEC.INI": "precious"}, about="a file"),
 ]

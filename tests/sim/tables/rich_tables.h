@@ -37,7 +37,7 @@ inline TableRequest rich_request(TableFormat format, int comp_file_type = 0) {
   request.tool_length = 120.0 * mm;
   request.spacing = 10.0 * mm;
   request.rotary_spacing = 15.0 * deg;
-  if (format == TableFormat::csv) request.tool_length = 0.0;
+  if (rules_of(format).components) request.tool_length = 0.0;
   return request;
 }
 

@@ -32,7 +32,7 @@ std::vector<Number> values_in(const std::string& line) {
   return out;
 }
 
-// True for lines that hold a point: of *.comp, *.COM, *.csv and $AA_ENC_COMP[0,1,X1]=,
+// True for lines that hold a point: of *.comp, *.COM, *.csv, *.exc and $AA_ENC_COMP[0,1,X1]=,
 // $AN_CEC[0,1]=.
 bool holds_point(const std::string& line) {
   if (line.starts_with("$")) {
@@ -94,7 +94,8 @@ std::vector<Mutation> mutations() {
 TEST(TableMutations, MutationsOfAnyRowAreFound) {
   std::size_t found = 0;
   for (const TableFormat format :
-       {TableFormat::linuxcnc, TableFormat::heidenhain, TableFormat::siemens, TableFormat::csv}) {
+       {TableFormat::linuxcnc, TableFormat::heidenhain, TableFormat::siemens, TableFormat::csv,
+        TableFormat::isg, TableFormat::etalon}) {
     const TableExport tables = rich_tables(format);
     const auto files = table_files(tables);
     for (std::size_t f = 0; f < files.size(); ++f) {
@@ -169,7 +170,16 @@ TEST(TableMutations, MutationsOfHeadsAreFound) {
       {TableFormat::csv, "x.csv", "EZX_um", "EZX_urad"},
       {TableFormat::csv, "z.csv", "Z_mm", "Y_mm"},
       {TableFormat::csv, "locations.csv", "EC0Y", "EC0X"},
-      {TableFormat::csv, "locations.csv", "200.0", "20.0"}};
+      {TableFormat::csv, "locations.csv", "200.0", "20.0"},
+      {TableFormat::isg, "volcomp.csv", "C0Y", "C0X"},
+      {TableFormat::isg, "volcomp.csv", "0.000200000", "0.000100000"},
+      {TableFormat::isg, "volcomp.csv", "EXX EYX", "EYX EXX"},
+      {TableFormat::isg, "volcomp.csv", "Y EYY", "X EYX"},
+      {TableFormat::isg, "volcomp.csv", "#\n", ""},
+      {TableFormat::etalon, "volcomp.exc", "[C0Y]", "[B0Y]"},
+      {TableFormat::etalon, "volcomp.exc", "VALUE = 0.0002", "VALUE = 0.0003"},
+      {TableFormat::etalon, "volcomp.exc", "[EXX]", "[EXY]"},
+      {TableFormat::etalon, "volcomp.exc", "}", ""}};
   for (const Head& head : heads) {
     const TableExport tables = rich_tables(head.format);
     const auto files = table_files(tables);

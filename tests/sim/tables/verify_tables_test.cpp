@@ -13,7 +13,8 @@ namespace {
 
 TEST(VerifyTables, EveryFormatHoldsTheErrorModel) {
   for (const TableFormat format :
-       {TableFormat::linuxcnc, TableFormat::heidenhain, TableFormat::siemens, TableFormat::csv}) {
+       {TableFormat::linuxcnc, TableFormat::heidenhain, TableFormat::siemens, TableFormat::csv,
+        TableFormat::isg, TableFormat::etalon}) {
     for (const int type : {0, 1}) {
       if (type == 1 && format != TableFormat::linuxcnc) continue;
       const TableExport tables = rich_tables(format, type);
@@ -80,8 +81,9 @@ TEST(VerifyTables, RandomModelsAreVerified) {
     for (const char* structure : {"[w X b Y Z t]", "[w C' A' Y b X Z t]", "[w Y b X Z B t]"}) {
       const model::MachineSettings machine = machine_of(structure);
       const plant::ErrorModel errors = random_model(engine, machine.chain.layout);
-      for (const TableFormat format : {TableFormat::linuxcnc, TableFormat::heidenhain,
-                                       TableFormat::siemens, TableFormat::csv}) {
+      for (const TableFormat format :
+           {TableFormat::linuxcnc, TableFormat::heidenhain, TableFormat::siemens, TableFormat::csv,
+            TableFormat::isg, TableFormat::etalon}) {
         const TableExport tables = export_tables(machine, errors, rich_request(format));
         ASSERT_EQ(fault_of(tables, table_files(tables)), "verified")
             << structure << " " << name_of(format) << " " << n;
