@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/skew_settings.h"
 #include "sim/tables/tool_side_errors.h"
 
 namespace servomill::sim::tables {
@@ -180,6 +181,10 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
               errors,
               {0.0, 0.0, -request.tool_length},
               reference_of(request, e.lines, machine.chain.layout)};
+  if (e.rules().skew) {
+    e.skew = skew_settings_of(e.source, e.lines, request.format);
+    return e;
+  }
   const bool csv = e.rules().components;
   if (e.rules().tool_side) {
     refuse_undocumented_axes(machine.chain, errors, name_of(request.format), {});

@@ -7,6 +7,7 @@
 
 #include "sim/model/machine.h"
 #include "sim/tables/compensation_tables.h"
+#include "sim/tables/skew.h"
 #include "sim/tables/table_residuals.h"
 
 namespace servomill::sim::tables {
@@ -37,7 +38,8 @@ struct TableExport {
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
   std::vector<TableResidual> left;
   Volume volume;
-  std::vector<std::string> coarse;  // what points lie too far apart for
+  std::optional<SkewSettings> skew;  // of the formats that hold nothing else
+  std::vector<std::string> coarse;   // what points lie too far apart for
 
   const FormatRules& rules() const { return rules_of(request.format); }
   /// True if the tables would put the tip further off, somewhere in the travel.

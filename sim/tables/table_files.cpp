@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/tables/exchange_files.h"
+#include "sim/tables/skew_settings.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -328,6 +329,10 @@ std::vector<TextFile> table_files(const TableExport& e) {
       return isg_files(e);
     case TableFormat::etalon:
       return etalon_files(e);
+    case TableFormat::marlin:
+    case TableFormat::klipper:
+    case TableFormat::reprapfirmware:
+      return skew_files(e);
     case TableFormat::csv:
       break;
   }

@@ -20,6 +20,20 @@ FormatRules exchange(std::string_view document) {
           .tool_side = true};
 }
 
+// Skew corrections of firmwares: three numbers.
+FormatRules skew(std::string_view document) {
+  return {.document = document,
+          .most_points = 10000,
+          .cross = true,
+          .power_of_two = false,
+          .one_turn = false,
+          .wraps = false,
+          .direction = DirectionRule::none,
+          .length_step = 0.0,
+          .angle_step = 1e-8,
+          .skew = true};
+}
+
 }  // namespace
 
 const FormatRules& rules_of(TableFormat format) {
@@ -71,6 +85,10 @@ const FormatRules& rules_of(TableFormat format) {
                "(296423819.html)"),
       exchange("Beckhoff, TF5280 TwinCAT 3 CNC Volumetric Compensation: Etalon Exchange Format "
                "(296430091.html), variant Vendor; Units of measure (296426379.html)"),
+      skew("Marlin, Marlin/src/gcode/calibrate/M852.cpp and skew() in Marlin/src/module/planner.h"),
+      skew("Klipper, klippy/extras/skew_correction.py"),
+      skew("RepRapFirmware, M556 (duet3d.dozuki.com/Wiki/M556), Move::AxisTransform in "
+           "src/Movement/Move.cpp"),
   }};
   return kRules[static_cast<std::size_t>(format)];
 }

@@ -8,10 +8,21 @@
 
 namespace servomill::sim::tables {
 
-enum class TableFormat : std::uint8_t { linuxcnc, heidenhain, siemens, csv, isg, etalon };
+enum class TableFormat : std::uint8_t {
+  linuxcnc,
+  heidenhain,
+  siemens,
+  csv,
+  isg,
+  etalon,
+  marlin,
+  klipper,
+  reprapfirmware
+};
 
-inline constexpr std::array<std::string_view, 6> kTableFormats = {
-    "linuxcnc", "heidenhain", "siemens", "csv", "isg", "etalon"};
+inline constexpr std::array<std::string_view, 9> kTableFormats = {
+    "linuxcnc", "heidenhain", "siemens", "csv",           "isg",
+    "etalon",   "marlin",     "klipper", "reprapfirmware"};
 
 /// Dependence on the direction of travel that a format holds: `own`, only of a table over the
 /// position of the compensated axis itself.
@@ -29,6 +40,7 @@ struct FormatRules {
   double angle_step;          // rad
   bool components = false;    // holds the errors by their names, not displacements of axes
   bool tool_side = false;     // every axis counts as carrying the tool (tool_side_errors.h)
+  bool skew = false;          // holds the squareness of X, Y and Z only
 };
 
 const FormatRules& rules_of(TableFormat format);

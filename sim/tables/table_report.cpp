@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
-#include "sim/tables/table_export.h"
+#include "sim/tables/skew_settings.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -212,6 +212,7 @@ void add_unheld(const TableExport& e, std::vector<std::string>& out) {
 }  // namespace
 
 std::vector<std::string> report(const TableExport& e) {
+  if (e.skew) return skew_report(e);
   const bool csv = e.rules().components;
   std::vector<std::string> out;
   out.push_back(

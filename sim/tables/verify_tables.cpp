@@ -15,6 +15,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/skew_settings.h"
 #include "sim/tables/table_comparison.h"
 
 namespace servomill::sim::tables {
@@ -191,10 +192,15 @@ class Displacements {
 }  // namespace
 
 TableVerification verify_tables(const TableExport& e, const std::vector<TextFile>& files) {
+  if (e.skew) return verify_skew(e, files);
   return e.rules().components ? verify_columns(e, files) : Displacements(e, files).run();
 }
 
 std::string to_string(const TableVerification& v) {
+  if (v.right_angles > 0) {
+    return fmt::format("verified: {} right angles, largest deviation {:.4f} urad", v.right_angles,
+                       v.angle / urad);
+  }
   std::string text =
       fmt::format("verified: {} positions, largest difference to the error model {:.4f} um",
                   v.positions, v.length / um);

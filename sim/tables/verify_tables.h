@@ -14,6 +14,7 @@ struct TableVerification {
   std::size_t positions = 0;  // of all tables, both directions of travel
   double length = 0.0;        // m: largest difference to the error model, interpolation included
   double angle = 0.0;         // rad
+  int right_angles = 0;       // of skew corrections
 };
 
 /// Reads the files as the control documents them (controllers/tables) and evaluates them at 1000

@@ -110,6 +110,17 @@ EC0Y = "0.2 mm/m"
             self.assertEqual(sorted(os.listdir(out)), files)
             self.assertEqual(sorted(said.splitlines()[-1].split()[1:]), [os.path.join(out, file) for file in files])
 
+    def test_writes_the_squareness_for_firmwares(self):
+        for name, file, line in (("marlin", "skew.gcode", "M852 I-0.00020000 J0.00000000 K0.00000000"),
+                                 ("klipper", "skew.cfg", "xy_skew = -0.00020000"),
+                                 ("reprapfirmware", "skew.g", "M556 S100 X0.020000 Y0.000000 Z0.000000")):
+            out = os.path.join(self.folder, name)
+            status, said, faults = servomill("table", SCENARIO, "--set", 'errors.imposed.EC0Y="200 urad"', "--format", name, "-o", out)
+            self.assertEqual((status, faults), (0, ""))
+            self.assertIn("not in this correction: EYX\n", said)
+            self.assertIn("verified: 3 right angles, largest deviation 0.0000 urad\n", said)
+            self.assertIn(line, files_in(out)[file].splitlines())
+
     def test_imports_what_it_wrote(self):
         errors = ["--set", "errors.imposed.EXX={polynomial_um=[0.0,0.1]}", "--set", 'errors.imposed.EC0Y="20 urad"']
         for name, file in (("isg", "volcomp.csv"), ("etalon", "volcomp.exc"), ("csv", "x.csv")):

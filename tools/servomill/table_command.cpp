@@ -137,6 +137,14 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
                                    sim::tables::name_of(format)));
     }
   }
+  if (sim::tables::rules_of(format).skew) {
+    for (const char* name : {"at", "spacing", "rotary-spacing", "max-points"}) {
+      if (!options.has(name)) continue;
+      throw InputError({std::string("--") + name},
+                       fmt::format("means nothing to {}, which holds three angles",
+                                   sim::tables::name_of(format)));
+    }
+  }
   if (format != sim::tables::TableFormat::linuxcnc && options.has("comp-file-type")) {
     throw InputError({"--comp-file-type"},
                      fmt::format("means nothing to {}", sim::tables::name_of(format)));
@@ -147,6 +155,25 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
   }
 }
 
+// Formats that are wanted but not documented well enough to write for a real machine.
+void refuse_undocumented(const std::string& format) {
+  struct Refusal {
+    std::string_view name, reason;
+  };
+  constexpr std::array<Refusal, 2> kRefusals = {{
+      {"fanuc",
+       "is not written: the documents found name the parameters of pitch error compensation (3620 "
+       "to 3627), not the sign of its values nor the file that the control reads"},
+      {"vcs",
+       "is not written: no document of the files of Siemens VCS was found; siemens writes EEC and "
+       "CEC"},
+  }};
+  for (const Refusal& refusal : kRefusals) {
+    if (format != refusal.name) continue;
+    throw InputError({"--format"}, fmt::format("{} {}", refusal.name, refusal.reason));
+  }
+}
+
 sim::tables::TableRequest request_of(const Options& options,
                                      const sim::model::MachineSettings& machine) {
   sim::tables::TableRequest request;
@@ -154,6 +181,7 @@ sim::tables::TableRequest request_of(const Options& options,
     throw InputError({"--format"}, fmt::format("is missing; it is one of {}",
                                                fmt::join(sim::tables::kTableFormats, ", ")));
   }
+  refuse_undocumented(options.get<std::string>("format"));
   request.format = static_cast<sim::tables::TableFormat>(
       choice_option(options, "format", sim::tables::kTableFormats));
   refuse_idle_options(options, machine, request.format);
@@ -208,8 +236,9 @@ void write(const std::vector<sim::tables::TextFile>& files, const std::string& f
 }
 
 void add_table_options(Options& options) {
-  options.add()("format", po::value<std::string>()->value_name("FORMAT"),
-                "linuxcnc, heidenhain, siemens, csv, isg or etalon");
+  options.add()(
+      "format", po::value<std::string>()->value_name("FORMAT"),
+      "linuxcnc, heidenhain, siemens, csv, isg, etalon, marlin, klipper or reprapfirmware");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
                 "folder for the files; with --import the file of the error model");
   options.add()("import", po::value<std::vector<std::string>>()->value_name("FILE"),
@@ -261,7 +290,9 @@ int table_command(const Arguments& arguments) {
       "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv, isg (ISG "
       "CSV,\n"
       "for Beckhoff TF5280) and etalon (exchange format, as TF5280 reads it) hold the errors\n"
-      "themselves, and are read by --import. Every format names the document that it follows. The "
+      "themselves, and are read by --import. marlin, klipper and reprapfirmware hold the\n"
+      "squareness of X, Y and Z as a skew correction. Every format names the document that it "
+      "follows. The "
       "files are read "
       "back\n"
       "by the rules of that document and compared with the error model before they are written.",
