@@ -19,6 +19,7 @@ constexpr std::size_t kMostTargets = 51;  // knots, where readings stand in as m
 constexpr int kDefaultKnots = 17;         // where they stand in more
 constexpr double kSamePlace = 1e-6;       // m, rad
 constexpr double kContradiction = 6.0;    // standard deviations of the whitened squares
+constexpr double kSignificant = 3.0;      // standard uncertainties of a reversal
 constexpr double kMuchBetter = 0.3;       // of the contradiction is left by the other sign
 
 bool is_sought(const CalibrationSettings& settings, const ErrorName& name) {
@@ -95,25 +96,61 @@ FormSettings settings_of(const CalibrationSettings& settings, const ErrorName& n
   return is_linear(name.axis) ? settings.form_linear : settings.form_rotary;
 }
 
+// True if readings approach places of a joint in both directions.
+bool is_read_both_ways(const Observations& observations, int joint) {
+  bool up = false, down = false;
+  for (const Observation& one : observations.all) {
+    for (const Pose& pose : one.poses) {
+      up = up || pose.direction[std::size_t(joint)] > 0;
+      down = down || pose.direction[std::size_t(joint)] < 0;
+    }
+  }
+  return up && down;
+}
+
+// Axes whose positions are read, but in one direction only.
+std::vector<Axis> one_way_axes(const readings::Readings& readings, const Observations& observations,
+                               const JointLayout& layout) {
+  std::vector<Axis> out;
+  for (const Axis axis : kAllAxes) {
+    const bool is_read = std::any_of(
+        readings.groups.begin(), readings.groups.end(), [&](const readings::Group& group) {
+          return group.kind == readings::Kind::positioning && group.axis == axis;
+        });
+    if (is_read && !is_read_both_ways(observations, *layout.joint_of(axis))) out.push_back(axis);
+  }
+  return out;
+}
+
 // The mean of every function belongs to set-up or location; the slope of a straightness, too.
 bool is_without_slope(const ErrorName& name) {
   return is_linear(name.axis) && is_linear(name.direction) && name.direction != name.axis;
 }
 
+bool is_left_out(const std::vector<Axis>& axes, Axis axis) {
+  return std::find(axes.begin(), axes.end(), axis) != axes.end();
+}
+
+/// @param without_reversal  axes whose reversal is not looked for unless a form asks for it
 std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
                                              const Observations& observations,
                                              const plant::MachineChain& chain,
-                                             const CalibrationSettings& settings) {
+                                             const CalibrationSettings& settings,
+                                             const std::vector<Axis>& without_reversal) {
   std::vector<SoughtFunction> out;
   for (const Axis axis : kAllAxes) {
     const auto joint = chain.layout.joint_of(axis);
     if (!joint) continue;
     const std::vector<double> places = places_of(readings, observations, axis, *joint);
     if (places.size() < 2) continue;  // the axis has not moved
+    const bool both_ways = is_read_both_ways(observations, *joint);
     for (const Axis direction : kAllAxes) {
       const ErrorName name{direction, axis, false};
       if (!is_sought(settings, name) || plant::why_meaningless(name, chain.layout)) continue;
-      const FormSettings asked = settings_of(settings, name);
+      FormSettings asked = settings_of(settings, name);
+      // lost motion is one of the axis along itself; of its other errors where a form asks for it
+      const bool tries = both_ways && direction == axis && !asked.reversal_degree;
+      if (tries && !is_left_out(without_reversal, axis)) asked.reversal_degree = 0;
       SoughtFunction function{
           .name = name, .basis = FunctionBasis(form_of(asked, places), is_without_slope(name))};
       function.size = asked.size.value_or(function.size);
@@ -121,6 +158,20 @@ std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
           asked.knots || asked.number_of_knots || asked.degree || !asked.periods.empty();
       out.push_back(std::move(function));
     }
+  }
+  return out;
+}
+
+// Axes whose reversal no form asks for, and which is none: a program that is corrected for it would
+// have a step wherever the axis turns.
+std::vector<Axis> axes_without_reversal(const Adjustment& adjustment,
+                                        const CalibrationSettings& settings) {
+  std::vector<Axis> out;
+  for (const SoughtFunction& function : adjustment.unknowns.functions) {
+    const auto reversal = reversal_of(adjustment, function);
+    if (!reversal || settings_of(settings, function.name).reversal_degree) continue;
+    const auto& [value, uncertainty] = *reversal;
+    if (!(std::abs(value) > kSignificant * uncertainty)) out.push_back(function.name.axis);
   }
   return out;
 }
@@ -157,6 +208,19 @@ std::vector<ErrorName> sought_locations(const plant::MachineChain& chain,
   return out;
 }
 
+std::optional<std::pair<double, double>> reversal_of(const Adjustment& adjustment,
+                                                     const SoughtFunction& function) {
+  const FunctionForm& form = function.basis.form();
+  if (form.reversal_degree < 0) return std::nullopt;
+  const int n = function.basis.size();
+  const double middle = 0.5 * (form.lower + form.upper);
+  const Eigen::RowVectorXd step =
+      function.basis.row(middle, 1.0) - function.basis.row(middle, -1.0);
+  const Eigen::MatrixXd C = adjustment.covariance.block(function.first, function.first, n, n);
+  return std::pair{step.dot(adjustment.values.segment(function.first, n)),
+                   std::sqrt(std::max(0.0, (step * C * step.transpose())(0)))};
+}
+
 double outlier_limit(std::size_t n) {
   return std::sqrt(2.0 * std::log(static_cast<double>(std::max<std::size_t>(n, 1)) / 1e-3));
 }
@@ -168,8 +232,10 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
                   .observations = {},
                   .adjustment = {},
                   .outliers = {},
-                  .sign_suspects = {}};
+                  .sign_suspects = {},
+                  .one_way = {}};
   out.observations = observations_of(out.readings, chain);
+  out.one_way = one_way_axes(out.readings, out.observations, chain.layout);
   std::vector<SoughtLocation> locations;
   for (const ErrorName& name : sought_locations(chain, settings.frame)) {
     if (!is_sought(settings, name)) continue;
@@ -177,13 +243,18 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
     location.size = settings_of(settings, name).size.value_or(location.size);
     locations.push_back(location);
   }
-  const std::vector<SoughtFunction> functions =
-      sought_functions(out.readings, out.observations, chain, settings);
+  std::vector<SoughtFunction> functions =
+      sought_functions(out.readings, out.observations, chain, settings, {});
   const AdjustmentOptions options{.robust = settings.robust};
   const auto adjusted = [&](const Observations& observations) {
     return adjust(out.readings, observations, chain, locations, functions, options);
   };
   out.adjustment = adjusted(out.observations);
+  const std::vector<Axis> none = axes_without_reversal(out.adjustment, settings);
+  if (!none.empty()) {
+    functions = sought_functions(out.readings, out.observations, chain, settings, none);
+    out.adjustment = adjusted(out.observations);
+  }
   if (!out.adjustment.converged) {
     throw InputError({out.readings.path},
                      "the adjustment does not converge: readings stand in the wrong places or have "
@@ -231,7 +302,8 @@ std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, 
     const Eigen::MatrixXd C = adjustment.covariance.block(function.first, function.first, n, n);
     if (C.isZero(0.0)) continue;
     const FunctionForm& form = function.basis.form();
-    KnownFunction known{.name = function.name, .s = {}, .value = {}, .sigma = {}, .expected = {}};
+    KnownFunction known{
+        .name = function.name, .s = {}, .value = {}, .sigma = {}, .expected = {}, .reversal = {}};
     for (const double s : equally_spaced(form.lower, form.upper, places_for(form, points))) {
       const Eigen::RowVectorXd row = function.basis.row(s, 0.0);
       known.s.push_back(s);
@@ -241,6 +313,7 @@ std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, 
       known.sigma.push_back(std::sqrt(std::max(0.0, (row * C * row.transpose())(0)) + between));
       known.expected.push_back(function.size * row.norm());
     }
+    known.reversal = reversal_of(adjustment, function);
     out.push_back(std::move(known));
   }
   return out;

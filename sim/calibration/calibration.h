@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/calibration/adjustment.h"
@@ -52,6 +53,7 @@ struct Calibration {
   Adjustment adjustment;
   std::vector<Outlier> outliers;       // largest first
   std::vector<Suspect> sign_suspects;  // groups that fit with the other sign
+  std::vector<Axis> one_way;           // axes whose positions are read in one direction only
 };
 
 /// @throws InputError where nothing can be adjusted
@@ -62,12 +64,18 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
 /// adjustments has one, since P(|z| > t) <= exp(-t^2/2).
 double outlier_limit(std::size_t n);
 
+/// Error of a function reached upwards minus that reached downwards, in the middle of the travel,
+/// and its standard uncertainty (m or rad); none: not looked for.
+std::optional<std::pair<double, double>> reversal_of(const Adjustment& adjustment,
+                                                     const SoughtFunction& function);
+
 /// Component error with its standard uncertainty along the travel.
 struct KnownFunction {
   plant::ErrorName name;
-  std::vector<double> s;             // m or rad
-  std::vector<double> value, sigma;  // m or rad
-  std::vector<double> expected;      // m or rad; sigma without any reading
+  std::vector<double> s;                              // m or rad
+  std::vector<double> value, sigma;                   // m or rad
+  std::vector<double> expected;                       // m or rad; sigma without any reading
+  std::optional<std::pair<double, double>> reversal;  // reversal_of()
 };
 /// Every function of which something is known, at `points` equally spaced places, more where it has
 /// shorter periods.

@@ -48,7 +48,9 @@ Point ObservationBuilder::add_point(const std::string& name) {
 }
 
 std::size_t ObservationBuilder::add_size(const std::string& name) {
-  return add_own(name, um, "um", group().size_uncertainty);
+  const std::size_t out = add_own(name, um, "um", group().size_uncertainty);
+  out_.set_up[out].is_size = true;
+  return out;
 }
 
 std::optional<std::size_t> ObservationBuilder::scale() const {

@@ -15,8 +15,10 @@ using plant::ErrorName;
 using Lines = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kShownOutliers = 10;
-constexpr double kWrongRatio = 2.0;   // of variances, where the redundancy makes it significant
-constexpr double kSignificant = 5.0;  // standard deviations of a ratio
+constexpr double kWrongRatio = 2.0;    // of variances, where the redundancy makes it significant
+constexpr double kSignificant = 5.0;   // standard deviations of a ratio
+constexpr double kImplausible = 5.0;   // standard uncertainties of a set-up
+constexpr double kWrongSize = 0.2e-3;  // m, of a radius or length that is not known
 
 const readings::Group& group_of(const Calibration& calibration, std::size_t group) {
   return calibration.readings.groups[group];
@@ -74,6 +76,11 @@ std::string error_table(const Calibration& calibration) {
          fmt::format("{:g} to {:g} {}", known.s.front() / unit, known.s.back() / unit,
                      linear ? "mm" : "deg"),
          remark(known.name)});
+    if (!known.reversal) continue;
+    const auto& [value, uncertainty] = *known.reversal;
+    lines.push_back({"  reversal", fmt::format("{:.3f}", value / um),
+                     fmt::format("{:.2g}", 2.0 * uncertainty / um),
+                     is_linear(known.name.direction) ? "um" : "urad", "", "up minus down"});
   }
   return system::text_table(std::move(lines), 0, {1, 2});
 }
@@ -95,6 +102,25 @@ std::string ratio_sentence(const readings::Group& group, const GroupResult& resu
       group.name, std::sqrt(result.ratio()), in_unit(result.uncertainty, is_angular(group)));
 }
 
+// Radii and lengths that come out far from what is stated, and set-ups far from what is known.
+void add_set_up_warnings(const Calibration& calibration, std::vector<std::string>& out) {
+  const Adjustment& adjustment = calibration.adjustment;
+  const std::vector<SetUpUnknown>& set_up = adjustment.unknowns.set_up;
+  for (std::size_t u = 0; u < set_up.size(); ++u) {
+    const SetUpUnknown& one = set_up[u];
+    const double value = adjustment.values[Eigen::Index(u)];
+    const std::string name = adjustment.unknowns.name(int(u), calibration.readings);
+    const std::string shown = fmt::format("{:.3g} {}", value / one.unit, one.unit_name);
+    if (one.prior && std::abs(value) > kImplausible * *one.prior) {
+      out.push_back(fmt::format("{} comes out as {}, {:.0f} times its uncertainty: check it", name,
+                                shown, std::abs(value) / *one.prior));
+    } else if (!one.prior && one.is_size && std::abs(value) > kWrongSize) {
+      out.push_back(fmt::format("{} comes out {:.3f} mm {} than stated: check it", name,
+                                std::abs(value) / mm, value > 0.0 ? "larger" : "smaller"));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Calibration& calibration) {
@@ -105,6 +131,7 @@ std::vector<std::string> warnings(const Calibration& calibration) {
                     "agree with them: check the sign of its readings",
                     group_of(calibration, suspect.group).name));
   }
+  add_set_up_warnings(calibration, out);
   for (std::size_t g = 0; g < calibration.adjustment.groups.size(); ++g) {
     const GroupResult& result = calibration.adjustment.groups[g];
     const double spread = std::sqrt(2.0 / std::max(result.redundancy, 1e-9));
@@ -157,7 +184,15 @@ std::string report(const Calibration& calibration) {
       "\n{} numbers, {} unknowns, {} left out; whitened residuals {:.2f} (1 expected)\n",
       calibration.observations.all.size(), adjustment.unknowns.size(), adjustment.left_out.size(),
       adjustment.redundancy > 0.0 ? std::sqrt(adjustment.squares / adjustment.redundancy) : 0.0);
-  const std::vector<std::string> sentences = unidentifiable_sentences(calibration);
+  std::vector<std::string> sentences = unidentifiable_sentences(calibration);
+  if (!calibration.one_way.empty()) {
+    std::vector<std::string> one_way;
+    for (const Axis axis : calibration.one_way) one_way.emplace_back(1, letter(axis));
+    sentences.push_back(
+        fmt::format("lost motion of {}: positions are read in one direction, or the readings do "
+                    "not say in which",
+                    fmt::join(one_way, ", ")));
+  }
   if (!sentences.empty()) {
     out += "\nNot determined by the readings:\n";
     for (const std::string& sentence : sentences) out += "  " + sentence + "\n";

@@ -46,7 +46,7 @@ FormSettings read_form(config::Reader& table, bool linear) {
   form.periods = table.reals_or(key("harmonics"), {}, travel, {config::above(0.0)});
   if (table.has("reversal")) {
     form.reversal_degree = static_cast<int>(
-        table.integer("reversal", {config::at_least(0.0), config::at_most(double(kMostDegree))}));
+        table.integer("reversal", {config::at_least(-1.0), config::at_most(double(kMostDegree))}));
   }
   if (table.has(key("reversal_distance"))) {
     form.reversal_distance = table.real(key("reversal_distance"), travel, {config::above(0.0)});

@@ -357,6 +357,7 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   for (Group& group : out.groups) {
     if (group.file.empty()) continue;
     collect([&] { read_rows(group, chain, lower, upper, numbers, faults); });
+    require_distinct_rows(group, faults);
     if (group.artefact) require_balls(out.artefacts[*group.artefact], group, faults);
   }
   if (!faults.empty()) throw InputError(std::move(faults));

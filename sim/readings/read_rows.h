@@ -13,6 +13,9 @@ namespace servomill::sim::readings {
 void read_rows(Group& group, const plant::MachineChain& chain, const Joints& lower,
                const Joints& upper, Numbers numbers, std::vector<Fault>& faults);
 
+/// Rows at the same target in the same run and direction are faults, where runs are numbered.
+void require_distinct_rows(const Group& group, std::vector<Fault>& faults);
+
 /// Reads the file of an artefact's centres; faults are added to `faults`.
 /// @throws InputError if it is no table
 void read_balls(Artefact& artefact, std::vector<Fault>& faults);

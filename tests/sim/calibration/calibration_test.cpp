@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 #include <map>
@@ -13,7 +11,7 @@
 #include "sim/calibration/error_effects.h"
 #include "sim/calibration/make_up.h"
 #include "tests/number_of.h"
-#include "tests/sim/calibration/shop.h"
+#include "tests/sim/calibration/random_machine.h"
 #include "tests/text.h"
 
 namespace servomill::sim::calibration::calibration_test {
@@ -35,37 +33,6 @@ std::pair<double, double> mean_line(const plant::ErrorFunction& f, bool with_slo
   return {mean, with_slope ? slope : 0.0};
 }
 
-class Normal {
- public:
-  explicit Normal(std::uint64_t seed) : generator_(seed) {}
-  double operator()(double sigma) { return sigma * distribution_(generator_); }
-
- private:
-  boost::random::mt19937_64 generator_;
-  boost::random::normal_distribution<double> distribution_;
-};
-
-// The unknowns of a machine drawn at random, by the conventions of the adjustment.
-struct Truth {
-  VectorXd values;  // of errors; the set-up is not compared
-  plant::ErrorModel errors;
-};
-
-Truth random_truth(const Unknowns& unknowns, Normal& normal) {
-  Truth out;
-  out.values = VectorXd::Zero(unknowns.size());
-  for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
-    const double value = normal(is_linear(unknowns.locations[k].name.direction) ? 8e-6 : 20e-6);
-    out.values[unknowns.first_location() + int(k)] = value;
-    out.errors.location(unknowns.locations[k].name) = value;
-  }
-  for (const SoughtFunction& f : unknowns.functions) {
-    for (int i = 0; i < f.basis.size(); ++i) out.values[f.first + i] = normal(5e-6);
-    out.errors.component(f.name) = f.basis.function(out.values.segment(f.first, f.basis.size()));
-  }
-  return out;
-}
-
 // Expected values of the kept unknowns: they hold those that are left out.
 VectorXd expected_values(const Adjustment& adjustment, const Truth& truth) {
   VectorXd out = truth.values;
@@ -74,10 +41,6 @@ VectorXd expected_values(const Adjustment& adjustment, const Truth& truth) {
     out[one.unknown] = 0.0;
   }
   return out;
-}
-
-Calibration calibrated(readings::Readings readings, const CalibrationSettings& settings = {}) {
-  return calibrate(std::move(readings), gantry(), settings);
 }
 
 TEST(Calibration, FindsEveryErrorOfAMachineThatNoInstrumentBlurs) {
@@ -303,72 +266,6 @@ TEST(Calibration, UncertaintyHoldsBetweenTargets) {
               between.percent());
   EXPECT_GT(between.percent(), 93.0);
   EXPECT_LT(between.percent(), 97.0);
-}
-
-// Straightness at tools across tells the roll, too, but for its slope: every line has a slope of
-// its own.
-TEST(Calibration, NamesTheRollThatLevelsDoNotSee) {
-  readings::Readings all = shop_readings(false);
-  make_up(all, gantry(), {}, 3);
-  const Calibration found = calibrated(all);
-  EXPECT_TRUE(is_combined(found.adjustment, "ECZ"_err));
-  ASSERT_EQ(unidentifiable_sentences(found).size(), 1u);
-  EXPECT_TRUE(unidentifiable_sentences(found)[0].starts_with(
-      "a part of ECZ cannot be separated from the set-up (zero of \"X "))
-      << unidentifiable_sentences(found)[0];
-  std::erase_if(all.groups, [](const readings::Group& group) {
-    return group.axis == Axis::Z && group.p_ST.head<2>().norm() > 0.0;
-  });
-  const Calibration less = calibrated(all);
-  ASSERT_EQ(unidentifiable_sentences(less).size(), 1u);
-  EXPECT_TRUE(unidentifiable_sentences(less)[0].starts_with(
-      "ECZ cannot be separated from the set-up (zero of \"X "))
-      << unidentifiable_sentences(less)[0];
-}
-
-TEST(Calibration, FindsTheGroupWhoseSignIsWrong) {
-  Normal normal(4);
-  readings::Readings all = shop_readings();
-  const Truth truth = random_truth(calibrated(all).adjustment.unknowns, normal);
-  make_up(all, gantry(), truth.errors, 5);
-  for (readings::Reading& reading : all.groups[4].rows) reading.deviation *= -1.0;
-  const Calibration found = calibrated(all);
-  ASSERT_EQ(found.sign_suspects.size(), 1u);
-  EXPECT_EQ(found.sign_suspects[0].group, 4u);
-}
-
-TEST(Calibration, NamesAnOutlierOfATenthOfAMillimetre) {
-  readings::Readings all = shop_readings();
-  make_up(all, gantry(), {}, 6);
-  all.groups[1].rows[3].deviation[0] += 0.1e-3;
-  const Calibration found = calibrated(all);
-  ASSERT_FALSE(found.outliers.empty());
-  const Observation& worst = found.observations.all[found.outliers[0].observation];
-  EXPECT_EQ(worst.group, 1u);
-  EXPECT_EQ(worst.row, 3u);
-  EXPECT_GT(found.outliers[0].standardized, 50.0);
-}
-
-TEST(Calibration, EstimatesTheUncertaintyOfAGroup) {
-  Normal normal(8);
-  readings::Readings all = shop_readings();
-  const Truth truth = random_truth(calibrated(all).adjustment.unknowns, normal);
-  for (readings::Group& group : all.groups) {
-    if (group.kind == readings::Kind::straightness) group.uncertainty = 2.5e-6;
-  }
-  make_up(all, gantry(), truth.errors, 9);
-  for (readings::Group& group : all.groups) {
-    if (group.kind == readings::Kind::straightness) group.uncertainty.reset();
-  }
-  const Calibration found = calibrated(all);
-  double mean = 0.0;
-  int count = 0;
-  for (std::size_t g = 0; g < all.groups.size(); ++g) {
-    if (all.groups[g].kind != readings::Kind::straightness) continue;
-    mean += found.adjustment.groups[g].uncertainty;
-    ++count;
-  }
-  EXPECT_NEAR(mean / count, 2.5e-6, 0.3e-6);
 }
 
 TEST(Calibration, TakesTheFrameThatIsAskedFor) {

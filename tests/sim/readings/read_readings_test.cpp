@@ -204,6 +204,15 @@ TEST_F(ReadReadings, RefusesColumnsThatAKindDoesNotHaveAndUnitsOfAnotherQuantity
             "column deviation_urad must name a length in its unit, such as deviation_mm\n");
 }
 
+TEST_F(ReadReadings, RefusesATargetTwiceInARun) {
+  files_.write("x.csv", "target_mm,run,deviation_um\n0,1,1\n100,1,2\n0,1,1\n0,2,1\n");
+  EXPECT_EQ(faults(kLaser),
+            "stands at the target of line 2 again, in run 1 and the same direction; number the "
+            "runs, or leave one of the two out\n");
+  files_.write("x.csv", "target_mm,deviation_um\n0,1\n100,2\n0,1\n");
+  EXPECT_EQ(read(kLaser).groups.at(0).rows.size(), 3u);
+}
+
 TEST_F(ReadReadings, NamesTheRunThatIsMissing) {
   files_.write("x.csv", "direction,target_mm,p1,p2\nforward,10,10.001,\n");
   EXPECT_EQ(faults(kLaser),
