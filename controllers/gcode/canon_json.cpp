@@ -103,7 +103,7 @@ std::string_view kind_name(const Move& move) {
     case MoveKind::rapid:
       return "rapid";
     case MoveKind::feed:
-      return "feed";
+      return move.number == 0 ? "feed" : "probe";
     case MoveKind::arc:
       return "arc";
     case MoveKind::dwell:

@@ -8,7 +8,7 @@
 namespace servomill::controllers {
 
 /// One record, without a line end. Lengths in mm, angles in degrees, nine decimals.
-///   t      rapid feed arc dwell tool spindle coolant stop end msg print
+///   t      rapid feed probe arc dwell tool spindle coolant stop end msg print
 ///   line   of the program, from 1
 ///   end, mend   [x,y,z,a,b,c] of motion, in work and in machine coordinates; z is null where it
 ///        depends on the length of a tool that is unknown

@@ -38,6 +38,8 @@
 /// subprogram before the motion in its block, not after; a dwell is not negative; a block makes at
 /// most 100000 moves (cycles with tiny pecks).
 ///
+/// Probing moves ask `ProgramSetup::probed` where the probe switches (probing.h).
+///
 /// O-words: subroutines, loops and conditions as LinuxCNC has them, its oddities included (the
 /// notes at FlowState in flow_state.h); where a program is skipped, only comments, labels
 /// and keywords are looked at.

@@ -309,6 +309,10 @@ class Interpreter::Machine {
   void release_queue();
 
   void straight();
+  void probe();  // G38.2 ... G38.5
+  void require_probing() const;
+  void require_known_height() const;
+  void finish_probing(const ProbingMove& move, const std::optional<ProbeContact>& contact);
   void arc();
   ArcCentre checked_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
                            const Eigen::Vector2d& centre, const ArcTolerance& tolerance);

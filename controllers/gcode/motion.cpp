@@ -36,6 +36,7 @@ void Interpreter::Machine::motion() {
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
+  if (code >= 382 && code <= 385) probe();
   if (is_canned_cycle(code)) canned_cycle(motion_before);
 }
 

@@ -17,14 +17,17 @@ namespace servomill::controllers {
 /// Numbers that mean something to the machine; values in mm and degrees, axes in the order
 /// X Y Z A B C from the first number on.
 namespace parameter {
-inline constexpr int kHome = 5161;          // G28
-inline constexpr int kSecondHome = 5181;    // G30
-inline constexpr int kG92Active = 5210;     // 1: G92 offset in force
-inline constexpr int kG92 = 5211;           // G92 and G52
-inline constexpr int kWorkSystem = 5220;    // 1 is G54, 9 is G59.3
-inline constexpr int kWorkOffset = 5221;    // of G54; + 20 for each further one
-inline constexpr int kWorkRotation = 5230;  // degrees about Z; + 20 for each further one
-inline constexpr int kTool = 5400;          // tool in the spindle, then its offsets, read-only
+inline constexpr int kProbed = 5061;         // G38.2 ... G38.5: where the probe switched
+inline constexpr int kProbedAxes = 9;        // X Y Z A B C U V W
+inline constexpr int kProbeSwitched = 5070;  // 1: it did, 0: it did not
+inline constexpr int kHome = 5161;           // G28
+inline constexpr int kSecondHome = 5181;     // G30
+inline constexpr int kG92Active = 5210;      // 1: G92 offset in force
+inline constexpr int kG92 = 5211;            // G92 and G52
+inline constexpr int kWorkSystem = 5220;     // 1 is G54, 9 is G59.3
+inline constexpr int kWorkOffset = 5221;     // of G54; + 20 for each further one
+inline constexpr int kWorkRotation = 5230;   // degrees about Z; + 20 for each further one
+inline constexpr int kTool = 5400;           // tool in the spindle, then its offsets, read-only
 inline constexpr int kToolDiameter = 5410;
 inline constexpr int kPosition = 5420;  // in work coordinates and program units, read-only
 inline constexpr int kLastReadOnly = 5428;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "controllers/gcode/decimal_point.h"
+#include "controllers/gcode/probing.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/tool_table.h"
@@ -65,6 +66,8 @@ struct ProgramSetup {
   /// The machine, for tool-centre-point control and tilted planes. Without it a program may use
   /// G43.4 and G68.2 as long as its rotary axes are at zero where they are switched on and off.
   std::shared_ptr<const ToolCentrePoint> machine;
+  /// Answers to G38.2 ... G38.5; nullptr: refused.
+  std::shared_ptr<Probed> probed;
   std::shared_ptr<SharedTrials> trials;  // nullptr: shared with no other run
 
   static std::array<AxisWords, 9> zero_offsets();

@@ -13,7 +13,7 @@ namespace servomill {
 enum class MoveKind : std::uint8_t {
   // motion
   rapid,
-  feed,
+  feed,  // `number` 2 ... 5: with the probe armed, G38.2 ... G38.5
   arc,
   dwell,
   // everything else

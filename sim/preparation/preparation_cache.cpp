@@ -158,7 +158,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
                decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
                accepts_unknown_dwells, accepts_unknown_positions, is_trial, start, block_delete,
-               subroutine_file, most_jumps, machine, trials] = setup;
+               subroutine_file, most_jumps, machine, probed, trials] = setup;
   static_cast<void>(trials);  // what it holds follows from the program and the setup
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
@@ -192,6 +192,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(start);
   key.add(block_delete);
   key.add(most_jumps);  // texts of subroutines are of the program
+  key.add(probed == nullptr ? std::string() : probed->identity());
   key.add(machine != nullptr);
   if (machine == nullptr) return;
   add(key, machine->chain());

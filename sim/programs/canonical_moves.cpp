@@ -163,6 +163,7 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
                          const std::function<void(std::string_view)>& write) {
   controllers::ProgramSetup setup = program_setup(inputs, program_file);
   setup.accepts_unknown_lengths = setup.accepts_unknown_dwells = true;
+  setup.probed = std::make_shared<controllers::AssumedContact>();
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
                                        std::move(setup));
   std::string lines;
@@ -203,6 +204,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
     controllers::ProgramSetup setup = program_setup(inputs, path);
     if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
     setup.accepts_unknown_dwells = setup.accepts_unknown_positions = true;
+    setup.probed = std::make_shared<controllers::AssumedContact>();
     return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
                                       warnings);
   } catch (const InputError& error) {

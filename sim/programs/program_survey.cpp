@@ -224,12 +224,14 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();
   inputs.setup.accepts_unknown_dwells = inputs.setup.accepts_unknown_positions = true;
+  inputs.setup.probed = std::make_shared<controllers::AssumedContact>();
   survey_moves(inputs, out);
   // every control has a tool table of its own: without one here, no number stops a reader
   ProgramSetup setup = program_setup(request.inputs, request.program_file);
   for (const std::string& text : request.tool_lengths) add_tool_length(text, setup.tools);
   if (setup.tools.empty()) setup.tools.take_any_number();
   setup.accepts_unknown_positions = true;
+  setup.probed = inputs.setup.probed;
   using controllers::Reader;
   for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
     const auto reader = static_cast<Reader>(k);

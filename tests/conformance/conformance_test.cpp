@@ -112,6 +112,7 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   ProgramSetup setup;
   const std::filesystem::path table = program.parent_path() / "tools.tbl";
   setup.tools = ToolTable::parse(read_file(table), table.string());
+  setup.probed = std::make_shared<AssumedContact>();
   setup.block_delete = program.stem().string().ends_with("block_delete_on");
   setup.subroutine_file = [&](const std::string& name) -> std::optional<ProgramText> {
     const std::filesystem::path file = program.parent_path() / "subs" / (name + ".ngc");

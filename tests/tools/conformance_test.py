@@ -113,7 +113,7 @@ class Outcomes(StandIn):
         self.assertEqual(self.compare("--filter", "G76,G33")[0], 0)
 
     def test_not_refused_on_purpose_where_something_differs_before(self):
-        self.program("thread.ngc", "G0 X1\nG38.2 Z-1 F10\nM2\n", "1 STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
+        self.program("thread.ngc", "G0 X1\nG33 Z-1 K1 F10\nM2\n", "1 STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",
                      "3 PROGRAM_END()")
         self.assertEqual(self.compare()[0], 1)
 

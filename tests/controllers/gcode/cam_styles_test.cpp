@@ -32,7 +32,7 @@ const std::vector<Style>& styles() {
        0,
        0,
        ":3:1: error: '$' is a command of a sender to grbl or TinyG, no block; take the line out"},
-      {"bcnc_probe.nc", {}, 0, 0, 0, ":3:1: error: G38.2: what a probe touches is not simulated"},
+      {"bcnc_probe.nc", {}, 0, 0, 0, ":3:1: error: G38.2: what a probe touches is not known here"},
       {"camotics_tplang.nc", {5, 6, 12}, 2, 10.0, 0.0},
       {"cncjs_laser.gcode", {5}, 2, 10.0, 10.0},
       {"cncjs_macro.nc", {2, 4}, 5, 0.0, 0.0},

@@ -81,7 +81,7 @@ TEST(RefusedCodes, HaveAReasonEach) {
             "G7: diameter and radius mode belong to turning, and the machines here mill");
   EXPECT_EQ(fault("G33.1"),
             "G33.1: the axes cannot follow the angle of a spindle, which is not simulated");
-  EXPECT_EQ(fault("G38.3"), "G38.3: what a probe touches is not simulated");
+  EXPECT_EQ(fault("G38.3"), "G38.3 without an axis word");
   EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles belong to lathes, and the machines here mill");
   EXPECT_EQ(fault("G76"), "G76: threading belongs to lathes, and the machines here mill");
   EXPECT_EQ(fault("G96"),
