@@ -16,6 +16,7 @@ namespace {
 constexpr double kHottest = 50.0;  // degC; above, a temperature is taken to be one in Fahrenheit
 constexpr double kColdest = -10.0;
 constexpr std::string_view kTemperature = "temperature_degC";
+constexpr std::string_view kPlaceOnCircle = "angle";
 constexpr std::array<std::string_view, 3> kNormal = {"nx", "ny", "nz"};
 constexpr double kUnit = 1e-3;  // off the length of a normal that rounding may put it
 
@@ -144,7 +145,7 @@ class RowsReader {
       expected = quantity_of(group_);
     } else if (column.name == "target") {
       expected = is_linear(*group_.axis) ? config::kLength : config::kAngle;
-    } else if (column.name == "angle") {
+    } else if (column.name == kPlaceOnCircle) {
       expected = config::kAngle;
     } else if (column.name == "time") {
       expected = config::kTime;

@@ -13,9 +13,11 @@
 
 #include "sim/config/document.h"
 #include "sim/evaluation/comparison.h"
+#include "sim/input/machine_document.h"
 #include "sim/input/read_scenario.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
+#include "sim/system/read_file.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim::input::scenario_test {
@@ -26,13 +28,20 @@ namespace fs = std::filesystem;
 const std::string kFolder = SERVOMILL_SOURCE_DIR "/scenarios";
 const std::string kSmall = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/scenario.toml";
 
+// Beside scenarios and machines there are experiments to identify drives from, readings and
+// instruments: these have neither cases nor a file that they are based on.
+bool is_scenario_or_machine(const fs::path& path) {
+  if (path.extension() != ".toml" || path.parent_path().filename() == "experiments") return false;
+  if (is_machine_file(path.string())) return true;
+  const std::string text = system::read_file(path.string(), {}, "scenario");
+  return text.find("[[case]]") != std::string::npos || text.find("based_on") != std::string::npos;
+}
+
 std::vector<std::string> files(bool machines) {
   std::vector<std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(kFolder)) {
-    const auto folder = entry.path().parent_path().filename();
-    if (folder == "experiments") continue;  // of servomill identify
-    const bool is_machine = folder == "machines";
-    if (entry.path().extension() == ".toml" && is_machine == machines) {
+    if (is_scenario_or_machine(entry.path()) &&
+        is_machine_file(entry.path().string()) == machines) {
       out.push_back(entry.path().string());
     }
   }
