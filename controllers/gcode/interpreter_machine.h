@@ -312,6 +312,7 @@ class Interpreter::Machine {
   void probe();  // G38.2 ... G38.5
   void require_probing() const;
   void require_known_height() const;
+  std::optional<ProbeContact> contact_of(const ProbingMove& move);
   void finish_probing(const ProbingMove& move, const std::optional<ProbeContact>& contact);
   void arc();
   ArcCentre checked_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end,

@@ -31,7 +31,8 @@ void Interpreter::Machine::require_probing() const {
   if (state_.feed_mode == FeedMode::inverse_time) refuse(" with G93; G94 first");
   if (state_.feed_mode == FeedMode::units_per_revolution) refuse(" with G95; G94 first");
   require_feed();
-  if (!setup_.probed) refuse(": what a probe touches is not known here");
+  if (!setup_.probed)
+    refuse(": what a probe touches is not known here; [touch_probe] of a scenario says it");
 }
 
 void Interpreter::Machine::probe() {
@@ -54,7 +55,7 @@ void Interpreter::Machine::probe() {
   move.p_ST = state_.p_ST();
   move.line = line();
   if (!setup_.probed->is_assumed()) require_known_height();
-  finish_probing(move, setup_.probed->contact(move));
+  finish_probing(move, contact_of(move));
 }
 
 // A measured height means nothing where the length of the probe is not known.
@@ -62,6 +63,16 @@ void Interpreter::Machine::require_known_height() const {
   if (!state_.is_height_unknown && !state_.is_length_unknown) return;
   fail(request().motion.column,
        "the length of the probe is unknown; pass a tool table with --tools");
+}
+
+std::optional<ProbeContact> Interpreter::Machine::contact_of(const ProbingMove& move) {
+  try {
+    return setup_.probed->contact(move);
+  } catch (const InputError& error) {
+    const Request::Chosen& chosen = request().motion;
+    fail(chosen.column, fmt::format("{}: {}", code_name('G', chosen.code->tenths),
+                                    error.faults().front().message));
+  }
 }
 
 void Interpreter::Machine::finish_probing(const ProbingMove& move,

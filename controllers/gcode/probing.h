@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "plant/vocabulary/axes.h"
 
@@ -38,10 +37,8 @@ class Probed {
  public:
   virtual ~Probed() = default;
   /// Place at which the probe switches on its way; nullopt: it does not.
-  /// @throws InputError where that cannot be known
+  /// @throws InputError, without a place, where the move cannot begin so
   virtual std::optional<ProbeContact> contact(const ProbingMove& move) = 0;
-  /// Differs between surroundings that may answer differently: part of the key of prepared cases.
-  virtual std::string identity() const = 0;
   /// Nothing is known of the surroundings: the answers only let the program go on.
   virtual bool is_assumed() const { return false; }
 };
@@ -51,7 +48,6 @@ class Probed {
 class AssumedContact : public Probed {
  public:
   std::optional<ProbeContact> contact(const ProbingMove& move) override;
-  std::string identity() const override { return "assumed"; }
   bool is_assumed() const override { return true; }
 };
 

@@ -162,6 +162,32 @@ box = { from_mm = [0, 0, 0], to_mm = [1, 1, 1] }
 [[part.stock]]
 cylinder = { centre_mm = [0, 0], radius_mm = 1, from_mm = 0, to_mm = 1 }
 
+[touch_probe]
+stylus_diameter_mm = 6
+stylus_offset_um = [1, 2, 3]
+tool_length_to = "end"
+pretravel_um = 5
+lobing_um = 1
+lobes = 3
+lobing_phase_deg = 30
+repeatability_um = 0.5
+delay_us = 4
+seed = 2
+workpiece = "stock"
+workpiece_shift_mm = [0, 0, 0.1]
+workpiece_rotation_deg = [0, 0, 1]
+[[touch_probe.sphere]]
+centre_mm = [0, 0, 0]
+diameter_mm = 25
+[[touch_probe.plane]]
+point_mm = [0, 0, 0]
+normal = [0, 0, 1]
+[[touch_probe.bore]]
+centre_mm = [0, 0]
+diameter_mm = 50
+from_mm = -20
+to_mm = 0
+
 [cutting]
 material = "42CrMo4"
 
@@ -356,45 +382,8 @@ line = { from_mm = [10, 0, 10], to_mm = [40, 0, 10], normal = [0, -1, 0], points
 name = "nominal"
 )";
 
-constexpr std::string_view kThird = R"(
-title = "third"
-sweep.samples = { count = 2, from = ["a.toml"], identified = [{ keys = ["nc.Kv"], units = ["1/s"], values = [50.0], covariance = [[1]] }] }
-
-[machine]
-structure = "[w b Z t]"
-[machine.nc]
-Kv = 50.0
-[machine.axis.Z]
-drive = "rigid"
-lead_mm = 10.0
-motor_inertia = 9.6e-3
-moving_mass = 300.0
-Kt = 1.6
-i_max_A = 50.0
-velocity_bandwidth = 200.0
-v_max = 0.6
-a_max = 6.0
-j_max = 100.0
-
-[program]
-file = "third.ngc"
-text = "M2\n"
-
-[[case]]
-name = "nominal"
-)";
-
-// A machine file with identified values, as a table of a scenario.
-constexpr std::string_view kIdentified = R"([machine]
-based_on = "start_machine.toml"
-solver_tolerance_nm = 0.002
-identified = { keys = ["solver_tolerance_nm"], units = ["nm"], values = [0.002], covariance = [[1e-8]] }
-)";
-
 }  // namespace
 
-std::string_view identified_specimen() { return kIdentified; }
-
-std::array<std::string_view, 3> key_specimens() { return {kFirst, kSecond, kThird}; }
+std::array<std::string_view, 3> key_specimens() { return {kFirst, kSecond, third_specimen()}; }
 
 }  // namespace servomill::sim::input

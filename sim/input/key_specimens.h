@@ -11,6 +11,9 @@ namespace servomill::sim::input {
 /// other keys differ between them.
 std::array<std::string_view, 3> key_specimens();
 
+/// The last of them: a machine with one axis.
+std::string_view third_specimen();
+
 /// Keys that only machine files have, in a table `machine`.
 std::string_view identified_specimen();
 

@@ -4,16 +4,13 @@
 
 #include <utility>
 
+#include "sim/input/read_vector.h"
+
 namespace servomill::sim::input {
 namespace {
 
 Eigen::Vector3d read_point(config::Reader& table, std::string_view key) {
-  const std::size_t before = table.faults();
-  const auto p = table.reals(key, config::kLength);
-  if (table.faults() > before) return Eigen::Vector3d::Zero();
-  if (p.size() == 3) return Eigen::Vector3d(p.data());
-  table.fault(key, "must be [x, y, z]");
-  return Eigen::Vector3d::Zero();
+  return read_vector(table, key, config::kLength);
 }
 
 plant::StockBox read_box(config::Reader table) {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/read_vector.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -23,16 +24,6 @@ constexpr double kMostRepetitions = 1e4;
 constexpr double kMostSeed = 9007199254740992.0;  // 2^53: whole numbers are exact up to there
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kAcross = 1e-6;  // cosine of what still counts as a right angle
-
-// A list of three numbers; zero with a fault if it is not.
-Vector3d read_vector(config::Reader& table, std::string_view key, config::Quantity quantity) {
-  const std::size_t before = table.faults();
-  const std::vector<double> v = table.reals(key, quantity);
-  if (table.faults() > before) return Vector3d::Zero();
-  if (v.size() == 3) return Vector3d(v.data());
-  table.fault(key, "must be [x, y, z]");
-  return Vector3d::Zero();
-}
 
 // A direction of any length but 0.
 Vector3d read_direction(config::Reader& table, std::string_view key) {

@@ -23,6 +23,7 @@
 #include "sim/input/read_quantity.h"
 #include "sim/input/read_record.h"
 #include "sim/input/read_ticks.h"
+#include "sim/input/read_touch_probe.h"
 #include "sim/input/scenario_document.h"
 #include "sim/input/scenario_source.h"
 #include "sim/model/schedule.h"
@@ -58,6 +59,7 @@ class ScenarioReader {
     out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);
     read_cut(root);
+    out_.touch_probe = read_touch_probe(root, out_.stock, out_.part);
     refuse_unused(root);
     const std::size_t before = root.faults();
     std::vector<config::Reader> cases = root.tables("case");
@@ -204,10 +206,11 @@ class ScenarioReader {
   // Refuses keys that nothing would look at, though the user counts on them.
   void refuse_unused(config::Reader& root) {
     if (root.faults() > 0 || root.has("probe")) return;
+    if (root.has("cmm")) root.table("cmm").fault("measures nothing: there is no [[probe]]");
+    if (out_.touch_probe) return;
     if (out_.part) {
       root.table("part").fault("stl", "is what probed points are laid on: it needs a [[probe]]");
     }
-    if (root.has("cmm")) root.table("cmm").fault("measures nothing: there is no [[probe]]");
     if (!out_.stock.empty() && !out_.cutting) {
       root.table("part").fault(
           "stock is neither cut nor probed: it needs [cutting] or a [[probe]]");

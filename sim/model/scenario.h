@@ -22,6 +22,7 @@
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/model/touch_probe.h"
 #include "strategies/entry.h"
 
 namespace servomill::sim::evaluation {
@@ -141,6 +142,7 @@ struct Scenario {
   std::vector<CaseSpec> cases;
   std::vector<metrology::ProbeSpec> probes;  // measured on the part of every case
   metrology::Cmm cmm;
+  std::shared_ptr<const TouchProbe> touch_probe;  // in the spindle, for G38.2 ...; or none
   Tick record_period = 100;
   RecordSpec record;
   double settle_time = 0.1;  // s

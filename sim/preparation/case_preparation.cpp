@@ -114,14 +114,54 @@ SharedProgram CasePreparation::program() const {
     key.add(text);
   }
   add(key, setup);
+  add_probing(key);
   return cache_.programs.get(key, [&] {
     std::vector<Fault> warnings;
-    MoveList moves = read_program(scenario_, spec_, &warnings);
+    std::shared_ptr<TouchedBodies> bodies;
+    MoveList moves =
+        read_program(scenario_, spec_, &warnings, [&] { return bodies = touched_bodies(); });
     refuse_unnumbered_tools(moves, scenario_.program.file);
     InterpretedProgram out(std::move(moves), std::move(warnings), setup);
     out.text = shared;
+    out.probe = scenario_.touch_probe;
+    if (bodies) out.touches = with_sections(bodies->touches(), out.moves);
     return out;
   });
+}
+
+void CasePreparation::add_probing(system::MemoKey& key) const {
+  key.add_shared(scenario_.touch_probe.get());
+  if (!scenario_.touch_probe) return;
+  add(key, machine_.chain);
+  add(key, errors_of(scenario_, spec_.machine_errors.value_or(scenario_.machine_errors)));
+  key.add(machine_.nc.a_max);
+  key.add(spec_.feedback_hardware);
+  key.add(spec_.strategies.size());
+  for (const model::StrategySpec& one : spec_.strategies) {
+    add(key, one);
+    add(key, errors_of(scenario_, one.model));
+  }
+}
+
+StrategyParts CasePreparation::parts_at_rest(const Eigen::Vector3d& tip) const {
+  StrategyParts out;
+  for (const model::StrategySpec& one : spec_.strategies) {
+    const SharedStrategy& made = out.strategies.emplace_back(strategy(one, tip));
+    if (auto part = made->setpoint()) out.setpoints.push_back(std::move(part));
+    if (made->displaces_feedback() && spec_.feedback_hardware) {
+      out.feedback = made->feedback(machine_.nc.periods.seconds(scenario_.hardware.model_period));
+    }
+  }
+  return out;
+}
+
+std::shared_ptr<TouchedBodies> CasePreparation::touched_bodies() const {
+  if (!scenario_.touch_probe) return nullptr;
+  parts_at_rest(Eigen::Vector3d::Zero());  // their faults are of the strategies, not of a touch
+  return std::make_shared<TouchedBodies>(TouchedBodies::Setting{
+      scenario_.touch_probe, model(spec_.machine_errors.value_or(scenario_.machine_errors)),
+      model::work_frame(machine_.chain, scenario_.program.work_offset + spec_.work_offset), start_,
+      machine_.nc.a_max, [this](const Eigen::Vector3d& tip) { return parts_at_rest(tip); }});
 }
 
 double CasePreparation::least_time(const InterpretedProgram& program) const {

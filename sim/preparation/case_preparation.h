@@ -10,6 +10,7 @@
 #include "plant/geometry/volumetric.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/touch_probe.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::preparation {
@@ -59,6 +60,10 @@ class CasePreparation {
  private:
   SharedStrategy make(const model::StrategySpec& spec,
                       const strategies::IdentifiedMachine& machine) const;
+  /// The surroundings of probing moves; nullptr without a touch probe.
+  std::shared_ptr<TouchedBodies> touched_bodies() const;
+  StrategyParts parts_at_rest(const Eigen::Vector3d& tip) const;
+  void add_probing(system::MemoKey& key) const;
   controllers::ProgramSetup setup_of_rewritten() const;
   controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
                                       const controllers::JointLimits& limits,

@@ -46,10 +46,16 @@ std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
 }
 
 MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& spec,
-                      std::vector<Fault>* warnings) {
+                      std::vector<Fault>* warnings,
+                      const std::function<std::shared_ptr<controllers::Probed>()>& probed) {
   const model::ProgramSpec& program = scenario.program;
+  const auto setup = [&] {
+    controllers::ProgramSetup out = program_setup(scenario, spec);
+    if (probed) out.probed = probed();
+    return out;
+  };
   try {
-    controllers::Interpreter interpreter(program_text(program), program_setup(scenario, spec));
+    controllers::Interpreter interpreter(program_text(program), setup());
     MoveList moves = interpreter.rest_held();
     if (warnings != nullptr) {
       warnings->insert(warnings->end(), interpreter.warnings().begin(),
@@ -57,7 +63,7 @@ MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& sp
     }
     return moves;
   } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
-    auto faults = controllers::check_program(program_text(program), program_setup(scenario, spec));
+    auto faults = controllers::check_program(program_text(program), setup());
     if (faults.empty()) throw;
     throw InputError(std::move(faults));
   }

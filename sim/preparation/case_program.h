@@ -1,6 +1,7 @@
 /// The program of a case as the NC of its machine reads it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,9 +27,11 @@ controllers::ProgramSetup program_setup(const model::Scenario& scenario,
 
 /// Interprets the program of a case as its machine would (work offset, tools, parameters).
 /// @param warnings  receives what the NC put right; may be nullptr
+/// @param probed    makes what probing moves meet, anew for each reading; empty: nothing is known
 /// @throws InputError with all faults of the program
 MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& spec,
-                      std::vector<Fault>* warnings = nullptr);
+                      std::vector<Fault>* warnings = nullptr,
+                      const std::function<std::shared_ptr<controllers::Probed>()>& probed = {});
 
 /// Nominal kinematics and travel with which the NC of a machine does TCP control.
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(

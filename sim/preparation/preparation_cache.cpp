@@ -160,6 +160,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
                accepts_unknown_dwells, accepts_unknown_positions, is_trial, start, block_delete,
                subroutine_file, most_jumps, machine, probed, trials] = setup;
   static_cast<void>(trials);  // what it holds follows from the program and the setup
+  static_cast<void>(probed);  // whoever sets it adds what its answers depend on
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);
@@ -192,7 +193,6 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(start);
   key.add(block_delete);
   key.add(most_jumps);  // texts of subroutines are of the program
-  key.add(probed == nullptr ? std::string() : probed->identity());
   key.add(machine != nullptr);
   if (machine == nullptr) return;
   add(key, machine->chain());

@@ -18,6 +18,7 @@
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/preparation/circular_sections.h"
+#include "sim/preparation/touch_probe.h"
 #include "sim/system/shared_cache.h"
 #include "sim/system/shared_texts.h"
 #include "strategies/strategy.h"
@@ -40,12 +41,17 @@ struct InterpretedProgram {
   /// The first move that controls the tip; nullptr: none does.
   const Move* first_tip_move() const { return first_tip_move_ ? &*first_tip_move_ : nullptr; }
 
+  /// True if a touch probe decides where a move ends.
+  bool probes() const { return !touches.empty(); }
+
   /// The first feed in coordinates that the program has shifted; nullptr: none is.
   std::optional<Move> first_shifted_feed() const;
 
   std::shared_ptr<const std::string> text;  // of the program, if a key names it
   MoveList moves;
   std::vector<Fault> warnings;
+  std::vector<Touch> touches;                           // of its probing moves
+  std::shared_ptr<const model::TouchProbe> probe;       // that made them
   std::map<int, Eigen::Vector3d> tips;                  // p_ST (m) by tool offset number
   Eigen::Vector3d first_tip = Eigen::Vector3d::Zero();  // m, of the first tool that works
   engine::ProgramPath path;

@@ -44,6 +44,7 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
     if (!strategies.back()->rewrites()) continue;
+    refuse_rewritten_probing(strategy, *program, spec.name);
     refuse_tip_moves(strategy, *strategies.back(), *program, scenario.program.file, spec.name);
     try {
       rewritten = prepare.rewritten(moves, strategies.back());

@@ -198,4 +198,13 @@ void CaseFaults::report(std::size_t cases) {
   throw InputError(std::move(faults));
 }
 
+void refuse_rewritten_probing(const model::StrategySpec& spec, const InterpretedProgram& program,
+                              const std::string& case_name) {
+  if (!program.probes()) return;
+  throw InputError(spec.place,
+                   fmt::format("case {}: strategy {} rewrites the program, which has probing moves "
+                               "(line {}); measure with another strategy",
+                               case_name, spec.entry->name, program.touches.front().line));
+}
+
 }  // namespace servomill::sim::preparation

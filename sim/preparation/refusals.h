@@ -34,6 +34,12 @@ void refuse_standing_spindle(const InterpretedProgram& program, const model::Sce
 void refuse_turned_tip(const InterpretedProgram& program, const model::Scenario& scenario,
                        const model::CaseSpec& spec);
 
+/// A rewritten program would measure where the corrected positions are, not where the part is.
+/// @param spec  of a strategy that rewrites
+/// @throws InputError at the strategy, if the program has probing moves
+void refuse_rewritten_probing(const model::StrategySpec& spec, const InterpretedProgram& program,
+                              const std::string& case_name);
+
 /// @param machine  that the case runs on
 /// @param start    of the joints, all work offsets in it (5; m, rad)
 /// @throws InputError for each axis that starts outside its travel

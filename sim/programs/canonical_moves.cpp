@@ -19,6 +19,8 @@
 #include "sim/input/read_scenario.h"
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
+#include "sim/preparation/case_preparation.h"
+#include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/run/run.h"
@@ -40,14 +42,14 @@ void warn_of(const model::MachineSettings& machine, const std::string& path,
 
 // Uses of rules beyond LinuxCNC's in the cases' programs; the cases mostly run the same one.
 void add_program_warnings(const model::Scenario& scenario, std::vector<Fault>& warnings) {
+  preparation::PreparationCache cache;
   for (const model::CaseSpec& spec : scenario.cases) {
-    std::vector<Fault> found;
-    preparation::read_program(scenario, spec, &found);
-    for (Fault& one : found) {
+    for (const Fault& one :
+         preparation::CasePreparation(scenario, spec, cache).program()->warnings) {
       const bool is_known = std::any_of(warnings.begin(), warnings.end(), [&](const Fault& other) {
         return other.place == one.place && other.message == one.message;
       });
-      if (!is_known) warnings.push_back(std::move(one));
+      if (!is_known) warnings.push_back(one);
     }
   }
 }

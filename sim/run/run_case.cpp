@@ -38,6 +38,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.duration = p.motion.trajectory.duration();
   out.blocks = p.motion.blocks;
   out.sections = prepared.sections();
+  out.touches = p.program.touches;
   out.chain = p.scenario.machine_of(p.spec).chain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);

@@ -11,6 +11,7 @@
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/preparation/touch_probe.h"
 
 namespace servomill::sim::run {
 
@@ -26,6 +27,7 @@ struct CaseOutput {
   std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
+  std::vector<preparation::Touch> touches;        // of the program's probing moves
   evaluation::CaseData data() const;
 };
 

@@ -18,6 +18,7 @@
 #include "sim/run/build_identity.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
+#include "sim/run/touch_record.h"
 #include "sim/system/output_name.h"
 #include "sim/version.h"
 
@@ -284,6 +285,7 @@ void RunStore::add(const CaseOutput& one) {
     write_series(group.group("last_ticks"), one.result.last_ticks);
   }
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
+  if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);

@@ -13,7 +13,9 @@
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
+#include "sim/run/touch_record.h"
 #include "sim/system/system_error.h"
+#include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 
@@ -84,10 +86,21 @@ class Kept {
   std::vector<std::string> complete_, incomplete_;
 };
 
+void write_touches(const sim::run::RunOutput& output, const Options& options) {
+  const std::filesystem::path folder = options.get<std::string>("touches");
+  std::filesystem::create_directories(folder);
+  for (const sim::run::CaseOutput& one : output.cases) {
+    sim::system::write_text_file((folder / (one.name + ".csv")).string(),
+                                 sim::run::touches_csv(one.touches, one.chain.layout),
+                                 options.has("force"));
+  }
+}
+
 // Prints what a run has found; the exit status.
 int print_output(const sim::run::RunOutput& output, const Options& options,
                  const sim::model::Scenario& scenario, const std::string& path) {
   const bool json = options.has("json"), quiet = options.has("quiet");
+  if (options.has("touches")) write_touches(output, options);
   bool finished = true;
   for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
   print_notes(output);
@@ -116,6 +129,9 @@ void add_run_options(Options& options) {
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
+  options.add()("touches", po::value<std::string>()->value_name("FOLDER"),
+                "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
+                "readings of kind touch");
   options.add()("json", "prints the comparison as one JSON object a line");
   options.add()("quiet,q", "prints nothing but warnings and faults");
   add_plugin_option(options);

@@ -20,7 +20,6 @@ class Wall : public Probed {
     const AxisWords latched = move.begin + share * (move.end - move.begin);
     return ProbeContact{latched, latched};
   }
-  std::string identity() const override { return "wall"; }
   std::vector<ProbingMove> seen;
 
  private:
@@ -114,7 +113,8 @@ TEST(Probing, IsRefusedWhereItMeansNothing) {
   EXPECT_EQ(fault("F100 G0 X20\nG38.2 X20"), "G38.2 without a way to go: it begins where it ends");
   EXPECT_EQ(fault("F100 G53 G38.2 X20"), "G53 needs G0 or G1");
   EXPECT_EQ(fault_of("F100 G38.2 X20"),
-            "p.nc:1:6: error: G38.2: what a probe touches is not known here");
+            "p.nc:1:6: error: G38.2: what a probe touches is not known here; [touch_probe] of a "
+            "scenario says it");
 }
 
 TEST(Probing, NeedsTheLengthOfTheProbe) {
