@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
+#include "sim/model/tolerance.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim::model {
@@ -38,7 +39,11 @@ struct ComparisonRow {
   std::string sections;
   double value = 0.0;     // NaN where the case stopped or the samples are missing
   std::string note = {};  // why there is no value, where that is known, or what is not alike
+  std::optional<model::Tolerance> tolerance = {};  // in `unit`
 };
+
+/// "+-20", "-10 to 20"
+std::string tolerance_text(const model::Tolerance& tolerance);
 
 /// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length
 /// on the original path, samples of rapid moves left out.
@@ -52,7 +57,8 @@ std::string format_table(std::span<const ComparisonRow> rows);
 std::string json_escaped(std::string_view text);
 
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
-/// basis, null where there is none; and note where there is one.
+/// basis, null where there is none; note, tolerance (its limits) and is_within_tolerance where
+/// there is one.
 std::string to_json(const ComparisonRow& row);
 
 }  // namespace servomill::sim::evaluation

@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/user_file.h"
 #include "sim/input/based_on.h"
+#include "sim/input/drawn_errors.h"
 #include "sim/input/machine_document.h"
 
 namespace servomill::sim::input {
@@ -127,9 +128,11 @@ ScenarioDocument with_machine(config::Document scenario, std::span<const std::st
     // done: read again, the resolved document must not undo what later changes say
     document.set("machine_override={}");
   }
+  add_drawn_errors(document, files);  // before changes of the copy
   for (const std::string& change : changes) {
     if (!comes_before_machine(change)) document.set(change);
   }
+  add_drawn_errors(document, files);  // where --set asks for it
   return out;
 }
 

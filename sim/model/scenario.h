@@ -22,6 +22,7 @@
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/model/tolerance.h"
 #include "strategies/entry.h"
 
 namespace servomill::sim::evaluation {
@@ -105,6 +106,7 @@ struct QuantitySpec {
   Place sections_place;
   std::string reference;  // the paper's number with unit, or empty
   std::string basis;      // fitted, predicted, assumed, upper_bound or empty
+  std::optional<Tolerance> tolerance = {};
   std::optional<BallSpec> ball = {};
   std::optional<PartSpec> part = {};
 };
