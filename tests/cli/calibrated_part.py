@@ -157,6 +157,29 @@ class CalibratedPart(unittest.TestCase):
         # of 60 samples, three standard deviations of a standard deviation
         self.assertAlmostEqual(shown.std(ddof=1), wanted, delta=3.0 * wanted / math.sqrt(2.0 * COUNT))
 
+    def test_compensate_gives_the_uncertainty_of_each_corrected_point(self):
+        self.write("part.ngc", "G21 G17 G90 G94 G54 F600\nG0 X0 Y0 Z0\nG1 X100 Y0\nG1 X100 Y60\nG0 Z10\nM2\n")
+        done = self.run_here("compensate", "part.ngc", "--machine", "machine.toml", "--model", "identified", "--work-offset", "X=300,Y=200,Z=-80",
+                             "--tool-length", "1=60", "-o", "out.ngc", "--point-uncertainty", "points.csv")
+        with open(os.path.join(self.folder, "points.csv"), newline="", encoding="utf-8") as file:
+            rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        self.assertGreaterEqual(len(rows), 2)
+        for row in rows:  # by hand: dx = -EC0Y y, dy = b x^2
+            self.assertAlmostEqual(row["U_X_um"], 2.0 * SKEW_DEVIATION * row["Y_mm"] / 1000.0, delta=1e-4)
+            self.assertAlmostEqual(row["U_Y_um"], 2.0 * BOW_DEVIATION * row["X_mm"] ** 2, delta=1e-3)
+            self.assertAlmostEqual(row["U_Z_um"], 0.0, delta=1e-4)
+        self.assertEqual((rows[-1]["X_mm"], rows[-1]["Y_mm"]), (400.0, 260.0))
+        rms = [math.sqrt(sum(row[name] ** 2 for row in rows) / len(rows)) for name in ("U_X_um", "U_Y_um")]
+        self.assertIn(f"uncertainty of the corrected points (k = 2): X 5.20 um (rms {rms[0]:.2f}), Y 320.00 um (rms {rms[1]:.2f}), "
+                      "Z 0.00 um (rms 0.00) at most", done.stdout)
+
+    def test_compensate_refuses_to_guess_an_uncertainty(self):
+        done = subprocess.run([SERVOMILL, "compensate", "part.ngc", "--machine", "machine.toml", "--model", "measured", "--work-offset",
+                               "X=300,Y=200,Z=-80", "-o", "other.ngc", "--point-uncertainty", "other.csv"],
+                              cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr),
+                         (2, "machine.toml: error: has no covariance of the error model 'measured' ([identified]); servomill calibrate -o writes it\n"))
+
     def test_a_run_says_if_the_tolerance_is_met(self):
         done = self.run_here("run", "scenario.toml", "-o", "run.h5")
         self.assertRegex(done.stdout, r"squareness .* \+-15, met")
