@@ -1,6 +1,7 @@
 /// Comparison of cases along the programmed path: what a scenario asks of its recorded signals.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 
 namespace servomill::sim::model {
 struct QuantitySpec;
+struct UncertainErrors;
 }  // namespace servomill::sim::model
 
 namespace servomill::sim::evaluation {
@@ -31,6 +33,7 @@ struct CaseData {
   const std::vector<ProbedFeature>* probes = nullptr;  // of the part; nullptr: none
   // s, of the feedback hardware, 0 where none is connected; none of an ideal servo
   std::optional<double> signal_delay = {};
+  std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
 };
 
 /// One line of the printed comparison.

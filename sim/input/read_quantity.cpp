@@ -67,6 +67,11 @@ class QuantityReader {
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
+    if (info.needs_covariance && out_.uncertain == nullptr) {
+      table.fault("name",
+                  "needs a machine with identified errors and their covariance: servomill "
+                  "calibrate -o writes one");
+    }
     if (info.probes > 0) {
       read_part(table, info, spec);
     } else if (info.is_r_test) {

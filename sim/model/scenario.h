@@ -22,6 +22,7 @@
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/model/tip_uncertainty.h"
 #include "sim/model/tolerance.h"
 #include "strategies/entry.h"
 
@@ -134,6 +135,8 @@ struct Scenario {
   MachineSettings machine;
   ProgramSpec program;
   std::map<std::string, plant::ErrorModel> errors;
+  /// Identified errors of the machine with their covariance, where a quantity needs it; or none.
+  std::shared_ptr<const UncertainErrors> uncertain;
   std::string machine_errors;  // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;

@@ -10,6 +10,7 @@ the corrected block shows follows by hand:
     drawn bow         EYX = b (x/mm)^2 um       a side of L mm bends by |b| L^2 / 4 (two parallel lines around a parabola)
 """
 import csv
+import json
 import math
 import os
 import re
@@ -72,8 +73,42 @@ tolerance = 15.0
 name = "straightness"
 probe = "front"
 tolerance = [0.0, 4.0]
+[[quantity]]
+name = "tool_deviation"
+axis = "X"
+statistic = "mean"
+sections = ["front"]
+[[quantity]]
+name = "tool_deviation_uncertainty"
+axis = "X"
+statistic = "mean"
+sections = ["front"]
 [sweep]
 samples = {{ from = "machine.toml", into = "drawn", design = "sobol", count = {COUNT}, seed = 5 }}
+"""
+
+
+PROGRAM = """G21 G17 G90 G94 G54 G64 P0.001
+T1 M6
+G43 H1
+F1000
+(MSG, start)
+G0 X0 Y0 Z20
+(MSG, up)
+G1 X100
+(MSG, down)
+G1 X0
+M2
+"""
+
+REVERSAL = f"""based_on = "{os.path.abspath(SCENARIOS)}/machines/router_3axis.toml"
+[errors.identified]
+EXX = {{ polynomial_um = [0.0], reversal = {{ width_polynomial_um = [3.0], distance_mm = 0.1 }} }}
+[identified]
+keys = ["errors.identified.EXX.polynomial_um[0]", "errors.identified.EXX.reversal.width_polynomial_um[0]"]
+units = ["1", "1"]
+values = [0.0, 3.0]
+covariance = [[1.0, -0.6], [-0.6, 2.25]]
 """
 
 
@@ -122,6 +157,13 @@ class CalibratedPart(unittest.TestCase):
         self.assertGreater(wanted.max(), 2.0)
         # um: the chord of a millimetre of path, and points every 3.5 mm
         np.testing.assert_allclose(self.column("straightness"), wanted, atol=0.03)
+
+    def test_first_order_is_what_monte_carlo_finds(self):
+        residual, stated = self.column("tool_deviation_X"), self.column("tool_deviation_uncertainty_X")
+        self.assertEqual(np.ptp(stated), 0.0)  # that of what is known, at all points
+        # of 60 samples, three standard deviations of a standard deviation
+        self.assertAlmostEqual(2.0 * residual.std(ddof=1) / stated[0], 1.0, delta=3.0 / math.sqrt(2.0 * COUNT))
+        self.assertAlmostEqual(residual.mean() / stated[0], 0.0, delta=3.0 * 0.5 / math.sqrt(COUNT))
 
     def statistics(self, quantity):
         line = next(line for line in self.printed.splitlines() if line.startswith(quantity))
@@ -179,6 +221,42 @@ class CalibratedPart(unittest.TestCase):
                               cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr),
                          (2, "machine.toml: error: has no covariance of the error model 'measured' ([identified]); servomill calibrate -o writes it\n"))
+
+    def uncertainties(self, machine, program, sections):
+        """(axis, statistic, section): um of a run."""
+        self.write("both.ngc", program)
+        wanted = [(axis, statistic, section) for section in sections for axis in "XY" for statistic in ("max", "mean")]
+        text = SCENARIO[:SCENARIO.index("[cmm]")].replace('machine_errors = "drawn"\n', "").replace("machine.toml", machine)
+        text = re.sub(r'file = ".*"', 'file = "both.ngc"', text)
+        text += '[[case]]\nname = "corrected"\nservo = "ideal"\n'
+        text += "".join(f'[[quantity]]\nname = "tool_deviation_uncertainty"\naxis = "{axis}"\nstatistic = "{statistic}"\nsections = ["{section}"]\n'
+                        for axis, statistic, section in wanted)
+        self.write("residual.toml", text)
+        self.run_here("run", "residual.toml", "-o", "residual.h5", "--force")
+        os.rename(os.path.join(self.folder, machine), os.path.join(self.folder, "gone.toml"))  # the file holds all
+        lines = self.run_here("compare", "residual.h5", "--json").stdout.splitlines()
+        os.rename(os.path.join(self.folder, "gone.toml"), os.path.join(self.folder, machine))
+        return dict(zip(wanted, (json.loads(line)["value"] for line in lines)))
+
+    def test_a_run_gives_the_uncertainty_of_its_residual(self):
+        found = self.uncertainties("machine.toml", PROGRAM, ["up", "down"])
+        for section in ("up", "down"):  # by hand, at x = 300 to 400 mm, y = 200 mm
+            self.assertAlmostEqual(found["X", "max", section], 2.0 * SKEW_DEVIATION * 0.2, delta=1e-3)
+            self.assertAlmostEqual(found["Y", "max", section], 2.0 * BOW_DEVIATION * 400.0 ** 2, delta=0.2)
+
+    def test_the_uncertainty_is_that_of_the_direction_of_travel(self):
+        self.write("reversal.toml", REVERSAL)
+        found = self.uncertainties("reversal.toml", PROGRAM, ["up", "down"])
+        # U^2 = 4 (s_m^2 +- r s_m s_w + s_w^2 / 4) with 1, 1.5 um and r = -0.4; a reversal takes 0.1 mm of 100 mm
+        self.assertAlmostEqual(found["X", "mean", "up"], 2.0 * math.sqrt(1.0 - 0.6 + 0.5625), delta=0.01)
+        self.assertAlmostEqual(found["X", "mean", "down"], 2.0 * math.sqrt(1.0 + 0.6 + 0.5625), delta=0.01)
+        self.assertAlmostEqual(found["X", "max", "down"], 2.0 * math.sqrt(1.0 + 0.6 + 0.5625), delta=1e-3)
+        self.assertAlmostEqual(found["Y", "max", "down"], 0.0, delta=1e-6)
+
+    def test_a_machine_without_covariance_has_no_such_quantity(self):
+        self.write("plain.toml", f'based_on = "{os.path.abspath(SCENARIOS)}/machines/router_3axis.toml"\n')
+        with self.assertRaisesRegex(AssertionError, "needs a machine with identified errors and their covariance: servomill calibrate -o writes one"):
+            self.uncertainties("plain.toml", PROGRAM, ["up"])
 
     def test_a_run_says_if_the_tolerance_is_met(self):
         done = self.run_here("run", "scenario.toml", "-o", "run.h5")
