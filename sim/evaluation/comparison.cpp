@@ -54,7 +54,30 @@ std::string number(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
+// "+-20, met"
+std::string shown_tolerance(const ComparisonRow& row) {
+  if (!row.tolerance) return {};
+  const std::string limits = tolerance_text(*row.tolerance);
+  if (!std::isfinite(row.value)) return limits;
+  return limits + (row.tolerance->contains(row.value) ? ", met" : ", exceeded");
+}
+
+// The tolerance is the sixth cell, where there is one at all.
+std::vector<std::vector<std::string>> without_empty_tolerances(
+    std::vector<std::vector<std::string>> lines, std::span<const ComparisonRow> rows) {
+  const bool has_some =
+      std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.tolerance; });
+  if (has_some) return lines;
+  for (auto& line : lines) line.erase(line.begin() + 6);
+  return lines;
+}
+
 }  // namespace
+
+std::string tolerance_text(const model::Tolerance& tolerance) {
+  if (tolerance.is_symmetric()) return fmt::format("+-{:g}", tolerance.upper);
+  return fmt::format("{:g} to {:g}", tolerance.lower, tolerance.upper);
+}
 
 std::vector<ComparisonRow> compare(std::span<const model::QuantitySpec> specs,
                                    std::span<const CaseData> cases) {
@@ -80,6 +103,7 @@ std::vector<ComparisonRow> compare(std::span<const model::QuantitySpec> specs,
       if (spec.part) row.sections = fmt::format("{}", fmt::join(spec.part->probes, ", "));
       row.reference = spec.reference;
       row.basis = spec.basis;
+      row.tolerance = spec.tolerance;
       const bool missing = one == nullptr || (!spec.baseline.empty() && base == nullptr);
       QuantityValue found =
           missing ? QuantityValue{} : answer(spec, *one, base != nullptr ? &base->data : nullptr);
@@ -95,14 +119,14 @@ std::string format_table(std::span<const ComparisonRow> rows) {
   const bool has_notes =
       std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.note.empty(); });
   std::vector<std::vector<std::string>> lines = {{"quantity", "axis", "statistic", "section",
-                                                  "case", "value", "reference", "basis",
-                                                  has_notes ? "note" : ""}};
+                                                  "case", "value", "tolerance", "reference",
+                                                  "basis", has_notes ? "note" : ""}};
   for (const ComparisonRow& row : rows) {
     lines.push_back({row.quantity, row.axis, row.statistic, row.sections, row.case_name,
-                     number(row.value) + " " + (row.unit == "1" ? "" : row.unit), row.reference,
-                     row.basis, row.note});
+                     number(row.value) + " " + (row.unit == "1" ? "" : row.unit),
+                     shown_tolerance(row), row.reference, row.basis, row.note});
   }
-  return system::text_table(std::move(lines), 4, {5});
+  return system::text_table(without_empty_tolerances(std::move(lines), rows), 4, {5});
 }
 
 std::string to_json(const ComparisonRow& row) {
@@ -117,6 +141,12 @@ std::string to_json(const ComparisonRow& row) {
       .text_or_null("reference", row.reference)
       .text_or_null("basis", row.basis);
   if (!row.note.empty()) out.text("note", row.note);
+  if (row.tolerance) {
+    out.raw("tolerance", fmt::format("[{}, {}]", row.tolerance->lower, row.tolerance->upper));
+    if (std::isfinite(row.value)) {
+      out.boolean("is_within_tolerance", row.tolerance->contains(row.value));
+    }
+  }
   return out.line();
 }
 

@@ -1,6 +1,7 @@
 /// Comparison of cases along the programmed path: what a scenario asks of its recorded signals.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,10 +9,12 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
+#include "sim/model/tolerance.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim::model {
 struct QuantitySpec;
+struct UncertainErrors;
 }  // namespace servomill::sim::model
 
 namespace servomill::sim::evaluation {
@@ -30,6 +33,7 @@ struct CaseData {
   const std::vector<ProbedFeature>* probes = nullptr;  // of the part; nullptr: none
   // s, of the feedback hardware, 0 where none is connected; none of an ideal servo
   std::optional<double> signal_delay = {};
+  std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
 };
 
 /// One line of the printed comparison.
@@ -38,7 +42,11 @@ struct ComparisonRow {
   std::string sections;
   double value = 0.0;     // NaN where the case stopped or the samples are missing
   std::string note = {};  // why there is no value, where that is known, or what is not alike
+  std::optional<model::Tolerance> tolerance = {};  // in `unit`
 };
+
+/// "+-20", "-10 to 20"
+std::string tolerance_text(const model::Tolerance& tolerance);
 
 /// Evaluates all quantities, in the order of the scenario. Cases are compared at equal arc length
 /// on the original path, samples of rapid moves left out.
@@ -52,7 +60,8 @@ std::string format_table(std::span<const ComparisonRow> rows);
 std::string json_escaped(std::string_view text);
 
 /// One JSON object with the keys case, quantity, axis, statistic, sections, value, unit, reference,
-/// basis, null where there is none; and note where there is one.
+/// basis, null where there is none; note, tolerance (its limits) and is_within_tolerance where
+/// there is one.
 std::string to_json(const ComparisonRow& row);
 
 }  // namespace servomill::sim::evaluation

@@ -7,14 +7,15 @@
 #include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
+#include "sim/evaluation/uncertainty_quantities.h"
 
 namespace servomill::sim::evaluation {
 
 std::span<const QuantityEntry> quantities() {
   static const std::vector<QuantityEntry> kQuantities = [] {
     std::vector<QuantityEntry> all;
-    for (const auto family :
-         {path_quantities(), circular_quantities(), r_test_quantities(), probe_quantities()}) {
+    for (const auto family : {path_quantities(), uncertainty_quantities(), circular_quantities(),
+                              r_test_quantities(), probe_quantities()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

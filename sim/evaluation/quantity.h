@@ -43,12 +43,13 @@ struct QuantityEntry {
   std::string_view help;
 
   // keys of [[quantity]]
-  std::string_view axes = {};   // letters allowed of `axis`; none: has no such key
-  bool has_statistic = false;   // what `evaluate` returns is that of spec.statistic
-  bool needs_baseline = false;  // another case to compare with
-  bool needs_imposed = false;   // the scenario's imposed error model, which it subtracts
-  int circles = 0;              // sections evaluated together, each one turn of a circle; 0: any
-  bool is_r_test = false;       // in the spindle, seen by sensors on the table: r_test_quantities.h
+  std::string_view axes = {};     // letters allowed of `axis`; none: has no such key
+  bool has_statistic = false;     // what `evaluate` returns is that of spec.statistic
+  bool needs_baseline = false;    // another case to compare with
+  bool needs_covariance = false;  // of the identified errors of the machine
+  bool needs_imposed = false;     // the scenario's imposed error model, which it subtracts
+  int circles = 0;                // sections evaluated together, each one turn of a circle; 0: any
+  bool is_r_test = false;  // in the spindle, seen by sensors on the table: r_test_quantities.h
   BallBars bars = BallBars::none;
   bool identifies = false;  // location errors from readings: a line for each of them
   int probes = 0;           // features of the part evaluated together: probe_quantities.h; a

@@ -239,6 +239,7 @@ sections = ["SECTION"]
 [[quantity]]
 name = "straightness"
 probe = "line"
+tolerance = 20.0
 [[quantity]]
 name = "probed_deviation"
 probe = "line"
@@ -258,7 +259,7 @@ sections = ["SECTION"]
 error = "EX0C"
 
 [sweep]
-samples = { design = "sobol", count = 2, from = "identified.toml", identified = [{ keys = ["axis.Y.moving_mass"], units = ["kg"], values = [300], covariance = [[1]] }] }
+samples = { design = "sobol", count = 2, from = "identified.toml", into = "drawn", identified = [{ keys = ["errors.NAME.EC0Y.constant_urad"], units = ["urad"], values = [300], covariance = [[1]] }] }
 "program.feed_override" = { linear = [0.5, 1.0], count = 2 }
 "machine.nc.Kv" = { log = [10.0, 100.0], count = 2 }
 "errors.NAME.EXX.constant_um" = { normal = [1.0, 0.1] }
@@ -362,8 +363,7 @@ connected = true
 [part]
 stl = "second.stl"
 stl_base64 = "c29saWQgc3BlY2ltZW4KZmFjZXQgbm9ybWFsIDAgMCAtMQpvdXRlciBsb29wCnZlcnRleCAwIDAgMAp2ZXJ0ZXggMCAxMDAgMAp2ZXJ0ZXggMTAwIDAgMAplbmRsb29wCmVuZGZhY2V0CmZhY2V0IG5vcm1hbCAwIC0xIDAKb3V0ZXIgbG9vcAp2ZXJ0ZXggMCAwIDAKdmVydGV4IDEwMCAwIDAKdmVydGV4IDAgMCAxMDAKZW5kbG9vcAplbmRmYWNldApmYWNldCBub3JtYWwgLTEgMCAwCm91dGVyIGxvb3AKdmVydGV4IDAgMCAwCnZlcnRleCAwIDAgMTAwCnZlcnRleCAwIDEwMCAwCmVuZGxvb3AKZW5kZmFjZXQKZmFjZXQgbm9ybWFsIDEgMSAxCm91dGVyIGxvb3AKdmVydGV4IDEwMCAwIDAKdmVydGV4IDAgMTAwIDAKdmVydGV4IDAgMCAxMDAKZW5kbG9vcAplbmRmYWNldAplbmRzb2xpZCBzcGVjaW1lbgo="
-[[part.stock]]
-box = { from_mm = [0, 0, 0], to_mm = [1, 1, 1] }
+stock = [{ box = { from_mm = [0, 0, 0], to_mm = [1, 1, 1] } }]
 
 [cutting]
 Ktc = 2e9

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/input/drawn_errors.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/scenario_document.h"
 #include "sim/model/joint_normal.h"
@@ -82,7 +83,7 @@ class DesignReader {
     const std::size_t before = table.faults();
     read_sample_files(table);
     read_identified_values(table);
-    if (table.faults() > before) return;
+    if (table.faults() > before || !draws_into_other_model(table)) return;
     for (const IdentifiedValues& values : identified_) add_joint(table, values);
   }
 
@@ -125,6 +126,30 @@ class DesignReader {
     }
   }
 
+  // into: identified errors keep their model, and a copy of it is drawn.
+  bool draws_into_other_model(config::Reader& table) {
+    if (!table.has("into")) return true;
+    const std::size_t before = table.faults();
+    const std::string into = table.text("into");
+    std::vector<std::string> models;
+    for (const IdentifiedValues& values : identified_) {
+      for (std::string& one : models_of_keys(values.keys)) models.push_back(std::move(one));
+    }
+    if (table.faults() > before) return false;
+    if (models.size() != 1) {
+      table.fault("into", models.empty() ? "has nothing to hold: no identified key is of an error"
+                                         : "is one error model; errors of several are identified");
+    } else if (into.empty() || into == models.front() ||
+               into.find_first_of(".\"' []=") != std::string::npos) {
+      table.fault("into", fmt::format("must be a new name of letters, digits, '_': {} is what is "
+                                      "identified",
+                                      models.front()));
+    }
+    if (table.faults() > before) return false;
+    drawn_into_ = into;
+    return true;
+  }
+
   // Keys that are drawn together: the first dimensions of the samples.
   void add_joint(config::Reader& table, const IdentifiedValues& values) {
     model::JointNormal joint{
@@ -133,7 +158,9 @@ class DesignReader {
         model::covariance_factor(values.covariance)};
     const std::string_view source = table.has("from") ? "from" : "identified";
     for (std::size_t k = 0; k < values.keys.size(); ++k) {
-      const std::string path = "machine." + values.keys[k];
+      const std::string path =
+          "machine." +
+          (drawn_into_.empty() ? values.keys[k] : key_in_model(values.keys[k], drawn_into_));
       if (refuse_key(table, std::string(source), path)) return;
       const std::string& unit = values.units[k];
       const model::JointMember member{design_.joint.size(), static_cast<Eigen::Index>(k),
@@ -331,6 +358,7 @@ class DesignReader {
   InputFiles& files_;
   model::SweepDesign design_;
   std::vector<IdentifiedValues> identified_;
+  std::string drawn_into_;  // error model; empty: the identified one itself
   bool has_samples_ = false;
 };
 

@@ -30,6 +30,20 @@ std::vector<std::string_view> letters_of(std::string_view axes) {
   return out;
 }
 
+// One number: of the magnitude; two: the limits.
+std::optional<model::Tolerance> read_tolerance(config::Reader& table) {
+  if (!table.is("tolerance", config::Value::Type::list)) {
+    const double most = table.real("tolerance", config::kNumber, {config::above(0.0)});
+    return model::Tolerance{-most, most};
+  }
+  const std::size_t before = table.faults();
+  const std::vector<double> limits = table.reals("tolerance", config::kNumber);
+  if (table.faults() > before) return std::nullopt;
+  if (limits.size() == 2 && limits[0] < limits[1]) return model::Tolerance{limits[0], limits[1]};
+  table.fault("tolerance", "must be one number > 0, or a lower limit and a larger upper one");
+  return std::nullopt;
+}
+
 class QuantityReader {
  public:
   QuantityReader(bool checks_cases, model::Scenario& out)
@@ -53,6 +67,11 @@ class QuantityReader {
     if (info.needs_imposed && out_.imposed.empty()) {
       table.fault("name", "needs the key 'imposed' of the scenario");
     }
+    if (info.needs_covariance && out_.uncertain == nullptr) {
+      table.fault("name",
+                  "needs a machine with identified errors and their covariance: servomill "
+                  "calibrate -o writes one");
+    }
     if (info.probes > 0) {
       read_part(table, info, spec);
     } else if (info.is_r_test) {
@@ -62,6 +81,7 @@ class QuantityReader {
       spec.sections_place = table.place("sections");
     }
     spec.reference = table.text_or("reference", "");
+    if (table.has("tolerance")) spec.tolerance = read_tolerance(table);
     if (table.has("basis")) spec.basis = kBases[table.choice("basis", kBases)];
     add(table, info, spec);
   }

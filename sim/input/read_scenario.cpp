@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/reader.h"
+#include "sim/input/drawn_errors.h"
 #include "sim/input/known_name.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/plugins.h"
@@ -26,6 +27,7 @@
 #include "sim/input/read_touch_probe.h"
 #include "sim/input/scenario_document.h"
 #include "sim/input/scenario_source.h"
+#include "sim/input/uncertain_errors.h"
 #include "sim/model/schedule.h"
 #include "sim/system/base64.h"
 #include "strategies/registry.h"
@@ -50,6 +52,7 @@ class ScenarioReader {
     const std::string plugins = read_plugins(root);
     config::Reader machine = root.table("machine");
     out_.machine = read_machine(machine, &out_.errors);
+    read_covariance(machine);
     config::Reader program = root.table("program");
     out_.program = read_program(program, out_.machine, files_);
     read_error_models(root);
@@ -128,6 +131,21 @@ class ScenarioReader {
       toml += "[[sweep.samples.identified]]\n" + table_lines(one);
     }
     return config::Document::from_text(toml, "");
+  }
+
+  // [machine.identified], which is there where a quantity needs it.
+  void read_covariance(config::Reader& machine) {
+    if (!machine.has("identified")) return;
+    config::Reader table = machine.table("identified");
+    const IdentifiedValues identified = read_identified_table(table);
+    const std::vector<std::string> models = models_of_keys(identified.keys);
+    if (models.size() != 1 || machine.faults() > 0) return;
+    const config::Value* errors = value_at(document_.root(), "machine.errors." + models.front());
+    if (errors == nullptr) return;
+    if (auto read =
+            uncertain_errors(*errors, models.front(), identified, out_.machine.chain.layout)) {
+      out_.uncertain = std::make_shared<const model::UncertainErrors>(std::move(*read));
+    }
   }
 
   void read_error_models(config::Reader& root) {

@@ -6,7 +6,9 @@
 #include <filesystem>
 
 #include "plant/vocabulary/user_file.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/input/based_on.h"
+#include "sim/input/drawn_errors.h"
 #include "sim/input/machine_document.h"
 
 namespace servomill::sim::input {
@@ -73,6 +75,18 @@ void refuse_machine(const config::Document& document) {
                                config::inline_toml(*machine)));
 }
 
+// True if a quantity of the scenario takes the covariance of identified errors.
+bool needs_covariance(const config::Document& document) {
+  const config::Value* quantities = document.root().find("quantity");
+  if (quantities == nullptr) return false;
+  return std::any_of(
+      quantities->children.begin(), quantities->children.end(), [](const config::Value& one) {
+        const config::Value* name = one.find("name");
+        const auto* entry = name == nullptr ? nullptr : evaluation::find_quantity(name->text);
+        return entry != nullptr && entry->needs_covariance;
+      });
+}
+
 }  // namespace
 
 std::string beside(const Place& place, const std::string& path) {
@@ -112,11 +126,14 @@ ScenarioDocument with_machine(config::Document scenario, std::span<const std::st
     if (comes_before_machine(change)) document.set(change);
   }
   refuse_machine(document);
+  std::optional<IdentifiedValues> identified;
   const config::Value* machine = document.root().find("machine");
   if (machine != nullptr && machine->type == config::Value::Type::text) {
     const std::string path = beside(machine->place, machine->text);
     out.machine_text = *files.text(path, machine->place, "machine");
-    document.merge(as_machine(machine_document(path, files, machine->place).document.root()));
+    MachineDocument read = machine_document(path, files, machine->place);
+    document.merge(as_machine(read.document.root()));
+    identified = std::move(read.identified);
   }
   if (const config::Value* overrides = document.root().find("machine_override")) {
     if (overrides->type != config::Value::Type::table) {
@@ -127,8 +144,15 @@ ScenarioDocument with_machine(config::Document scenario, std::span<const std::st
     // done: read again, the resolved document must not undo what later changes say
     document.set("machine_override={}");
   }
+  add_drawn_errors(document, files);  // before changes of the copy
   for (const std::string& change : changes) {
     if (!comes_before_machine(change)) document.set(change);
+  }
+  add_drawn_errors(document, files);  // where --set asks for it
+  if (identified && needs_covariance(document)) {
+    document.merge(
+        config::Document::from_text("[machine.identified]\n" + table_lines(*identified), "")
+            .root());
   }
   return out;
 }

@@ -214,6 +214,9 @@ constexpr KeyHelp kScenario[] = {
     {"quantity", "sections", "sections of the program, (MSG, name); default: the whole program"},
     {"quantity", "reference", "value of the source, printed next to the result"},
     {"quantity", "basis", "origin of the number: fitted, predicted, assumed or an upper bound"},
+    {"quantity", "tolerance",
+     "largest magnitude, or [lower, upper], in the unit of the quantity; sweeps give the "
+     "probability of conformity"},
     {"quantity", "probe", "probed feature"},
     {"quantity", "fit", "minimum zone or least squares"},
     {"quantity", "to", "second probed feature"},
@@ -228,6 +231,9 @@ constexpr KeyHelp kScenario[] = {
     {"sweep", "KEY", "any key of the scenario, with a list, a range or a distribution"},
     {"sweep.samples", "from",
      "machine files with identified values: their keys are drawn together, by their covariance"},
+    {"sweep.samples", "into",
+     "error model that is drawn: a copy of the identified one, which strategies keep; default: the "
+     "identified one itself"},
     {"sweep.samples", "identified", "the identified values themselves, one table a file"},
     {"sweep.samples.identified", "keys", "keys of the machine, as axis.X.friction.coulomb"},
     {"sweep.samples.identified", "units", "units of values, one a key; 1: a number without unit"},

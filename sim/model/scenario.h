@@ -22,6 +22,8 @@
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
+#include "sim/model/tip_uncertainty.h"
+#include "sim/model/tolerance.h"
 #include "sim/model/touch_probe.h"
 #include "strategies/entry.h"
 
@@ -106,6 +108,7 @@ struct QuantitySpec {
   Place sections_place;
   std::string reference;  // the paper's number with unit, or empty
   std::string basis;      // fitted, predicted, assumed, upper_bound or empty
+  std::optional<Tolerance> tolerance = {};
   std::optional<BallSpec> ball = {};
   std::optional<PartSpec> part = {};
 };
@@ -133,6 +136,8 @@ struct Scenario {
   MachineSettings machine;
   ProgramSpec program;
   std::map<std::string, plant::ErrorModel> errors;
+  /// Identified errors of the machine with their covariance, where a quantity needs it; or none.
+  std::shared_ptr<const UncertainErrors> uncertain;
   std::string machine_errors;  // model of the machine's true errors; empty: none
   std::string imposed;  // model whose displacement at the programmed position is recorded; or empty
   FeedbackHardware hardware;

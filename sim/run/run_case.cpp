@@ -24,9 +24,11 @@ void probe(const preparation::PreparedParts& p, CaseOutput& out) {
 }  // namespace
 
 evaluation::CaseData CaseOutput::data() const {
-  return {name,        &result.servo,           sections, duration,
-          blocks,      result.outcome.finished, chain,    probes.empty() ? nullptr : &probes,
-          signal_delay};
+  return {name,         &result.servo,
+          sections,     duration,
+          blocks,       result.outcome.finished,
+          chain,        probes.empty() ? nullptr : &probes,
+          signal_delay, uncertain};
 }
 
 CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {
@@ -40,6 +42,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.sections = prepared.sections();
   out.touches = p.program.touches;
   out.chain = p.scenario.machine_of(p.spec).chain;
+  out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
   for (std::string& note : notes_of_run(p, out.result.saturations)) {

@@ -25,6 +25,7 @@ struct CaseOutput {
   std::vector<std::string> sections;
   plant::MachineChain chain;           // the ideal machine
   std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
+  std::shared_ptr<const model::UncertainErrors> uncertain;  // errors of the machine; or none
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
   std::vector<preparation::Touch> touches;        // of the program's probing moves

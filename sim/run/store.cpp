@@ -331,7 +331,8 @@ StoredRun read_run(const std::string& path) {
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0, chain_of(scenario, name),
-                         probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name)});
+                         probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name),
+                         scenario.uncertain});
   }
   return run;
 }

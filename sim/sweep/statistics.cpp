@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
+#include "sim/evaluation/comparison.h"
 #include "sim/records/input_file.h"
 #include "sim/sweep/table_header.h"
 #include "sim/system/text_table.h"
@@ -39,6 +41,13 @@ std::string grid_text(const model::SweepDesign& design, std::uint64_t grid_point
     out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", design.keys[k].key, values[k]);
   }
   return out;
+}
+
+std::optional<model::Tolerance> tolerance_of(const TableColumn& column) {
+  const std::string lower = attribute_of(column, "tolerance_lower");
+  if (lower.empty()) return std::nullopt;
+  const std::string upper = attribute_of(column, "tolerance_upper");
+  return model::Tolerance{model::number_of(lower), model::number_of(upper)};
 }
 
 std::string shown_number(double value) {
@@ -88,17 +97,45 @@ std::vector<SampledQuantity> sample_statistics(const std::string& table) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       std::vector<double> some;
       for (const std::size_t place : places) some.push_back(values[c].at(place));
-      out.push_back({grid, columns[c], distribution_of(some)});
+      SampledQuantity one{grid, columns[c], distribution_of(some), tolerance_of(columns[c])};
+      if (one.tolerance) one.conformity = conformity_of(some, *one.tolerance);
+      out.push_back(std::move(one));
     }
   }
   return out;
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kConformityCells = {"tolerance", "within", "guard band",
+                                                              "ISO 14253-1"};
+
+constexpr std::string_view kConformityNote =
+    "guard band: 1.65 standard deviations between the limits and the zone of acceptance (ISO "
+    "14253-1, 95 %)\n";
+
+// "+-20", "97.3 %", "4.1", "conforms"; empty cells where there is no tolerance.
+std::vector<std::string> conformity_cells(const SampledQuantity& one) {
+  if (!one.tolerance || !one.conformity) return {"", "", "", ""};
+  const Conformity& found = *one.conformity;
+  const bool has_value = std::isfinite(found.probability);
+  return {evaluation::tolerance_text(*one.tolerance),
+          has_value ? fmt::format("{:.1f} %", 100.0 * found.probability) : "-",
+          shown_number(found.guard_band), has_value ? std::string(name_of(found.statement)) : "-"};
+}
+
+}  // namespace
 
 std::string format_statistics(const std::vector<SampledQuantity>& quantities, std::size_t most) {
   const bool has_grid = !quantities.empty() && !quantities.front().grid.empty();
   std::vector<std::vector<std::string>> lines = {{"quantity", "axis", "statistic", "section",
                                                   "case", "unit", "samples", "mean",
                                                   "standard deviation", "2.5 %", "97.5 %"}};
+  const bool has_tolerances = std::any_of(quantities.begin(), quantities.end(),
+                                          [](const auto& one) { return one.tolerance; });
+  if (has_tolerances) {
+    lines[0].insert(lines[0].end(), kConformityCells.begin(), kConformityCells.end());
+  }
   for (const SampledQuantity& one : quantities) {
     if (lines.size() > most) break;
     const Distribution& d = one.distribution;
@@ -108,19 +145,22 @@ std::string format_statistics(const std::vector<SampledQuantity>& quantities, st
                      attribute_of(one.column, "case"), unit == "1" ? "" : unit,
                      fmt::format("{}", d.count), shown_number(d.mean), shown_number(d.deviation),
                      shown_number(d.low), shown_number(d.high)});
+    if (!has_tolerances) continue;
+    for (std::string& cell : conformity_cells(one)) lines.back().push_back(std::move(cell));
   }
   const std::size_t shown = lines.size() - 1;
-  std::set<std::size_t> right = {6, 7, 8, 9, 10};
+  std::set<std::size_t> right = {6, 7, 8, 9, 10, 12, 13};
   std::size_t grouped = 4;
   if (has_grid) {
     lines.front().insert(lines.front().begin(), "grid");
     for (std::size_t n = 0; n < shown; ++n) {
       lines[n + 1].insert(lines[n + 1].begin(), quantities[n].grid);
     }
-    right = {7, 8, 9, 10, 11};
+    right = {7, 8, 9, 10, 11, 13, 14};
     grouped = 5;
   }
   std::string out = system::text_table(std::move(lines), grouped, right);
+  if (has_tolerances) out += kConformityNote;
   if (shown < quantities.size()) out += fmt::format("and {} more\n", quantities.size() - shown);
   return out;
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "sim/sweep/conformity.h"
 #include "sim/sweep/table_columns.h"
 
 namespace servomill::sim::sweep {
@@ -30,6 +32,8 @@ struct SampledQuantity {
   std::string grid;    // "program.feed_override = 0.5"; empty: there is no grid
   TableColumn column;  // with its attributes
   Distribution distribution;
+  std::optional<model::Tolerance> tolerance = {};
+  std::optional<Conformity> conformity = {};  // with the tolerance
 };
 
 /// All quantities of a table at each point of its grid, over the samples that have a value: points

@@ -205,10 +205,21 @@ InputError Sweep::at_the_list(const InputError& error,
   return InputError(std::move(faults));
 }
 
+bool Sweep::draws_probing_noise() const {
+  const auto& keys = design().keys;
+  const bool is_swept =
+      std::any_of(keys.begin(), keys.end(), [](const auto& one) { return one.key == "cmm.seed"; });
+  return design().sampled_dimensions > 0 && base_.cmm.uncertainty > 0.0 && !is_swept;
+}
+
 model::Scenario Sweep::at(std::uint64_t point) const {
   const std::vector<std::string> values = design().point(point);
   std::vector<std::string> changes;
   for (std::size_t k = 0; k < values.size(); ++k) changes.push_back(assignment(k, values[k]));
+  if (draws_probing_noise()) {
+    const std::uint64_t sample = point % design().samples.count;
+    changes.push_back(fmt::format("cmm.seed={}", base_.cmm.seed + sample));
+  }
   try {
     return source_.at(changes);
   } catch (const InputError& error) {

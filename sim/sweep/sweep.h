@@ -29,7 +29,8 @@ class Sweep {
   const model::SweepDesign& design() const { return base_.sweep; }
 
   /// Reads the scenario with the values of a point set as --set would. Names of files among the
-  /// values are relative to the scenario that holds the list.
+  /// values are relative to the scenario that holds the list. Sample n is probed with a noise of
+  /// its own, cmm.seed + n, unless the sweep varies that seed.
   /// @throws InputError at the values that are refused
   model::Scenario at(std::uint64_t point) const;
 
@@ -52,6 +53,7 @@ class Sweep {
   std::string assignment(std::size_t key, const std::string& value) const;
   std::optional<std::string> named_file(std::size_t key, const std::string& value) const;
   std::string swept_files() const;
+  bool draws_probing_noise() const;
 
   std::string path_;
   std::vector<std::string> changes_;

@@ -79,6 +79,10 @@ TableColumn quantity_column(const evaluation::ComparisonRow& row, Names& names) 
                     {"quantity", row.quantity},   {"axis", row.axis},
                     {"statistic", row.statistic}, {"sections", row.sections},
                     {"reference", row.reference}, {"basis", row.basis}};
+  if (row.tolerance) {
+    out.attributes.emplace_back("tolerance_lower", fmt::format("{}", row.tolerance->lower));
+    out.attributes.emplace_back("tolerance_upper", fmt::format("{}", row.tolerance->upper));
+  }
   return out;
 }
 
@@ -105,8 +109,9 @@ std::vector<TableColumn> columns_of(const records::InputFile& file) {
     column.name = name;
     column.meaning = {file.text(path, "units"), file.text(path, "long_name")};
     column.fill = kNoNumber;
-    for (const std::string_view about : {"role", "key", "values", "case", "quantity", "axis",
-                                         "statistic", "sections", "reference", "basis"}) {
+    for (const std::string_view about :
+         {"role", "key", "values", "case", "quantity", "axis", "statistic", "sections", "reference",
+          "basis", "tolerance_lower", "tolerance_upper"}) {
       const std::string attribute(about);
       if (!file.has_attribute(path, attribute)) continue;
       column.attributes.emplace_back(attribute, file.text(path, attribute));

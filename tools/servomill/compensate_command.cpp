@@ -171,6 +171,7 @@ sim::programs::CompensateRequest request_of(const Options& options) {
   request.preset = preset_of(options);
   request.without = absent_functions(options);
   request.records = options.has("record");
+  request.lists_uncertainty = options.has("point-uncertainty");
   return request;
 }
 
@@ -178,6 +179,7 @@ sim::programs::CompensateRequest request_of(const Options& options) {
 void refuse_outputs(const Options& options, const std::string& name) {
   const bool force = options.has("force"), to_stdout = name == "-";
   if (!to_stdout) sim::system::refuse_unwritable_text(name, force);
+  output_of(options, "point-uncertainty", ".csv");
   if (!options.has("record")) return;
   const auto& record = options.get<std::string>("record");
   sim::run::writable_name(record, force);
@@ -249,6 +251,10 @@ void add_other_options(Options& options) {
                 "machine position before the program, for programs that feed before every axis has "
                 "been programmed");
   options.add()("record", text()->value_name("OUT.h5"), "path and correction, for tools/plot.py");
+  options.add()("point-uncertainty", text()->value_name("OUT.csv"),
+                "expanded uncertainty (k = 2) of every corrected point, from the covariance in the "
+                "machine file that servomill calibrate has written; the report has the largest and "
+                "the rms");
   options.add()("json", "prints what it changed as JSON");
   options.add()("force,f", "replaces OUT if it exists");
   options.add()("quiet,q", "prints nothing but warnings and faults");
@@ -284,6 +290,9 @@ int compensate_command(const Arguments& arguments) {
   refuse_outputs(options, name);
   const sim::programs::Compensated done = sim::programs::compensate(request);
   if (!to_stdout) sim::system::write_text_file(name, done.program, force);
+  if (const std::string points = output_of(options, "point-uncertainty", ".csv"); !points.empty()) {
+    sim::system::write_text_file(points, done.uncertainty->csv(), force);
+  }
   if (options.has("record")) {
     done.record.write(options.get<std::string>("record"), force,
                       fs::path(options.word()).filename().string(), done.machine);

@@ -30,7 +30,9 @@ namespace po = boost::program_options;
 constexpr const char* kSummary =
     "Runs a scenario at the points of its [sweep] table, prints one line for each and writes one "
     "row a point to one HDF5 file; of samples it prints the mean, the standard deviation and the "
-    "interval of 95 % of each quantity. What an interrupted or killed sweep has left is gone on "
+    "interval of 95 % of each quantity, and of those with a tolerance the probability of "
+    "conformity "
+    "with the guard band of ISO 14253-1. What an interrupted or killed sweep has left is gone on "
     "with. "
     "Exit status 1: at some points the machine stopped or the input was refused; their rows say "
     "why.";

@@ -15,6 +15,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/uncertain_errors.h"
 #include "sim/model/design.h"
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/compensate_report.h"
@@ -218,6 +219,20 @@ void add_clauses(const ProgramWriter& writer, const std::string& file, Compensat
   }
 }
 
+// Uncertainty of the corrected points; nothing where the covariance of the errors is not known.
+std::optional<PointUncertainty> point_uncertainty(const CompensateRequest& request,
+                                                  const Preparation& prepared) {
+  const std::string& file = request.error_file.empty() ? request.machine_file : request.error_file;
+  const auto errors = input::uncertain_errors_of_file(file, prepared.model, prepared.layout);
+  if (errors) {
+    return PointUncertainty(prepared.described.machine.chain, *errors, request.lists_uncertainty);
+  }
+  if (!request.lists_uncertainty) return std::nullopt;
+  throw InputError({file}, fmt::format("has no covariance of the error model '{}' ([identified]); "
+                                       "servomill calibrate -o writes it",
+                                       prepared.model));
+}
+
 // Comments at the head of the program.
 std::vector<std::string> header_of(const CompensateRequest& request, const Preparation& prepared,
                                    const ProgramWriter& writer, const Summary& summary) {
@@ -228,6 +243,18 @@ std::vector<std::string> header_of(const CompensateRequest& request, const Prepa
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
   for (const std::string& one : writer.warnings()) header.push_back("warning: " + one);
   return header;
+}
+
+// Lines of the report and its JSON.
+void add_report(const VerificationReport& verified, const JointLayout& layout, Compensated& out) {
+  const Summary& summary = out.summary;
+  const bool has_uncertainty = out.uncertainty && !out.uncertainty->empty();
+  out.report = summary.report(layout);
+  if (has_uncertainty) out.report.push_back(out.uncertainty->report());
+  out.report.push_back(verified.text());
+  for (const std::string& one : unrolled_parts(summary)) out.report.push_back(one);
+  for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
+  out.json = summary.json(layout, has_uncertainty ? out.uncertainty->json() : "null");
 }
 
 }  // namespace
@@ -244,9 +271,11 @@ Compensated compensate(const CompensateRequest& request) {
   Compensated out;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
+  out.uncertainty = point_uncertainty(request, prepared);
   ProgramCorrector corrector(prepared.options, known.setup.tools, correction, out.summary,
                              request.records ? &out.record : nullptr,
-                             smoothed ? &*smoothed : nullptr);
+                             smoothed ? &*smoothed : nullptr,
+                             out.uncertainty ? &*out.uncertainty : nullptr);
   const auto writer = writer_of(request, prepared.described, known.setup, corrector, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
@@ -279,15 +308,11 @@ Compensated compensate(const CompensateRequest& request) {
 
   const VerificationReport verified = verify(request, prepared, out.program);
 
-  out.report = summary.report(layout);
-  out.report.push_back(verified.text());
-  for (const std::string& one : unrolled_parts(summary)) out.report.push_back(one);
-  for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
+  add_report(verified, layout, out);
   out.warnings.insert(out.warnings.end(), interpreter.warnings().begin(),
                       interpreter.warnings().end());
   const auto more = warnings_of(request, summary, layout);
   out.warnings.insert(out.warnings.end(), more.begin(), more.end());
-  out.json = summary.json(layout);
   out.machine = machine.name;
   return out;
 }

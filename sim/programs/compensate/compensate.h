@@ -9,6 +9,7 @@
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/dialect.h"
 #include "sim/programs/compensate/path_record.h"
+#include "sim/programs/compensate/point_uncertainty.h"
 #include "sim/programs/compensate/summary.h"
 #include "strategies/axis_displacement.h"
 
@@ -36,6 +37,7 @@ struct CompensateRequest {
   std::vector<std::string> tool_lengths;  // "1=50": tool 1 is 50 mm long
   std::string start;                      // "X=0,Y=0": machine coordinates; or empty
   bool records = false;                   // the path
+  bool lists_uncertainty = false;         // of every corrected point
 };
 
 struct Compensated {
@@ -46,6 +48,8 @@ struct Compensated {
   std::string json;
   std::string machine;  // its name
   PathRecord record;    // where it was asked for
+  /// Uncertainty of the corrected points, where the covariance of the errors is known.
+  std::optional<PointUncertainty> uncertainty;
 };
 
 /// The program is read back as its control would read it and compared with the original.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/programs/compensate/point_uncertainty.h"
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
 
@@ -99,6 +100,7 @@ void ProgramCorrector::arrive(const Step& step, const AxisWords& machine) {
     ++summary_.blocks_before;
     ++summary_.blocks_after;
   }
+  if (uncertainty_ != nullptr) uncertainty_->add(step, correction_);
   if (feeds_ != nullptr) {
     const bool is_feed = step.is_corrected && step.move->kind != MoveKind::rapid;
     if (is_feed) feeds_->add(step);

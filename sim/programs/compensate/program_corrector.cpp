@@ -46,13 +46,14 @@ bool is_place_of_machine(const ExecutedBlock& block) {
 
 ProgramCorrector::ProgramCorrector(const WalkOptions& options, const controllers::ToolTable& tools,
                                    Correction& correction, Summary& summary, PathRecord* record,
-                                   SmoothedFeeds* feeds)
+                                   SmoothedFeeds* feeds, PointUncertainty* uncertainty)
     : options_(options),
       tools_(tools),
       correction_(correction),
       summary_(summary),
       record_(record),
       feeds_(feeds),
+      uncertainty_(uncertainty),
       programmed_(options.start),
       out_(options.start),
       known_(options.is_start_known),

@@ -30,6 +30,7 @@ struct Step {
   std::vector<FittedBlock> blocks;      // at least one
 };
 
+class PointUncertainty;
 class SmoothedFeeds;
 
 struct WalkOptions {
@@ -51,10 +52,10 @@ struct WalkOptions {
 class ProgramCorrector {
  public:
   /// @param tools, correction, summary  must outlive this
-  /// @param record, feeds  receive the path, or nullptr
+  /// @param record, feeds, uncertainty  receive the path, or nullptr
   ProgramCorrector(const WalkOptions& options, const controllers::ToolTable& tools,
                    Correction& correction, Summary& summary, PathRecord* record = nullptr,
-                   SmoothedFeeds* feeds = nullptr);
+                   SmoothedFeeds* feeds = nullptr, PointUncertainty* uncertainty = nullptr);
 
   /// Corrects the next motion. The writer then tells where its text leaves the machine.
   /// @throws InputError for a move that cannot be corrected
@@ -107,6 +108,7 @@ class ProgramCorrector {
   Summary& summary_;
   PathRecord* record_;
   SmoothedFeeds* feeds_;
+  PointUncertainty* uncertainty_;
   AxisWords programmed_, out_;   // machine coordinates
   AxisFlags known_{}, named_{};  // named_: since the start, others since positions were lost
   Directions directions_{};      // of travel, as programmed

@@ -67,7 +67,7 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
   return out;
 }
 
-std::string Summary::json(const JointLayout& layout) const {
+std::string Summary::json(const JointLayout& layout, std::string_view uncertainty) const {
   const auto object = [] { return system::JsonObject(system::JsonSpacing::none); };
   constexpr int kSmall = 4, kPath = 6;  // decimals of um and urad, of mm and s
   std::vector<std::string> xyz, assumptions;
@@ -101,6 +101,7 @@ std::string Summary::json(const JointLayout& layout) const {
       .fixed("reversal_um", reversal_width / um, kSmall)
       .fixed("undirected_um", undirected_width / um, kSmall)
       .integer("ends_outside_travel", outside_count)
+      .raw("uncertainty", uncertainty)
       .boolean("unrolled", unrolled)
       .raw("assumed", system::json_list(assumptions, system::JsonSpacing::none))
       .line();

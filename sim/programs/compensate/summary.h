@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
@@ -44,7 +45,8 @@ struct Summary {
   /// Lines of the report.
   std::vector<std::string> report(const JointLayout& layout) const;
   /// The same as one JSON object.
-  std::string json(const JointLayout& layout) const;
+  /// @param uncertainty  of the corrected points, as JSON
+  std::string json(const JointLayout& layout, std::string_view uncertainty = "null") const;
 };
 
 }  // namespace servomill::sim::programs

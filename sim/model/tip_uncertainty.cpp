@@ -1,0 +1,77 @@
+#include "sim/model/tip_uncertainty.h"
+
+#include <cassert>
+
+namespace servomill::sim::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kUnitError = 1e-6;  // m, rad; effects are proportional to it
+
+double travelling(const plant::ErrorFunction& f, double s, double direction) {
+  const double mean = f.value(s);
+  return f.reversals.empty() ? mean : mean + 0.5 * direction * f.width(s);
+}
+
+}  // namespace
+
+TipUncertainty::TipUncertainty(const plant::MachineChain& chain, const UncertainErrors& errors)
+    : correlation_(errors.correlation) {
+  assert(correlation_.rows() == Index(errors.parts.size()));
+  for (const std::vector<UncertainPart>& parts : errors.parts) {
+    std::vector<Part>& number = numbers_.emplace_back();
+    for (const UncertainPart& part : parts) {
+      number.push_back({unit_of(chain, part.name),
+                        chain.layout.joint_of(part.name.axis).value_or(0), part.above, part.below});
+    }
+  }
+}
+
+std::size_t TipUncertainty::unit_of(const plant::MachineChain& chain,
+                                    const plant::ErrorName& name) {
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    if (units_[i].name == name) return i;
+  }
+  plant::ErrorModel errors;
+  if (name.is_location) {
+    errors.location(name) = kUnitError;
+  } else {
+    errors.component(name) = plant::constant(kUnitError);
+  }
+  units_.push_back({name, plant::VolumetricModel(chain, errors)});
+  return units_.size() - 1;
+}
+
+Eigen::Matrix3d TipUncertainty::covariance(const Joints& Q, const Vector3d& p_ST,
+                                           const Joints& directions) const {
+  Eigen::Matrix3Xd shift(3, Index(units_.size()));
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    shift.col(Index(i)) = units_[i].model.first_order_error(Q, p_ST).dp_W / kUnitError;
+  }
+  // numbers without effect here, such as most of a table, are left out
+  Eigen::Matrix3Xd J(3, Index(numbers_.size()));
+  std::vector<Index> acting;
+  for (std::size_t k = 0; k < numbers_.size(); ++k) {
+    Vector3d effect = Vector3d::Zero();
+    for (const Part& part : numbers_[k]) {
+      const double s = Q[part.joint], direction = directions[part.joint];
+      const double change =
+          travelling(part.above, s, direction) - travelling(part.below, s, direction);
+      effect += 0.5 * change * shift.col(Index(part.unit));
+    }
+    if (effect.isZero(0.0)) continue;
+    J.col(Index(acting.size())) = effect;
+    acting.push_back(Index(k));
+  }
+  const auto n = Index(acting.size());
+  return J.leftCols(n) * correlation_(acting, acting) * J.leftCols(n).transpose();
+}
+
+Vector3d TipUncertainty::expanded(const Joints& Q, const Vector3d& p_ST,
+                                  const Joints& directions) const {
+  return kCoverageFactor * covariance(Q, p_ST, directions).diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+}  // namespace servomill::sim::model
