@@ -13,6 +13,12 @@ namespace {
 
 constexpr auto kReadings = std::to_array<Reading>({
     {"F in a program in INCH", "tenths of an inch per minute", "all", "TNC 7, Cutting data"},
+    {"F of TOOL DEF", "without effect; the next move at feed must name F", "none found",
+     "none found"},
+    {"PATTERN DEF, CYCL CALL PAT", "at the height of the call or of Q204, the higher one",
+     "iTNC 530, TNC 640", "from memory"},
+    {"cycle 209", "back by Q256 pitches after each Q257", "TNC 640",
+     "TNC 640 cycle programming (34059x-01) p. 102; the order of the moves from memory"},
     {"N before block numbers", "a block number", "none; simulators of controls write it",
      "none needed"},
     {"TOOL DEF1, CYCL DEF9 .0", "as TOOL DEF 1, CYCL DEF 9.0",
@@ -27,7 +33,13 @@ constexpr auto kReadings = std::to_array<Reading>({
     {"M functions of the machine builder", "without effect on motion", "by machine", "from memory"},
     {"M functions of displays, messages and filters", "without effect on motion", "all",
      "from memory"},
-    {"FN 15, FN 16, FN 19, FN 20", "without effect on motion", "all", "from memory"},
+    {"FN 15, FN 16, FN 19, FN 20, FN 26, FN 27, FN 38", "without effect on motion", "all",
+     "from memory"},
+    {"FN 18, FN 28", "a value that is not known, unless --parameter gives it", "all",
+     "from memory"},
+    {"PLANE with SEQ+ or SEQ-",
+     "the last rotary axis from the workpiece to the tool is >= 0 or <= 0", "iTNC 530, TNC 640",
+     "from memory"},
     {"TOOL CALL of a tool without a tool table",
      "a tool of unknown length: Z of the machine is "
      "that of its tip",

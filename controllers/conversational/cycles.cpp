@@ -24,12 +24,17 @@ constexpr auto kRefusals = std::to_array<Refusal>({
     {20, 25, "SL cycles are not read; let the CAM system write their moves"},
     {27, 30, "cylinder surfaces and digitized data are not read"},
     {39, 39, "cylinder surfaces are not read"},
-    {204, 204, "back boring needs the eccentricity of its tool; write the moves"},
-    {208, 208, "bore milling is not read; write CP"},
+    {204, 204,
+     "back boring: the feed at which the tool is displaced was not found in a manual; write the "
+     "moves"},
+    {208, 208,
+     "bore milling: the way to the wall of the hole is the control's; write it with CC and CP IPA"},
     {210, 219, "pockets, slots and studs are not read; let the CAM system write their moves"},
     {220, 221, "patterns are not read; write the positions with M99"},
     {230, 233, "face milling is not read; let the CAM system write its moves"},
     {241, 241, "single-lip drilling is not read"},
+    {253, 254,
+     "slots: the path of the roughing is the control's; let the CAM system write the moves"},
     {251, 279,
      "pockets, slots, studs and threads are not read; let the CAM system write their moves"},
     {400, 499, "touch probe cycles are not read: what they measure is not known"},
@@ -37,7 +42,7 @@ constexpr auto kRefusals = std::to_array<Refusal>({
 
 constexpr long kApplicationTuning = 392;  // ATC, of machines of DMG MORI
 
-constexpr auto kDrilling = std::to_array<int>({1, 200, 201, 202, 203, 205, 206, 207, 240});
+constexpr auto kDrilling = std::to_array<int>({1, 200, 201, 202, 203, 205, 206, 207, 209, 240});
 
 bool is_drilling(int number) {
   return std::find(kDrilling.begin(), kDrilling.end(), number) != kDrilling.end();
@@ -147,7 +152,7 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
 // CYCL CALL, CYCL CALL POS X Y Z; with M functions.
 void Translator::call_cycle(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(2));
-  if (words.take("PAT") != nullptr) fail("CYCL CALL PAT: a table of points is not in the program");
+  if (words.take("PAT") != nullptr) return call_pattern(words);
   const bool has_position = words.take("POS") != nullptr;
   const Positioning p = read_positioning(words, "CYCL CALL");
   words.refuse_rest("CYCL CALL");

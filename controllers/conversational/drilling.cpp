@@ -91,6 +91,9 @@ void Translator::drill() {
     case 207:
       tap(cycle_->number == 207);
       break;
+    case 209:
+      tap_209();
+      break;
     default:
       centre_240();
   }
@@ -271,6 +274,39 @@ void Translator::tap(bool is_rigid) {
   } else {
     note(is_left ? "M4" : "M3");
   }
+  leave_hole(h);
+}
+
+// Rigid tapping in steps of Q257; to break the chip the tool goes back by Q256 pitches, and to the
+// set-up clearance with Q256 = 0. TNC 640 cycle programming (34059x-01) p. 102; the order of the
+// moves from memory.
+void Translator::tap_209() {
+  const Hole h = hole();
+  if (!speed_ || *speed_ == 0.0) fail("tapping: no S since the last TOOL CALL");
+  const double pitch = q(239) * unit(), step = q(257) * unit(), back = q(256) * std::abs(pitch);
+  if (pitch == 0.0) fail("Q239 must not be 0");
+  if (step < 0.0 || back < 0.0) fail("Q257 and Q256 must be >= 0");
+  if (parameters_.find({'Q', 403}).value_or(1.0) != 1.0) {
+    fail("cycle 209 with Q403, another speed on the way out, is not read; write Q403=1");
+  }
+  const std::string in = pitch < 0.0 ? "M4" : "M3", out = pitch < 0.0 ? "M3" : "M4";
+  const Feed feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_};
+  cycle_move({}, h.clearance);
+  note(in);
+  double at = h.surface;
+  for (int i = 0; at > h.bottom; ++i) {
+    if (i == kMostPecks) fail("cycle 209: too many infeeds");
+    at = step > 0.0 ? std::max(at - step, h.bottom) : h.bottom;
+    cycle_move(feed, at);
+    if (at <= h.bottom) break;
+    note(out);
+    cycle_move(feed, back > 0.0 ? std::min(at + back, h.clearance) : h.clearance);
+    note(in);
+  }
+  note(out);
+  cycle_move(feed, h.clearance);
+  note("M5");
+  spindle_ = 0;
   leave_hole(h);
 }
 

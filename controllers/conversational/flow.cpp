@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "controllers/conversational/formula.h"
@@ -169,7 +170,8 @@ void Translator::assign_words(Words& words) {
   }
 }
 
-// FN 14 ends a program with a message; FN 15, 16, 19 and 20 write and wait, without motion.
+// FN 14 ends a program with a message; FN 15, 16, 19, 20, 26, 27 and 38 write and wait, without
+// motion.
 bool Translator::run_function(const HeidenhainBlock& block) {
   const std::span<const HeidenhainWord> words(block.words);
   refresh_system_parameters();
@@ -203,15 +205,43 @@ bool Translator::run_function(const HeidenhainBlock& block) {
     return true;
   }
   if (*number == 14) fail("FN 14: the program stops here with its error message");
-  if (*number == 15 || *number == 16 || *number == 19 || *number == 20) {
+  if (*number == 18 || *number == 28) return read_of_control(static_cast<int>(*number), rest);
+  constexpr std::array kWithoutMotion = {15, 16, 19, 20, 26, 27, 38};
+  if (std::find(kWithoutMotion.begin(), kWithoutMotion.end(), *number) != kWithoutMotion.end()) {
     warn_once(fmt::format("FN {}", *number),
               fmt::format("FN {}: read as without effect on motion", *number));
     return true;
   }
-  fail(
-      fmt::format("FN {}: reads or writes data of the control that are not known here; assign the "
-                  "parameter instead",
-                  *number));
+  fail(fmt::format(
+      "FN {}: writes data of the control or of its PLC, whose effect is not known here; "
+      "take the block out if it moves nothing",
+      *number));
+}
+
+// FN 18: SYSREAD Q1 = ID270 NR1 IDX3, FN 28: TABREAD Q1 = 6/"DOC": the value is the control's; a
+// block that needs it is refused, unless the user gave it.
+bool Translator::read_of_control(int number, std::span<const HeidenhainWord> rest) {
+  std::optional<QName> name;
+  std::string text;
+  for (const HeidenhainWord& word : rest) {
+    std::size_t length = 0;
+    const auto found = q_name_at(word.text, length);
+    if (found && !name && text.find('=') == std::string::npos) name = found;
+    text += (text.empty() ? "" : " ") + word.text;
+  }
+  if (!name) fail(fmt::format("FN {}: a Q parameter that takes the value is expected", number));
+  const bool is_given = setup_.parameters.contains(to_string(*name));
+  if (is_given) {
+    assign(*name, setup_.parameters.at(to_string(*name)));
+  } else {
+    parameters_.forget(*name, fmt::format("was read from the control (FN {}: {})", number, text));
+  }
+  warn_once(fmt::format("FN {} {}", number, to_string(*name)),
+            is_given
+                ? fmt::format("FN {}: {} is taken as given by the user", number, to_string(*name))
+                : fmt::format("FN {}: {} is not known here; --parameter {}=NUMBER gives it", number,
+                              to_string(*name), to_string(*name)));
+  return true;
 }
 
 // Tool, plane and unit: [530] preassigned Q parameters. Q120 to Q122 stay as PLANE leaves them.

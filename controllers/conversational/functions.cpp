@@ -34,7 +34,7 @@ constexpr auto kFunctions = std::to_array<Function>({
     {89, Effect::end, ""},
     {90, Effect::none, "smoothing of corners without radius compensation"},
     {91, Effect::start, ""},
-    {92, Effect::refused, "the builder's reference point is not known; use M91"},
+    {92, Effect::start, ""},
     {94, Effect::start, ""},
     {97, Effect::refused, "machining of small contour steps is not read"},
     {98, Effect::refused, "complete machining of open corners is not read"},
@@ -136,7 +136,7 @@ void Translator::start_function(int m, const Place& place) {
     case 129:
       return tcp_control(m == 128);
     default:
-      return;  // M91 and M140 belong to their block; 111, 117, 137, 145 is how it is read
+      return;  // M91, M92 and M140 belong to their block; 111, 117, 137, 145 is how it is read
   }
 }
 

@@ -47,6 +47,8 @@ void Translator::move_straight(const Positioning& p) {
     return;
   }
   if (p.has(91)) return move_to_machine(p);
+  if (p.has(92)) return move_to_reference(p);
+  if (moves_rotary(p) && turn_to_plane(p)) return;
   if (moves_rotary(p) && plane_) fail("a rotary axis in a tilted plane; PLANE RESET first");
   const Feed feed = feed_of(p);
   if (moves_rotary(p) && !is_rotary_only(p) && !is_tcp_ && feed.kind == Feed::Kind::per_minute) {
@@ -151,6 +153,27 @@ void Translator::move_to_machine(const Positioning& p) {
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
     if (motion.words[i]) work_[i].reset();
   }
+  last_element_.reset();
+}
+
+// M92 counts from a point that the machine's builder has set (TNC 640: MP additional datum; iTNC
+// 530: MP960; from memory). Surveys take the second home of G30, which is not known either.
+void Translator::move_to_reference(const Positioning& p) {
+  require_no_compensation("M92");
+  if (is_tcp_ || plane_) fail("M92 with M128 or in a tilted plane; end them before");
+  const std::string why = "M92: the builder's reference point is not known; use M91";
+  if (!setup_.accepts_unknown_positions) fail(why);
+  feed_of(p);
+  warn_once("M92", why);
+  std::string axes;
+  for (std::size_t i = 0; i < work_.size(); ++i) {
+    if (!p.target[i]) continue;
+    if (p.target[i]->is_increment) fail(p.target[i]->value.place, "M92 with an increment");
+    axes += fmt::format(" {}0", letter(kAllAxes[i]));
+    work_[i].reset();
+  }
+  note("G91 G30" + axes);
+  note("G90");
   last_element_.reset();
 }
 

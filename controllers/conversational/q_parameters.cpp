@@ -33,6 +33,11 @@ std::optional<double> QParameters::find(const QName& name) const {
 
 double QParameters::get(const QName& name, const Place& place) const {
   if (const auto value = find(name)) return *value;
+  const auto unknown = unknown_.find({name.kind, name.number});
+  if (unknown != unknown_.end()) {
+    throw InputError(place, fmt::format("{} {}, which is not known here; assign it instead",
+                                        to_string(name), unknown->second));
+  }
   throw InputError(
       place, fmt::format("{0} has no value here: the control would take what the program before "
                          "left; assign it, or pass --parameter {0}=NUMBER",

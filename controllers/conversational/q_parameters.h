@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "plant/vocabulary/input_error.h"
 
@@ -36,7 +37,16 @@ struct Operand {
 /// still holds the one assigned by an earlier program.
 class QParameters {
  public:
-  void set(const QName& name, double value) { values_[{name.kind, name.number}] = value; }
+  void set(const QName& name, double value) {
+    values_[{name.kind, name.number}] = value;
+    unknown_.erase({name.kind, name.number});
+  }
+  /// From here on the parameter holds a value of the control that is not known.
+  /// @param source  "is the angle of a rotary axis after PLANE", for the message
+  void forget(const QName& name, std::string source) {
+    values_.erase({name.kind, name.number});
+    unknown_[{name.kind, name.number}] = std::move(source);
+  }
   /// @throws InputError for a parameter without a value
   double get(const QName& name, const Place& place) const;
   double value(const Operand& operand) const {
@@ -46,6 +56,7 @@ class QParameters {
 
  private:
   std::map<std::pair<char, int>, double> values_;
+  std::map<std::pair<char, int>, std::string> unknown_;  // and where the value comes from
 };
 
 }  // namespace servomill::controllers::conversational

@@ -123,6 +123,13 @@ void Translator::define_tool(const HeidenhainBlock& block) {
       whole(value(operand_of(first->text, first->place)), 32767, first->place, "TOOL DEF");
   const auto L = words.take_number("L");
   const auto R = words.take_number("R");
+  if (words.take_number("F")) {
+    warn_once(
+        "TOOL DEF F",
+        "F of TOOL DEF: read as without effect, since no manual has it; the next move at feed "
+        "must name F");
+    feed_.reset();
+  }
   words.refuse_rest("TOOL DEF");
   if (!L && !R) return;
   const ToolEntry* tool = setup_.tools.entry_of(number);

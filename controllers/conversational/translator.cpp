@@ -32,7 +32,7 @@ constexpr auto kRefusals = std::to_array<Refusal>({
     {"SEL", "SEL chooses a table or contour that is not in the program; write CALL PGM or cycle 7"},
     {"DECLARE", "string and contour declarations are not read"},
     {"QS", "string parameters are not read"},
-    {"PATTERN", "PATTERN DEF is not read; write the positions with M99"},
+    {"PATTERN", "PATTERN must be followed by DEF"},
     {"CONTOUR", "CONTOUR DEF is not read; write the contour with L and C"},
     {"PARAXCOMP", "parallel axes are not read"},
 });
@@ -188,6 +188,8 @@ bool Translator::execute_other(const HeidenhainBlock& block) {
     label(block);
   } else if (first.text == "CALL") {
     call(block);
+  } else if (first.text == "PATTERN" && second == "DEF") {
+    define_pattern(block);
   } else if (first.text == "PLANE") {
     plane(block);
   } else if (first.text == "TRANS") {

@@ -106,6 +106,7 @@ class Translator {
   void go_to(const std::string& label);
   void count_jump();
   bool run_function(const HeidenhainBlock& block);
+  bool read_of_control(int number, std::span<const HeidenhainWord> rest);
   void assign(const QName& name, double value);
   void assign_words(Words& words);
   void refresh_system_parameters();
@@ -131,6 +132,7 @@ class Translator {
   void polar_line(const HeidenhainBlock& block);
   void move_straight(const Positioning& p);
   void move_to_machine(const Positioning& p);
+  void move_to_reference(const Positioning& p);
   void retract(const Positioning& p);
   void retract_to_limit(const Positioning& p);
   Motion motion_of(const Positioning& p);
@@ -169,7 +171,7 @@ class Translator {
   void change_tool(int number);
   void take_tools_of_program();
 
-  // transformations.cpp: cycles 7, 8, 10, 11, 19, 247, PLANE, M128
+  // transformations.cpp: cycles 7, 8, 10, 11, 19, 247, M128
   void datum_shift(const Cycle& cycle, std::span<const HeidenhainWord> words);
   void trans_datum(Words& words);
   void mirror(std::span<const HeidenhainWord> words);
@@ -178,12 +180,28 @@ class Translator {
   void scale_axes(Words& words);
   void set_preset(double number);
   void set_frame(const Frame& frame);
-  void plane(const HeidenhainBlock& block);
-  void tilt(const std::array<double, 3>& angles, const std::string& behaviour, Words& words);
-  void reset_plane(const std::string& behaviour);
   void tcp_control(bool is_on);
   void forget_linear_positions();
   void require_no_compensation(std::string_view what);
+
+  // tilted_plane.cpp
+  void plane(const HeidenhainBlock& block);
+  void tilt(const std::array<double, 3>& angles, const std::string& behaviour, Words& words);
+  std::string turn_of_plane(const Eigen::Matrix3d& R, int seq);
+  bool turn_to_plane(const Positioning& p);
+  void reset_plane(const std::string& behaviour);
+
+  // patterns.cpp: PATTERN DEF and CYCL CALL PAT
+  struct PatternPoint {
+    Point at;
+    double surface = 0.0;  // added to Q203, mm
+  };
+  void define_pattern(const HeidenhainBlock& block);
+  void add_pattern(const std::string& kind, Words& words);
+  void add_circle(Words& words, const Point& centre, double surface, bool is_full);
+  void call_pattern(Words& words);
+  double pattern_number(Words& words, std::string_view name, double unit,
+                        std::optional<double> otherwise = {}) const;
 
   // cycles.cpp
   void define_cycle(const HeidenhainBlock& block);
@@ -197,6 +215,7 @@ class Translator {
   void drill_203();
   void peck_205();
   void tap(bool is_rigid);
+  void tap_209();
   void centre_240();
   double q(int number) const;
   struct Hole;
@@ -254,9 +273,12 @@ class Translator {
   bool is_tcp_ = false;
   std::optional<std::array<double, 3>> plane_;  // SPA, SPB, SPC
   Frame frame_before_plane_;
+  std::string plane_line_;  // that tilted it
+  std::string plane_turn_;  // of SEQ: takes the rotary axes there, in machine coordinates
   std::optional<Cycle> cycle_;
-  bool is_modal_call_ = false;  // M89
-  int open_cycle_ = 0;          // of the old form, until its blocks are complete
+  bool is_modal_call_ = false;         // M89
+  std::vector<PatternPoint> pattern_;  // of PATTERN DEF, in coordinates of the program
+  int open_cycle_ = 0;                 // of the old form, until its blocks are complete
 };
 
 }  // namespace servomill::controllers::conversational

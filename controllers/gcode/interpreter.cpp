@@ -91,6 +91,10 @@ ReadingOptions Interpreter::Machine::reading_options() {
   out.accepts_unknown_positions = setup_.accepts_unknown_positions;
   out.ignored_codes = setup_.ignored_codes;
   out.is_trial = setup_.is_trial;
+  out.radius_of = [this](int D) {
+    const ToolEntry* tool = setup_.tools.find(D);
+    return tool == nullptr ? 0.0 : 0.5 * tool->diameter;
+  };
   if (setup_.reader != Reader::any) return out;
   setup_at_start_ = setup_;
   out.possible_readers = [this] { return possible_readers(); };

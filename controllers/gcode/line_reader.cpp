@@ -36,6 +36,7 @@ class LexicalRules {
     skip_behind_number();
     slashes();
     program_number();
+    home_letters();
     while (at_ < text().size()) item();
     return std::move(line_);
   }
@@ -71,6 +72,24 @@ class LexicalRules {
       if ((byte >= 0x20 && byte != 0x7f) || text()[i] == '\t' || is_end) continue;
       if (apply(ReaderRule::control_characters, i)) text()[i] = ' ';
     }
+  }
+
+  // G28 X Y becomes G28.2X0Y0; what stands behind it is a comment.
+  void home_letters() {
+    const std::size_t end = std::min(text().find_first_of("(;", at_), text().size());
+    const std::size_t code = text().find("G28", at_);
+    if (code >= end || is_digit(at(code + 3)) || at(code + 3) == '.') return;
+    std::string words = "G28.2", letters;
+    for (std::size_t i = code + 3; i < end; ++i) {
+      if (is_blank_at(at(i)) || at(i) == '\r') continue;
+      const char letter = upper(at(i));
+      if (std::string_view("XYZABC").find(letter) == std::string_view::npos) return;
+      if (letters.find(letter) != letters.npos) return;
+      words += std::string(1, letter) + "0";
+      letters += letter;
+    }
+    if (letters.empty() || !apply(ReaderRule::home_letters, code)) return;
+    text().replace(code, end - code, words);
   }
 
   bool sender_command() {

@@ -19,7 +19,8 @@ struct CornerWord {
   bool has_point = false;
 };
 
-/// A line that LinuxCNC's rules accept and that means the same. Every character keeps its column.
+/// A line that LinuxCNC's rules accept and that means the same. Every character keeps its column,
+/// but those of G28 with axis letters alone.
 struct TolerantLine {
   std::string text;
   std::vector<AppliedRule> applied;

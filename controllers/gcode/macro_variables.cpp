@@ -29,13 +29,11 @@ bool is_offset_known(const Parameters& parameters, const std::map<int, double>& 
 }
 
 constexpr std::string_view kOtherArithmetic =
-    "FIX, FUP, ATAN, MOD, AND, OR and XOR are read as LinuxCNC has them; Fanuc and Haas differ for "
-    "numbers below 0, in the range of angles, and count bits; choose with --reader";
+    "FIX, FUP, ATAN and MOD are read as LinuxCNC has them; Fanuc and Haas differ for numbers below "
+    "0 and in the range of angles; choose with --reader";
 
 bool differs(OpCode code) {
-  constexpr std::array kCodes = {OpCode::fix,        OpCode::fup,         OpCode::atan,
-                                 OpCode::modulo,     OpCode::logical_and, OpCode::logical_or,
-                                 OpCode::logical_xor};
+  constexpr std::array kCodes = {OpCode::fix, OpCode::fup, OpCode::atan, OpCode::modulo};
   return std::find(kCodes.begin(), kCodes.end(), code) != kCodes.end();
 }
 
@@ -45,8 +43,10 @@ bool differs(OpCode code) {
 // statements.
 void Interpreter::Machine::note_other_arithmetic() {
   constexpr double kLastCommon = 999.0;
-  const bool is_of_linuxcnc = block_.o_word.flow != Flow::none || !flow_.labels.empty();
-  if (is_of_linuxcnc || !flow_.calls.empty()) return;
+  const bool is_of_linuxcnc = block_.o_word.flow != Flow::none || !flow_.labels.empty() ||
+                              !flow_.calls.empty() || text().is_generated();
+  parameters_.leave_logic_open(!is_of_linuxcnc && block_.names.empty());
+  if (is_of_linuxcnc) return;
   const auto note = [&](int column, const std::string& text) {
     if (noted_.insert(text).second) warn(column, text);
   };
@@ -101,6 +101,13 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
   const auto code = [](double value) { return std::optional<double>(value); };
   const bool is_fanuc = setup_.reader == Reader::fanuc, is_haas = setup_.reader == Reader::haas;
   if (number == 4001 && state_.motion <= 30) return code(state_.motion / 10);
+  if (number == 4001 && state_.motion == 800) {
+    why =
+        "no G0, G1, G2 or G3 stands before it: which is in force then is set in the control "
+        "(Fanuc, parameter 3402#0); write one";
+  }
+  if (number == 4008) return code(state_.tool_offset_number > 0 ? 43 : 49);
+  if (number == 4009) return code(state_.motion > 30 ? state_.motion / 10 : 80);
   if (number == 4002) return code(19 - state_.normal_axis);
   if (number == 4003) return code(state_.is_incremental ? 91 : 90);
   if (number == 4005) {

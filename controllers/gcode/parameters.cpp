@@ -5,6 +5,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "controllers/gcode/lexer.h"
 #include "plant/vocabulary/units.h"
@@ -80,6 +82,37 @@ double binary(OpCode code, double a, double b, const Place& place) {
       assert(false && "not a binary operator");
       return 0.0;
   }
+}
+
+bool is_logic(OpCode code) {
+  return code == OpCode::logical_and || code == OpCode::logical_or || code == OpCode::logical_xor;
+}
+
+// Operation on the bits of two whole numbers; no number where a control that counts bits has none.
+std::optional<double> of_bits(OpCode code, double a, double b) {
+  constexpr double kMost = 4294967295.0;
+  const auto is_whole = [](double x) { return x >= 0.0 && x <= kMost && x == std::floor(x); };
+  if (!is_whole(a) || !is_whole(b)) return std::nullopt;
+  const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
+  return static_cast<double>(code == OpCode::logical_and  ? x & y
+                             : code == OpCode::logical_or ? x | y
+                                                          : x ^ y);
+}
+
+// A control that counts bits (Fanuc, Haas) would read another value.
+void refuse_other_logic(OpCode code, double a, double b, double logical, const Place& place) {
+  const std::optional<double> bits = of_bits(code, a, b);
+  if (bits && *bits == logical) return;
+  const std::string_view name = code == OpCode::logical_and  ? "AND"
+                                : code == OpCode::logical_or ? "OR"
+                                                             : "XOR";
+  const std::string other =
+      bits ? fmt::format("{:g} of their bits", *bits)
+           : std::string("nothing, since only whole numbers from 0 on have bits");
+  fail(place,
+       fmt::format("{:g} {} {:g}: {:g} as conditions (LinuxCNC), or {} (Fanuc, Haas); choose "
+                   "with --reader",
+                   a, name, b, logical, other));
 }
 
 double arc_function(std::string_view name, double (*f)(double), double x, const Place& place) {
@@ -230,7 +263,11 @@ double run_code(const Value& value, const Block& block, const Parameters& parame
       stack[top - 1] = exists ? 1.0 : 0.0;
     } else if (is_binary(op.code)) {
       --top;
-      stack[top - 1] = binary(op.code, stack[top - 1], stack[top], here());
+      const double a = stack[top - 1];
+      stack[top - 1] = binary(op.code, a, stack[top], here());
+      if (is_logic(op.code) && parameters.is_logic_open()) {
+        refuse_other_logic(op.code, a, stack[top], stack[top - 1], here());
+      }
     } else {
       stack[top - 1] = unary(op.code, stack[top - 1], here());
     }

@@ -61,6 +61,9 @@ class Parameters {
 
   /// Lets names that are not defined count as 0, as in a definition that is passed over.
   void forgive_unknown_names(bool forgive) { forgives_ = forgive; }
+  /// AND, OR and XOR whose values as conditions and of bits differ are refused.
+  void leave_logic_open(bool is_open) { is_logic_open_ = is_open; }
+  bool is_logic_open() const { return is_logic_open_; }
 
   /// A subroutine with names of its own begins; ends.
   void enter_scope() { local_.emplace_back(); }
@@ -78,7 +81,7 @@ class Parameters {
     return name[0] == '_' ? global_ : local_.back();
   }
 
-  bool forgives_ = false;
+  bool forgives_ = false, is_logic_open_ = false;
   Names global_;
   std::vector<Names> local_{Names()};  // of each call
   std::vector<std::pair<int, double>> old_numbers_;

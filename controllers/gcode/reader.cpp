@@ -75,6 +75,9 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "read as a rapid to machine zero; the search for the switches is not simulated",
      "TinyG, g2core", 0,
      "TinyG wiki, TinyG Homing (G28.2: axes in the order ZXYABC, values are ignored)"},
+    {home_letters, "G28 with axes and no numbers",
+     "read as a rapid of those axes to machine zero; the search for the switches is not simulated",
+     "Marlin", 0, "Marlin, G28 (homes the axes named)"},
     {additional_work_offset, "G54.1 P, G54 P and G154 P",
      "read as the work offset that --work-offset gives", "Fanuc, Haas", kFanuc | kHaas,
      "Fanuc B-63944EN, additional workpiece coordinate systems (G54.1), from memory"},
@@ -180,6 +183,12 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {circular_pocket, "G12 and G13 with I",
      "read as a full circle of radius I about the position, from its +X side", "Mach", kMach,
      "Using Mach3Mill, G12 and G13 (circular pocket); from memory"},
+    {haas_pocket, "G12 and G13 with D",
+     "read as circles of radius I, I + Q, ... K; the way to the wall, half circles of the control, "
+     "goes straight",
+     "Haas", kHaas, "Haas 96-8000, June 1999, p. 237; gcodes.net, Haas G12 and G13"},
+    {haas_mirror, "G100 and G101", "read as a mirror image about the origin of the work system",
+     "Haas", kHaas, "Haas Mill operator's manual, G100 and G101, from memory"},
     {corner, ",R or ,C behind a line",
      "read as an arc, or a chamfer, between that line and the next", "Fanuc, Haas", kFanuc | kHaas,
      "NCT 2000M programmer's manual, section 16.1, p. 120 (the same words); Fanuc and Haas from "

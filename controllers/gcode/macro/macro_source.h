@@ -57,6 +57,7 @@ class MacroSource final : public LineSource {
   void write_system_variable(long number, MacroValue value, const Place& place);
   void stop_with_message();
   void condition(std::size_t begin);
+  void check_left_out(Statement statement, std::size_t begin);
   void conditional_return(std::size_t begin);
   void while_line(std::size_t begin);
   void end_of_loop();

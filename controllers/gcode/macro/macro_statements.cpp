@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "controllers/gcode/macro/macro_source.h"
 #include "controllers/gcode/number_text.h"
@@ -131,10 +132,37 @@ void MacroSource::condition(std::size_t begin) {
   const bool is_macro = statement == Statement::assignment || statement == Statement::go_to ||
                         statement == Statement::output || statement == Statement::if_;
   if (!is_macro) refuse(cursor.column(), "a macro statement is expected behind THEN");
-  if (!holds) return;
+  if (!holds) return check_left_out(statement, cursor.at());
   is_behind_then_ = true;
   run_statement(statement, cursor.at());
   is_behind_then_ = false;
+}
+
+// The form of a statement that does not run, since its values are not known: the control would stop
+// at it in another run.
+void MacroSource::check_left_out(Statement statement, std::size_t begin) {
+  const std::string& body = line_.body;
+  std::vector<std::size_t> open;
+  for (std::size_t i = begin; i < body.size(); ++i) {
+    if (body[i] == '[') open.push_back(i);
+    if (body[i] != ']') continue;
+    if (open.empty()) refuse(static_cast<int>(i) + 1, "']' without a '[' before it");
+    open.pop_back();
+  }
+  if (!open.empty()) {
+    refuse(static_cast<int>(open.back()) + 1, "'[' is not closed; ']' is missing");
+  }
+  const std::size_t last = body.find_last_not_of(" \t\r");
+  if (statement == Statement::assignment) {
+    const std::size_t equals = body.find('=', begin);
+    if (equals == std::string::npos) {
+      refuse(static_cast<int>(begin) + 1, "'=' expected behind a variable");
+    }
+    constexpr std::string_view kOpenEnds = "=+-*/#";
+    if (kOpenEnds.find(body[last]) != std::string_view::npos) {
+      refuse(static_cast<int>(last) + 1, "a value is expected behind it");
+    }
+  }
 }
 
 // [#1 LT 10] M99 P10. Source: Haas 96-8000, June 1999, p. 376.

@@ -143,6 +143,7 @@ void ReadingStep::run() {
   foreign_codes();
   unit_codes();
   decimal_points();
+  shift_behind_corner();
   repeated_groups();
   refused_codes();
   circular_pocket();
@@ -165,6 +166,7 @@ void ReadingStep::run() {
   cycles();
   home();
   motion_in_force();
+  radius_of_line();
   arc_centre();
   feed();
   corner();

@@ -36,6 +36,7 @@ struct ReadingOptions {
   bool is_trial = false;             // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.
   std::function<const PossibleReaders*()> possible_readers = {};
+  std::function<double(int D)> radius_of = {};  // m, of a tool; 0: unknown
 };
 
 /// Reported once in a program.
@@ -64,12 +65,15 @@ struct ReadingMemory {
   Eigen::Vector3d before_rotation = Eigen::Vector3d::Zero();  // program coordinates; m
   PolarMode polar;
   std::map<int, AxisWords> additional_offsets;  // of G54.1, by P
-  int power_changes = 0;                        // feeds that change S without an M code
-  int lone_G53_line = 0, lone_G53_column = 0;   // without axis words, no work offset since; 0: none
-  int first_left_out = -1;                      // tenths of the first M code that was left out
+  // From where a corner ended to the end of its line, program units: the next block under G91
+  // counts from there
+  Eigen::Vector3d behind_corner = Eigen::Vector3d::Zero();
+  int power_changes = 0;                       // feeds that change S without an M code
+  int lone_G53_line = 0, lone_G53_column = 0;  // without axis words, no work offset since; 0: none
+  int first_left_out = -1;                     // tenths of the first M code that was left out
   bool has_any_mode() const {
     return pending_motion >= 0 || is_in_cycle || frame.is_active() || polar.is_on ||
-           lone_G53_line > 0;
+           lone_G53_line > 0 || !behind_corner.isZero(0.0);
   }
 };
 

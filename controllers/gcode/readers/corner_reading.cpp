@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "controllers/gcode/readers/reading_step.h"
 
@@ -64,7 +65,8 @@ std::string ReadingStep::no_line_for(std::string_view corner, int motion) const 
     const bool is_of_plane =
         word.letter >= 'X' && word.letter <= 'Z' && word.letter - 'X' != normal_axis();
     const int tenths = word.letter == 'G' ? tenths_of(word.value) : -1;
-    const bool is_allowed_code = tenths == 10 || tenths == 900 || word.letter == 'M';
+    const bool is_allowed_code =
+        tenths == 10 || tenths == 900 || tenths == 910 || word.letter == 'M';
     const bool is_rate = word.letter == 'F' || word.letter == 'S' || word.letter == 'N';
     if (is_of_plane || is_allowed_code || is_rate) continue;
     return fmt::format("'{}' with {} in this or the next block; write the corner", corner,
@@ -79,10 +81,9 @@ void ReadingStep::corner() {
   const bool is_arc = size.letter == 'R';
   const std::string_view name = is_arc ? ",R" : ",C";
   const bool is_other_frame = memory.frame.is_active() || memory.polar.is_on;
-  if (is_incremental() || is_other_frame || state.feed_mode == FeedMode::inverse_time) {
+  if (is_other_frame || state.feed_mode == FeedMode::inverse_time) {
     fail(size.column,
-         fmt::format("'{}' is read in G90 and G94 only, without G16, G51, G54.1 and G68; write the "
-                     "corner",
+         fmt::format("'{}' is read in G94 only, without G16, G51, G54.1 and G68; write the corner",
                      name));
   }
   if (const std::string why = no_line_for(name, motion_in_block()); !why.empty()) {
@@ -98,6 +99,11 @@ void ReadingStep::corner() {
   if (const std::string why = next.no_line_for(name, next_motion); !why.empty()) {
     fail(size.column, why);
   }
+  const bool has_distance = next.words.has_code('G', 900) || next.words.has_code('G', 910);
+  if (has_distance && next.words.has_code('G', 910) != is_incremental()) {
+    fail(size.column, fmt::format("'{}' with {} in the next block; write the corner", name,
+                                  is_incremental() ? "G90" : "G91"));
+  }
   const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas ||
                        options.decimal_point != DecimalPoint::unset;
   if (depends) decimal_point(size);
@@ -108,7 +114,9 @@ void ReadingStep::corner() {
   lines.begin = in_plane(p, first, second);
   const auto take = [&](const BlockWords& from) {
     for (const int axis : {first, second}) {
-      if (const BlockWord* word = from.find("XYZ"[axis])) p[axis] = word->value;
+      if (const BlockWord* word = from.find("XYZ"[axis])) {
+        p[axis] = word->value + (is_incremental() ? p[axis] : 0.0);
+      }
     }
     return in_plane(p, first, second);
   };
@@ -120,6 +128,17 @@ void ReadingStep::corner() {
   write_corner(lines, size);
 }
 
+// Under G91 a line counts from the end of the line before, which the corner has cut off.
+void ReadingStep::shift_behind_corner() {
+  if (memory.behind_corner.isZero(0.0) || !words.has_axis()) return;
+  const Eigen::Vector3d shift = std::exchange(memory.behind_corner, Eigen::Vector3d::Zero());
+  for (int i = 0; i < 3 && is_incremental(); ++i) {
+    const char axis = "XYZ"[i];
+    if (shift[i] == 0.0) continue;
+    words.set(axis, (words.has(axis) ? words[axis] : 0.0) + shift[i], words.all().front().column);
+  }
+}
+
 // The line to where the corner begins, and the corner.
 void ReadingStep::write_corner(const PlaneCorner& lines, const BlockWord& size) {
   const bool is_arc = size.letter == 'R';
@@ -127,14 +146,22 @@ void ReadingStep::write_corner(const PlaneCorner& lines, const BlockWord& size) 
   const Eigen::Vector2d from = lines.corner + way * lines.to_begin();
   const Eigen::Vector2d to = lines.corner + way * lines.to_end();
   const char a = "XYZ"[(normal_axis() + 1) % 3], b = "XYZ"[(normal_axis() + 2) % 3];
-  if (words.has(a)) words.set(a, from.x());
-  if (words.has(b)) words.set(b, from.y());
+  const bool counts_on = is_incremental();
+  const Eigen::Vector2d first = counts_on ? Eigen::Vector2d(from - lines.begin) : from;
+  const Eigen::Vector2d second = counts_on ? Eigen::Vector2d(to - from) : to;
+  if (counts_on) {
+    memory.behind_corner.setZero();
+    memory.behind_corner[a - 'X'] = (lines.corner - to).x();
+    memory.behind_corner[b - 'X'] = (lines.corner - to).y();
+  }
+  if (words.has(a)) words.set(a, first.x());
+  if (words.has(b)) words.set(b, first.y());
   if (!is_arc) {
-    behind.push_back(word_text(a, to.x()) + " " + word_text(b, to.y()));
+    behind.push_back(word_text(a, second.x()) + " " + word_text(b, second.y()));
     return;
   }
   behind.push_back(fmt::format("{} {} {} {}", lines.cross() > 0.0 ? "G3" : "G2",
-                               word_text(a, to.x()), word_text(b, to.y()),
+                               word_text(a, second.x()), word_text(b, second.y()),
                                word_text('R', size.value)));
   memory.pending_motion = 10;  // of group 01, behind the arc of the control
   memory.is_pending_known = true;

@@ -21,6 +21,7 @@ void ReadingStep::frame_codes() {
   additional_offset();
   scaling();
   mirror();
+  mirror_of_haas();
   rotation();
   // an arc that stays in force is the other one in LinuxCNC
   const bool flips_other = memory.frame.flips(normal_axis()) != was_flipped;

@@ -57,31 +57,16 @@ void ReadingStep::arc_centre() {
   words.erase(*centre);
 }
 
-// Mach leaves the centre along +X, and comes back to it.
-void ReadingStep::circular_pocket() {
-  constexpr int kClockwise = 120, kCounterclockwise = 130;
-  const int code = words.has_code('G', kClockwise)          ? kClockwise
-                   : words.has_code('G', kCounterclockwise) ? kCounterclockwise
-                                                            : -1;
-  if (code < 0) return;
-  BlockWord& word = *words.code('G', code);
-  if (choose(WordDifference::circular_pocket, word.column) == 1) {
-    fail(word.column,
-         "G12 and G13 of Haas: the way into the wall is the control's; program it with G2 or G3");
-  }
-  need(ReaderRule::circular_pocket, word.column);
-  if (!words.has('I') || words['I'] <= 0.0 || words.has_axis() || normal_axis() != 2) {
-    fail(word.column, fmt::format("{} needs I > 0, G17, and no axis words", code_name('G', code)));
-  }
-  const std::string I = word_text('I', words['I']).substr(1);
-  if (memory.pending_motion < 0 && state.motion <= 30) memory.pending_motion = state.motion;
-  memory.is_pending_known = true;
-  behind.push_back("G91 G1 X" + I);
-  behind.push_back(fmt::format("{} I-{}", code == kClockwise ? "G2" : "G3", I));
-  behind.push_back("G1 X-" + I);
-  if (!is_incremental()) behind.emplace_back("G90");
-  words.erase(word);
-  words.erase('I');
+// G1 X10 R5: LinuxCNC refuses R there.
+void ReadingStep::radius_of_line() {
+  const int motion = motion_in_block();
+  const BlockWord* R = words.find('R');
+  if (R == nullptr || motion > 10 || !words.has_axis() || has_axis_taker()) return;
+  fail(R->column,
+       fmt::format("R beside {0}: it rounds the corner to the next line on lathes and where "
+                   "the control is so set (Fanuc, parameter 3405#4), and is an alarm on "
+                   "others; write ,R{1:g} behind G1, or the arc",
+                   code_name('G', motion), R->value));
 }
 
 // G80, alone or with axis words.

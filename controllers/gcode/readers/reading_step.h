@@ -12,6 +12,7 @@
 
 namespace servomill::controllers {
 
+struct HaasCircles;
 struct PlaneCorner;
 
 class ReadingStep {
@@ -76,12 +77,19 @@ class ReadingStep {
   void motion_in_force();
   void rapid_at_start(int column);
   void arc_centre();
-  void circular_pocket();
+  void radius_of_line();
   void cancel_cycle(bool has_words);
   void leave_cycle();
   void refuse_arc_behind_cycle(int motion, int column) const;
   void feed();
+  // haas_reading.cpp
+  void circular_pocket();
+  void circular_pocket_of_mach(BlockWord& code, bool is_clockwise);
+  void circular_pocket_of_haas(BlockWord& code, bool is_clockwise);
+  void circles_of_haas(const HaasCircles& circles, bool is_clockwise);
+  void mirror_of_haas();
   // corner_reading.cpp
+  void shift_behind_corner();
   void corner();
   std::string no_line_for(std::string_view corner, int motion) const;
   void write_corner(const PlaneCorner& lines, const BlockWord& size);

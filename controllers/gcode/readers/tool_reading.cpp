@@ -76,7 +76,12 @@ void ReadingStep::laser_power() {
   if (!is_feed || !words.has('S') || !words.has_axis()) return;
   if (words.has('M')) memory.power_changes = 0;
   if (words.has('M') || words['S'] * rpm == state.spindle_speed) return;
-  ++memory.power_changes;
+  if (++memory.power_changes == 1) {
+    reading_.notes_.push_back(
+        {words.column('S'),
+         "S changes in a move at feed, without M3 or M4: read as the speed of the spindle, which a "
+         "mill changes at rest; where it is the power of a laser, no move is another"});
+  }
   if (memory.power_changes < kPowerChanges) return;
   fail(words.column('S'),
        "S changes from move to move: the power of a laser; programs for milling are read here");

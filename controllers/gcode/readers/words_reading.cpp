@@ -87,8 +87,12 @@ constexpr auto kRefused = std::to_array<Refused>({
     {'G', 650, "calls a macro of the control, whose text is not in the program"},
     {'G', 660, "calls a macro of the control at each move, whose text is not in the program"},
     {'G', 770, "back boring by an oriented spindle is not simulated"},
-    {'G', 1000, "ends a mirror image (Haas), or changes a tool (Brother); write G50.1 or M6"},
-    {'G', 1010, "a mirror image (Haas), or a code of the machine's builder; write G51.1"},
+    {'G', 1000,
+     "ends a mirror image (Haas), or changes a tool (Brother); choose with --reader haas, or "
+     "write G50.1 or M6"},
+    {'G', 1010,
+     "a mirror image (Haas), or a code of the machine's builder; choose with --reader haas, "
+     "or write G51.1"},
     {'G', 1070, "turns an axis into coordinates of a cylinder; post the moves of the rotary axis"},
     {'G', 1120, "couples a linear and a rotary axis in polar coordinates; post the moves of both"},
     {'G', 1410, "compensates the radius in space (Haas); post the path of the tool centre"},
@@ -206,6 +210,8 @@ void ReadingStep::refused_codes() {
     const int tenths = tenths_of(word.value);
     for (const Refused& one : kRefused) {
       if (word.letter != one.letter || tenths != one.tenths) continue;
+      const bool is_of_haas = tenths == 1000 || tenths == 1010;
+      if (is_of_haas && word.letter == 'G' && options.reader == Reader::haas) continue;
       fail(word.column, fmt::format("{}: {}", name_of(word), one.why));
     }
     const bool is_override = word.letter == 'M' && tenths >= 500 && tenths <= 530;

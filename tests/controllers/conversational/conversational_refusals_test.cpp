@@ -15,6 +15,8 @@ struct Refusal {
 // The first line is line 4 of the file.
 const Refusal kRefusals[] = {
     {"L X+1\n", "t.h:4:1: error: no F in the block, and none is in force"},
+    {"L X+2 F5\nTOOL DEF 9 L+5 R+1 F300\nL X+1\n",
+     "t.h:6:1: error: no F in the block, and none is in force"},
     {"L X+1 X+2 F1\n", "t.h:4:7: error: 'X+2': X is in the block already"},
     {"L X+ F1\n", "t.h:4:3: error: '+' is neither a number nor a Q parameter"},
     {"L X+1..2 F1\n", "t.h:4:3: error: '+1..2' is neither a number nor a Q parameter"},
@@ -41,7 +43,7 @@ const Refusal kRefusals[] = {
      "an "
      "iTNC 530; write FU"},
     {"L M92 X+1 FMAX\n",
-     "t.h:4:3: error: M92: the builder's reference point is not known; use M91"},
+     "t.h:4:1: error: M92: the builder's reference point is not known; use M91"},
     {"L IX+1 R0 FMAX M91\n", "t.h:4:3: error: M91 with an incremental coordinate"},
     {"L M140 MB MAX\n",
      "t.h:4:1: error: M140 MB MAX: the end of travel of Z is the machine's; name a machine that "
@@ -114,10 +116,34 @@ const Refusal kRefusals[] = {
     {"Q1 = SINUS 3\n", "t.h:4:6: error: 'SINUS': no function; did you mean 'SIN'?"},
     {"FN 14: ERROR = 1000\n",
      "t.h:4:1: error: FN 14: the program stops here with its error message"},
-    {"FN 18: SYSREAD Q1 = ID220\n",
-     "t.h:4:1: error: FN 18: reads or writes data of the control that are not known here; assign "
-     "the "
-     "parameter instead"},
+    {"FN 18: SYSREAD Q1 = ID220\nL X+Q1 F1\n",
+     "t.h:5:3: error: Q1 was read from the control (FN 18: SYSREAD Q1 = ID220), which is not known "
+     "here; assign it instead"},
+    {"FN 18: SYSREAD QS1 = ID220\n",
+     "t.h:4:1: error: FN 18: a Q parameter that takes the value is expected"},
+    {"FN 17: SYSWRITE ID 10 = 1\n",
+     "t.h:4:1: error: FN 17: writes data of the control or of its PLC, whose effect is not known "
+     "here; take the block out if it moves nothing"},
+    {"CYCL CALL PAT\n",
+     "t.h:4:1: error: CYCL CALL PAT without PATTERN DEF: a table of points is not in the program"},
+    {"PATTERN DEF SQUARE1 (X+0 Y+0)\n",
+     "t.h:4:13: error: PATTERN DEF: POS, ROW, PAT, FRAME, CIRC or PITCHCIRC with its number is "
+     "expected"},
+    {"PATTERN DEF ROW1 (X+0 Y+0 D+5)\n", "t.h:4:1: error: PATTERN DEF without NUM"},
+    {"PATTERN DEF PAT1 (X+0 Y+0 DX+5 DY+5 NUMX2 NUMY2 ROTX+5)\n",
+     "t.h:4:1: error: PATTERN DEF with ROTX, which distorts the pattern, is not read; write POS"},
+    {"CYCL DEF 208 BORE MILLING\n",
+     "t.h:4:10: error: CYCL DEF 208: bore milling: the way to the wall of the hole is the "
+     "control's; write it with CC and CP IPA"},
+    {"CYCL DEF 253 SLOT MILLING\n",
+     "t.h:4:10: error: CYCL DEF 253: slots: the path of the roughing is the control's; let the CAM "
+     "system write the moves"},
+    {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+\n",
+     "t.h:4:1: error: PLANE: SYM chooses a solution by a rule of the machine; write SEQ+, SEQ- or "
+     "neither"},
+    {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY SEQ+\nPLANE RESET STAY\nL A+Q120 FMAX\n",
+     "t.h:6:3: error: Q120 is the angle of a rotary axis after PLANE, which is not known here; "
+     "assign it instead"},
     {"CYCL CALL\n", "t.h:4:1: error: no cycle is defined to be called"},
     {"CYCL DEF 251 RECTANGULAR POCKET\n",
      "t.h:4:10: error: CYCL DEF 251: pockets, slots, studs and threads are not read; let the CAM "

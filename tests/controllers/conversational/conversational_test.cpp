@@ -102,6 +102,53 @@ TEST(Conversational, Cycle392MovesNothing) {
                                "effect"});
 }
 
+// A table that tilts about A and turns about C: tilted by 30 degrees about X, the tool stands along
+// the plane at A30 C0 and at A-30 C180.
+TEST(Conversational, SeqChoosesTheSignOfThePrincipalAxis) {
+  ProgramSetup setup = example_setup();
+  setup.machine = std::make_shared<const ToolCentrePoint>(
+      plant::make_chain(plant::parse_structure("[w C A b X Y Z t]")), Joints::Constant(-10.0),
+      Joints::Constant(10.0), 1e-6);
+  const auto A_of = [&](const std::string& lines) {
+    Interpreter interpreter(with_frame(lines), "t.h", setup);
+    double A = 0.0;
+    for (const Move& move : interpreter.rest()) A = move.end_machine[3] / deg;
+    return A;
+  };
+  const std::string plane = "PLANE SPATIAL SPA+30 SPB+0 SPC+0 ";
+  const double positive = A_of(plane + "TURN FMAX SEQ+\n"),
+               negative = A_of(plane + "TURN FMAX SEQ-\n");
+  EXPECT_NEAR(std::abs(positive), 30.0, 1e-9);
+  EXPECT_NEAR(negative, -positive, 1e-9);
+  EXPECT_GT(positive, 0.0);
+  EXPECT_NEAR(A_of(plane + "STAY SEQ-\nL A+Q120 C+Q122 FMAX\n"), negative, 1e-9);
+}
+
+// The values of FN 18 are the control's; --parameter gives them.
+TEST(Conversational, ValuesReadFromTheControlMayBeGiven) {
+  ProgramSetup setup = example_setup();
+  setup.parameters["Q1"] = 7.0;
+  EXPECT_EQ(framed_moves("FN18: SYSREAD Q1 = ID270 NR1 IDX1\nFN 16: F-PRINT A.A / B.TXT\n"
+                         "L X+Q1 F100\n",
+                         setup),
+            "3 feed 7 0 0 F100\n");
+  EXPECT_EQ(framed_moves("FN 18: SYSREAD Q2 = ID270 NR1 IDX1\nQ2 = 4\nL X+Q2 F100\n"),
+            "3 feed 4 0 0 F100\n");
+}
+
+// A survey goes on: the place is that of G30, which has none unless it is given, and Z is unknown.
+TEST(Conversational, TheBuildersReferencePointIsUnknown) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  setup.stored = {{5183, 250.0}};
+  EXPECT_EQ(framed_moves("L X+3 FMAX\nL Z+0 R0 FMAX M92\nL Z+5 FMAX\n", setup),
+            "1 rapid 3 0 0\n2 rapid 3 0 0\n2 rapid 3 0 150\n3 rapid 3 0 5\n");
+  EXPECT_EQ(warnings_of(with_frame("L Z+0 FMAX M92\n"), setup),
+            std::vector<std::string>{"M92: the builder's reference point is not known; use M91"});
+  EXPECT_EQ(fault_of("L Z+0 FMAX M92\nL IZ+1 F100 X+1\n", setup),
+            "t.h:5:3: error: IZ: the position of Z is unknown here; write it without I");
+}
+
 // Z travels to 400 mm in machine coordinates, at rapid and at F2000; the tip is then 300 mm high.
 TEST(Conversational, RetractToTheEndOfTravel) {
   ProgramSetup setup = example_setup();

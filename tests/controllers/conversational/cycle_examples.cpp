@@ -48,6 +48,49 @@ std::vector<Example> cycle_examples() {
        "CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-10 Q239=+1.25 Q203=0 Q204=0\nCYCL CALL\n",
        "2 rapid 0 0 2\n2 spindle 1 S1000\n2 feed 0 0 -10 F1250\n2 spindle -1 S1000\n"
        "2 feed 0 0 2 F1250\n2 spindle 0 S1000\n"},
+      // steps of 4, back by half a pitch of 1: S1000 is F1000
+      {"cycle 209",
+       "CYCL DEF 209 TAPPING W/ CHIP BRKG Q200=2 Q201=-6 Q239=+1 Q203=0 Q204=20 Q257=4 Q256=0.5 "
+       "Q336=0\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 spindle 1 S1000\n2 feed 0 0 -4 F1000\n2 spindle -1 S1000\n"
+       "2 feed 0 0 -3.5 F1000\n2 spindle 1 S1000\n2 feed 0 0 -6 F1000\n2 spindle -1 S1000\n"
+       "2 feed 0 0 2 F1000\n2 spindle 0 S1000\n2 rapid 0 0 20\n"},
+      // Q256 = 0 leaves the hole; a left-hand thread
+      {"cycle 209 that leaves the hole",
+       "CYCL DEF 209 Q200=2 Q201=-6 Q239=-1 Q203=0 Q204=0 Q257=4 Q256=0 Q336=0\nCYCL CALL\n",
+       "2 rapid 0 0 2\n2 spindle -1 S1000\n2 feed 0 0 -4 F1000\n2 spindle 1 S1000\n"
+       "2 feed 0 0 2 F1000\n2 spindle -1 S1000\n2 feed 0 0 -6 F1000\n2 spindle 1 S1000\n"
+       "2 feed 0 0 2 F1000\n2 spindle 0 S1000\n"},
+      // between the holes at Z10, where the tool stands at the call; the second hole 3 mm higher
+      {"PATTERN DEF POS",
+       "CYCL DEF 240 Q200=2 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\n"
+       "PATTERN DEF POS1 (X+5 Y+6 Z+0) ~\n POS2 (X+7 Y+8 Z+3)\nL Z+10 FMAX\nCYCL CALL PAT FMAX\n",
+       "4 rapid 0 0 10\n5 rapid 5 6 10\n5 rapid 5 6 2\n5 feed 5 6 -1 F50\n5 rapid 5 6 2\n"
+       "5 rapid 5 6 10\n5 rapid 7 8 10\n5 rapid 7 8 5\n5 feed 7 8 2 F50\n5 rapid 7 8 5\n"},
+      // a row along Y, and two points of a circle of diameter 20 about X100
+      {"PATTERN DEF ROW and CIRC",
+       "CYCL DEF 240 Q200=2 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\n"
+       "PATTERN DEF ROW1 (X+1 Y+0 D+10 NUM2 ROT+90 Z+0) CIRC1 (X+100 Y+0 D20 START+0 NUM2 Z+0)\n"
+       "L Z+2 FMAX\nCYCL CALL PAT FMAX\n",
+       "3 rapid 0 0 2\n4 rapid 1 0 2\n4 rapid 1 0 2\n4 feed 1 0 -1 F50\n4 rapid 1 0 2\n"
+       "4 rapid 1 10 2\n4 rapid 1 10 2\n4 feed 1 10 -1 F50\n4 rapid 1 10 2\n"
+       "4 rapid 110 0 2\n4 rapid 110 0 2\n4 feed 110 0 -1 F50\n4 rapid 110 0 2\n"
+       "4 rapid 90 0 2\n4 rapid 90 0 2\n4 feed 90 0 -1 F50\n4 rapid 90 0 2\n"},
+      // two by two, at the feed of the block before
+      {"PATTERN DEF PAT",
+       "CYCL DEF 240 Q200=2 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\nL Z+2 F500\n"
+       "PATTERN DEF PAT1 (X+1 Y+0 DX+5 DY+6 NUMX2 NUMY2 ROT+0 ROTX+0 ROTY+0 Z+0)\nCYCL CALL PAT\n",
+       "2 feed 0 0 2 F500\n4 feed 1 0 2 F500\n4 rapid 1 0 2\n4 feed 1 0 -1 F50\n4 rapid 1 0 2\n"
+       "4 feed 6 0 2 F500\n4 rapid 6 0 2\n4 feed 6 0 -1 F50\n4 rapid 6 0 2\n"
+       "4 feed 1 6 2 F500\n4 rapid 1 6 2\n4 feed 1 6 -1 F50\n4 rapid 1 6 2\n"
+       "4 feed 6 6 2 F500\n4 rapid 6 6 2\n4 feed 6 6 -1 F50\n4 rapid 6 6 2\n"},
+      // the last definition counts; two points of a circle from 90 degrees on
+      {"PATTERN DEF FRAME and PITCHCIRC",
+       "CYCL DEF 240 Q200=2 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\nL Z+2 FMAX\n"
+       "PATTERN DEF FRAME1 (X+1 Y+0 DX+5 DY+0 NUMX3 NUMY1 ROT+0)\n"
+       "PATTERN DEF PITCHCIRC1 (X+0 Y+0 D20 START+90 STEP+90 NUM2 Z+0)\nCYCL CALL PAT FMAX\n",
+       "2 rapid 0 0 2\n5 rapid 0 10 2\n5 rapid 0 10 2\n5 feed 0 10 -1 F50\n5 rapid 0 10 2\n"
+       "5 rapid -10 0 2\n5 rapid -10 0 2\n5 feed -10 0 -1 F50\n5 rapid -10 0 2\n"},
       {"cycle 206",
        "CYCL DEF 206 TAPPING NEW Q200=2 Q201=-10 Q206=800 Q211=0 Q203=0 Q204=0\nL M3\nCYCL CALL\n",
        "2 spindle 1 S1000\n3 rapid 0 0 2\n3 feed 0 0 -10 F800\n3 spindle -1 S1000\n"

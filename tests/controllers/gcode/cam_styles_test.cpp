@@ -40,7 +40,7 @@ const std::vector<Style>& styles() {
        ":3:1: error: G38.2: what a probe touches is not known here; [touch_probe] of a scenario "
        "says it"},
       {"camotics_tplang.nc", {5, 6, 12}, 2, 10.0, 0.0},
-      {"cncjs_laser.gcode", {5}, 2, 10.0, 10.0},
+      {"cncjs_laser.gcode", {5, 5}, 2, 10.0, 10.0},
       {"cncjs_macro.nc", {2, 4}, 5, 0.0, 0.0},
       {"cncjs_variables.nc",
        {},
@@ -62,13 +62,8 @@ const std::vector<Style>& styles() {
       {"fusion_haas.nc", {9, 14}, 24, 30.0, 30.0},
       {"fusion_linuxcnc.ngc", {9, 14}, 2, 20.0, 0.0},
       {"fusion_mach3.nc", {8, 12}, 2, 0.0, 0.0},
-      {"haas_pocket.nc",
-       {},
-       0,
-       0,
-       0,
-       ":8:1: error: G12 or G13: a full circle from the +X side (Mach), or a circle with a way "
-       "into the wall of its own (Haas); choose with --reader"},
+      // two depths; without a table the tool has no diameter: circles of 4, 8, 12 and 16 mm
+      {"haas_pocket.nc", {4, 7, 8, 8}, 26, 25.0, 25.0},
       {"heidenhain_hsc.H", {5, 5}, 4, 1.536, 0.616},
       {"heidenhain_plane.H", {7}, 2, 20.0, 0.0, "", true},
       {"hsmworks_3plus2.nc", {4, 7, 8, 11}, 2, 10.0, 0.0},

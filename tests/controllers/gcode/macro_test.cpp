@@ -274,16 +274,54 @@ TEST(Macro, OtherReadersDoNotHaveIt) {
   EXPECT_EQ(run("#1=2\no1 if [#1 gt 1]\nG0 X#1 Y#2\no1 endif\nM2\n", Reader::any), "R 2 0 0");
 }
 
+// As conditions 1 AND 2 is 1, of their bits 0.
+TEST(Macro, LogicWhoseReadingsDifferIsRefusedWithBoth) {
+  const auto any = [](const std::string& program) { return run(program, Reader::any); };
+  EXPECT_EQ(any("G0 X[1 AND 2]\nM2\n"),
+            "p.nc:1:8: error: 1 AND 2: 1 as conditions (LinuxCNC), or 0 of their bits (Fanuc, "
+            "Haas); choose with --reader");
+  EXPECT_EQ(any("G[20 OR ABS[20]] X1.\nM2\n"),
+            "p.nc:1:6: error: 20 OR 20: 1 as conditions (LinuxCNC), or 20 of their bits (Fanuc, "
+            "Haas); choose with --reader");
+  EXPECT_EQ(any("G0 X[0.5 XOR 1]\nM2\n"),
+            "p.nc:1:10: error: 0.5 XOR 1: 0 as conditions (LinuxCNC), or nothing, since only whole "
+            "numbers from 0 on have bits (Fanuc, Haas); choose with --reader");
+  EXPECT_EQ(any("G0 X[5 AND 0] Y[1 OR 0] Z[1 XOR 1]\nM2\n"), "R 0 1 0");
+  EXPECT_EQ(run("G0 X[1 AND 2]\nM2\n", Reader::linuxcnc), "R 1 0 0");
+  EXPECT_EQ(run("#1=12 AND 10\nG0 X#1\nM2\n"), "R 8 0 0");
+  // names are LinuxCNC's
+  EXPECT_EQ(any("#<a> = 2\nG0 X[1 AND #<a>]\nM2\n"), "R 1 0 0");
+}
+
+TEST(Macro, WhatStandsBehindThenIsCheckedWhereItDoesNotRun) {
+  EXPECT_EQ(refusal("IF[1EQ2]THEN #1=[5.\nM2\n"), "1:17: error: '[' is not closed; ']' is missing");
+  EXPECT_EQ(refusal("IF[1EQ2]THEN #1=5.]\nM2\n"), "1:19: error: ']' without a '[' before it");
+  EXPECT_EQ(refusal("IF[1EQ2]THEN #1=5.+\nM2\n"), "1:19: error: a value is expected behind it");
+  EXPECT_EQ(refusal("IF[1EQ2]THEN GOTO\nM2\n"),
+            "1:14: error: a macro statement is expected behind THEN");
+  EXPECT_EQ(run("IF[1EQ2]THEN #1=1./0\nG0 X1.\nM2\n"), "R 1 0 0");
+}
+
+// Which of G0 and G1 is in force at power-on is parameter 3402#0.
+TEST(Macro, ModesBeforeTheFirstMotion) {
+  EXPECT_EQ(
+      refusal("#1=#4001\nG0 X1.\nM2\n"),
+      "1:4: error: #4001 is a mode in force: no G0, G1, G2 or G3 stands before it: which is in "
+      "force then is set in the control (Fanuc, parameter 3402#0); write one; or give it with "
+      "--parameter '#4001=...'");
+  EXPECT_EQ(run("G1 X1. F100.\n#1=#4001\n#2=#4009\n#3=#4008\nG0 X#1 Y#2 Z#3\nM2\n"),
+            "F 1 0 0 f100 | R 1 80 49");
+}
+
 // Nothing in them says for which control they are: LinuxCNC's reading, with a warning.
 TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
   const Reading found =
-      read("#1=FIX[-1.5]\nG0 X#1 Y#2\nX[#1+#2]\n#3=[1 AND 2]\nM2\n", Reader::any, {});
+      read("#1=FIX[-1.5]\nG0 X#1 Y#2\nX[#1+#2]\n#3=[1 AND 1]\nM2\n", Reader::any, {});
   EXPECT_EQ(found.moves, "R -2 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[0]),
-            "p.nc:1:4: error: FIX, FUP, ATAN, MOD, AND, OR and XOR are read as LinuxCNC has them; "
-            "Fanuc and Haas differ for numbers below 0, in the range of angles, and count bits; "
-            "choose with --reader");
+            "p.nc:1:4: error: FIX, FUP, ATAN and MOD are read as LinuxCNC has them; Fanuc and Haas "
+            "differ for numbers below 0 and in the range of angles; choose with --reader");
   EXPECT_EQ(to_string(found.warnings[1]),
             "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, with its word "
             "left out (Fanuc, Haas); choose with --reader");

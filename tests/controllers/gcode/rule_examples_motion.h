@@ -49,8 +49,36 @@ inline std::vector<RuleExample> motion_examples() {
        "CCW18 2 0 0 o 1 0 0 f100 | F 2 0 1", "p.nc:1:11", "grbl 1.1, gcode.c, step 3"},
       {ReaderRule::circular_pocket, Reader::mach, "G91 G0 X1. Y2.\nG13 I5. F100.\nX1.\nM2\n",
        "R 1 2 0 | F 6 2 0 f100 | CCW 6 2 0 o 1 2 0 | F 1 2 0 | R 2 2 0", "p.nc:2:1", kMemory},
+      {ReaderRule::home_letters, Reader::any, "G0 X5. Y6. Z7.\nG28 X Y ; home\nX1.\nM2\n",
+       "R 5 6 7 | R 0 6 7 | R 0 0 7 | R 1 0 7", "p.nc:2:1", "Marlin, G28"},
       {ReaderRule::circular_pocket, Reader::mach, "G20\nG12 I.1 F10.\nM2\n",
        "F 2.54 0 0 f254 | CW 2.54 0 0 o 0 0 0 | F 0 0 0", "p.nc:2:1", kMemory},
+      // the tool of radius 1 goes on circles of 2 and 3 mm about where it stands
+      {ReaderRule::haas_pocket,
+       Reader::haas,
+       "T1 M6\nG0 X10. Y5.\nG13 D1 I3. K4. Q1. Z-1. F100.\nG0 X0.\nM2\n",
+       "T1 | R 10 5 0 | F 10 5 -1 f100 | F 12 5 -1 | CCW 12 5 -1 o 10 5 -1 | F 10 5 -1 | "
+       "F 13 5 -1 | CCW 13 5 -1 o 10 5 -1 | F 10 5 -1 | R 0 5 -1",
+       "p.nc:3:1",
+       "Haas 96-8000, June 1999, p. 237; the way to the wall is the control's",
+       {.has_tools = true}},
+      // twice as deep
+      {ReaderRule::haas_pocket, Reader::haas, "G91\nG12 D0 I3. Z-1. L2 F100.\nG0 X1.\nM2\n",
+       "F 0 0 -1 f100 | F 3 0 -1 | CW 3 0 -1 o 0 0 -1 | F 0 0 -1 | F 0 0 -2 | F 3 0 -2 | "
+       "CW 3 0 -2 o 0 0 -2 | F 0 0 -2 | R 1 0 -2",
+       "p.nc:2:1", "Haas 96-8000, June 1999, p. 237 (multiple Z depth pass: G91 and L)"},
+      // X and Y are the centre; D0 programs the path of the tool centre; G1 goes on behind it
+      {ReaderRule::haas_pocket, Reader::any, "G1 X1. F50.\nG12 X10. Y5. D0 I3. F100.\nX0.\nM2\n",
+       "F 1 0 0 f50 | R 10 5 0 | F 13 5 0 f100 | CW 13 5 0 o 10 5 0 | F 10 5 0 | F 0 5 0",
+       "p.nc:2:1", "gcodes.net, Haas G12 and G13"},
+      // X mirrored: a clockwise arc is a counterclockwise one
+      {ReaderRule::haas_mirror, Reader::haas,
+       "G101 X0.\nG0 X10. Y5.\nG2 X12. Y7. R2. F100.\nG100 X0.\nG0 X1. Y1.\nM2\n",
+       "R -10 5 0 | CCW -12 7 0 o -12 5 0 f100 | R 1 1 0", "p.nc:1:1", kMemory},
+      // the next line counts from the corner, not from the end of the arc
+      {ReaderRule::corner, Reader::fanuc, "G91 G1 X30. ,R5. F100.\nY20. ,C2.\nX-30.\nY1.\nM2\n",
+       "F 25 0 0 f100 | CCW 30 5 0 o 25 5 0 | F 30 18 0 | F 28 20 0 | F 0 20 0 | F 0 21 0",
+       "p.nc:1:13", kCorner},
       // tangents of 5 mm at a right angle; legs of 2 mm of the chamfer
       {ReaderRule::corner, Reader::fanuc, "G1 X30. ,R5. F100.\nY20. ,C2.\nX0.\nM2\n",
        "F 25 0 0 f100 | CCW 30 5 0 o 25 5 0 | F 30 18 0 | F 28 20 0 | F 0 20 0", "p.nc:1:9",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "controllers/gcode/line_reader.h"
 #include "plant/vocabulary/move_curve.h"
 #include "rule_examples_cycles.h"
 #include "rule_examples_differences.h"
@@ -149,17 +150,40 @@ TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nY5. Z-1."),
             "',R' with Z in this or the next block; write the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG91 Y5."),
-            "',R' with G91 in this or the next block; write the corner");
+            "',R' with G91 in the next block; write the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX20."), "',R1': the lines make no corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX5."), "',R1': the lines make no corner");
   EXPECT_EQ(refusal("G1 X10. ,R0. F100.\nY5."), "',R0': the lines make no corner");
   EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."),
             "',R6' takes 6 of each line; the shorter one has 5");
-  EXPECT_EQ(read("G91 G1 X10. ,C2. F100.\nY5.\nM2\n", Reader::any, {}).moves,
-            "p.nc:1:13: error: ',C' is read in G90 and G94 only, without G16, G51, G54.1 and G68; "
-            "write the corner");
+  EXPECT_EQ(read("G93\nG1 X10. ,C2. F100.\nY5. F100.\nM2\n", Reader::any, {}).moves,
+            "p.nc:2:9: error: ',C' is read in G94 only, without G16, G51, G54.1 and G68; write the "
+            "corner");
   EXPECT_EQ(read("(TITLE)\nG0 X1.\n,R5.\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:3:1: error: ',R' needs a line in its block");
+}
+
+// The comma is missing: an alarm, or a corner where the control is so set.
+TEST(RuleExamples, ARadiusBesideALineIsRefusedByName) {
+  EXPECT_EQ(
+      read("G1 X30. R5. F100.\nY20.\nM2\n", Reader::any, {}).moves,
+      "p.nc:1:9: error: R beside G1: it rounds the corner to the next line on lathes and where "
+      "the control is so set (Fanuc, parameter 3405#4), and is an alarm on others; write ,R5 "
+      "behind G1, or the arc");
+  EXPECT_EQ(read("G2 X2. R1. F100.\nG1 X5.\nM2\n", Reader::any, {}).moves,
+            "CW 2 0 0 o 1 0 0 f100 | F 5 0 0");
+}
+
+TEST(RuleExamples, PocketsOfHaasThatCannotBeAreRefused) {
+  const auto refusal = [](const std::string& block) {
+    return read("T1 M6\n" + block + "\nM2\n", Reader::haas, {.has_tools = true}).moves;
+  };
+  EXPECT_EQ(refusal("G12 D1 I.5 F100."),
+            "p.nc:2:1: error: G12: the tool of radius 1 does not fit in I0.5");
+  EXPECT_EQ(refusal("G12 D1 I2. K3. F100."),
+            "p.nc:2:1: error: G12 needs G17, I > 0, and Q > 0 with a K above I");
+  EXPECT_EQ(refusal("G13 D1 I2. L3 F100."),
+            "p.nc:2:12: error: G13 with L repeats it deeper by Z: under G91, with Z and a whole L");
 }
 
 // ,R5 is 5 um where X30 is 30 um.
@@ -178,6 +202,14 @@ TEST(RuleExamples, ASpiralIsHalfwayBetweenItsRadiiInTheMiddle) {
   const AxisWords middle = MoveCurve(AxisWords::Zero(), moves[0]).at(0.5);
   EXPECT_NEAR(middle[0], 5.04 * mm, 1e-15);
   EXPECT_NEAR(middle[1], 5.00 * mm, 1e-15);
+}
+
+TEST(TolerantLine, KeepsEveryColumn) {
+  for (const RuleExample& one : rule_examples()) {
+    const std::string line = one.program.substr(0, one.program.find('\n'));
+    EXPECT_EQ(tolerant_line(line, Reader::any).text.size(), std::min(line.size(), kLongestLine));
+    EXPECT_EQ(tolerant_line(line, Reader::linuxcnc).text, line);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,240 @@
+// PLANE, FUNCTION TCPM, and the rotary axes that turn to a plane.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::conversational {
+namespace {
+
+// First about the X axis of the machine, then about Y, then about Z: iTNC 530 (340 422) p. 460.
+Eigen::Matrix3d rotation_of(const std::array<double, 3>& angles) {
+  const auto about = [&](std::size_t i, const Eigen::Vector3d& axis) {
+    return Eigen::AngleAxisd(angles[i] * deg, axis).toRotationMatrix();
+  };
+  return about(2, Eigen::Vector3d::UnitZ()) * about(1, Eigen::Vector3d::UnitY()) *
+         about(0, Eigen::Vector3d::UnitX());
+}
+
+// Angles about Z, the new X, the new Z.
+std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
+  const double second = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
+  constexpr double kSingular = 1e-12;
+  if (std::abs(std::sin(second)) < kSingular) {
+    return {std::atan2(R(1, 0), R(0, 0)) / deg, R(2, 2) > 0.0 ? 0.0 : 180.0, 0.0};
+  }
+  return {std::atan2(R(0, 2), -R(1, 2)) / deg, second / deg, std::atan2(R(2, 0), R(2, 1)) / deg};
+}
+
+}  // namespace
+
+// PLANE SPATIAL, PLANE RESET, FUNCTION TCPM, FUNCTION RESET TCPM.
+void Translator::plane(const HeidenhainBlock& block) {
+  Words words(std::span(block.words).subspan(1));
+  if (block.words.front().text == "FUNCTION") {
+    if (words.take("RESET") != nullptr && words.take("TCPM") != nullptr) {
+      words.refuse_rest("FUNCTION RESET TCPM");
+      return tcp_control(false);
+    }
+    const bool is_tcpm = words.take("TCPM") && words.take("F") && words.take("TCP") &&
+                         words.take("AXIS") && words.take("POS") && words.take("PATHCTRL") &&
+                         words.take("AXIS");
+    if (!is_tcpm) {
+      fail(
+          "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, and RESET TCPM are "
+          "read");
+    }
+    words.refuse_rest("FUNCTION TCPM");
+    return tcp_control(true);
+  }
+  const auto behaviour = [&]() -> std::string {
+    for (const char* name : {"STAY", "TURN", "MOVE"}) {
+      if (words.take(name) != nullptr) return name;
+    }
+    return {};
+  };
+  if (words.take("RESET") != nullptr) {
+    const std::string how = behaviour();
+    while (words.peek() != nullptr && words.peek()->address.starts_with('F')) words.take_next();
+    words.refuse_rest("PLANE RESET");
+    return reset_plane(how);
+  }
+  if (words.take("SPATIAL") == nullptr) {
+    fail("PLANE: only SPATIAL and RESET are read; write the plane with spatial angles");
+  }
+  std::array<double, 3> angles{};
+  constexpr std::array<std::string_view, 3> kNames = {"SPA", "SPB", "SPC"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto angle = words.take_number(kNames[i]);
+    if (!angle) fail(fmt::format("PLANE SPATIAL without {}", kNames[i]));
+    angles[i] = value(*angle);
+  }
+  tilt(angles, behaviour(), words);
+}
+
+void Translator::tilt(const std::array<double, 3>& angles, const std::string& behaviour,
+                      Words& words) {
+  require_no_compensation("PLANE");
+  if (is_tcp_) fail("PLANE with M128; end it with M129");
+  if (behaviour.empty()) fail("PLANE SPATIAL must say STAY, TURN or MOVE");
+  if (behaviour == "MOVE") {
+    fail("PLANE ... MOVE: the compensating movement of the linear axes is not read; write TURN");
+  }
+  const int seq = words.take("SEQ+") != nullptr ? 1 : words.take("SEQ-") != nullptr ? -1 : 0;
+  if (words.take("SYM+") != nullptr || words.take("SYM-") != nullptr) {
+    fail("PLANE: SYM chooses a solution by a rule of the machine; write SEQ+, SEQ- or neither");
+  }
+  if (words.take("TABLE") != nullptr || words.take("COORD") != nullptr) {
+    if (words.take("ROT") == nullptr) fail("PLANE: ROT must follow TABLE and COORD");
+    warn_once("TABLE ROT",
+              "PLANE: TABLE ROT and COORD ROT read as without effect; they choose "
+              "where a table axis is free");
+  }
+  words.take_number("MB");
+  while (words.peek() != nullptr && words.peek()->address.starts_with('F')) {
+    Positioning ignored;
+    read_feed(words, ignored);
+  }
+  words.refuse_rest("PLANE SPATIAL");
+  if (!frame_.is_plain() &&
+      (frame_.rotation != 0.0 || frame_.is_any_mirrored() || frame_.scale != 1.0)) {
+    fail("PLANE while cycle 8, 10 or 11 is active; define them behind it");
+  }
+  if (setup_.tools.find(tool_) == nullptr) {
+    const std::string why = fmt::format(
+        "PLANE: the length of tool {} is unknown; pass a tool table with --tools", tool_);
+    if (!setup_.accepts_unknown_positions) fail(why);
+    warn_once("PLANE", why);
+  }
+  if (plane_) reset_plane("STAY");
+  path_.flush();
+  const Eigen::Matrix3d R = rotation_of(angles);
+  plane_turn_ = turn_of_plane(R, seq);
+  if (behaviour == "TURN" && !plane_turn_.empty()) lines_.put(plane_turn_, place_);
+  const std::array<double, 3> euler = euler_angles(R);
+  plane_line_ = "G68.2";
+  for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
+  for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("IJK"[i], euler[i]);
+  lines_.put(plane_line_, place_);
+  if (behaviour == "TURN") lines_.put("G53.1", place_);
+  plane_ = angles;
+  frame_before_plane_ = frame_;
+  frame_ = {};
+  forget_linear_positions();
+  for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (behaviour == "TURN") work_[i].reset();
+  }
+}
+
+// SEQ+ and SEQ- want the principal axis at a positive or negative angle: the first rotary axis from
+// the tool, or the last from the table (TNC 640, PLANE, SEQ; from memory), which is the last one of
+// the chain from the workpiece to the tool. Returns the line that takes the axes there before the
+// plane is tilted; without SEQ the nearest solution is that of G53.1.
+std::string Translator::turn_of_plane(const Eigen::Matrix3d& R, int seq) {
+  const bool is_level = R.isApprox(Eigen::Matrix3d::Identity(), 1e-12);
+  for (const int number : {120, 121, 122}) {
+    if (is_level) {
+      parameters_.set({'Q', number}, 0.0);
+    } else {
+      parameters_.forget({'Q', number}, "is the angle of a rotary axis after PLANE");
+    }
+  }
+  if (seq == 0 || is_level || !setup_.machine) return {};
+  const plant::MachineChain& chain = setup_.machine->chain();
+  int principal = -1;
+  for (const plant::ChainAxis& axis : chain.axes) {
+    const auto joint = chain.layout.joint_of(axis.axis);
+    if (joint && !is_linear(axis.axis)) principal = *joint;
+  }
+  if (principal < 0) return {};
+  const plant::JointSolutions found = setup_.machine->inverse().solve(
+      {Eigen::Vector3d::Zero(), R.col(2)}, Eigen::Vector3d::Zero(), Joints::Zero());
+  constexpr double kLevel = 1e-9;  // rad
+  for (int i = 0; i < found.count; ++i) {
+    const plant::JointSolution& one = found.all[static_cast<std::size_t>(i)];
+    const bool is_allowed =
+        one.reach != plant::Reach::orientation && one.reach != plant::Reach::travel;
+    if (!is_allowed || seq * one.Q[principal] < -kLevel) continue;
+    std::string text = "G53 G0";
+    const AxisWords words = chain.layout.words(one.Q);
+    for (std::size_t k = 3; k < work_.size(); ++k) {
+      if (!chain.layout.joint_of(kAllAxes[k])) continue;
+      text += " " + word(letter(kAllAxes[k]), words[static_cast<int>(k)] / deg);
+    }
+    return text;
+  }
+  fail(fmt::format(
+      "PLANE: no position of the rotary axes within their travel has {} {} 0, as {} "
+      "wants it",
+      chain.layout.letter_of(principal), seq > 0 ? ">=" : "<=", seq > 0 ? "SEQ+" : "SEQ-"));
+}
+
+// L A+Q120 C+Q122 behind PLANE ... STAY: the axes go to the solution that PLANE has left in Q120 to
+// Q122. True if the block is such a one.
+bool Translator::turn_to_plane(const Positioning& p) {
+  bool is_turn = plane_.has_value() && !p.target[0] && !p.target[1] && !p.target[2];
+  for (std::size_t i = 3; i < p.target.size() && is_turn; ++i) {
+    if (!p.target[i]) continue;
+    const Operand& operand = p.target[i]->value;
+    const QName name{'Q', 117 + static_cast<int>(i)};
+    is_turn = !p.target[i]->is_increment && operand.name == name && operand.sign > 0.0;
+  }
+  if (!is_turn) return false;
+  if (p.feed && p.feed->kind != Feed::Kind::rapid) {
+    warn_once("turn", "the rotary axes turn to the plane with F: read as with FMAX");
+  }
+  path_.flush();
+  if (plane_turn_.empty()) {
+    lines_.put("G53.1", place_);
+  } else {  // G-code has no words of rotary axes in a tilted plane
+    for (const std::string& line : {std::string("G69"), plane_turn_, plane_line_}) {
+      lines_.put(line, place_);
+    }
+  }
+  was_rapid_ = true;
+  forget_linear_positions();
+  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
+  return true;
+}
+
+void Translator::reset_plane(const std::string& behaviour) {
+  require_no_compensation("PLANE RESET");
+  if (!plane_) {
+    if (behaviour == "STAY" || behaviour.empty()) return;
+    // nothing is tilted: rotary axes go to zero
+  } else {
+    if (!frame_.is_plain()) {
+      fail(
+          "PLANE RESET while a cycle 7, 8, 10 or 11 of the tilted plane is active; reset it first");
+    }
+    path_.flush();
+    lines_.put("G69", place_);
+    plane_.reset();
+    frame_ = frame_before_plane_;
+    forget_linear_positions();
+  }
+  if (behaviour == "MOVE") {
+    fail("PLANE RESET MOVE: the compensating movement of the linear axes is not read; write TURN");
+  }
+  if (behaviour != "TURN") return;
+  path_.flush();
+  if (!setup_.machine) {
+    fail(
+        "PLANE RESET TURN: which rotary axes there are depends on the machine; name it with "
+        "--machine");
+  }
+  std::string text = "G0";
+  const JointLayout& layout = setup_.machine->chain().layout;
+  for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (!layout.joint_of(kAllAxes[i])) continue;
+    text += " " + word(letter(kAllAxes[i]), frame_.shift[i]);
+    work_[i] = frame_.shift[i];
+  }
+  lines_.put(std::move(text), place_);
+}
+
+}  // namespace servomill::controllers::conversational
