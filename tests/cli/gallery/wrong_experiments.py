@@ -58,6 +58,8 @@ EXPERIMENTS = [
     experiment("identify: outputs", "", "", "the outputs are refused before anything is read",
                commands=("servomill identify experiment.toml -o machine.txt", "servomill identify experiment.toml -o machine.toml",
                          "servomill identify experiment.toml --signals out.csv", "servomill identify")),
+    experiment("identify: intervals", "", "", "of estimates that there are not, from too few replicas",
+               commands=("servomill identify experiment.toml --bootstrap 20", "servomill identify experiment.toml --profile axis.Y.moving_mas")),
     experiment("response: channels, periods, fits", "", "", "a recording of a sine, 64 samples of 2 ms",
                commands=("servomill response record.csv --input q --output y", "servomill response record.csv --input q --output yy --period 0.02",
                          "servomill response record.csv --input q --period 0.02", "servomill response record.csv --input q --output y --period 0.0213",
