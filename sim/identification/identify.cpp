@@ -79,7 +79,7 @@ void add_inverse_dynamics(const AxisRecord& record, Identification& out) {
   }
 }
 
-// Where nothing can be identified there is nothing to compute.
+// Intervals on request; nothing to compute if nothing is identifiable.
 void add_intervals(const Prediction& prediction, const Mask& mask, const IntervalSettings& settings,
                    Identification& out) {
   const std::vector<bool>& identifiable = out.uncertainty.identifiable;
