@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Draws an identification as one self-contained HTML page, from the file that `servomill identify --signals` writes.
+"""Draws identifications as one self-contained HTML page, from the files that `servomill identify --signals` and
+`servomill response --signals` write.
 
-    tools/identification_page.py SIGNALS.h5 [-o PAGE.html] [--force]
+    tools/identification_page.py SIGNALS.h5... [-o PAGE.html] [--force]
 
 Values with their intervals, measured against simulated signals, the residual and its colour, the correlation of the values, friction
-laws and validation recordings as far as the file holds them. Exit status: 0 written, 2 a file cannot be read or written.
+laws, validation recordings and frequency responses with their 95 % bands as far as the files hold them. Exit status: 0 written, 2 a
+file cannot be read or written.
 """
 import argparse
 import base64
@@ -148,10 +150,82 @@ def laws(group):
         picture(figure, "Friction laws by the parts of the recordings that their fit did not see, with two standard errors")
 
 
-def page(file):
+def response_in(group):
+    """Frequency and complex response."""
+    return group["frequency"][:], group["real"][:] + 1j * group["imaginary"][:]
+
+
+def band(axis, f, low, high):
+    axis.fill_between(f, low, high, color=MEASURED, alpha=0.25, lw=0, label="95 % of the measured")
+
+
+def draw_phase(axis, f, measured, radius, model):
+    """The phase lies within asin(radius / magnitude); where the circle holds the origin it is not known."""
+    angle = np.unwrap(np.angle(measured))
+    size = np.abs(measured)
+    half = np.where(radius < size, np.arcsin(np.minimum(radius / np.maximum(size, 1e-300), 1)), np.pi)
+    band(axis, f, np.degrees(angle - half), np.degrees(angle + half))
+    axis.plot(f, np.degrees(angle), MEASURED, lw=0.8)
+    if model is not None:
+        near = np.angle(measured * np.conj(np.interp(f, model[0], model[1])))
+        axis.plot(f, np.degrees(angle - near), SIMULATED, lw=1)
+    axis.set_ylabel("phase / deg")
+
+
+def frequency_response_figure(group, model, unit, names):
+    """Magnitude and phase with their bands and, with a model (frequency, response), the misfit as a share of the band."""
+    f, measured = response_in(group)
+    radius = group["radius_95"][:]
+    size = np.abs(measured)
+    figure, axes = plt.subplots(3 if model else 2, 1, figsize=(10, 8 if model else 6), sharex=True)
+    floor = 0.5 * size[size > 0].min(initial=np.inf)
+    band(axes[0], f, np.maximum(size - radius, floor), size + radius)
+    axes[0].plot(f, size, MEASURED, lw=0.8, label="measured")
+    if model:
+        axes[0].plot(model[0], np.abs(model[1]), SIMULATED, lw=1, label=names[1])
+    axes[0].set(xscale="log", yscale="log", ylabel=f"{names[0]}\nmagnitude" + ("" if unit == "unknown" else f" / {unit}"))
+    axes[0].legend()
+    draw_phase(axes[1], f, measured, radius, model)
+    if model:
+        misfit = np.abs(np.interp(f, *model) - measured)
+        axes[2].plot(f, misfit / np.maximum(radius, 1e-300), "#444", lw=0.8)
+        axes[2].axhline(1, color=LIMIT, lw=0.8)
+        axes[2].set(yscale="log", ylabel="misfit over\n95 % radius")
+    axes[-1].set_xlabel("frequency / Hz")
+    return figure
+
+
+def frequency_response(group, model, unit, names):
+    figure = frequency_response_figure(group, model, unit, names)
+    return picture(figure, f"Frequency response of {names[0]}, measured with 95 % bands" + (f", against {names[1]}" if model else ""))
+
+
+def response_section(file):
+    """A file of `servomill response --signals`."""
+    name = os.path.basename(str(file.attrs["name"]))
+    signals = f"{file.attrs['input']} to {file.attrs['output']}"
+    out = [f"<h2>{html.escape(name)}: {html.escape(signals)}</h2>"]
+    model = None
+    if "two_mass" in file:
+        fit = file["two_mass"]
+        values = zip(fit["value"][:], fit["half_width"][:])
+        rows = [(html.escape(str(fit.attrs[f"key_{k:02}"])), f"{value:.6g}", f"{half:.2g}", html.escape(str(fit.attrs[f"unit_{k:02}"])))
+                for k, (value, half) in enumerate(values)]
+        ratio = fit["noise_ratio"][()]
+        out += [table(("two masses", "value", "&plusmn; (k = 2)", "unit"), rows),
+                f"<p>Median misfit {100 * fit['median_misfit'][()]:.2f} %, {ratio:.1f} times the noise" +
+                ("; the uncertainty includes the model error.</p>" if ratio > 1.5 else ".</p>")]
+        model = response_in(fit)
+    unit = str(file["response/real"].attrs["units"])
+    out.append(frequency_response(file["response"], model, unit, (signals, "the fitted two masses")))
+    return "\n".join(out)
+
+
+def identification_section(file):
+    """A file of `servomill identify --signals`."""
     title = html.escape(str(file.attrs["name"]))
     rows = parameters(file["parameters"])
-    out = [f"<!DOCTYPE html><html lang=en><meta charset=utf-8><title>{title}</title><style>{STYLE}</style><h1>Identification: {title}</h1>",
+    out = [f"<h1>Identification: {title}</h1>",
            "<p>&plusmn; is the expanded uncertainty (k = 2) that the colour of the residual allows; counting samples as if each were "
            "independent would claim what stands in the last column.</p>", value_table(rows)]
     if rows:
@@ -167,27 +241,42 @@ def page(file):
             out.append(colour(group))
     if "laws" in file:
         out += ["<h2>Friction laws</h2>", laws(file["laws"])]
-    return "\n".join(out) + "</html>\n"
+    return "\n".join(out)
+
+
+SECTIONS = {"identification": identification_section, "response": response_section}
+
+
+def section(path):
+    """Title and text of what one file holds."""
+    try:
+        with h5py.File(path) as file:
+            draw = SECTIONS.get(file.attrs.get("kind"))
+            if draw is None:
+                raise InputError(f"identification_page.py: error: {path} is no file of servomill identify --signals or response --signals")
+            return str(file.attrs["name"]), draw(file)
+    except OSError as error:
+        raise InputError(f"identification_page.py: error: {path}: {error}") from error
+
+
+def page(files):
+    sections = [section(path) for path in files]
+    return f"<!DOCTYPE html><html lang=en><meta charset=utf-8><title>{html.escape(sections[0][0])}</title><style>{STYLE}</style>" + \
+        "\n".join(text for _, text in sections) + "</html>\n"
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", metavar="SIGNALS.h5")
-    parser.add_argument("-o", "--output", metavar="PAGE.html", help="default: beside SIGNALS.h5, with the ending .html")
+    parser.add_argument("files", metavar="SIGNALS.h5", nargs="+")
+    parser.add_argument("-o", "--output", metavar="PAGE.html", help="default: beside the first SIGNALS.h5, with the ending .html")
     parser.add_argument("-f", "--force", action="store_true", help="replaces PAGE.html if it exists")
     options = parser.parse_args(arguments)
-    out = options.output or os.path.splitext(options.file)[0] + ".html"
-    if os.path.exists(out) and os.path.exists(options.file) and os.path.samefile(out, options.file):
+    out = options.output or os.path.splitext(options.files[0])[0] + ".html"
+    if any(os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file) for file in options.files):
         raise InputError(f"identification_page.py: error: {out} is the input, which is never overwritten")
     if os.path.exists(out) and not options.force:
         raise InputError(f"identification_page.py: error: {out} exists; use --force to overwrite")
-    try:
-        with h5py.File(options.file) as file:
-            if file.attrs.get("kind") != "identification":
-                raise InputError(f"identification_page.py: error: {options.file} is no file of servomill identify --signals")
-            text = page(file)
-    except OSError as error:
-        raise InputError(f"identification_page.py: error: {options.file}: {error}") from error
+    text = page(options.files)
     with open(out, "w", encoding="utf-8") as file:
         file.write(text)
     print(f"written to {out}")

@@ -245,6 +245,21 @@ void minimise(const Prediction& prediction, const Differences& differences, Fit&
 
 }  // namespace
 
+std::optional<double> fit_others(const Prediction& prediction, const Fit& fit, const Mask& mask,
+                                 std::size_t parameter, Values& values) {
+  const Differences differences(prediction, mask);
+  const auto first = differences.residual(values);
+  if (!first) return std::nullopt;
+  Fit held = fit;
+  held.values = values;
+  held.scales[parameter] = kNaN;
+  held.residual = *first;
+  minimise(prediction, differences, held);
+  values = held.values;
+  const auto last = differences.residual(values);
+  return last ? std::optional(last->squaredNorm()) : std::nullopt;
+}
+
 double rms(const Eigen::VectorXd& residual, const Mask& mask) {
   std::size_t count = 0;
   for (const auto& record : mask) {

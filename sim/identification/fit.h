@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct Fit {
 /// by side. Parameters of which nothing depends stay as they are.
 /// @throws InputError if the starting values cannot be simulated
 Fit fit(const Prediction& prediction, const Values& start, const Mask& mask);
+
+/// Sum of squares of the residual with one parameter held at a value and all others fitted; they
+/// begin at `values` and end there.
+/// @param fit  whose scales are those of the parameters
+/// @return nothing where the simulation refuses the values
+std::optional<double> fit_others(const Prediction& prediction, const Fit& fit, const Mask& mask,
+                                 std::size_t parameter, Values& values);
 
 /// Root mean square of a vector over the samples that count.
 double rms(const Eigen::VectorXd& residual, const Mask& mask);

@@ -79,9 +79,24 @@ void add_inverse_dynamics(const AxisRecord& record, Identification& out) {
   }
 }
 
+// Intervals on request; nothing to compute if nothing is identifiable.
+void add_intervals(const Prediction& prediction, const Mask& mask, const IntervalSettings& settings,
+                   Identification& out) {
+  const std::vector<bool>& identifiable = out.uncertainty.identifiable;
+  const bool any = std::find(identifiable.begin(), identifiable.end(), true) != identifiable.end();
+  if (settings.bootstrap.replicas > 0 && any) {
+    out.bootstrap = bootstrap(out.fit, out.uncertainty, mask, settings.bootstrap);
+  }
+  for (const std::size_t parameter : settings.profiles) {
+    if (!identifiable[parameter]) continue;
+    out.profiles.push_back(profile(prediction, out.fit, out.uncertainty, mask, parameter));
+  }
+}
+
 }  // namespace
 
-Identification identify(const Experiment& experiment, unsigned threads) {
+Identification identify(const Experiment& experiment, unsigned threads,
+                        const IntervalSettings& intervals) {
   Identification out;
   const auto records = records_for(experiment, false);
   add_inverse_dynamics(*records.front(), out);
@@ -89,6 +104,7 @@ Identification identify(const Experiment& experiment, unsigned threads) {
   const Mask mask = prediction.all_samples();
   out.fit = fit(prediction, prediction.start(), mask);
   out.uncertainty = uncertainty_of(out.fit.jacobian, out.fit.residual, mask);
+  add_intervals(prediction, mask, intervals, out);
   out.estimates = experiment.estimates;
   for (std::size_t k = 0; k < out.estimates.size(); ++k) out.estimates[k].start = out.fit.values[k];
   out.estimation = results(prediction, out.fit, mask);

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/identification/bootstrap.h"
 #include "sim/identification/experiment.h"
 #include "sim/identification/fit.h"
 #include "sim/identification/inverse_dynamics.h"
+#include "sim/identification/profile.h"
 #include "sim/identification/uncertainty.h"
 
 namespace servomill::sim::identification {
@@ -39,13 +41,22 @@ struct Identification {
   std::vector<Estimate> estimates;                // with the identified values as start
   Fit fit;
   Uncertainty uncertainty;
+  std::optional<Bootstrap> bootstrap;
+  std::vector<Profile> profiles;
   std::vector<RecordResult> estimation, validation;
   std::vector<LawResult> laws;
   std::optional<std::size_t> simplest_law;  // that is not worse than the best
 };
 
+/// Intervals that are computed on request, beside those of the covariance.
+struct IntervalSettings {
+  BootstrapSettings bootstrap;        // no replicas: none
+  std::vector<std::size_t> profiles;  // numbers of estimates
+};
+
 /// @param threads  0: one a core
 /// @throws InputError if the starting values cannot be simulated, or a recording tells nothing
-Identification identify(const Experiment& experiment, unsigned threads = 0);
+Identification identify(const Experiment& experiment, unsigned threads = 0,
+                        const IntervalSettings& intervals = {});
 
 }  // namespace servomill::sim::identification

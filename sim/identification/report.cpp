@@ -4,38 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "plant/vocabulary/units.h"
-#include "sim/system/text_table.h"
+#include "sim/identification/interval_report.h"
 
 namespace servomill::sim::identification {
 namespace {
-
-// A table of which all columns but the first are aligned to the right.
-class Lines {
- public:
-  explicit Lines(std::vector<std::string> heading) { lines_.push_back(std::move(heading)); }
-  void add(std::vector<std::string> line) { lines_.push_back(std::move(line)); }
-  std::string text() const {
-    std::set<std::size_t> right;
-    for (std::size_t k = 1; k < lines_.front().size(); ++k) right.insert(k);
-    return system::text_table(lines_, 0, right);
-  }
-
- private:
-  std::vector<std::vector<std::string>> lines_;
-};
-
-// Digits that an uncertainty leaves meaning in.
-std::string with_uncertainty(double value, double half_width) {
-  if (!(half_width > 0.0)) return fmt::format("{:.6g}", value);
-  const int digits = 1 - static_cast<int>(std::floor(std::log10(half_width)));
-  if (digits < 0 || digits > 12) return fmt::format("{:.5g}", value);
-  return fmt::format("{:.{}f}", value, digits);
-}
-
-std::string names_of(const Estimate& one) { return fmt::format("{}", fmt::join(one.keys, " = ")); }
 
 std::string parameter_name(const Identification& result, std::size_t p) {
   if (p < result.estimates.size()) return result.estimates[p].keys.front();
@@ -200,7 +174,7 @@ std::string report(const Experiment& experiment, const Identification& result) {
     for (const std::string& note : record.notes) out += note + "\n";
   }
   out += inverse_dynamics_table(result) + "\n";
-  out += parameters(result) + "\n" + record_table(result);
+  out += parameters(result) + "\n" + interval_tables(result) + record_table(result);
   for (const std::string& sentence : unidentifiable_sentences(result))
     out += "unidentifiable: " + sentence + "\n";
   for (const std::string& sentence : warnings(result)) out += "warning: " + sentence + "\n";

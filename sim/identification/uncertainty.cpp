@@ -5,6 +5,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "sim/identification/identifiable_part.h"
+
 namespace servomill::sim::identification {
 namespace {
 
@@ -25,32 +27,7 @@ std::vector<Rows> rows_of(const Mask& mask) {
   return out;
 }
 
-// Directions of unit columns along which nothing changes.
-constexpr double kNothing = 3e-3;  // singular value: what differences of a simulation resolve
-constexpr double kTakesPart = 0.1;
-
-struct Columns {
-  std::vector<std::size_t> parameters;  // that have an effect
-  Eigen::VectorXd norm;
-  Eigen::MatrixXd unit;  // columns of length 1
-};
-
-Columns unit_columns(const Eigen::MatrixXd& jacobian) {
-  Columns out;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(jacobian.cols()); ++p) {
-    if (jacobian.col(static_cast<Eigen::Index>(p)).squaredNorm() > 0.0) out.parameters.push_back(p);
-  }
-  const auto count = static_cast<Eigen::Index>(out.parameters.size());
-  out.norm.resize(count);
-  out.unit.resize(jacobian.rows(), count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto column =
-        jacobian.col(static_cast<Eigen::Index>(out.parameters[static_cast<std::size_t>(k)]));
-    out.norm[k] = column.norm();
-    out.unit.col(k) = column / out.norm[k];
-  }
-  return out;
-}
+constexpr double kTakesPart = 0.1;  // in a direction in which nothing changes
 
 // The residual's noise, corrected for what the fit took away.
 // @param U  orthonormal columns of what can be fitted, rows of this record
@@ -107,6 +84,22 @@ Coloured colour_of(const Eigen::VectorXd& residual, const std::vector<Rows>& row
   return out;
 }
 
+// Parameters that take part in a direction in which nothing changes are not identifiable.
+void name_directions(const IdentifiablePart& part, Eigen::Index size, Uncertainty& out) {
+  for (const std::size_t p : part.parameters) out.identifiable[p] = true;
+  for (Eigen::Index k = 0; k < part.nothing.cols(); ++k) {
+    UnidentifiableDirection one{{}, Eigen::VectorXd::Zero(size)};
+    for (Eigen::Index j = 0; j < part.nothing.rows(); ++j) {
+      const std::size_t p = part.parameters[static_cast<std::size_t>(j)];
+      if (std::abs(part.nothing(j, k)) < kTakesPart) continue;
+      one.parameters.push_back(p);
+      one.direction[static_cast<Eigen::Index>(p)] = part.nothing(j, k) / part.norm[j];
+      out.identifiable[p] = false;
+    }
+    out.unidentifiable.push_back(std::move(one));
+  }
+}
+
 }  // namespace
 
 double student_95(double degrees_of_freedom) {
@@ -126,56 +119,35 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
   out.covariance = Eigen::MatrixXd::Zero(size, size);
   out.counted.assign(static_cast<std::size_t>(size), 0.0);
   out.identifiable.assign(static_cast<std::size_t>(size), false);
-  const Columns columns = unit_columns(jacobian);
-  if (columns.parameters.empty()) return out;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(columns.unit, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() &&
-         svd.singularValues()[rank] > kNothing * svd.singularValues()[0]) {
-    ++rank;
-  }
-  for (const std::size_t p : columns.parameters) out.identifiable[p] = true;
-  for (Eigen::Index k = rank; k < svd.singularValues().size(); ++k) {
-    UnidentifiableDirection one{{}, Eigen::VectorXd::Zero(size)};
-    for (Eigen::Index j = 0; j < svd.matrixV().rows(); ++j) {
-      const std::size_t p = columns.parameters[static_cast<std::size_t>(j)];
-      if (std::abs(svd.matrixV()(j, k)) < kTakesPart) continue;
-      one.parameters.push_back(p);
-      one.direction[static_cast<Eigen::Index>(p)] = svd.matrixV()(j, k) / columns.norm[j];
-      out.identifiable[p] = false;
-    }
-    out.unidentifiable.push_back(std::move(one));
-  }
+  const IdentifiablePart part = identifiable_part(jacobian);
+  if (part.parameters.empty()) return out;
+  name_directions(part, size, out);
   const std::vector<Rows> rows = rows_of(mask);
-  const Eigen::MatrixXd U = svd.matrixU().leftCols(rank);
-  Coloured colour = colour_of(residual, rows, U);
-  // values = norm^-1 V s^-1 U' residual
-  const Eigen::MatrixXd back = columns.norm.cwiseInverse().asDiagonal() *
-                               svd.matrixV().leftCols(rank) *
-                               svd.singularValues().head(rank).cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd C = back * colour.G * back.transpose();
+  Coloured colour = colour_of(residual, rows, part.U);
+  const Eigen::MatrixXd C = part.back * colour.G * part.back.transpose();
   double samples = 0.0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto n = static_cast<std::size_t>(rows[k].counting);
     samples += static_cast<double>(n);
     out.effective_samples += colour.noise[k].effective_samples(n);
   }
-  const double white = residual.squaredNorm() / std::max(samples - static_cast<double>(rank), 1.0);
-  const Eigen::MatrixXd counted = white * back * back.transpose();
-  for (std::size_t a = 0; a < columns.parameters.size(); ++a) {
-    const std::size_t p = columns.parameters[a];
+  const auto rank = static_cast<double>(part.U.cols());
+  const double white = residual.squaredNorm() / std::max(samples - rank, 1.0);
+  const Eigen::MatrixXd counted = white * part.back * part.back.transpose();
+  for (std::size_t a = 0; a < part.parameters.size(); ++a) {
+    const std::size_t p = part.parameters[a];
     if (!out.identifiable[p]) continue;
     const auto ia = static_cast<Eigen::Index>(a);
     out.counted[p] = std::sqrt(counted(ia, ia));
-    for (std::size_t b = 0; b < columns.parameters.size(); ++b) {
-      const std::size_t q = columns.parameters[b];
+    for (std::size_t b = 0; b < part.parameters.size(); ++b) {
+      const std::size_t q = part.parameters[b];
       if (!out.identifiable[q]) continue;
       out.covariance(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) =
           C(ia, static_cast<Eigen::Index>(b));
     }
   }
   out.noise = std::move(colour.noise);
-  out.t_95 = student_95(out.effective_samples - static_cast<double>(rank));
+  out.t_95 = student_95(out.effective_samples - rank);
   return out;
 }
 

@@ -96,6 +96,22 @@ class Way(unittest.TestCase):
         two = self.run_in_folder("identify", "identify.toml", "--threads", "2").stdout
         self.assertEqual(one, two)
 
+    def test_intervals_on_request_are_next_to_those_of_the_covariance(self):
+        printed = self.run_in_folder("identify", "identify.toml", "--bootstrap", "100", "--profile", "axis.Y.moving_mass").stdout
+        row = re.search(r"97\.5 %.*\n-+\naxis\.Y\.moving_mass +([\d.]+) +([\d.]+) +([\d.]+) +kg +([\d.]+)", printed)
+        low, high, replicas, spectrum = (float(x) for x in row.groups())
+        self.assertTrue(low < 640.5 < high, row[0])
+        self.assertTrue(0.5 < replicas / spectrum < 1.5, row[0])
+        self.assertRegex(printed, r"\d+ replicas in blocks of \d+ samples")
+        low, high = (float(x) for x in re.search(r"profile \(95 %\).*\n-+\naxis\.Y\.moving_mass +([\d.]+) +([\d.]+) ", printed).groups())
+        self.assertTrue(635 < low < 640 < high < 646, (low, high))
+
+    def test_wrong_requests_of_intervals_are_refused(self):
+        done = self.run_in_folder("identify", "identify.toml", "--bootstrap", "99", status=2)
+        self.assertIn("--bootstrap: error: 99 are too few replicas for quantiles of 2.5 %; must be >= 100", done.stderr)
+        done = self.run_in_folder("identify", "identify.toml", "--profile", "axis.Y.moving_mas", status=2)
+        self.assertIn("axis.Y.moving_mas is not estimated in identify.toml; did you mean 'axis.Y.moving_mass'?", done.stderr)
+
     def test_friction_laws_are_compared(self):
         with open(self.path("identify.toml"), encoding="utf-8") as file:
             text = file.read().replace('file = "recording.csv"', 'file = "recording.csv"\nto_s = 1.5')

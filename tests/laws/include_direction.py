@@ -29,7 +29,7 @@ SIM_ROOMS = {
     "recordings": ["records", "system"],
     "readings": ["config", "recordings"],
     "standards": ["config", "metrology", "readings", "system"],
-    "responses": ["system"],
+    "responses": ["records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "tables": ["controllers", "strategies", "model"],

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """The page of an identification, from files with more and with less in them."""
 import base64
+import importlib.util
 import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -12,6 +14,10 @@ import h5py
 import numpy as np
 
 TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "identification_page.py"
+sys.path.insert(0, str(TOOL.parent))
+SPEC = importlib.util.spec_from_file_location("identification_page", TOOL)
+TOOL_MODULE = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(TOOL_MODULE)
 
 
 def write(path, command=True, force=True, laws=True, identifiable=("yes", "yes"), kind="identification"):
@@ -44,6 +50,30 @@ def write(path, command=True, force=True, laws=True, identifiable=("yes", "yes")
             group["rms"], group["held_out_rms"] = [0.0, 1e-6], [0.0, 1.1e-6]
             group["held_out_error"], group["bic"] = [0.0, 1e-7], [0.0, 0.0]
             group.attrs["law_00"], group.attrs["law_01"] = "refused", "Coulomb"
+
+
+def resonance(f):
+    return 1 / (1 - (f / 60) ** 2 + 0.02j * f / 60)
+
+
+def write_response(path, fit=True):
+    """A response with a band of 5 %, and a model that is 10 % off above 80 Hz."""
+    f = np.arange(10.0, 200.0)
+    with h5py.File(path, "w") as file:
+        file.attrs.update({"kind": "response", "name": "folder/bench.mat", "input": "i <A>", "output": "phi"})
+        for name, grid, factor in (("response", f, 1.0), ("two_mass", np.geomspace(10, 199, 1000), 1.1)):
+            if name == "two_mass" and not fit:
+                continue
+            group = file.create_group(name)
+            value = resonance(grid) * np.where(grid > 80, factor, 1)
+            group["frequency"], group["real"], group["imaginary"] = grid, value.real, value.imag
+            group["real"].attrs["units"] = "rad/A"
+        file["response/radius_95"] = 0.05 * np.abs(resonance(f))
+        if fit:
+            file["two_mass/value"], file["two_mass/half_width"] = [54.02, 1.0], [0.04, 0.01]
+            file["two_mass/noise_ratio"], file["two_mass/median_misfit"] = 2.5, 0.031
+            for k, (key, unit) in enumerate((("antiresonance", "Hz"), ("inertia ratio J_l/J_m", "1"))):
+                file["two_mass"].attrs[f"key_{k:02}"], file["two_mass"].attrs[f"unit_{k:02}"] = key, unit
 
 
 class Page(unittest.TestCase):
@@ -82,6 +112,40 @@ class Page(unittest.TestCase):
         self.run_tool()
         self.assertIn("cannot be identified", self.text())
         self.assertEqual(self.text().count("base64,"), 3)
+
+    def test_responses_are_drawn_with_their_fit(self):
+        write_response(self.file)
+        self.run_tool()
+        text = self.text()
+        for word in ("bench.mat: i &lt;A&gt; to phi", "antiresonance", "54.02", "Median misfit 3.10 %, 2.5 times the noise; the uncertainty "
+                     "includes the model error", "against the fitted two masses"):
+            self.assertIn(word, text)
+        self.assertEqual(text.count("base64,"), 1)
+
+    def test_responses_need_no_fit(self):
+        write_response(self.file, fit=False)
+        self.run_tool()
+        self.assertNotIn("two masses", self.text())
+        self.assertEqual(self.text().count("base64,"), 1)
+
+    def test_the_misfit_is_drawn_in_units_of_the_band(self):
+        write_response(self.file)
+        with h5py.File(self.file) as file:
+            figure = TOOL_MODULE.frequency_response_figure(file["response"], TOOL_MODULE.response_in(file["two_mass"]), "rad/A", ("G", "fit"))
+        f, misfit = figure.axes[2].lines[0].get_data()
+        np.testing.assert_allclose(misfit[f > 82], 2.0, rtol=0.05)   # 10 % off, of a radius of 5 %
+        self.assertLess(misfit[f < 50].max(), 0.05)
+        corners = figure.axes[0].collections[0].get_paths()[0].vertices
+        self.assertAlmostEqual(corners[:, 1].max(), 1.05 * np.abs(resonance(60.0)), places=6)
+
+    def test_several_files_are_one_page(self):
+        write(self.file)
+        other = os.path.join(self.folder.name, "response.h5")
+        write_response(other)
+        self.run_tool(other)
+        self.assertIn("record1.csv", self.text())
+        self.assertIn("bench.mat", self.text())
+        self.assertIn("is the input", self.run_tool(other, "-o", other, "--force", status=2).stderr)
 
     def test_pages_are_not_overwritten_unasked(self):
         write(self.file)

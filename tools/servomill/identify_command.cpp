@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "plant/vocabulary/input_error.h"
 #include "sim/identification/identified_machine.h"
 #include "sim/identification/make_up.h"
@@ -24,10 +26,53 @@ void add_identify_options(Options& options) {
                 "writes what the first recording would hold if the machine were as the experiment "
                 "says, with the disturbances of its table [noise], and identifies nothing");
   options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
+  options.add()("bootstrap", po::value<int>()->value_name("N"),
+                "block bootstrap of the residual with N replicas (100 or more), next to the "
+                "intervals from its spectrum");
+  options.add()("profile", po::value<std::vector<std::string>>()->value_name("KEY|all"),
+                "profile interval of an estimate, can be repeated: how far it can be moved, all "
+                "others fitted again, before the misfit shows it; may be asymmetric");
   options.add()("force,f", "replaces outputs that exist");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one a core); results do not depend on it");
   options.add()("quiet,q", "prints nothing but faults");
+}
+
+// Number of the estimate with that key.
+std::size_t estimate_of(const sim::identification::Experiment& experiment, const std::string& key) {
+  std::vector<std::string_view> names = {"all"};
+  for (std::size_t k = 0; k < experiment.estimates.size(); ++k) {
+    for (const std::string& one : experiment.estimates[k].keys) {
+      if (one == key) return k;
+      names.push_back(one);
+    }
+  }
+  throw InputError({"--profile"}, fmt::format("{} is not estimated in {}{}", key, experiment.path,
+                                              did_you_mean(key, names)));
+}
+
+sim::identification::IntervalSettings intervals_of(
+    const Options& options, const sim::identification::Experiment& experiment) {
+  sim::identification::IntervalSettings out;
+  if (options.has("bootstrap")) {
+    const int count = options.get<int>("bootstrap");
+    if (count < sim::identification::kFewestReplicas) {
+      throw InputError({"--bootstrap"},
+                       fmt::format("{} are too few replicas for quantiles of 2.5 %; must be >= {}",
+                                   count, sim::identification::kFewestReplicas));
+    }
+    out.bootstrap.replicas = static_cast<std::size_t>(count);
+  }
+  if (!options.has("profile")) return out;
+  for (const auto& key : options.get<std::vector<std::string>>("profile")) {
+    if (key == "all") {
+      out.profiles.resize(experiment.estimates.size());
+      std::iota(out.profiles.begin(), out.profiles.end(), std::size_t{0});
+      return out;
+    }
+    out.profiles.push_back(estimate_of(experiment, key));
+  }
+  return out;
 }
 
 }  // namespace
@@ -53,8 +98,8 @@ int identify_command(const Arguments& arguments) {
     if (!options.has("quiet")) fmt::print("written to {}\n", made_up);
     return kDone;
   }
-  const sim::identification::Identification result =
-      sim::identification::identify(experiment, thread_count(options));
+  const sim::identification::Identification result = sim::identification::identify(
+      experiment, thread_count(options), intervals_of(options, experiment));
   if (!options.has("quiet")) fmt::print("{}", sim::identification::report(experiment, result));
   if (!out.empty()) {
     sim::input::write_identified_file(

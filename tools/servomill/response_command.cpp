@@ -5,7 +5,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/read_recording.h"
-#include "sim/responses/two_mass_fit.h"
+#include "sim/responses/store_response.h"
+#include "sim/run/store.h"
 #include "sim/system/output_name.h"
 #include "sim/system/text_table.h"
 #include "sim/system/write_file.h"
@@ -33,6 +34,8 @@ void add_response_options(Options& options) {
                 "fits the two-mass model from a current or torque to the motor's angle");
   options.add()("lines", "prints every line, not just those that tell most");
   options.add()("table", text("OUT.csv"), "writes all lines with their uncertainty");
+  options.add()("signals", text("OUT.h5"),
+                "writes lines and fit for tools/identification_page.py, which draws them");
   options.add()("time-unit", text("us"), "unit of times of which the file does not say it");
   options.add()("force,f", "replaces OUT if it exists");
 }
@@ -141,6 +144,20 @@ std::string csv_of(const MeasuredResponse& response) {
   return out;
 }
 
+void write_outputs(const sim::responses::ResponseRecord& record, const Options& options,
+                   const std::string& signals) {
+  const bool force = options.has("force");
+  if (options.has("table")) {
+    const auto table = options.get<std::string>("table");
+    sim::system::write_text_file(table, csv_of(record.response), force);
+    fmt::print("written to {}\n", table);
+  }
+  if (!signals.empty()) {
+    sim::responses::store_response(record, signals, force);
+    fmt::print("written to {}\n", signals);
+  }
+}
+
 }  // namespace
 
 int response_command(const Arguments& arguments) {
@@ -161,6 +178,8 @@ int response_command(const Arguments& arguments) {
   if (options.has("table")) {
     sim::system::output_target(options.get<std::string>("table"), sim::system::existing_of(force));
   }
+  const std::string signals = output_of(options, "signals", ".h5");
+  if (!signals.empty()) sim::run::writable_name(signals, force);
   const auto recording = sim::recordings::read_recording(
       file, options.has("time-unit") ? options.get<std::string>("time-unit") : "");
   const auto& input = channel_of(recording, options, "input");
@@ -175,11 +194,13 @@ int response_command(const Arguments& arguments) {
                                                 periods_of(options, base), file),
              options);
   print_response(response, options.has("lines"));
-  if (options.has("fit")) print_fit(sim::responses::fit_two_mass(response, file));
-  if (options.has("table")) {
-    sim::system::write_text_file(options.get<std::string>("table"), csv_of(response), force);
-    fmt::print("written to {}\n", options.get<std::string>("table"));
+  sim::responses::ResponseRecord record{
+      file, {input.name, input.unit}, {output.name, output.unit}, response, {}};
+  if (options.has("fit")) {
+    record.fit = sim::responses::fit_two_mass(response, file);
+    print_fit(*record.fit);
   }
+  write_outputs(record, options, signals);
   return kDone;
 }
 

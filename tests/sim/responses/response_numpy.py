@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 
+import h5py
 import numpy as np
 
 BENCH = pathlib.Path(__file__).resolve().parents[4] / "shared/data/measured/two_inertia_multisine_A.mat"
@@ -37,9 +38,9 @@ def reference(u, y, samples, skip):
 
 
 def compare(servomill, recording, table, names, period, samples, rate, folder, options=()):
-    out = folder / "response.csv"
+    out, signals = folder / "response.csv", folder / "response.h5"
     printed = run(servomill, "response", recording, "--input", names[0], "--output", names[1], "--period", period,
-                  "--table", out, "--force", *options)
+                  "--table", out, "--signals", signals, "--force", *options)
     found = np.loadtxt(out, delimiter=",", skiprows=1)
     G, variance = reference(table[0], table[1], samples, 1)
     lines = np.rint(found[:, 0] * samples / rate).astype(int)
@@ -49,6 +50,10 @@ def compare(servomill, recording, table, names, period, samples, rate, folder, o
           f"{np.max(np.abs(found[:, 3] / variance[lines] - 1)):.2g}")
     assert error.max() <= TOLERANCE
     assert np.allclose(found[:, 3], variance[lines], rtol=1e-6)
+    with h5py.File(signals) as file:
+        stored = np.column_stack([file["response"][key][:] for key in ("frequency", "real", "imaginary", "variance", "radius_95")])
+        np.testing.assert_array_equal(stored, found)
+        assert ("two_mass" in file) == ("--fit" in options)
     return printed
 
 
