@@ -1,9 +1,10 @@
 #include "sim/calibration/information.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "sim/calibration/observations.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 
@@ -31,7 +32,7 @@ MatrixXd information_of(const readings::Readings& readings, const plant::Machine
   }
   if (m == 0) return A;
   const MatrixXd S = A.topLeftCorner(m, m), B = A.topRightCorner(m, n);
-  return A.bottomRightCorner(n, n) - B.transpose() * S.ldlt().solve(B);
+  return A.bottomRightCorner(n, n) - B.transpose() * numerics::solve_symmetric_columns(S, B);
 }
 
 }  // namespace servomill::sim::calibration

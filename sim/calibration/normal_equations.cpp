@@ -1,7 +1,9 @@
 #include "sim/calibration/normal_equations.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cmath>
+
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 
@@ -56,7 +58,7 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const Vect
     const int unknown = kept_[static_cast<std::size_t>(i)];
     whole(i, i) += expected[unknown] / (scale_[unknown] * scale_[unknown]);
   }
-  L_ = whole.llt().matrixL();
+  L_ = numerics::cholesky_factor(whole);
 }
 
 VectorXd NormalEquations::solve(const VectorXd& b) const {

@@ -1,10 +1,12 @@
 #include "sim/calibration/optimal_design.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
+
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -65,7 +67,7 @@ DesignProblem::State DesignProblem::state_of(const std::vector<double>& counts) 
     if (counts[i] > 0.0) M += counts[i] * candidates_[i].information;
   }
   State out;
-  out.covariance = M.llt().solve(MatrixXd::Identity(M.rows(), M.cols()));
+  out.covariance = numerics::inverse_of_definite(M);
   for (const MatrixXd& K : quantities_) {
     out.variances.push_back((K * out.covariance).cwiseProduct(K).sum());
     out.worst = std::max(out.worst, out.variances.back());

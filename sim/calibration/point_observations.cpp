@@ -10,6 +10,7 @@
 #include "sim/calibration/touched_spheres.h"
 #include "sim/metrology/best_fit.h"
 #include "sim/metrology/location_errors.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -36,8 +37,8 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
 Eigen::Isometry3d laid_on(const std::vector<Vector3d>& own, const std::vector<Vector3d>& centres) {
   const auto fit = metrology::best_fit(own, centres);
   if (const auto* found = std::get_if<metrology::BestFit>(&fit)) return found->motion;
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(own.back() - own.front(),
-                                                       centres.back() - centres.front());
+  const auto turn =
+      numerics::rotation_between(own.back() - own.front(), centres.back() - centres.front());
   return Eigen::Translation3d(mean_of(centres)) * turn * Eigen::Translation3d(-mean_of(own));
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/information.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -43,10 +44,6 @@ Unknowns without_set_up(const Unknowns& unknowns) {
   return out;
 }
 
-MatrixXd inverse(const MatrixXd& A) {
-  return A.llt().solve(MatrixXd::Identity(A.rows(), A.cols()));
-}
-
 class Suggestions {
  public:
   Suggestions(const Calibration& calibration, const model::MachineSettings& machine)
@@ -75,7 +72,7 @@ class Suggestions {
       const double size = *unknowns_.prior(u);
       known_(u, u) += 1.0 / (size * size);
     }
-    covariance_ = inverse(known_);
+    covariance_ = numerics::inverse_of_definite(known_);
   }
 
   std::vector<Open> open_errors() const {
@@ -121,7 +118,7 @@ class Suggestions {
     promise.resize(std::min(promise.size(), kTried));
     std::vector<std::pair<double, std::size_t>> left;
     for (const auto& [gain, i] : promise) {
-      left.emplace_back(sigma_of(open, inverse(known_ + information_[i])), i);
+      left.emplace_back(sigma_of(open, numerics::inverse_of_definite(known_ + information_[i])), i);
     }
     const auto best = std::min_element(left.begin(), left.end());
     if (best == left.end() || best->first > kDetermined * open.before) {

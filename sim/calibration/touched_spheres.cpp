@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/location_errors.h"
 #include "sim/metrology/sphere_fit.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -35,7 +36,7 @@ Vector3d centre_near(const std::vector<Vector3d>& points, double radius, Vector3
       A.row(Eigen::Index(i)) = arm.normalized();
       b[Eigen::Index(i)] = arm.norm() - radius;
     }
-    centre += Vector3d(A.colPivHouseholderQr().solve(b));
+    centre += Vector3d(numerics::least_squares(A, b));
   }
   return centre;
 }

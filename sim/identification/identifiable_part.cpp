@@ -1,6 +1,8 @@
 #include "sim/identification/identifiable_part.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -30,14 +32,16 @@ IdentifiablePart identifiable_part(const Eigen::MatrixXd& jacobian) {
   IdentifiablePart out;
   const Eigen::MatrixXd unit = unit_columns(jacobian, out);
   if (out.parameters.empty()) return out;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(unit, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < s.size() && s[rank] > kNothing * s[0]) ++rank;
-  out.U = svd.matrixU().leftCols(rank);
-  out.back = out.norm.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(rank) *
-             s.head(rank).cwiseInverse().asDiagonal();
-  out.nothing = svd.matrixV().rightCols(s.size() - rank);
+  const Eigen::Index count = unit.cols();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(count, count);  // zero below: fewer rows than columns
+  R.topRows(std::min(unit.rows(), count)) = numerics::triangular_factor(unit);
+  const numerics::SingularValues of_R = numerics::singular_values(R);  // unit = Q R has the same
+  const Eigen::Index rank = of_R.rank(kNothing);
+  const Eigen::MatrixXd along =
+      of_R.V.leftCols(rank) * of_R.s.head(rank).cwiseInverse().asDiagonal();
+  out.U = unit * along;
+  out.back = out.norm.cwiseInverse().asDiagonal() * along;
+  out.nothing = of_R.V.rightCols(count - rank);
   return out;
 }
 

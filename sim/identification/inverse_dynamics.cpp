@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "sim/identification/zero_phase.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -99,7 +99,7 @@ InverseDynamics inverse_dynamics(const Record& record, bool by_direction,
   Eigen::MatrixXd X(force.size(), static_cast<Eigen::Index>(columns.size()));
   for (Eigen::Index k = 0; k < X.cols(); ++k)
     X.col(k) = filtered(columns[static_cast<std::size_t>(k)]);
-  const Eigen::VectorXd values = X.colPivHouseholderQr().solve(force);
+  const Eigen::VectorXd values = numerics::least_squares(X, force);
   const Eigen::VectorXd residual = X * values - force;
   InverseDynamics out;
   out.by_direction = by_direction;

@@ -1,7 +1,8 @@
 #include "sim/identification/record.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::identification {
 
@@ -16,7 +17,7 @@ StartOfMotion start_of_motion(const Record& record) {
     columns.row(k) << 1.0, t, t * t;
     y[k] = record.feedback[static_cast<std::size_t>(k)] - record.feedback.front();
   }
-  const Eigen::Vector3d fit = columns.householderQr().solve(y);
+  const Eigen::Vector3d fit = numerics::least_squares(columns, y);
   return {record.feedback.front() + fit[0], fit[1] / record.period};
 }
 

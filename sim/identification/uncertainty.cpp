@@ -1,6 +1,6 @@
 #include "sim/identification/uncertainty.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 namespace {
@@ -71,7 +71,8 @@ std::string in_words(const Vector3d& v) {
 // Free motions (shift, rotation about `centre` times `size`; columns, orthonormal) in words.
 std::string free_motions(const Columns6& motions, const Vector3d& centre, double size) {
   const Columns3 rotations = motions.bottomRows(3);
-  const SymmetricEigen eigen = symmetric_eigen(rotations.transpose() * rotations);
+  const numerics::SymmetricEigen eigen =
+      numerics::symmetric_eigen(rotations.transpose() * rotations);
   const Eigen::Index turning = (eigen.values.array() > 0.01).count();
   const Columns6 sorted = motions * eigen.vectors.rowwise().reverse();  // those come first
   std::vector<std::string> words;
@@ -102,7 +103,7 @@ Isometry3d closed_form(Points3 from, Points3 to) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     covariance += (to[i] - mean_to) * (from[i] - mean_from).transpose();
   }
-  const SingularValues svd = singular_values(covariance);
+  const numerics::SingularValues svd = numerics::singular_values(covariance);
   const Matrix3d U = svd.U, V = svd.V;
   Matrix3d no_mirror = Matrix3d::Identity();
   no_mirror(2, 2) = (U * V.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
@@ -150,7 +151,7 @@ struct Linear {
         free;  // orthonormal motions that change distances by less than kUnnoticed of themselves
   };
   Step step() const {
-    const SymmetricEigen eigen = symmetric_eigen(normal);
+    const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(normal);
     Eigen::Index free = 0;
     for (const double value : eigen.values) free += value < kUnnoticed * kUnnoticed ? 1 : 0;
     const Columns6 noticed = eigen.vectors.rightCols(6 - free);

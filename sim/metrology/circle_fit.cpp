@@ -1,6 +1,6 @@
 #include "sim/metrology/circle_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>

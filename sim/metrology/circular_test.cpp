@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 namespace {
@@ -67,7 +67,7 @@ ParallelLines lines_through(const std::vector<RadialError>& arcs) {  // theta: p
     normal += row * row.transpose();
     right += row * dr;
   }
-  const Vector3d x = solve_symmetric(normal, right);
+  const Vector3d x = numerics::solve_symmetric(normal, right);
   return {x[0], x[1], x[2]};
 }
 
@@ -118,7 +118,7 @@ double squareness_of(const std::vector<RadialError>& curve, double radius) {
     normal += row * row.transpose();
     right += row * dr;
   }
-  const Row x = solve_symmetric(normal, right);
+  const Row x = numerics::solve_symmetric(normal, right);
   return 2.0 * x[4] / radius;
 }
 

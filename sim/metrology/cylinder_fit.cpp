@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/metrology/dense_solver.h"
 #include "sim/metrology/round_fit.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 namespace {
@@ -57,7 +57,7 @@ struct LinearFit {
   Vector5 step(double damping) const {
     Matrix5 damped = normal;
     damped.diagonal() *= 1.0 + damping;
-    return solve_symmetric(damped, right);
+    return numerics::solve_symmetric(damped, right);
   }
 
   Cylinder moved(const Cylinder& cylinder, const Vector5& x) const {
@@ -66,7 +66,7 @@ struct LinearFit {
   }
 
   bool determined() const {
-    const Eigen::VectorXd strength = symmetric_eigen(normal).values;
+    const Eigen::VectorXd strength = numerics::symmetric_eigen(normal).values;
     return strength[0] > kFree * strength[4];
   }
 };

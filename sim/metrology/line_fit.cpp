@@ -1,6 +1,6 @@
 #include "sim/metrology/line_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 namespace servomill::sim::metrology {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "plant/geometry/volumetric.h"
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 namespace {
@@ -98,14 +98,14 @@ MatrixXd normalized(const MatrixXd& A, VectorXd& length) {
 struct Solved {
   VectorXd length;  // of the columns, 0 for those left out
   MatrixXd scaled;
-  SingularValues svd;
+  numerics::SingularValues svd;
   Eigen::Index rank;
 
   Solved(const MatrixXd& A, const std::vector<Eigen::Index>& columns) {
     MatrixXd kept = MatrixXd::Zero(A.rows(), A.cols());
     for (const Eigen::Index j : columns) kept.col(j) = A.col(j);
     scaled = normalized(kept, length);
-    svd = singular_values(scaled);
+    svd = numerics::singular_values(scaled);
     rank = svd.rank(kOwnShare * kOwnShare);
   }
   double condition() const { return svd.s[0] / svd.s[rank - 1]; }
@@ -119,7 +119,8 @@ struct Solved {
 
 int rank_of(const MatrixXd& A) {
   VectorXd length;
-  return static_cast<int>(singular_values(normalized(A, length)).rank(kOwnShare * kOwnShare));
+  return static_cast<int>(
+      numerics::singular_values(normalized(A, length)).rank(kOwnShare * kOwnShare));
 }
 
 // Finds the unknowns kept that have the same effect as one left out.
@@ -151,7 +152,7 @@ LocationFit fit(const plant::MachineChain& chain, const std::vector<SensorReadin
   for (std::size_t i = 0; i < readings.size(); ++i) {
     Ab(static_cast<Eigen::Index>(i), unknowns) = readings[i].d;
   }
-  const MatrixXd R = triangular_factor(Ab);
+  const MatrixXd R = numerics::triangular_factor(Ab);
   const MatrixXd A = R.topLeftCorner(unknowns, unknowns);
   const VectorXd b = R.col(unknowns).head(unknowns);
   const double beyond = R(unknowns, unknowns);

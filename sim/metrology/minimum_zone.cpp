@@ -1,6 +1,6 @@
 #include "sim/metrology/minimum_zone.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "sim/metrology/plane_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace servomill::sim::metrology {

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 namespace {
@@ -20,7 +20,7 @@ PrincipalAxes<N> axes_of(std::span<const Eigen::Vector<double, N>> points) {
   out.mean = points.front() + out.mean / n;
   Eigen::Matrix<double, N, N> covariance = Eigen::Matrix<double, N, N>::Zero();
   for (const auto& p : points) covariance += (p - out.mean) * (p - out.mean).transpose();
-  const SymmetricEigen eigen = symmetric_eigen(covariance / n);
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(covariance / n);
   out.axes = eigen.vectors.rowwise().reverse();
   out.extent = eigen.values.reverse().cwiseMax(0.0).cwiseSqrt();
   return out;

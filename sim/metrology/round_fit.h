@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 
@@ -35,7 +35,7 @@ Round<N> algebraic_round(std::span<const Eigen::Vector<double, N>> points) {
     normal += row * row.transpose();
     right += row * q.squaredNorm();
   }
-  const Row x = solve_symmetric(normal, right);
+  const Row x = numerics::solve_symmetric(normal, right);
   const Eigen::Vector<double, N> a = x.template head<N>();
   return {mean + size * a, size * std::sqrt(x[N] + a.squaredNorm())};
 }
@@ -60,7 +60,7 @@ Round<N> geometric_round(std::span<const Eigen::Vector<double, N>> points) {
       normal += row * row.transpose();
       right += row * (rho - round.radius);
     }
-    const Row x = solve_symmetric(normal, right);
+    const Row x = numerics::solve_symmetric(normal, right);
     round.centre += x.template head<N>();
     round.radius += x[N];
     if (x.norm() <= kStill * round.radius) break;

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "sim/metrology/circle_fit.h"
-#include "sim/metrology/dense_solver.h"
 #include "sim/metrology/plane_fit.h"
 #include "sim/metrology/round_fit.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {
 
@@ -35,7 +35,7 @@ Circle3 refined(Points3 points, Circle3 circle) {
       normal += radial * radial.transpose() + axial * axial.transpose();
       right += radial * (rho - 1.0) + axial * z;
     }
-    const Vector6 s = solve_symmetric(normal, right);
+    const Vector6 s = numerics::solve_symmetric(normal, right);
     circle.centre += r * (s[0] * u + s[1] * v + s[2] * n);
     circle.normal = (n + s[3] * u + s[4] * v).normalized();
     circle.radius += r * s[5];

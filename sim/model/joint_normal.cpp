@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::model {
 namespace {
@@ -28,11 +29,6 @@ Eigen::MatrixXd correlations(const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd out = inverse.asDiagonal() * symmetric(covariance) * inverse.asDiagonal();
   for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, i) = inverse[i] > 0.0 ? 1.0 : 0.0;
   return out;
-}
-
-double least_eigenvalue(const Eigen::MatrixXd& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
 }
 
 std::string fault_of_pair(const Eigen::MatrixXd& c, Eigen::Index i, Eigen::Index j) {
@@ -65,7 +61,7 @@ std::string covariance_fault(const Eigen::MatrixXd& covariance) {
       if (!fault.empty()) return fault;
     }
   }
-  const double least = least_eigenvalue(correlations(covariance));
+  const double least = numerics::least_eigenvalue(correlations(covariance));
   if (least >= -kDefiniteTolerance) return {};
   return fmt::format(
       "must be positive semi-definite; the least eigenvalue of the correlations is {:.3g}", least);
@@ -78,7 +74,7 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
   // Schur complements of a singular matrix end in its rounding, which its least eigenvalue shows. A
   // direction that is well known may matter more than all others: none is left out beyond that.
   const double negligible =
-      2.0 * static_cast<double>(n) * std::max(kRounding, -least_eigenvalue(rest));
+      2.0 * static_cast<double>(n) * std::max(kRounding, -numerics::least_eigenvalue(rest));
   Eigen::Index rank = 0;
   for (; rank < n; ++rank) {
     Eigen::Index pivot = 0;

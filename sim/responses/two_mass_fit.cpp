@@ -2,7 +2,7 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

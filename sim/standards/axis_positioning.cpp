@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::standards {
 namespace {
@@ -226,8 +226,8 @@ PeriodicError periodic_error(const PositioningTest& test, const Eigen::ArrayXXd&
   line << Eigen::VectorXd::Ones(x.size()), x;
   const Eigen::ArrayXd angle = 2.0 * kPi / period * x.array();
   wave << line, angle.sin().matrix(), angle.cos().matrix();
-  const Eigen::VectorXd rest = mean - line * line.colPivHouseholderQr().solve(mean);
-  const Eigen::VectorXd harmonic = wave.colPivHouseholderQr().solve(mean).tail(2);
+  const Eigen::VectorXd rest = mean - line * numerics::least_squares(line, mean);
+  const Eigen::VectorXd harmonic = numerics::least_squares(wave, mean).tail(2);
   return {rest.maxCoeff() - rest.minCoeff(), harmonic.norm(), std::atan2(harmonic[1], harmonic[0])};
 }
 

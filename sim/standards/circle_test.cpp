@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "plant/vocabulary/units.h"
+#include "sim/numerics/dense_solver.h"
 #include "sim/readings/columns.h"
 
 namespace servomill::sim::standards {
@@ -234,7 +234,7 @@ CircleFit fit_circle(const CircleTest& test) {
       b[i++] = dr;
     }
   }
-  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd x = numerics::least_squares(A, b);
   return {2.0 * x[4] / test.radius, 2.0 * x[3] / test.radius, {x[5], x[6]}};
 }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "sim/metrology/circle_fit.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::standards {
 namespace {
@@ -17,7 +17,7 @@ double range(const Eigen::ArrayXXd& values) { return values.maxCoeff() - values.
 Eigen::Vector3d first_harmonic(const Eigen::ArrayXd& theta, const Eigen::ArrayXd& r) {
   Eigen::MatrixXd A(theta.size(), 3);
   A << Eigen::ArrayXd::Ones(theta.size()), theta.cos(), theta.sin();
-  return A.colPivHouseholderQr().solve(r.matrix());
+  return numerics::least_squares(A, r.matrix());
 }
 
 Eigen::ArrayXd wave(const Eigen::ArrayXd& theta, const Eigen::Vector3d& harmonic) {

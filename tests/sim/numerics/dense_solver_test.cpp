@@ -1,11 +1,11 @@
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace servomill::sim::metrology::dense_solver_test {
+namespace servomill::sim::numerics::dense_solver_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -25,10 +25,34 @@ TEST(SolveSymmetric, GivesTheParabolaOfAConstantSecondDifference) {
   for (int i = 0; i < n; ++i) EXPECT_NEAR(x[i], 0.5 * (i + 1) * (n - i), 1e-13) << i;
 }
 
+TEST(InverseOfDefinite, TimesTheMatrixIsTheIdentityAndItsCholeskyFactorSquaredTheMatrix) {
+  const MatrixXd A = second_difference(5);
+  EXPECT_LT((inverse_of_definite(A) * A - MatrixXd::Identity(5, 5)).norm(), 1e-14);
+  const MatrixXd L = cholesky_factor(A);
+  EXPECT_LT((L * L.transpose() - A).norm(), 1e-14);
+  EXPECT_EQ(L(0, 1), 0.0);
+}
+
+TEST(LeastSquares, FindsTheLineThroughFourPointsByHand) {
+  MatrixXd A(4, 2);
+  A << 1, 0, 1, 1, 1, 2, 1, 3;
+  const VectorXd x = least_squares(A, VectorXd{{0.0, 1.0, 1.0, 4.0}});  // slope 6/5, at 0: -3/10
+  EXPECT_NEAR(x[0], -0.3, 1e-14);
+  EXPECT_NEAR(x[1], 1.2, 1e-14);
+}
+
+TEST(RotationBetween, TurnsOneDirectionIntoTheOtherEvenWhereTheyAreOpposite) {
+  const Eigen::Vector3d a(1.0, 2.0, -2.0);
+  for (const Eigen::Vector3d& b : {Eigen::Vector3d(0.0, 3.0, 4.0), Eigen::Vector3d(-a)}) {
+    EXPECT_LT((rotation_between(a, b) * a.normalized() - b.normalized()).norm(), 1e-13);
+  }
+}
+
 TEST(SymmetricEigen, HasTheEigenvaluesOfASecondDifferenceInAscendingOrder) {
   const int n = 6;
   const MatrixXd A = second_difference(n);
   const SymmetricEigen eigen = symmetric_eigen(A);
+  EXPECT_NEAR(least_eigenvalue(A), eigen.values[0], 1e-15);
   for (int k = 0; k < n; ++k) {
     EXPECT_NEAR(eigen.values[k], 2.0 - 2.0 * std::cos((k + 1) * std::numbers::pi / (n + 1)), 1e-14);
     EXPECT_NEAR(eigen.vectors.col(k).norm(), 1.0, 1e-14);
@@ -72,4 +96,4 @@ TEST(SingularValues, OfZeroHaveNoRank) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::metrology::dense_solver_test
+}  // namespace servomill::sim::numerics::dense_solver_test

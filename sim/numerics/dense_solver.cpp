@@ -1,4 +1,4 @@
-#include "sim/metrology/dense_solver.h"
+#include "sim/numerics/dense_solver.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -7,15 +7,33 @@
 #include <algorithm>
 #include <cassert>
 
-namespace servomill::sim::metrology {
+namespace servomill::sim::numerics {
 
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return A.ldlt().solve(b);
 }
 
+Eigen::MatrixXd solve_symmetric_columns(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.ldlt().solve(B);
+}
+
+Eigen::MatrixXd inverse_of_definite(const Eigen::MatrixXd& A) {
+  return A.llt().solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+}
+
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& A) { return A.llt().matrixL(); }
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
+
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
   return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+double least_eigenvalue(const Eigen::MatrixXd& A) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& A) {
@@ -39,4 +57,8 @@ SingularValues singular_values(const Eigen::MatrixXd& A) {
   return {svd.matrixU(), svd.matrixV(), svd.singularValues()};
 }
 
-}  // namespace servomill::sim::metrology
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+}  // namespace servomill::sim::numerics
