@@ -12,12 +12,12 @@
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
+#include "sim/engine/case_result.h"
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
-#include "sim/records/series.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::engine {
@@ -52,27 +52,6 @@ struct CaseInputs {
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
   model::CuttingWear wear = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not
-};
-
-/// How a case ended. A machine that stops is an outcome, not an exception.
-struct Outcome {
-  bool finished = true;
-  bool interrupted = false;  // from outside
-  std::string reason;        // "axis Y: following error beyond 10 mm"
-  char axis = '-';
-  double time = 0.0;  // s
-};
-
-/// Set from outside to end a run early; a case that sees it stops as "interrupted".
-using StopFlag = std::atomic<bool>;
-
-struct CaseResult {
-  Outcome outcome;
-  records::Series servo;       // one row a record period
-  records::Series last_ticks;  // when stopped: what happened in the last position periods
-  std::vector<strategies::Saturation> saturations;  // of the feedback
-  double simulated_time = 0.0;                      // s
-  double wall_time = 0.0;                           // s, of all that ran in lockstep
 };
 
 /// True if two cases can run in lockstep: the same axes, moved at the same instants. Everything

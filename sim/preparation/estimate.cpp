@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/engine/simulate.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::preparation {

@@ -6,10 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "sim/preparation/prepared_case.h"
 #include "sim/system/memory_limit.h"
 
+namespace servomill::sim::model {
+struct Scenario;
+}  // namespace servomill::sim::model
+
 namespace servomill::sim::preparation {
+
+class PreparedCase;
 
 /// Estimate for all cases together.
 struct RunEstimate {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plant/kinematics/chain.h"
+#include "sim/engine/simulate.h"
 #include "sim/evaluation/nominal_part.h"
 #include "sim/preparation/case_preparation.h"
 #include "sim/preparation/estimate.h"

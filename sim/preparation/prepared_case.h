@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/engine/simulate.h"
 #include "sim/model/scenario.h"
-#include "sim/preparation/case_program.h"
 #include "strategies/strategy.h"
+
+namespace servomill::sim::engine {
+struct CaseInputs;
+}  // namespace servomill::sim::engine
 
 namespace servomill::sim::preparation {
 

@@ -11,24 +11,12 @@
 #include "controllers/gcode/probing.h"
 #include "plant/geometry/reversal_memory.h"
 #include "plant/geometry/volumetric.h"
-#include "plant/vocabulary/move_list.h"
 #include "sim/model/touch_probe.h"
 #include "sim/model/work_frame.h"
+#include "sim/preparation/touch.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::preparation {
-
-/// A probing move that has ended.
-struct Touch {
-  int line = 0;
-  std::string section;              // of the program: what its last (MSG, ...) said
-  Joints latched = Joints::Zero();  // m, rad; as the NC shows them
-  bool has_switched = false;
-};
-
-/// The touches of a program with the sections in which they stand.
-/// @param moves  of the program, the probing ones among them in the order of the touches
-std::vector<Touch> with_sections(std::vector<Touch> touches, const MoveList& moves);
 
 /// Strategies at work on one tool.
 struct StrategyParts {

@@ -20,6 +20,7 @@
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/case_preparation.h"
+#include "sim/preparation/case_program.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/work_knowledge.h"

@@ -10,6 +10,7 @@
 #include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/post_functions.h"
 #include "sim/programs/post_kinematics.h"

@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/system/memory_limit.h"
 
 namespace servomill::sim::run {

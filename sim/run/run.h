@@ -6,8 +6,16 @@
 #include <vector>
 
 #include "sim/preparation/estimate.h"
-#include "sim/preparation/prepared_case.h"
 #include "sim/run/run_case.h"
+
+namespace servomill::sim::model {
+struct MachineSettings;
+struct Scenario;
+}  // namespace servomill::sim::model
+
+namespace servomill::sim::preparation {
+struct PreparationCache;
+}  // namespace servomill::sim::preparation
 
 namespace servomill::sim::run {
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 

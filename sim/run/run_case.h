@@ -2,16 +2,21 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/engine/simulate.h"
+#include "sim/engine/case_result.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
-#include "sim/preparation/prepared_case.h"
-#include "sim/preparation/touch_probe.h"
+#include "sim/model/tip_uncertainty.h"
+#include "sim/preparation/touch.h"
+
+namespace servomill::sim::preparation {
+class PreparedCase;
+}  // namespace servomill::sim::preparation
 
 namespace servomill::sim::run {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
+#include "sim/run/result_file.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim::records {
@@ -15,14 +15,6 @@ struct SeriesLayout;
 }  // namespace servomill::sim::records
 
 namespace servomill::sim::run {
-
-/// Version of the layout of result files; a file of another one is refused.
-inline constexpr int kSchemaVersion = 1;
-
-/// Says which program writes a file: version and build (sim/run/build_identity.h).
-void write_build(records::Hdf5Group& root);
-/// The build that wrote it; only its version if it is older than that.
-std::string build_of(const records::InputFile& file);
 
 /// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
@@ -63,17 +55,5 @@ struct StoredRun {
 
 /// @throws InputError if the file is none of ours or of another schema version
 StoredRun read_run(const std::string& path);
-
-/// The lines of a text attribute: one more than it has line breaks.
-std::vector<std::string> split_lines(const std::string& text);
-
-/// True if a file begins as HDF5 does.
-bool is_hdf5(const std::string& path);
-
-/// The name under which a result file may be made (sim/system/output_name.h): neither it nor its
-/// partial file exists, or `force` is set and it is a result file (anything else is never
-/// overwritten).
-/// @throws InputError, SystemError while another process writes it
-std::string writable_name(const std::string& path, bool force);
 
 }  // namespace servomill::sim::run

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
 namespace {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
 namespace {

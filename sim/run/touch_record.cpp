@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
 namespace {

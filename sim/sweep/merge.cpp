@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "sim/run/build_identity.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 
 namespace servomill::sim::sweep {
 namespace {

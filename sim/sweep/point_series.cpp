@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "sim/records/input_file.h"
 #include "sim/run/build_identity.h"
 #include "sim/run/store.h"
 #include "sim/system/system_error.h"

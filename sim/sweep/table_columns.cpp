@@ -5,7 +5,7 @@
 #include <set>
 
 #include "sim/evaluation/comparison.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 
 namespace servomill::sim::sweep {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/input/read_scenario.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "sim/sweep/table_columns.h"
 
 namespace servomill::sim::sweep {

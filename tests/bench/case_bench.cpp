@@ -8,6 +8,7 @@
 #include "plant/drives/drive_bank.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/input/read_scenario.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/preparation/prepared_case.h"
 #include "tests/pattern.h"
 #include "tests/sim/small_scenario.h"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/input/read_scenario.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {

@@ -9,7 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/model/design.h"
 #include "sim/programs/compensate/compensate.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"

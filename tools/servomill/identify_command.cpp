@@ -7,7 +7,7 @@
 #include "sim/identification/make_up.h"
 #include "sim/identification/report.h"
 #include "sim/identification/store_identification.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "sim/sweep/merge.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/sweep_lines.h"

@@ -4,7 +4,7 @@
 #include "sim/recordings/read_recording.h"
 #include "sim/recordings/survey.h"
 #include "sim/recordings/write_recording.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 

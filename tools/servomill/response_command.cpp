@@ -6,7 +6,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/read_recording.h"
 #include "sim/responses/store_response.h"
-#include "sim/run/store.h"
+#include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
 #include "sim/system/text_table.h"
 #include "sim/system/write_file.h"

@@ -6,6 +6,7 @@
 #include "plant/drives/drive_bank.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/setpoint.h"
+#include "sim/engine/simulate.h"
 #include "sim/input/read_scenario.h"
 #include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"

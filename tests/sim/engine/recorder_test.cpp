@@ -6,6 +6,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "plant/vocabulary/units.h"
+#include "sim/preparation/case_program.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::engine::recorder_test {

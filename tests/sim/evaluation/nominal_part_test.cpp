@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/records/input_file.h"
 #include "sim/run/store.h"
 #include "sim/system/base64.h"
 #include "tests/sim/small_scenario.h"

@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/engine/simulate.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/run/store.h"
 #include "tests/sim/small_scenario.h"
 

@@ -9,6 +9,7 @@
 #include "controllers/gcode/called_subroutines.h"
 #include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
+#include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 
 namespace servomill::sim::input::subroutine_files_test {

@@ -14,7 +14,9 @@
 #include <fstream>
 #include <thread>
 
+#include "sim/engine/simulate.h"
 #include "sim/input/scenario_source.h"
+#include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim::preparation::preparation_cache_test {

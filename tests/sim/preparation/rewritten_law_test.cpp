@@ -8,6 +8,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/move_curve.h"
+#include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/preparation/rewritten_text.h"
 #include "tests/number_of.h"

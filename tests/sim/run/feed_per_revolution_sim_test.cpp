@@ -1,4 +1,5 @@
 // Simulation of G95.
+#include "sim/preparation/prepared_case.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::feed_per_revolution_sim_test {

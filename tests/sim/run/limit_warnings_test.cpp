@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/prepared_case.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::limit_warnings_test {

@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "sim/records/input_file.h"
 #include "sim/records/series_spool.h"
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"

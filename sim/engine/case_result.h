@@ -1,0 +1,34 @@
+/// Result of one case: how it ended, and its recording.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "sim/records/series.h"
+#include "strategies/strategy.h"
+
+namespace servomill::sim::engine {
+
+/// How a case ended. A machine that stops is an outcome, not an exception.
+struct Outcome {
+  bool finished = true;
+  bool interrupted = false;  // from outside
+  std::string reason;        // "axis Y: following error beyond 10 mm"
+  char axis = '-';
+  double time = 0.0;  // s
+};
+
+/// Set from outside to end a run early; a case that sees it stops as "interrupted".
+using StopFlag = std::atomic<bool>;
+
+struct CaseResult {
+  Outcome outcome;
+  records::Series servo;       // one row a record period
+  records::Series last_ticks;  // when stopped: what happened in the last position periods
+  std::vector<strategies::Saturation> saturations;  // of the feedback
+  double simulated_time = 0.0;                      // s
+  double wall_time = 0.0;                           // s, of all that ran in lockstep
+};
+
+}  // namespace servomill::sim::engine
