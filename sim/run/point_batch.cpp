@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "plant/vocabulary/interrupt.h"
+#include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/system/memory_limit.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/engine/simulate.h"
+#include "sim/engine/case_result.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/model/scenario.h"
 #include "sim/run/run.h"
@@ -59,8 +59,8 @@ struct BatchControl {
 };
 
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share
-/// lanes (sim/engine/simulate.h). The result of a point depends on that point alone, bit for bit.
-/// Faults of a point are part of its result; nothing is thrown but what `ended` throws.
+/// lanes (sim/engine/case_result.h). The result of a point depends on that point alone, bit for
+/// bit. Faults of a point are part of its result; nothing is thrown but what `ended` throws.
 /// @param stop      points that have not ended when it is set are never reported
 /// @param progress  set to the share done of the batch, 0 to 1
 /// @param ended     called on this thread with points as soon as they have ended, each once

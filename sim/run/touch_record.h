@@ -5,7 +5,7 @@
 #include <string>
 
 #include "plant/vocabulary/axes.h"
-#include "sim/preparation/touch_probe.h"
+#include "sim/preparation/touch.h"
 #include "sim/records/hdf5_group.h"
 
 namespace servomill::sim::run {
