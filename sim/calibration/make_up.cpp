@@ -27,7 +27,9 @@ class MakeUp {
   void run() {
     std::vector<double> set_up;
     for (const SetUpUnknown& unknown : observations_.set_up) {
-      set_up.push_back(normal() * unknown.prior.value_or(kSetUp * unknown.unit));
+      // an axis that turns round has lost half of its motion, as the machine without direction has
+      set_up.push_back(unknown.turning ? 0.0
+                                       : normal() * unknown.prior.value_or(kSetUp * unknown.unit));
     }
     std::size_t number = 0;
     for (std::size_t i = 0; i < observations_.all.size(); ++i) {

@@ -13,6 +13,30 @@ namespace servomill::sim::calibration {
 using Eigen::Vector3d;
 using readings::Reading;
 
+namespace {
+
+constexpr double kLostMotion = 50e-6;  // m, standard deviation that is expected
+
+// Linear joints that move within a group in known directions.
+std::vector<int> travelling_joints(const readings::Group& group) {
+  std::vector<int> out;
+  for (int j = 0; j < kLinearJoints; ++j) {
+    const bool moves =
+        std::any_of(group.rows.begin(), group.rows.end(), [j](const Reading& reading) {
+          return reading.direction[static_cast<std::size_t>(j)] != 0;
+        });
+    if (moves) out.push_back(j);
+  }
+  return out;
+}
+
+bool has_direction(const Reading& reading) {
+  return std::any_of(reading.direction.begin(), reading.direction.end(),
+                     [](int direction) { return direction != 0; });
+}
+
+}  // namespace
+
 ObservationBuilder::ObservationBuilder(const readings::Readings& readings,
                                        const plant::MachineChain& chain)
     : readings_(readings), chain_(chain) {
@@ -139,6 +163,28 @@ void ObservationBuilder::add_drift() {
     number = one.row == row_before ? number + 1 : 0;
     row_before = one.row;
     one.set_up.push_back({rates[number], share_of_time(one.row)});
+  }
+}
+
+void ObservationBuilder::add_turning_points() {
+  const std::vector<int> joints = travelling_joints(group());
+  std::map<std::pair<std::size_t, int>, std::size_t> unknowns;  // of row and joint
+  for (Observation& one : out_.all) {
+    if (one.group != group_ || !has_direction(group().rows[one.row])) continue;
+    const Reading& reading = group().rows[one.row];
+    for (const int joint : joints) {
+      if (reading.direction[static_cast<std::size_t>(joint)] != 0) continue;
+      const Axis axis = *chain_.layout.axis[static_cast<std::size_t>(joint)];
+      const auto [found, is_new] = unknowns.try_emplace({one.row, joint});
+      if (is_new) {
+        found->second =
+            add_own(fmt::format("turning point of {} in line {}", letter(axis), reading.line), 1e-6,
+                    "um", kLostMotion);
+        out_.set_up[found->second].turning = axis;
+      }
+      const Pose& pose = one.poses.front();
+      one.set_up.push_back({found->second, pose.n_W.dot(direction_of(axis, pose.Q))});
+    }
   }
 }
 

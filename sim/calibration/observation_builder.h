@@ -52,6 +52,9 @@ class ObservationBuilder {
   /// The same for a group that drifts, once all its numbers are there: linear in time from the
   /// first row on; without times from row to row.
   void add_drift();
+  /// The same where linear axes turn round: how much of the lost motion is behind them there is an
+  /// unknown of each row.
+  void add_turning_points();
   /// 0 at the first row, 1 at the last one.
   double share_of_time(std::size_t row) const;
 

@@ -208,6 +208,7 @@ Observations observations_of(const readings::Readings& readings, const plant::Ma
     builder.begin(group);
     LineObservations(builder).add();
     if (builder.group().drifts) builder.add_drift();
+    builder.add_turning_points();
   }
   return builder.take();
 }

@@ -47,7 +47,8 @@ struct SetUpUnknown {
   std::optional<double> prior;  // standard uncertainty in its unit, about 0; none: not known at all
   double unit = 1e-6;           // of a number that is shown: m, rad, m/m
   std::string unit_name = "um";
-  bool is_size = false;  // a radius or length, beside the stated one
+  std::optional<Axis> turning = std::nullopt;  // lost motion at a turning point of this axis
+  bool is_size = false;                        // a radius or length, beside the stated one
 };
 
 struct Observations {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "plant/vocabulary/units.h"
 #include "sim/readings/columns.h"
@@ -46,14 +45,6 @@ std::string_view letter_text(Axis axis) {
   return std::string_view("XYZABC").substr(static_cast<std::size_t>(index_of(axis)), 1);
 }
 
-std::optional<int> direction_of(std::string_view word) {
-  static const std::set<std::string_view> kUp = {"forward", "up", "+", "1", "+1", "ccw"};
-  static const std::set<std::string_view> kDown = {"backward", "down", "-", "-1", "cw"};
-  if (kUp.contains(word)) return 1;
-  if (kDown.contains(word)) return -1;
-  return std::nullopt;
-}
-
 // "p1", "p12": the actual position of a run, beside the target
 std::optional<int> run_of(std::string_view name) {
   if (name.size() < 2 || name.front() != 'p') return std::nullopt;
@@ -90,7 +81,7 @@ class RowsReader {
         for (const auto& [run, column] : runs_) add(row, run, column);
       }
     }
-    set_directions();
+    set_directions(group_, layout_, travel_);
   }
 
  private:
@@ -135,6 +126,10 @@ class RowsReader {
     require_values();
     require_positions();
     require_all_axes();
+    if (group_.expansion && table_.find(kTemperature) == nullptr) {
+      fault(group_.place, fmt::format("group \"{}\" has a table expansion, and {} no column {}",
+                                      group_.name, group_.file, kTemperature));
+    }
     return faults_.size() == before;
   }
 
@@ -271,7 +266,8 @@ class RowsReader {
       } else {
         travel_.push_back(0);
         fault(table_.place(row, *direction),
-              fmt::format("direction = {}; must be forward or backward (up, down, +, -, cw, ccw)",
+              fmt::format("direction = {}; must be forward or backward (up, down, positive, "
+                          "negative, +, -, cw, ccw)",
                           word));
       }
     } else {
@@ -342,33 +338,6 @@ class RowsReader {
                             "of target and position",
                             largest / mm, kLargestDeviation / mm));
   }
-
-  // Directions of the joints: that of the axis; along a path those of the joints that move; on a
-  // circle those of the tangent, counter-clockwise upwards.
-  void set_directions() {
-    if (group_.rows.size() != travel_.size()) return;  // a fault was found
-    for (std::size_t i = 0; i < group_.rows.size(); ++i) {
-      Reading& reading = group_.rows[i];
-      const int travel = travel_[i];
-      if (travel == 0) continue;
-      if (group_.kind == Kind::circle) {
-        const int a = *layout_.joint_of(group_.plane[0]), b = *layout_.joint_of(group_.plane[1]);
-        reading.direction[static_cast<std::size_t>(a)] =
-            -travel * sign_of(reading.Q[b] - group_.at[b]);
-        reading.direction[static_cast<std::size_t>(b)] =
-            travel * sign_of(reading.Q[a] - group_.at[a]);
-      } else if (group_.axis) {
-        reading.direction[static_cast<std::size_t>(*layout_.joint_of(*group_.axis))] = travel;
-      } else if (group_.kind == Kind::positioning) {
-        const Joints path = group_.rows.back().Q - group_.rows.front().Q;
-        for (int j = 0; j < kJoints; ++j) {
-          reading.direction[static_cast<std::size_t>(j)] = travel * sign_of(path[j]);
-        }
-      }
-    }
-  }
-
-  static int sign_of(double x) { return std::abs(x) < kSlack ? 0 : x > 0.0 ? 1 : -1; }
 
   static constexpr double kSlack = 1e-9;  // m, rad
   Group& group_;

@@ -1,6 +1,8 @@
 /// Rows of a group from its file.
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "sim/readings/readings.h"
@@ -12,6 +14,16 @@ namespace servomill::sim::readings {
 /// @param faults        receives what is wrong with rows
 void read_rows(Group& group, const plant::MachineChain& chain, const Joints& lower,
                const Joints& upper, Numbers numbers, std::vector<Fault>& faults);
+
+/// 1 of "forward", "up", "+", "ccw", ...; -1 of their opposites; upper and lower case.
+std::optional<int> direction_of(std::string_view word);
+
+/// Directions of the joints from those of the rows: of the axis; along a diagonal those of the
+/// joints that move; on a circle those of the tangent, counter-clockwise upwards, 0 of the joint
+/// that turns round; of R-tests and ball bars with one rotary axis that moves, those of this axis
+/// and of what follows it. Of all others they say nothing.
+/// @param travel  1, -1, of each row; 0: not known
+void set_directions(Group& group, const JointLayout& layout, const std::vector<int>& travel);
 
 /// Rows at the same target in the same run and direction are faults, where runs are numbered.
 void require_distinct_rows(const Group& group, std::vector<Fault>& faults);

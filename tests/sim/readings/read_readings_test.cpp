@@ -185,7 +185,8 @@ TEST_F(ReadReadings, NamesAllThatIsWrongWithRowsAtOnce) {
                "200,+,,20\n"
                "300,+,1,68\n");
   EXPECT_EQ(faults(kLaser),
-            "direction = left; must be forward or backward (up, down, +, -, cw, ccw)\n"
+            "direction = left; must be forward or backward (up, down, positive, negative, +, -, "
+            "cw, ccw)\n"
             "X = 1500 mm is outside the travel of the machine, 0 to 1000 mm\n"
             "deviation of 7 mm; must be at most 5 mm: check unit and sign of target and position\n"
             "deviation_um is empty\n"
