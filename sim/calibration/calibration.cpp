@@ -18,9 +18,7 @@ using plant::ErrorName;
 constexpr std::size_t kMostTargets = 51;  // knots, where readings stand in as many places
 constexpr int kDefaultKnots = 17;         // where they stand in more
 constexpr double kSamePlace = 1e-6;       // m, rad
-constexpr double kContradiction = 6.0;    // standard deviations of the whitened squares
 constexpr double kSignificant = 3.0;      // standard uncertainties of a reversal
-constexpr double kMuchBetter = 0.3;       // of the contradiction is left by the other sign
 
 bool is_sought(const CalibrationSettings& settings, const ErrorName& name) {
   const auto& errors = settings.errors;
@@ -176,6 +174,16 @@ std::vector<Axis> axes_without_reversal(const Adjustment& adjustment,
   return out;
 }
 
+// Takes turning points of axes without lost motion as any other reading.
+void forget_turning_points(Observations& observations, const std::vector<Axis>& axes) {
+  for (Observation& one : observations.all) {
+    std::erase_if(one.set_up, [&](const SetUpPart& part) {
+      const auto& turning = observations.set_up[part.unknown].turning;
+      return turning && is_left_out(axes, *turning);
+    });
+  }
+}
+
 std::vector<Outlier> outliers_of(const Adjustment& adjustment) {
   std::vector<Outlier> out;
   const double limit = outlier_limit(adjustment.standardized.size());
@@ -232,7 +240,7 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
                   .observations = {},
                   .adjustment = {},
                   .outliers = {},
-                  .sign_suspects = {},
+                  .suspects = {},
                   .one_way = {}};
   out.observations = observations_of(out.readings, chain);
   out.one_way = one_way_axes(out.readings, out.observations, chain.layout);
@@ -252,6 +260,7 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
   out.adjustment = adjusted(out.observations);
   const std::vector<Axis> none = axes_without_reversal(out.adjustment, settings);
   if (!none.empty()) {
+    forget_turning_points(out.observations, none);
     functions = sought_functions(out.readings, out.observations, chain, settings, none);
     out.adjustment = adjusted(out.observations);
   }
@@ -262,19 +271,9 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
   }
   out.adjustment.short_waves = short_waves(out.adjustment);
   out.outliers = outliers_of(out.adjustment);
-  const Adjustment& found = out.adjustment;
-  const double excess = found.squares - found.redundancy;
-  if (!(excess > kContradiction * std::sqrt(2.0 * std::max(found.redundancy, 1.0)))) return out;
-  for (std::size_t group = 0; group < out.readings.groups.size(); ++group) {
-    Observations turned = out.observations;
-    for (Observation& one : turned.all) {
-      if (one.group == group) one.d = -one.d;
-    }
-    const double squares = adjusted(turned).squares;
-    if (squares - found.redundancy < kMuchBetter * excess) {
-      out.sign_suspects.push_back({group, squares});
-    }
-  }
+  out.suspects = contradictions(
+      out.readings, out.observations, out.adjustment,
+      [&](const Observations& observations) { return adjusted(observations).squares; });
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/calibration/adjustment.h"
+#include "sim/calibration/contradictions.h"
 
 namespace servomill::sim::calibration {
 
@@ -41,19 +42,14 @@ CalibrationSettings read_settings(const std::string& path, const JointLayout& la
 std::vector<plant::ErrorName> sought_locations(const plant::MachineChain& chain,
                                                const std::array<Axis, 2>& frame);
 
-struct Suspect {
-  std::size_t group = 0;
-  double squares = 0.0;  // of all whitened residuals with the sign of this group turned round
-};
-
 struct Calibration {
   readings::Readings readings;
   CalibrationSettings settings;
   Observations observations;
   Adjustment adjustment;
-  std::vector<Outlier> outliers;       // largest first
-  std::vector<Suspect> sign_suspects;  // groups that fit with the other sign
-  std::vector<Axis> one_way;           // axes whose positions are read in one direction only
+  std::vector<Outlier> outliers;  // largest first
+  std::vector<Suspect> suspects;  // groups that fit with another sign or unit
+  std::vector<Axis> one_way;      // axes whose positions are read in one direction only
 };
 
 /// @throws InputError where nothing can be adjusted

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "plant/vocabulary/units.h"
 #include "sim/system/text_table.h"
@@ -26,6 +27,17 @@ const readings::Group& group_of(const Calibration& calibration, std::size_t grou
 
 bool is_angular(const readings::Group& group) {
   return readings::is_angular(group.kind, group.axis);
+}
+
+// "readings.toml:6: ", where a group is to be mended; of readings without a file nothing
+std::string place_prefix(const readings::Group& group) {
+  if (group.place.file.empty()) return {};
+  return to_string(Place{group.place.file, group.place.line, 0}) + ": ";
+}
+
+// "readings.toml:6: "X, laser""
+std::string placed_name(const readings::Group& group) {
+  return fmt::format("{}\"{}\"", place_prefix(group), group.name);
 }
 
 // "0.52 um"
@@ -89,7 +101,8 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
   const Observation& one = calibration.observations.all[outlier.observation];
   const readings::Group& group = group_of(calibration, one.group);
   return fmt::format(
-      "{}: reading of \"{}\" is off by {}, {:.1f} times its standard uncertainty",
+      "{}: reading of \"{}\" is off by {}, {:.1f} times its standard uncertainty; it counts: check "
+      "it at the machine, or leave it out",
       readings::place_of(group, group.rows[one.row]), group.name,
       in_unit(calibration.adjustment.residuals[outlier.observation], is_angular(group)),
       std::abs(outlier.standardized));
@@ -97,9 +110,10 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
 
 std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
-      "\"{}\": its residuals are {:.1f} times as large as its uncertainty of {} lets expect; the "
+      "{}: its residuals are {:.1f} times as large as its uncertainty of {} lets expect; the "
       "uncertainty, the form of the errors (knots) or the set-up is not as stated",
-      group.name, std::sqrt(result.ratio()), in_unit(result.uncertainty, is_angular(group)));
+      placed_name(group), std::sqrt(result.ratio()),
+      in_unit(result.uncertainty, is_angular(group)));
 }
 
 // Radii and lengths that come out far from what is stated, and set-ups far from what is known.
@@ -109,7 +123,8 @@ void add_set_up_warnings(const Calibration& calibration, std::vector<std::string
   for (std::size_t u = 0; u < set_up.size(); ++u) {
     const SetUpUnknown& one = set_up[u];
     const double value = adjustment.values[Eigen::Index(u)];
-    const std::string name = adjustment.unknowns.name(int(u), calibration.readings);
+    const std::string name = (one.group ? place_prefix(group_of(calibration, *one.group)) : "") +
+                             adjustment.unknowns.name(int(u), calibration.readings);
     const std::string shown = fmt::format("{:.3g} {}", value / one.unit, one.unit_name);
     if (one.prior && std::abs(value) > kImplausible * *one.prior) {
       out.push_back(fmt::format("{} comes out as {}, {:.0f} times its uncertainty: check it", name,
@@ -121,16 +136,90 @@ void add_set_up_warnings(const Calibration& calibration, std::vector<std::string
   }
 }
 
+std::string suspect_sentence(const Calibration& calibration, const Suspect& suspect) {
+  std::vector<std::string> names;
+  for (const std::size_t group : suspect.groups) {
+    names.push_back(placed_name(group_of(calibration, group)));
+  }
+  const bool one = names.size() == 1;
+  const std::string_view verb = one ? "contradicts" : "contradict", its = one ? "its" : "their";
+  if (suspect.factor < 0.0) {
+    return fmt::format(
+        "{} {} the other groups; with the opposite sign {} would agree with them: "
+        "check the sign of {} readings",
+        fmt::join(names, " and "), verb, one ? "it" : "they", its);
+  }
+  return fmt::format(
+      "{} {} the other groups; {:.4g} times as large {} would agree with them: check "
+      "the unit of {} readings",
+      fmt::join(names, " and "), verb, suspect.factor, one ? "it" : "they", its);
+}
+
+// Targets at which a run is missing that others have.
+void add_missing_runs(const readings::Group& group, std::vector<std::string>& out) {
+  if (!group.axis) return;
+  int runs = 0;
+  std::map<std::pair<double, int>, std::vector<const readings::Reading*>> targets;
+  for (const readings::Reading& row : group.rows) {
+    runs = std::max(runs, row.run + 1);
+    // the axis that is measured is the one that has a direction, if any has
+    const auto joint = std::max_element(row.direction.begin(), row.direction.end(),
+                                        [](int a, int b) { return std::abs(a) < std::abs(b); });
+    targets[{row.Q.sum(), *joint}].push_back(&row);
+  }
+  for (const auto& [target, rows] : targets) {
+    const int missing = runs - static_cast<int>(rows.size());
+    if (missing <= 0) continue;
+    out.push_back(
+        fmt::format("{}: {} of {} runs are missing at the target of this line: measure "
+                    "them; what is there counts",
+                    readings::place_of(group, *rows.front()), missing, runs));
+  }
+}
+
+bool has_temperature(const readings::Group& group) {
+  return std::any_of(group.rows.begin(), group.rows.end(),
+                     [](const readings::Reading& row) { return !std::isnan(row.temperature); });
+}
+
+// Columns that nothing uses, runs that are missing, directions that nobody has measured.
+void add_reading_warnings(const Calibration& calibration, std::vector<std::string>& out) {
+  for (const readings::Group& group : calibration.readings.groups) {
+    if (group.directions_unused) {
+      out.push_back(
+          fmt::format("{}: its column direction is not used; readings of kind {} tell "
+                      "it of axes where one rotary axis moves only",
+                      placed_name(group), readings::kKinds[static_cast<std::size_t>(group.kind)]));
+    }
+    if (has_temperature(group) && !group.expansion) {
+      out.push_back(
+          fmt::format("{}: its column temperature_degC is not used; a table expansion "
+                      "takes lengths back to 20 degC",
+                      placed_name(group)));
+    }
+    add_missing_runs(group, out);
+  }
+  for (const Axis axis : calibration.one_way) {
+    const auto& groups = calibration.readings.groups;
+    const auto first = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return group.kind == readings::Kind::positioning && group.axis == axis;
+    });
+    out.push_back(
+        fmt::format("{}: positions of {} are read in one direction, or their rows do not "
+                    "say in which: lost motion of {} stays unknown; add a column "
+                    "direction, and runs back",
+                    placed_name(*first), letter(axis), letter(axis)));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Calibration& calibration) {
   std::vector<std::string> out;
-  for (const Suspect& suspect : calibration.sign_suspects) {
-    out.push_back(
-        fmt::format("\"{}\" contradicts the other groups; with the opposite sign it would "
-                    "agree with them: check the sign of its readings",
-                    group_of(calibration, suspect.group).name));
+  for (const Suspect& suspect : calibration.suspects) {
+    out.push_back(suspect_sentence(calibration, suspect));
   }
+  add_reading_warnings(calibration, out);
   add_set_up_warnings(calibration, out);
   for (std::size_t g = 0; g < calibration.adjustment.groups.size(); ++g) {
     const GroupResult& result = calibration.adjustment.groups[g];

@@ -51,6 +51,8 @@ def make_folder(folder, wrong):
         os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
         with open(os.path.join(folder, name), "wb") as file:
             file.write(data)
+        if name in wrong.get("right", ()):
+            continue
         shown.append(f"    {name}: {wrong['about'] if 'about' in wrong else repr(content)}")
     for name in wrong.get("folders", ()):
         os.makedirs(os.path.join(folder, name))

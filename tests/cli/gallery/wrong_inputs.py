@@ -8,6 +8,7 @@ from wrong_identified import IDENTIFIED
 from wrong_machines import AXIS, MACHINE, MACHINE_REFUSES, SERVO
 from wrong_parts import CUTTING, PART, PROBES
 from wrong_programs import COMPENSATE, POST, PROGRAM, TABLES
+from wrong_readings import READINGS
 from wrong_tests import TESTS
 
 COMMAND_LINE = [
@@ -249,5 +250,5 @@ UNITS = [
      "edit": [("machine.toml", 'v_max = "40 m/min"', "v_max = 40000")]},
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + IDENTIFIED + EXPERIMENTS + TESTS + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + AXIS + SET + MACHINE_REFUSES + IDENTIFIED + EXPERIMENTS + TESTS + READINGS + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
                 + COMPENSATE + CUTTING + PART + PROBES + RECORDINGS)

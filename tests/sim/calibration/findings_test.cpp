@@ -42,8 +42,9 @@ TEST(Findings, FindsTheGroupWhoseSignIsWrong) {
   make_up(all, gantry(), truth.errors, 5);
   for (readings::Reading& reading : all.groups[4].rows) reading.deviation *= -1.0;
   const Calibration found = calibrated(all);
-  ASSERT_EQ(found.sign_suspects.size(), 1u);
-  EXPECT_EQ(found.sign_suspects[0].group, 4u);
+  ASSERT_EQ(found.suspects.size(), 1u);
+  EXPECT_EQ(found.suspects[0].groups, std::vector<std::size_t>{4});
+  EXPECT_EQ(found.suspects[0].factor, -1.0);
 }
 
 TEST(Findings, NamesAnOutlierOfATenthOfAMillimetre) {
