@@ -76,6 +76,40 @@ class Way(unittest.TestCase):
         self.assertLess(abs(squareness), 0.5 * abs(squareness_is))
         self.assertLess(roundness, 0.2 * roundness_is)
 
+    def test_a_ball_bar_alone_names_what_it_tells_and_what_it_cannot(self):
+        with open(self.path("router", "readings.toml"), encoding="utf-8") as file:
+            head, *groups = file.read().split("[adjustment.form]")[0].split("[[group]]")
+        bars = "".join("[[group]]" + group for group in groups if 'kind = "circle"' in group)
+        form = '[adjustment.form]\nlinear = { polynomial = 3, harmonics_mm = [5], reversal = 0 }\nEYX = { knots = 9 }\n'
+        with open(self.path("router", "bar.toml"), "w", encoding="utf-8") as file:
+            file.write(head.split("[[instrument]]")[0] + bars + form)
+        printed = self.run_in("router", "calibrate", "bar.toml", "-o", "bar_only.toml").stdout
+        table = self.identified("router", "bar_only.toml")["identified"]
+        C = np.array(table["covariance"])
+        index = {key: k for k, key in enumerate(table["keys"])}
+
+        def known(weights, actual, size):
+            """A sum of numbers: within its interval, and known much better than its size."""
+            row = np.zeros(len(index))
+            for key, weight in weights.items():
+                row[index["errors.identified." + key]] = weight
+            found, sigma = row @ np.array(table["values"]), np.sqrt(row @ C @ row)
+            self.assertLess(abs(found - actual), 3 * sigma, weights)
+            self.assertLess(sigma, size, weights)
+
+        known({"EC0Y.constant_urad": 1}, 180.0, 18.0)
+        known({"EYY.harmonic[0].amplitude_um": 1}, 12.0, 0.5)     # straightness and pitch have none
+        known({"EXY.harmonic[0].amplitude_um": 1}, 0.0, 0.5)
+        for axis in "XYZ":
+            self.assertRegex(printed, rf"E{axis}{axis} .*\n  reversal +-?0\.\d+ +[01]\.\d+ +um +up minus down")
+            known({f"E{axis}{axis}.reversal.width_polynomial_um[0]": 1}, 0.0, 0.5)
+        # scale of X minus that of Y: where the circles stand, 0.2 - 0.05 um/mm
+        slope = {f"E{a}{a}.polynomial_um[{n}]": (1 if a == "X" else -1) * n * (500.0 if a == "X" else 400.0) ** (n - 1) for a in "XY" for n in (1, 2, 3)}
+        known(slope, 0.15, 0.05)
+        self.assertIn("no reading depends on ECY and ECZ", printed)
+        for name in ("EAZ", "EBZ"):
+            self.assertRegex(printed, rf"{name} is determined only in combination")
+
     def test_the_trunnion_gives_its_eight_location_errors(self):
         printed = self.run_in("trunnion", "calibrate", "readings.toml", "-o", "identified.toml").stdout
         table = self.identified("trunnion", "identified.toml")["identified"]
