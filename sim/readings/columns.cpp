@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "plant/vocabulary/user_file.h"
 #include "sim/recordings/delimited_text.h"
@@ -21,7 +22,42 @@ char separator_of(std::string_view line) {
 
 bool is_comment(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(" \t");
-  return begin != std::string_view::npos && line[begin] == '#';
+  if (begin == std::string_view::npos) return false;
+  return line[begin] == '#' || line[begin] == '%' || line.substr(begin, 2) == "//";
+}
+
+// "Target [mm]" as "Target_mm".
+std::string plain_heading(std::string_view written) {
+  const recordings::Heading heading = recordings::parse_heading(written);
+  return heading.unit.empty() ? heading.name : heading.name + "_" + heading.unit;
+}
+
+// Names in any case, and other words for some of them, as logs have them. Axes keep their case.
+std::string known_name(const std::string& name) {
+  if (name.size() < 2) return name;
+  std::string lower = name;
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOther = {
+      {{"cycle", "run"},
+       {"actual", "position"},
+       {"actual position", "position"},
+       {"measured", "position"},
+       {"nominal", "target"},
+       {"setpoint", "target"},
+       {"target position", "target"},
+       {"dir", "direction"}}};
+  for (const auto& [other, known] : kOther) {
+    if (lower == other) return std::string(known);
+  }
+  constexpr std::array<std::string_view, 13> kKnown = {
+      "direction", "run",    "target",     "position", "deviation", "time", "angle",
+      "sphere",    "length", "revolution", "dx",       "dz",        "dy"};
+  const bool is_run =
+      lower[0] == 'p' && lower.find_first_not_of("0123456789", 1) == std::string::npos;
+  if (is_run || std::find(kKnown.begin(), kKnown.end(), lower) != kKnown.end()) return lower;
+  return name;
 }
 
 Row row_of(const recordings::TextLine& line, char separator) {
@@ -31,6 +67,12 @@ Row row_of(const recordings::TextLine& line, char separator) {
     row.columns.push_back(field.column);
   }
   return row;
+}
+
+std::vector<std::string> written_names(const Table& table) {
+  std::vector<std::string> out;
+  for (const Column& column : table.columns) out.push_back(column.written);
+  return out;
 }
 
 void check_names(const Table& table, int line, std::vector<Fault>& faults) {
@@ -46,18 +88,20 @@ void check_names(const Table& table, int line, std::vector<Fault>& faults) {
 }  // namespace
 
 Column parse_column(std::string_view written, int number) {
-  Column column{.name = std::string(written),
+  const std::string heading = plain_heading(written);
+  Column column{.name = heading,
                 .written = std::string(written),
                 .unit = {.symbol = "", .quantity = config::kNumber, .factor = 1.0},
                 .number = number};
   constexpr std::array kQuantities = {config::kLength, config::kAngle, config::kTime};
   for (const config::Quantity& quantity : kQuantities) {
-    const auto unit = config::unit_of_key(written, quantity);
+    const auto unit = config::unit_of_key(heading, quantity);
     if (!unit) continue;
     column.unit = *unit;
-    column.name = std::string(written.substr(0, written.rfind('_')));
+    column.name = heading.substr(0, heading.rfind('_'));
     break;
   }
+  column.name = known_name(column.name);
   return column;
 }
 
@@ -95,8 +139,12 @@ Table read_table(const std::string& path) {
   Table table;
   table.file = path;
   std::vector<Fault> faults;
+  std::set<std::size_t> other_lengths;
   char separator = ',';
-  for (const recordings::TextLine& line : recordings::text_lines(text)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const std::string_view all =
+      std::string_view(text).substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  for (const recordings::TextLine& line : recordings::text_lines(all)) {
     if (is_comment(line.text)) continue;
     if (table.columns.empty()) {
       separator = separator_of(line.text);
@@ -111,6 +159,7 @@ Table read_table(const std::string& path) {
     if (row.fields.size() == table.columns.size()) {
       table.rows.push_back(std::move(row));
     } else {
+      other_lengths.insert(row.fields.size());
       faults.push_back({{path, line.number, 0},
                         fmt::format("has {} fields; the line of names has {}", row.fields.size(),
                                     table.columns.size())});
@@ -123,6 +172,13 @@ Table read_table(const std::string& path) {
       });
     });
     if (has_comma) table.decimal = ',';
+  }
+  if (faults.size() > 1 && table.rows.empty() && other_lengths.size() == 1) {
+    faults = {
+        {{path, faults.front().place.line, 0},
+         fmt::format("no row has the {} fields of the line of names \"{}\"; lines in front of "
+                     "the names begin with #",
+                     table.columns.size(), fmt::join(written_names(table), " "))}};
   }
   if (table.columns.empty()) faults.push_back({{path}, "is empty; a line of names is expected"});
   if (table.rows.empty() && faults.empty()) {

@@ -8,7 +8,10 @@
 #include <set>
 
 #include "plant/vocabulary/units.h"
+#include "plant/vocabulary/user_file.h"
 #include "sim/readings/columns.h"
+#include "sim/readings/read_rows.h"
+#include "sim/standards/positioning_log.h"
 #include "sim/standards/positioning_readings.h"
 
 namespace servomill::sim::standards {
@@ -20,15 +23,6 @@ using readings::Table;
 
 constexpr std::string_view kDirections =
     "must be forward or backward (up, down, positive, negative, +, -)";
-
-int direction_of(std::string_view word) {
-  constexpr std::array<std::string_view, 7> kUp = {"forward", "up", "positive", "pos",
-                                                   "+",       "+1", "1"};
-  constexpr std::array<std::string_view, 6> kDown = {"backward", "down", "negative",
-                                                     "neg",      "-",    "-1"};
-  if (std::find(kUp.begin(), kUp.end(), word) != kUp.end()) return 1;
-  return std::find(kDown.begin(), kDown.end(), word) != kDown.end() ? -1 : 0;
-}
 
 // "p1", "p12": run 0, 11
 std::optional<int> run_of(std::string_view name) {
@@ -68,6 +62,8 @@ class PositioningReader {
   PositioningFile read() {
     find_columns();
     if (!faults_.empty()) throw InputError(std::move(faults_));
+    if (direction_ == nullptr) set_order();
+    if (!faults_.empty()) throw InputError(std::move(faults_));
     for (const Row& row : table_.rows) add(row);
     if (!faults_.empty()) throw InputError(std::move(faults_));
     PositioningFile out;
@@ -98,7 +94,7 @@ class PositioningReader {
     }
     direction_ = table_.find("direction");
     target_ = table_.find("target");
-    if (direction_ == nullptr) {
+    if (direction_ == nullptr && !runs_.empty()) {
       fault({table_.file}, fmt::format("column direction is missing; it {}", kDirections));
     }
     if (target_ == nullptr) {
@@ -169,7 +165,9 @@ class PositioningReader {
   }
 
   void add(const Row& row) {
-    const int direction = direction_of(table_.text(row, *direction_));
+    const int direction = direction_ == nullptr
+                              ? by_order_[place_in_order_++]
+                              : readings::direction_of(table_.text(row, *direction_)).value_or(0);
     if (direction == 0) {
       fault(table_.place(row, *direction_),
             fmt::format("direction = {}; {}", table_.text(row, *direction_), kDirections));
@@ -187,6 +185,33 @@ class PositioningReader {
     }
     const auto run = run_number(row, one);
     if (run) add_value(row, position_ != nullptr ? *position_ : *deviation_, *run, one);
+  }
+
+  // Directions of rows without them, in the order in which they were taken: targets that rise were
+  // approached forward. The last target of a run, there twice, begins the way back.
+  void set_order() {
+    std::vector<double> targets;
+    for (const Row& row : table_.rows) targets.push_back(number(row, *target_).value_or(0.0));
+    by_order_.assign(targets.size(), 0);
+    for (std::size_t i = 0; i + 1 < targets.size(); ++i) {
+      if (targets[i + 1] == targets[i]) continue;
+      const int way = targets[i + 1] > targets[i] ? 1 : -1;
+      by_order_[i + 1] = way;
+      const bool begins = i == 0 || targets[i] == targets[i - 1];
+      if (begins) by_order_[i] = way;
+    }
+    const auto lost = std::find(by_order_.begin(), by_order_.end(), 0);
+    if (lost != by_order_.end()) {
+      fault({table_.file, table_.rows[std::size_t(lost - by_order_.begin())].line},
+            fmt::format("the order of the rows does not tell its direction; a column direction "
+                        "does: it {}",
+                        kDirections));
+      return;
+    }
+    remarks_.push_back(
+        fmt::format("{}: has no column direction: taken from the order of the rows, "
+                    "rising targets as forward",
+                    table_.file));
   }
 
   // The column run, or how often the target was approached before.
@@ -241,10 +266,18 @@ class PositioningReader {
                *deviation_ = nullptr;
   std::vector<std::pair<int, const Column*>> runs_;
   std::map<std::pair<double, int>, int> approaches_;
+  std::vector<int> by_order_;  // direction of each row where no column has it
+  std::size_t place_in_order_ = 0;
 };
 
 }  // namespace
 
-PositioningFile read_positioning(const std::string& path) { return PositioningReader(path).read(); }
+PositioningFile read_positioning(const std::string& path) {
+  std::string why;
+  const std::string text = read_input(path, kMostBytesOfDocument, why);
+  if (!why.empty()) throw InputError({path}, why);
+  if (is_list_of_readings(text)) return parse_list_of_readings(text, path);
+  return PositioningReader(path).read();
+}
 
 }  // namespace servomill::sim::standards

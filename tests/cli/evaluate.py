@@ -66,6 +66,45 @@ class Positioning(unittest.TestCase):
             for symbol, value in iso230_2(up * 1e-3, down * 1e-3).items():
                 self.assertAlmostEqual(found[symbol], value, delta=1e-14 + ROUNDING * abs(value), msg=symbol)
 
+    def test_a_raw_log_gives_what_its_table_gives(self):
+        with open(LINEAR_AXIS, encoding="utf-8") as file:
+            rows = [line.split(",") for line in file if line[:1] in "fb"]
+        time, last, lines = 0.0, -15.0, []
+
+        def add(name, value):
+            lines.append(f"ioc:{name} 2023-12-08 12:{int(time // 60):02d}:{time % 60:09.6f} {value:.10g}")
+
+        def go(target, position):
+            nonlocal time, last
+            for k in range(1, 6):
+                time += 0.05
+                add("M1-PosSet", last + (target - last) * k / 5)
+                add("Enc01-PosAct", last + (position - last) * k / 5)
+            time += 1.5
+            add("Enc01-PosAct", position)
+            last = target
+
+        go(-12.0, -12.0)
+        forward, backward = ([row for row in rows if row[0] == way] for way in ("forward", "backward"))
+        for run in range(5):
+            for turn, half in ((12.0, forward), (-12.0, backward[::-1])):
+                for row in half:
+                    go(float(row[1]), float(row[2 + run]))
+                go(turn, turn)
+        name = self.write("axis.log", "\n".join(lines) + "\n")
+        found, report = parameters(name, "--standard", "2", "--target", "PosSet", "--position", "PosAct", cwd=self.folder.name)
+        for symbol, value in parameters(LINEAR_AXIS, "--standard", "2")[0].items():
+            self.assertAlmostEqual(found[symbol], value, delta=1e-13, msg=symbol)
+        self.assertIn("target 12 is approached in one direction only, 5 times", " ".join(report["notes"]))
+
+    def test_the_order_of_rows_tells_their_direction(self):
+        rows = [(t, t + 0.001 * (k + 1)) for k, t in enumerate((0, 10, 20))] + [(t, t - 0.002) for t in (20, 10, 0)]
+        text = "Target [mm];Actual [mm]\n" + "".join(f"{t};{p:.4f}\n".replace(".", ",") for t, p in rows + rows[::1])
+        name = self.write("rows.csv", text)
+        found, report = parameters(name, "--standard", "2", cwd=self.folder.name)
+        self.assertAlmostEqual(found["B"], 5e-6, delta=1e-12)
+        self.assertIn("rising targets as forward", " ".join(report["notes"]))
+
     def test_printed_table_file_and_json_agree(self):
         found, report = parameters(LINEAR_AXIS, "--standard", "ISO 230-2")
         self.assertEqual(len(report["tables"][0]["columns"]), 10)

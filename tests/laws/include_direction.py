@@ -29,7 +29,7 @@ SIM_ROOMS = {
     "records": ["system"],
     "recordings": ["records", "system"],
     "readings": ["config", "recordings"],
-    "standards": ["config", "metrology", "numerics", "readings", "system"],
+    "standards": ["config", "metrology", "numerics", "readings", "recordings", "system"],
     "responses": ["records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "numerics", "records"],
     "engine": ["controllers", "strategies", "model", "records", "system"],

@@ -5,10 +5,12 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/read_scenario.h"
+#include "sim/recordings/read_recording.h"
 #include "sim/standards/ball_test.h"
 #include "sim/standards/circle_test.h"
 #include "sim/standards/diagonal_report.h"
 #include "sim/standards/error_motion.h"
+#include "sim/standards/positioning_log.h"
 #include "sim/standards/positioning_report.h"
 #include "sim/system/json.h"
 #include "sim/system/output_name.h"
@@ -43,6 +45,11 @@ void add_evaluate_options(Options& options) {
                 "iso230-2: prints the periodic error of this period, mm or deg");
   options.add()("uncertainty", text("LASER.toml"),
                 "contributions of device, set-up, temperature and environment: prints U (k = 2)");
+  options.add()("target", text("CHANNEL"),
+                "iso230-2, raw logs: channel of the target position, its name or the end of it");
+  options.add()("position", text("CHANNEL"), "channel of the measured position");
+  options.add()("unit", text("UNIT"), "of that position, where the log does not name it");
+  options.add()("standstill", text("T"), "least time that a target holds (default: 1 s)");
   options.add()("seed", po::value<std::uint64_t>()->default_value(1)->value_name("N"),
                 "of the Monte Carlo simulation of U");
   options.add()("targets", "prints the tables of targets and curves, too");
@@ -118,6 +125,24 @@ std::vector<Report> positioning_reports(const std::vector<standards::Positioning
   return out;
 }
 
+// A test from a raw log where channels are named, else from a table or list of readings.
+standards::PositioningFile positioning_file(const std::string& file, const Options& options) {
+  if (options.has("target") != options.has("position")) {
+    throw InputError({options.has("target") ? "--position" : "--target"},
+                     "must be given, too: a raw log is read from both channels");
+  }
+  if (options.has("target")) {
+    standards::LogSettings settings;
+    settings.target = options.get<std::string>("target");
+    settings.position = options.get<std::string>("position");
+    if (options.has("unit")) settings.unit = options.get<std::string>("unit");
+    settings.standstill =
+        positive_option(options, "standstill", sim::config::kTime, "s").value_or(1.0);
+    return standards::positioning_of(sim::recordings::read_recording(file), settings);
+  }
+  return standards::read_positioning(file);
+}
+
 // Reports of tables, one test a file.
 std::vector<Report> reports_of_tables(const std::vector<std::string>& files, Standard standard,
                                       const Options& options) {
@@ -127,7 +152,7 @@ std::vector<Report> reports_of_tables(const std::vector<std::string>& files, Sta
     switch (standard) {
       case Standard::positioning:
       case Standard::diagonals:
-        runs.push_back(standards::read_positioning(file));
+        runs.push_back(positioning_file(file, options));
         break;
       case Standard::circles:
         out.push_back(standards::circle_report(standards::read_circle(file, radius_of(options))));

@@ -38,6 +38,26 @@ TEST_F(Columns, ReadsAnySeparatorAndADecimalComma) {
   }
 }
 
+// Names as loggers write them: in any case, with the unit in brackets, other words for the same.
+TEST_F(Columns, ReadsHeadingsAsLogsHaveThem) {
+  const Table table = read(
+      "\xEF\xBB\xBF% axis Y\n// second run\nDirection,Target [mm],Cycle,Actual "
+      "(mm),P1\n+,1,1,1.5,2\n");
+  std::vector<std::string> names;
+  for (const Column& column : table.columns) names.push_back(column.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"direction", "target", "run", "position", "p1"}));
+  EXPECT_EQ(table.columns[1].unit.factor, 1e-3);
+  EXPECT_EQ(parse_column("X_mm", 1).name, "X");
+  EXPECT_EQ(parse_column("x_mm", 1).name, "x");
+}
+
+TEST_F(Columns, SaysWhereATitleStandsInFrontOfTheNames) {
+  EXPECT_EQ(
+      faults("ISO 230-2, axis Y\nX_mm;deviation_um\n1;2\n3;4\n"),
+      "no row has the 2 fields of the line of names \"ISO 230-2 axis Y\"; lines in front of the "
+      "names begin with #\n");
+}
+
 TEST_F(Columns, NamesLineAndColumnOfTextAmongNumbers) {
   const Table table = read("X_mm,deviation_um\n1.5,two\n");
   std::vector<Fault> faults;
