@@ -78,6 +78,8 @@ bool FanucMachine::run(const FanucBlock& block) {
     run_machine_position();
   } else if (one_shot == 280 || one_shot == 300) {
     run_reference_return();
+  } else if (one_shot == 310) {
+    run_skip();
   } else if (names_axis() || has_centre()) {
     run_motion();
   }

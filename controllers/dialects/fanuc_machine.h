@@ -13,7 +13,7 @@ namespace servomill::controllers {
 
 /// Groups of which a block may hold one code each (B-63944EN, preparatory functions).
 enum class FanucGroup : std::uint8_t {
-  one_shot,      // 00: G4 G9 G28 G30 G52 G53 G92.1
+  one_shot,      // 00: G4 G9 G28 G30 G31 G52 G53 G92.1
   motion,        // 01
   plane,         // 02
   distance,      // 03
@@ -121,6 +121,7 @@ class FanucMachine {
   void run_dwell();
   void run_machine_position();
   void run_reference_return();
+  void run_skip();
   void run_motion();
   MachineAction action(ActionKind kind) const;
   void move_to(MachineAction action);

@@ -126,6 +126,26 @@ void FanucMachine::run_reference_return() {
   move_to(home);
 }
 
+// G31: along a line at feed until the skip signal comes; without it to the end (B-63844EN/02, skip
+// function; M for the page). One-shot; the axes stand where the signal stopped them.
+void FanucMachine::run_skip() {
+  const int at = column(Group::one_shot);
+  if (!names_axis()) fail(at, "G31 without an axis");
+  if (has(Group::length)) fail(at, "a change of the tool length in a block with G31");
+  check_modes_of_motion();
+  if (modes_.feed_mode != FeedMode::units_per_minute) {
+    fail(at, "G31 while G94 is not known to be in force");
+  }
+  MachineAction out = action(ActionKind::probe);
+  set_target(out);
+  set_action_feed(out);
+  move_to(out);
+  if (!rules_.skip_forgets_positions) return;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    if (out.is_commanded[i]) position_[i].reset();
+  }
+}
+
 // Machine coordinate commanded by a word of the block.
 double FanucMachine::target(int axis, const FanucWord& word) {
   const bool is_linear = axis < kLinearJoints;

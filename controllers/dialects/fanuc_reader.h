@@ -7,8 +7,9 @@
 /// of them. "M" marks rules that were not found in a manual.
 ///
 /// Read: % O N / ( ); G0 G1 G2 G3 with I J K, G4, G5.1, G9, G15, G17 G18 G19, G20 G21, G28, G30,
-/// G40, G43 G44 G49, G50, G50.1, G52 of 0, G53, G54 ... G59, G61 G64, G69, G80, G90 G91, G92.1,
-/// G93 G94 G95, G97, G98 G99; F S T H; M0 ... M9 and M30. Refused: what needs cycles, macros,
+/// G31, G40, G43 G44 G49, G50, G50.1, G52 of 0, G53, G54 ... G59, G61 G64, G69, G80, G90 G91,
+/// G92.1, G93 G94 G95, G97, G98 G99; F S T H; M0 ... M9 and M30. POPEN, DPRNT[...] and PCLOS put
+/// out numbers and move nothing. Refused: what needs cycles, macros,
 /// cutter compensation, rotation, scaling, mirror images, shifts by G52 or G92.
 #pragma once
 
@@ -70,6 +71,7 @@ struct FanucRules {
   bool rolls_over_by_shorter_way = true;  // B-63534EN/02 p. 531
   bool tool_change_forgets_positions = true;
   bool stop_forgets_positions = true;
+  bool skip_forgets_positions = true;  // G31
   // modes
   bool modes_are_unknown_at_start = true;
   bool tool_change_forgets_modes = true;

@@ -17,6 +17,21 @@ constexpr std::size_t kMaxLine = 1000;      // characters; a guard against other
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+// POPEN, PCLOS and DPRNT[...], external output of custom macro B (B-63944EN, external output
+// commands; M), with or without a block number: they move nothing.
+bool is_output(std::string_view line) {
+  if (line.starts_with('N')) {
+    const std::size_t end = line.find_first_not_of("0123456789", 1);
+    line.remove_prefix(std::min(end, line.size()));
+  }
+  while (line.starts_with(' ')) line.remove_prefix(1);
+  if (line == "POPEN" || line == "PCLOS") return true;
+  constexpr std::string_view kPrint = "DPRNT[";
+  return line.starts_with(kPrint) && line.ends_with(']') &&
+         line.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789#[]*.-", kPrint.size() - 1) ==
+             std::string_view::npos;
+}
+
 }  // namespace
 
 double FanucWord::value() const {
@@ -64,7 +79,7 @@ std::optional<FanucBlock> FanucLexer::next() {
   while (percents_ < 2) {
     const auto line = next_line();
     if (!line) return std::nullopt;
-    if (take_percent(*line)) continue;
+    if (take_percent(*line) || is_output(*line)) continue;
     FanucBlock block = split(*line);
     if (!block.words.empty()) return block;
   }

@@ -82,6 +82,18 @@ void Control::finish(const Place& place) const {
   }
 }
 
+namespace {
+
+// FN 16: F-PRINT puts numbers out to a file and moves nothing (iTNC 530, formatted output of
+// parameters; M for the page).
+bool prints_to_file(const HeidenhainBlock& block) {
+  const auto& words = block.words;
+  return words.size() == 6 && words[1].text == "16:" && words[2].text == "F-PRINT" &&
+         words[4].text == "/";
+}
+
+}  // namespace
+
 void Control::run(const HeidenhainBlock& block) {
   const HeidenhainWord& first = block.words.front();
   place_ = block.place;
@@ -89,6 +101,9 @@ void Control::run(const HeidenhainBlock& block) {
     finish(block.place);
     cycle_.reset();
   }
+  if (first.text == "TCH") return run_probe(block);
+  if (open_probe_) fail(place_, "TCH PROBE 0.0 without its block TCH PROBE 0.1");
+  if (first.text == "FN" && prints_to_file(block)) return;
   if (first.text == "L") return run_line(block, 1);
   if (first.text == "CC") return run_pole(block);
   if (first.text == "C") return run_circle(block);

@@ -121,6 +121,9 @@ class Control {
   void run_line(const HeidenhainBlock& block, std::size_t first);
   void move_straight(const Positioning& p);
   void retract(const Positioning& p);
+  void run_probe(const HeidenhainBlock& block);
+  void begin_probing(const Words& words);
+  void probe(const Words& words);
   KnownPosition machine_targets(const Positioning& p) const;
   MachineAction new_motion(ActionKind kind) const;
   void move_to(const Positioning& p, const KnownPosition& end, MachineAction action);
@@ -185,6 +188,10 @@ class Control {
   State state_;
   std::vector<MachineAction> actions_;
   bool is_at_end_ = false;
+  struct OpenProbe {
+    int axis = 0, direction = 1;
+  };
+  std::optional<OpenProbe> open_probe_;  // TCH PROBE 0.0 has been read
   struct OpenCycle {
     int number = 0;
     int last = 0;  // index of its block read last

@@ -80,6 +80,7 @@ struct HeidenhainRules {
   bool m5_acts_at_block_end = true;    // with M9
   bool m13_switches_coolant = true;
   bool tool_call_forgets_positions = true;
+  bool probe_returns = true;  // TCH PROBE 0: to the position that it began at (M)
   bool tool_call_changes_length = true;
   bool delta_length_adds = true;       // DL
   bool stop_forgets_positions = true;  // M0, M1

@@ -28,6 +28,7 @@ enum class ActionKind : std::uint8_t {
   coolant,  // `number`: bit 0 mist, bit 1 flood; the state after the block
   stop,     // M0, M1 (`number` 0, 1)
   end,      // M2, M30
+  probe,    // straight at feed until the probe switches; the axes that it names stand somewhere
 };
 
 /// One action. Motion: `end` is the position of every axis after it, `is_commanded` the axes that
@@ -57,7 +58,7 @@ struct MachineAction {
   int tool_offset = 0;  // motion: number of the length in force at its end; 0: none
   double value = 0.0;   // dwell: s; spindle: rad/s
   int number = 0;
-  int direction = 0;  // spindle: 1 clockwise (M3), -1 (M4), 0 off (M5)
+  int direction = 0;  // spindle: 1 clockwise (M3), -1 (M4), 0 off (M5); probe: of its axis
 
   bool operator==(const MachineAction&) const = default;
 };

@@ -251,6 +251,7 @@ class BlockBuilder {
     const std::pair<std::string_view, std::optional<SiemensNumber>*> numbers[] = {
         {"F", &block_.F},       {"S", &block_.S},       {"CR", &block_.CR},
         {"ADIS", &block_.ADIS}, {"CTOL", &block_.CTOL}, {"ADISPOS", &block_.ADISPOS},
+        {"MEAS", &block_.MEAS},
     };
     for (const auto& [name, place] : numbers) {
       if (name == word.name) return put_once(word, *place);

@@ -63,7 +63,7 @@ struct SiemensBlock {
   std::array<std::optional<SiemensNumber>, kAxisWords> axes;
   std::array<std::optional<SiemensNumber>, 3> centre;   // I J K
   std::array<std::optional<SiemensNumber>, 3> through;  // I1 J1 K1: CIP
-  std::optional<SiemensNumber> CR, TURN, F, S, D, ADIS, ADISPOS, CTOL;
+  std::optional<SiemensNumber> CR, TURN, F, S, D, ADIS, ADISPOS, CTOL, MEAS;
   std::optional<SiemensTool> T;
   std::optional<SiemensSmoothing> smoothing;
   std::vector<SiemensNumber> M;

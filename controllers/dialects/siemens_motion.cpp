@@ -59,6 +59,7 @@ class Motion {
     finish_positions();
     set_path();
     if (out_.kind != ActionKind::rapid) set_feed();
+    if (block_.MEAS) measure();
     return out_;
   }
 
@@ -73,6 +74,20 @@ class Motion {
       fail(fmt::format("I, J, K, CR and TURN are for G2 and G3; G{} is in force", *state_.motion));
     }
     refuse_through_point(state_, block_, context_);
+  }
+
+  // MEAS=1: to the first signal of probe 1, which deletes the distance to go ([P], measuring with
+  // touch-trigger probes; M for the page). The axes of the block stand where it stopped them.
+  void measure() {
+    if (block_.MEAS->value != 1.0) {
+      fail(block_.MEAS->column, "only MEAS=1, the rising edge of probe 1, is read");
+    }
+    if (out_.kind != ActionKind::feed) fail(block_.MEAS->column, "MEAS is read in blocks with G1");
+    out_.kind = ActionKind::probe;
+    if (!context_.rules.MEAS_forgets_positions) return;
+    for (int a = 0; a < kAxisWords; ++a) {
+      if (target_.is_used[place_of(a)]) state_.position[place_of(a)].reset();
+    }
   }
 
   void finish_positions() {

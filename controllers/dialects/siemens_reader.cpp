@@ -14,6 +14,21 @@ namespace {
 
 constexpr double kLongestDwell = 1e6;  // s
 
+// DEF INT NERR and WRITE(NERR,"file",...), the report of a measurement ([P], write file; M for the
+// page), with or without a block number: they move nothing.
+bool is_report(std::string_view line) {
+  const auto skip_blanks = [&line] {
+    while (line.starts_with(' ')) line.remove_prefix(1);
+  };
+  skip_blanks();
+  if (line.size() > 1 && line[0] == 'N' && line[1] >= '0' && line[1] <= '9') {
+    const std::size_t end = line.find_first_not_of("0123456789", 1);
+    line.remove_prefix(std::min(end, line.size()));
+    skip_blanks();
+  }
+  return line == "DEF INT NERR" || (line.starts_with("WRITE(NERR,\"") && line.ends_with(')'));
+}
+
 bool is_stop(int M) { return M == 0 || M == 1; }
 bool is_end(int M) { return M == 2 || M == 17 || M == 30; }
 
@@ -52,12 +67,14 @@ class Reader {
   }
 
   void read_line(std::string_view text, int line) {
+    if (is_report(text)) return;
     const SiemensLine words = siemens_words(text, line, context_.file);
     if (words.is_empty) return;
     block_ = siemens_block(words, line, context_.file);
     if (words.is_skippable && context_.setup.skips_blocks) return;
     carry_wrong_rules();
     check_block();
+    if (block_.MEAS && !block_.moves()) fail(block_.MEAS->column, "MEAS without an axis");
     set_modes();
     set_numbers();
     if (block_.has(SiemensGroup::dwell)) return dwell();

@@ -78,6 +78,7 @@ struct SiemensRules {
   bool F_of_G4_is_time = true;              // the feed in force stays (M)
   bool G60_rapid_may_bend = true;           // RTLIOF [P] p. 181
   bool G9_ends_with_its_block = true;       // [P] p. 293
+  bool MEAS_forgets_positions = true;       // of the axes of its block (M)
   bool ADIS_is_of_G641 = true;              // CTOL is that of G642 [P], 828D p. 490
   bool stop_acts_after_motion = true;       // M0, M1, M2, M17, M30 (M)
   bool stop_forgets_positions = true;       // the operator may have jogged

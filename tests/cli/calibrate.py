@@ -136,6 +136,22 @@ class Way(unittest.TestCase):
         self.assertIn("EC0Y", taken)
         self.assertIn("no instrument of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
 
+    def test_a_plan_for_the_probe_writes_programs_for_four_controls(self):
+        machine = "../../machines/generic_trunnion_ac.toml"
+        arguments = ("plan-calibration", "--machine", machine, "--instruments", "probe", "--hours", "1", "-o", "touch")
+        printed = self.run_in("router", *arguments).stdout
+        self.assertRegex(printed, r"\d+ touches with a probe of \d+ mm: programs for linuxcnc,heidenhain,fanuc,siemens")
+        names = sorted(os.listdir(self.path("router", "touch")))
+        word = {"ngc": "G38.2", "h": "TCH PROBE 0.1", "nc": "G31", "mpf": "MEAS=1"}
+        for end, text in word.items():
+            program = next(name for name in names if name.endswith("." + end))
+            with open(self.path("router", "touch", program), encoding="utf-8") as file:
+                touches = sum(text in line for line in file)
+            with open(self.path("router", "touch", program.replace("measure", "touches").replace("." + end, ".csv")), encoding="utf-8") as file:
+                self.assertEqual(touches, len(file.readlines()) - 2, program)
+        refused = self.run_in("router", *arguments[:-1], "heads", "--controls", "linuxcnc,fanux", status=2).stderr
+        self.assertIn("'fanux' is no control of linuxcnc, heidenhain, fanuc, siemens; did you mean 'fanuc'?", refused)
+
     def test_the_table_of_errors_is_drawn(self):
         self.run_in("router", "calibrate", "readings.toml", "--table", "errors.csv", "-q")
         tool = os.path.join(SCENARIOS, "..", "tools", "errors_figure.py")

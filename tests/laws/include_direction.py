@@ -44,7 +44,7 @@ SIM_ROOMS = {
     "run": ["controllers", "strategies", "config", "engine", "evaluation", "frequency", "input", "model", "preparation",
             "records", "system"],
     "sweep": ["config", "evaluation", "input", "model", "preparation", "records", "run", "system"],
-    "programs": ["controllers", "strategies", "config", "evaluation", "input", "model", "preparation", "run", "sweep",
+    "programs": ["controllers", "strategies", "config", "evaluation", "input", "model", "preparation", "readings", "run", "sweep",
                  "system"],
 }
 standing = ["plant", "controllers", "strategies", *SIM_ROOMS]

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
 #include "sim/calibration/plan.h"
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
+#include "sim/programs/measuring/measuring_program.h"
 #include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
@@ -17,8 +21,10 @@ namespace {
 
 namespace po = boost::program_options;
 namespace calibration = sim::calibration;
+namespace programs = sim::programs;
 
-constexpr double kLongest = 1000.0;  // h
+constexpr double kLongest = 1000.0;     // h
+constexpr double kLargestBall = 200.0;  // mm
 
 void add_plan_options(Options& options) {
   options.add()("machine,m", po::value<std::string>()->value_name("MACHINE.toml"),
@@ -30,7 +36,16 @@ void add_plan_options(Options& options) {
                 "time that there is for measuring");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
                 "writes readings.toml there with a CSV file for each set-up, in which the numbers "
-                "are missing");
+                "are missing, and measuring programs of the touch probe for --controls");
+  options.add()("controls",
+                po::value<std::string>()
+                    ->default_value("linuxcnc,heidenhain,fanuc,siemens")
+                    ->value_name("LIST"),
+                "controls that measuring programs are written for");
+  options.add()("sphere", po::value<double>()->default_value(25.0)->value_name("D"),
+                "diameter of the spheres that these touch, mm");
+  options.add()("stylus", po::value<double>()->default_value(6.0)->value_name("D"),
+                "diameter of the stylus, mm");
   options.add()("force,f", "replaces outputs that exist");
 }
 
@@ -53,6 +68,64 @@ calibration::PlanSettings settings_of(const Options& options) {
   }
   out.time = hours * 3600.0;
   return out;
+}
+
+std::vector<programs::Dialect> controls_of(const Options& options) {
+  std::vector<programs::Dialect> out;
+  std::istringstream words(options.get<std::string>("controls"));
+  for (std::string word; std::getline(words, word, ',');) {
+    const auto& names = programs::kDialects;
+    const auto found = std::find(names.begin(), names.end(), word);
+    if (found == names.end()) {
+      throw InputError({"--controls"},
+                       fmt::format("'{}' is no control of {}{}", word, fmt::join(names, ", "),
+                                   did_you_mean(word, names)));
+    }
+    out.push_back(static_cast<programs::Dialect>(found - names.begin()));
+  }
+  return out;
+}
+
+programs::ProbingSettings probing_of(const Options& options) {
+  programs::ProbingSettings out;
+  for (const auto& [name, to] : {std::pair{"sphere", &out.sphere}, {"stylus", &out.stylus}}) {
+    const double value = options.get<double>(name);
+    if (!(value > 0.0 && value <= kLargestBall)) {
+      throw InputError({fmt::format("--{}", name)},
+                       fmt::format("must be above 0 and at most {:g} mm", kLargestBall));
+    }
+    *to = value * mm;
+  }
+  return out;
+}
+
+// Measuring programs of the spheres that the plan has, and readings.toml of kind touch for them.
+void write_programs(const std::string& folder, const sim::readings::Readings& plan,
+                    const sim::model::MachineSettings& machine, const Options& options) {
+  const programs::ProbingSettings settings = probing_of(options);
+  const auto is_sphere = [](const auto& group) {
+    return group.kind == sim::readings::Kind::sphere;
+  };
+  std::set<double> lengths;  // um, of styli
+  for (const auto& group : plan.groups) {
+    if (is_sphere(group)) lengths.insert(-std::round(group.p_ST.z() / um));
+  }
+  for (const double length : lengths) {
+    const programs::MeasuringMoves moves =
+        programs::measuring_moves(plan, machine, settings, length * um);
+    for (const std::string& note : moves.notes) fmt::print("note: {}\n", note);
+    for (const programs::Dialect dialect : controls_of(options)) {
+      const std::string name = programs::measuring_file(dialect, length * um);
+      for (const std::string& clause : programs::write_measuring_program(
+               (std::filesystem::path(folder) / name).string(), moves, machine, settings,
+               length * um, dialect, options.has("force"))) {
+        fmt::print("note: {}: {}\n", name, clause);
+      }
+    }
+    programs::write_touches(folder, moves, machine, settings, length * um, options.has("force"));
+    fmt::print("{} touches with a probe of {:g} mm: programs for {}\n", moves.touches,
+               length * um / mm, options.get<std::string>("controls"));
+  }
 }
 
 }  // namespace
@@ -84,8 +157,9 @@ int plan_calibration_command(const Arguments& arguments) {
   if (options.has("output")) {
     const auto& folder = options.get<std::string>("output");
     std::filesystem::create_directories(folder);
-    calibration::write_plan(folder, calibration::planned_readings(plan), machine.chain,
-                            machine_file, options.has("force"));
+    const sim::readings::Readings planned = calibration::planned_readings(plan);
+    calibration::write_plan(folder, planned, machine.chain, machine_file, options.has("force"));
+    write_programs(folder, planned, machine, options);
     fmt::print("written to {}\n", folder);
   }
   return kDone;

@@ -123,6 +123,14 @@ class DialectPrinter {
   virtual bool takes_arc(const DialectMotion& motion) const = 0;
   /// Reason for which arcs outside the XY plane become lines, as the rest of a sentence.
   virtual std::string_view why_lines() const = 0;
+  /// A line along one axis until the probe switches; rapid and feed are as in `motion`.
+  /// @param from  X, Y and Z that it begins at, where the axes stand
+  virtual void probe(const DialectMotion& motion, const DialectMotion& from) = 0;
+  /// Blocks in front of the program that the control needs to put out numbers.
+  virtual void begin_report() {}
+  /// Position of the last touch put out to a file or interface.
+  virtual void report_touch() = 0;
+  virtual void end_report() {}
   /// Sets the end of the arc of `motion`, if the control computes it from an angle.
   virtual void turn_by_angle(const DialectMotion&, const AxisWords&, AxisWords&) const {}
   /// Z to settings.retract_Z, without tool length.

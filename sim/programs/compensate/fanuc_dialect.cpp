@@ -96,6 +96,24 @@ class Fanuc final : public IsoDialect {
     put(motion_text(helix, prefix));
   }
 
+  // G31 is one-shot: G0 or G1 stay in force (B-63844EN/02, skip function; M for the page).
+  void probe(const DialectMotion& motion, const DialectMotion&) override {
+    check_positions(motion, kMostPosition);
+    const auto code = modes_.code;
+    modes_.code = "G1";
+    std::string text = motion_text(motion, "G31");
+    modes_.code = code;
+    put(std::move(text));
+    assume("the probe acts as the skip signal of G31, and stops axes at this feed in its travel");
+  }
+  void report_touch() override {
+    if (!reports_) put("POPEN");
+    reports_ = true;
+    put("DPRNT[X#5061[53]*Y#5062[53]*Z#5063[53]]");
+    assume("custom macro B puts #5061 to #5063, where the skip signal came, out to the interface");
+  }
+  void end_report() override { put("PCLOS"); }
+
   void retract() override {
     put(retract_text());
     modes_.code = "G0";
@@ -175,6 +193,7 @@ class Fanuc final : public IsoDialect {
   }
 
  private:
+  bool reports_ = false;
   // Motions to an end point that no block can express.
   void assume_ways(const DialectMotion& motion) {
     // B-63844EN/02 p. 48

@@ -100,6 +100,23 @@ class Heidenhain final : public DialectPrinter {
     put(text);
   }
 
+  // Touch probe cycle 0; feed and range are those of the control's table of touch probes (M).
+  void probe(const DialectMotion& motion, const DialectMotion& from) override {
+    check_positions(from, kMostPosition);
+    const auto& [axis, to] = motion.words.front();
+    const auto begin = std::find_if(from.words.begin(), from.words.end(),
+                                    [axis = axis](const auto& word) { return word.first == axis; });
+    put(fmt::format("TCH PROBE 0.0 REF. PLANE Q5 {}{}", letter(axis),
+                    to > begin->second ? '+' : '-'));
+    put("TCH PROBE 0.1" + words(from.words));
+    assume(fmt::format("the table of touch probes has a feed and a range of {:g} mm or more",
+                       std::abs(to - begin->second)));
+  }
+  void report_touch() override {
+    put("FN 16: F-PRINT TOUCH.A / TNC:\\TOUCHES.TXT");
+    assume("TOUCH.A is a mask that prints Q115, Q116 and Q117");
+  }
+
   void retract() override {
     put(fmt::format("L {} R0 FMAX M91", retract_word()));
     has_R0_ = true;

@@ -80,6 +80,18 @@ class Siemens final : public IsoDialect {
     put(motion_text(motion, prefix));
   }
 
+  // Measuring with delete distance-to-go: 6FC5398-2EP40-0BA0, MEAS (M for the page).
+  void probe(const DialectMotion& motion, const DialectMotion&) override {
+    check_positions(motion, kMostPosition);
+    put(motion_text(motion, "MEAS=1"));
+    put("STOPRE");
+    assume("the touch probe is probe 1 of MEAS");
+  }
+  void begin_report() override { put("DEF INT NERR"); }
+  void report_touch() override {
+    put("WRITE(NERR,\"TOUCHES\",$AA_MW[X]<<\" \"<<$AA_MW[Y]<<\" \"<<$AA_MW[Z])");
+  }
+
   void retract() override {
     put(retract_text());
     modes_.code = "G0";

@@ -10,6 +10,7 @@ MachineAction action_of(const OriginalAction& original) {
   const Move& move = original.move;
   MachineAction out;
   out.kind = kind_of(move.kind);
+  if (move.kind == MoveKind::feed && move.number != 0) out.kind = ActionKind::probe;
   out.line = move.line;
   const AxisFlags6 changed = original.changed();
   for (int i = 0; i < kAxisWords; ++i) {

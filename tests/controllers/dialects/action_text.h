@@ -56,7 +56,9 @@ inline std::string feed_text(const MachineAction& action) {
 
 inline std::string motion_text(const MachineAction& action) {
   constexpr const char* kKinds[] = {"rapid", "feed", "arc"};
-  std::string out = kKinds[static_cast<int>(action.kind)] + axes_text(action);
+  const bool is_probe = action.kind == ActionKind::probe;
+  std::string out =
+      (is_probe ? "probe" : kKinds[static_cast<int>(action.kind)]) + axes_text(action);
   if (!action.is_straight) out += " ~";
   if (action.is_machine_position) out += action.is_to_reference ? " home" : " machine";
   if (action.kind != ActionKind::rapid) out += feed_text(action);

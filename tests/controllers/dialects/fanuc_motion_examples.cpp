@@ -51,6 +51,33 @@ std::vector<FanucExample> fanuc_motion_examples() {
        "8 rapid X201 H1\n"
        "9 rapid (X201) Z-44 H1\n"},
 
+      // ---- the skip function
+      {"a skip signal stops the axis of the block somewhere", "LRP=1",
+       FANUC_BEGIN "G54 G0 X0. Y0. G43 H1 Z5.\n"
+                   "POPEN\n"
+                   "G31 Z-2. F300.\n"
+                   "DPRNT[X#5061[53]*Y#5062[53]*Z#5063[53]]\n"
+                   "G0 Z5.\n"
+                   "G31 X10.\n"
+                   "PCLOS\n"
+                   "Y1.\n",
+       "6 rapid X200 Y250 Z-45 H1\n"
+       "8 probe (X200) (Y250) Z-52 F300 H1\n"
+       "10 rapid (X200) (Y250) Z-45 H1\n"
+       "11 probe X210 (Y250) (Z-45) F300 H1\n"
+       "13 rapid Y251 (Z-45) H1\n"},
+      {"an increment behind a skip", "",
+       FANUC_BEGIN "G54 G0 X0. Y0. G43 H1 Z5.\n"
+                   "G31 X10. F300.\n"
+                   "G91 X1.\n",
+       "error: 8:5: an incremental move needs the position of X, which is not known"},
+      {"a skip without an axis", "", FANUC_BEGIN "G31 F300.\n", "error: 6:1: G31 without an axis"},
+      {"a skip with a change of the length", "",
+       FANUC_BEGIN "G54 G0 X0. Y0.\nG31 G43 H1 Z5. F300.\n",
+       "error: 7:1: a change of the tool length in a block with G31"},
+      {"a skip by time", "", FANUC_BEGIN "G54 G0 X0.\nG93 G31 X5. F3.\n",
+       "error: 7:5: G31 while G94 is not known to be in force"},
+
       // ---- feeds
       {"feeds per minute, per revolution and by time", "LRP=1",
        FANUC_BEGIN "G54 G0 X0. B0.\n"

@@ -83,6 +83,7 @@ TEST(FanucReader, EveryWrongRuleFailsAnExample) {
       {"always around", [](FanucRules& r) { r.rolls_over_by_shorter_way = false; }},
       {"M6 stays in place", [](FanucRules& r) { r.tool_change_forgets_positions = false; }},
       {"M0 stays in place", [](FanucRules& r) { r.stop_forgets_positions = false; }},
+      {"G31 reaches its end", [](FanucRules& r) { r.skip_forgets_positions = false; }},
       {"modes at the start", [](FanucRules& r) { r.modes_are_unknown_at_start = false; }},
       {"modes survive M6", [](FanucRules& r) { r.tool_change_forgets_modes = false; }},
       {"the spindle survives M6", [](FanucRules& r) { r.tool_change_forgets_spindle = false; }},

@@ -79,6 +79,8 @@ std::string described(const MachineAction& action) {
       return fmt::format("stop {}", action.number);
     case ActionKind::end:
       return fmt::format("end {}", action.number);
+    case ActionKind::probe:
+      return fmt::format("probe {}", action.direction > 0 ? "+" : "-") + axes(action);
   }
   return "";
 }

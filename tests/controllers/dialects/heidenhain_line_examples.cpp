@@ -33,6 +33,12 @@ std::vector<HeidenhainExample> motion_examples() {
       // The limit of travel is unknown. M
       {"retract to the limit", "L Z+2 FMAX\nL M140 MB MAX\nL X+1 FMAX\n",
        "1 rapid (X200) (Y250) Z-48\n2 rapid limit (X200) (Y250) Z?\n3 rapid X201 (Y250) (Z?)\n"},
+      // To the position of 0.1 at rapid, along the axis until the probe switches, and back. M
+      {"touch probe cycle 0",
+       "L X+1 Y+2 R0 FMAX\nL Z+5 FMAX\nTCH PROBE 0.0 REF. PLANE Q5 Z-\n"
+       "TCH PROBE 0.1 X+1 Y+2 Z+5\nFN 16: F-PRINT TOUCH.A / TNC:\\TOUCHES.TXT\nL IZ+1 FMAX\n",
+       "1 rapid X201 Y252 (Z?)\n2 rapid (X201) (Y252) Z-45\n4 rapid X201 Y252 Z-45\n"
+       "4 probe - (X201) (Y252) Z-45\n6 rapid (X201) (Y252) Z-44\n"},
       // FT: seconds for the block. CONTROLS 15; M
       {"feed as a time", "L X+10 FT2.5\nL X+20 F100\n",
        "1 feed X210 (Y250) (Z?) T2.5\n2 feed X220 (Y250) (Z?) F100\n"},

@@ -32,6 +32,10 @@ bool is_shortest(const SiemensSettings& s) { return s.is_modulo[2] && s.G90_is_s
 
 std::vector<SiemensExample> offsets() {
   return {
+      // A probe stops the axis of its block somewhere; numbers are put out without a motion. M
+      {"AMeasurementLeavesItsAxisUnknown",
+       "G0 X10 Y-5\nMEAS=1 G1 X20 F300\nSTOPRE\nWRITE(NERR,\"TOUCHES\",$AA_MW[X]<<\" \")\nG0 Y0",
+       {"3 rapid X110 Y195 ~", "4 probe X120 (Y195) F300", "7 rapid Y200"}},
       // [K2] p. 1-7: the settable frame adds its offset.
       {"ARapidEndsAtTheWorkOffset",
        "G0 X10 Y-5\nG0 Z5 D0",

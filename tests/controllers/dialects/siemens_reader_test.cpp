@@ -63,6 +63,7 @@ constexpr WrongRule kWrongRules[] = {
     {"F_of_G4_is_time", &SiemensRules::F_of_G4_is_time},
     {"G60_rapid_may_bend", &SiemensRules::G60_rapid_may_bend},
     {"G9_ends_with_its_block", &SiemensRules::G9_ends_with_its_block},
+    {"MEAS_forgets_positions", &SiemensRules::MEAS_forgets_positions},
     {"ADIS_is_of_G641", &SiemensRules::ADIS_is_of_G641},
     {"stop_acts_after_motion", &SiemensRules::stop_acts_after_motion},
     {"stop_forgets_positions", &SiemensRules::stop_forgets_positions},
