@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sim/calibration/error_effects.h"
 
@@ -160,15 +161,21 @@ class Adjuster {
     return b;
   }
 
-  // Share of each number that the unknowns take up: row (J' W J)^-1 row' weight.
-  VectorXd leverages(const MatrixXd& covariance) const {
+  // Covariance of plain functions and lines.
+  MatrixXd with_lines(const MatrixXd& covariance) const {
     const Eigen::Index all = size_ + P_.rows();
-    MatrixXd C(all, all);  // of plain functions and lines
+    MatrixXd C(all, all);
     C.topLeftCorner(size_, size_) = covariance;
     C.bottomLeftCorner(P_.rows(), size_) = -P_ * covariance;
     C.topRightCorner(size_, P_.rows()) = C.bottomLeftCorner(P_.rows(), size_).transpose();
     C.bottomRightCorner(P_.rows(), P_.rows()) =
         -C.bottomLeftCorner(P_.rows(), size_) * P_.transpose();
+    return C;
+  }
+
+  // Share of each number that the unknowns take up: row (J' W J)^-1 row' weight.
+  VectorXd leverages(const MatrixXd& covariance) const {
+    const MatrixXd C = with_lines(covariance);
     VectorXd out(Eigen::Index(rows_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const SparseRow& row = rows_[i];
@@ -266,7 +273,54 @@ class Adjuster {
     return most;
   }
 
+  // Numbers of one target: of all lines of an axis at one place, else of one group and place.
+  std::vector<std::vector<std::size_t>> targets() const {
+    std::map<std::vector<double>, std::vector<std::size_t>> found;
+    constexpr double kGrid = 1e6;  // 1/m, 1/rad
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Observation& one = observations_.all[i];
+      const readings::Group& group = readings_.groups[one.group];
+      const Joints& Q = one.poses.front().Q;
+      std::vector<double> key;
+      if (group.axis) {
+        const int joint = *chain_.layout.joint_of(*group.axis);
+        key = {-1.0, double(joint), std::round(Q[joint] * kGrid)};
+      } else {
+        key = {double(one.group)};
+        for (const double q : Q) key.push_back(std::round(q * kGrid));
+      }
+      found[key].push_back(i);
+    }
+    std::vector<std::vector<std::size_t>> out;
+    for (auto& [key, numbers] : found) out.push_back(std::move(numbers));
+    return out;
+  }
+
+  // Left out, the numbers of a target have the whitened residuals (I - H)^-1 r, H their part of
+  // the projection on the unknowns (Allen's prediction sum of squares, for blocks).
+  double prediction_error() const {
+    const MatrixXd C = with_lines(out_.covariance);
+    double squares = 0.0;
+    for (const std::vector<std::size_t>& numbers : targets()) {
+      const auto n = static_cast<Eigen::Index>(numbers.size());
+      MatrixXd A = MatrixXd::Zero(n, C.rows());
+      VectorXd r(n);
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const std::size_t i = numbers[std::size_t(k)];
+        const double root = std::sqrt(weight(i));
+        for (std::size_t a = 0; a < rows_[i].columns.size(); ++a) {
+          A(k, rows_[i].columns[a]) = root * rows_[i].values[a];
+        }
+        r[k] = root * out_.residuals[i];
+      }
+      const MatrixXd rest = MatrixXd::Identity(n, n) - A * C * A.transpose();
+      squares += (rest + kControlled * MatrixXd::Identity(n, n)).ldlt().solve(r).squaredNorm();
+    }
+    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rows_.size(), 1)));
+  }
+
   void finish() {
+    if (options_.predicts) out_.prediction = prediction_error();
     const VectorXd h = leverages(out_.covariance);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       GroupResult& group = out_.groups[observations_.all[i].group];

@@ -79,12 +79,15 @@ struct Adjustment {
   std::vector<double> short_waves;
   double squares = 0.0;  // of whitened residuals and of what is known of set-ups
   double redundancy = 0.0;
+  /// Root mean square of whitened residuals of numbers that all others predict; 0: not asked for.
+  double prediction = 0.0;
   int iterations = 0;
   bool converged = false;
 };
 
 struct AdjustmentOptions {
-  bool robust = false;  // Huber's weights
+  bool robust = false;    // Huber's weights
+  bool predicts = false;  // leaves the readings of each target out in turn
 };
 
 /// @param locations, functions  what is looked for; `first` is set here

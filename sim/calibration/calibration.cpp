@@ -234,16 +234,18 @@ double outlier_limit(std::size_t n) {
 }
 
 Calibration calibrate(readings::Readings readings, const plant::MachineChain& chain,
-                      const CalibrationSettings& settings) {
+                      const CalibrationSettings& asked) {
   Calibration out{.readings = std::move(readings),
-                  .settings = settings,
+                  .settings = asked,
                   .observations = {},
                   .adjustment = {},
                   .outliers = {},
                   .suspects = {},
+                  .smoothness = {},
                   .one_way = {}};
   out.observations = observations_of(out.readings, chain);
   out.one_way = one_way_axes(out.readings, out.observations, chain.layout);
+  const CalibrationSettings& settings = out.settings;
   std::vector<SoughtLocation> locations;
   for (const ErrorName& name : sought_locations(chain, settings.frame)) {
     if (!is_sought(settings, name)) continue;
@@ -251,6 +253,11 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
     location.size = settings_of(settings, name).size.value_or(location.size);
     locations.push_back(location);
   }
+  out.smoothness = choose_smoothness(out.settings, [&](const CalibrationSettings& tried) {
+    return adjust(out.readings, out.observations, chain, locations,
+                  sought_functions(out.readings, out.observations, chain, tried, {}),
+                  {.robust = tried.robust, .predicts = true});
+  });
   std::vector<SoughtFunction> functions =
       sought_functions(out.readings, out.observations, chain, settings, {});
   const AdjustmentOptions options{.robust = settings.robust};

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "sim/calibration/calibration.h"
 #include "sim/config/document.h"
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kMostDegree = 20;
 constexpr std::int64_t kMostKnots = 1000;
+constexpr std::array<std::string_view, 1> kByData = {"auto"};
 
 // Size that is expected of errors along (um) or about (urad).
 std::optional<double> read_size(config::Reader& table, bool is_length) {
@@ -26,18 +29,27 @@ FormSettings read_form(config::Reader& table, bool linear) {
   const auto key = [linear](const char* name) {
     return fmt::format("{}_{}", name, linear ? "mm" : "deg");
   };
-  if (table.has("polynomial")) {
+  // "auto": whatever predicts readings best
+  const auto is_by_data = [&table](std::string_view name) {
+    if (!table.is(name, config::Value::Type::text)) return false;
+    table.choice(name, kByData);
+    return true;
+  };
+  form.degree_by_data = is_by_data("polynomial");
+  form.knots_by_data = is_by_data("knots");
+  if (table.has("polynomial") && !form.degree_by_data) {
     form.degree = static_cast<int>(
         table.integer("polynomial", {config::at_least(0.0), config::at_most(double(kMostDegree))}));
   }
-  if (table.has("knots")) {
+  if (table.has("knots") && !form.knots_by_data) {
     form.number_of_knots = static_cast<int>(
         table.integer("knots", {config::at_least(0.0), config::at_most(double(kMostKnots))}));
     if (*form.number_of_knots == 1) table.fault("knots", "must be 0 or at least 2");
   }
   if (table.has(key("knots"))) {
     form.knots = table.reals(key("knots"), travel);
-    if (form.number_of_knots) table.fault(key("knots"), "stands beside knots; only one can count");
+    if (form.number_of_knots || form.knots_by_data)
+      table.fault(key("knots"), "stands beside knots; only one can count");
     if (form.knots->size() < 2 ||
         !std::is_sorted(form.knots->begin(), form.knots->end(), std::less_equal<>())) {
       table.fault(key("knots"), "must be two places at least, in ascending order");

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Machines drawn and measured by a generator that knows the READMEs only (foreign_machine.py, foreign_readings.py), and calibrated.
 
-    blind.py SERVOMILL      SERVOMILL_FOREIGN_THREE, SERVOMILL_FOREIGN_FIVE: machines (3, 1)
+    blind.py SERVOMILL      SERVOMILL_FOREIGN_THREE, _FIVE, _HEAD: machines (3, 1, 1)
 """
 import os
 import re
@@ -87,6 +87,9 @@ class Machines(unittest.TestCase):
 
     def test_five_axes(self):
         self.check("five", int(os.environ.get("SERVOMILL_FOREIGN_FIVE", "1")))
+
+    def test_five_axes_with_a_head(self):
+        self.check("head", int(os.environ.get("SERVOMILL_FOREIGN_HEAD", "1")))
 
 
 if __name__ == "__main__":

@@ -62,6 +62,7 @@ class Machine:
     def __init__(self, structure, components=None, locations=None, centres=None):
         words = [word.strip("'") for word in structure.split()]
         bed = words.index("b")
+        self.structure = structure
         self.chain = [(word, k < bed) for k, word in enumerate(words) if word in LETTERS]
         self.axes = [axis for axis, _ in self.chain]
         self.components = components or {}  # "EXX": Function
@@ -146,5 +147,4 @@ def projected(machine, frame_axes="XY"):
         if across:
             name, sign = {"YX": ("EC0Y", -1), "ZX": ("EB0Z", 1), "XY": ("EC0Y", -1), "ZY": ("EA0Z", -1), "XZ": ("EB0Z", 1), "YZ": ("EA0Z", -1)}[direction + axis]
             add(name, sign * slope)
-    return Machine(" ".join(["w"] + [a for a, w in machine.chain if w] + ["b"] + [a for a, w in machine.chain if not w] + ["t"]),
-                   components, locations, machine.centres)
+    return Machine(machine.structure, components, locations, machine.centres)

@@ -1,6 +1,6 @@
 """Files of readings of a machine as its owner would write them, made by sim/readings/README.md alone.
 
-    foreign_readings.py FOLDER [SEED] [three|five]
+    foreign_readings.py FOLDER [SEED] [three|five|head]
 """
 import os
 import sys
@@ -327,27 +327,38 @@ def measure_three(machine, knots, folder, seed):
         file.write(head + "\n".join(bench.text))
 
 
-def five_axes(seed):
-    random = np.random.default_rng([seed, 3])
+# Structures with their two rotary axes, the centres of these (mm) and the location errors that a machine of that kind can have.
+KINDS = {
+    "five": ("w C' A' b X Y Z t", {"A": (0, 0, 50)}, ("EB0A", "EC0A", "EA0C", "EB0C"), ("EY0A", "EZ0A", "EX0C", "EY0C")),
+    "head": ("w C' b X Y Z B t", {"B": (0, 0, 80)}, ("EA0B", "EC0B", "EA0C", "EB0C"), ("EX0B", "EZ0B", "EX0C", "EY0C")),
+}
+
+
+def five_axes(seed, kind="five"):
+    random = np.random.default_rng([seed, 3 if kind == "five" else 5])
+    structure, centres, tilts, offsets = KINDS[kind]
+    tilting = next(iter(centres))
     knots = {"X": np.linspace(-400, 400, 11), "Y": np.linspace(-300, 300, 11), "Z": np.linspace(-200, 500, 11),
-             "A": np.radians(np.linspace(-60, 60, 9)), "C": np.radians(np.linspace(0, 330, 12))}
+             tilting: np.radians(np.linspace(-60, 60, 9)), "C": np.radians(np.linspace(0, 330, 12))}
     components = {}
-    for axis in "XYZAC":
+    for axis in knots:
         for direction in "XYZABC":
-            lost = random.normal(0.0, 6 * UM if axis in "XYZ" else 10 * URAD) if direction == axis or direction + axis in ("AA", "CC") else 0.0
+            turns = direction + axis in ("AA", "BB", "CC")
+            lost = random.normal(0.0, 6 * UM if axis in "XYZ" else 10 * URAD) if direction == axis or turns else 0.0
             function = random_function(random, knots[axis], 4 * UM if direction in "XYZ" else 8 * URAD, lost)
             mean, slope = function.moments()
             across = direction in "XYZ" and axis in "XYZ" and direction != axis
             components[f"E{direction}{axis}"] = function.without(mean, slope if across else 0.0)
-    locations = {name: random.normal(0.0, 30 * URAD) for name in ("EC0Y", "EB0Z", "EA0Z", "EB0A", "EC0A", "EA0C", "EB0C")}
-    locations.update({name: random.normal(0.0, 15 * UM) for name in ("EY0A", "EZ0A", "EX0C", "EY0C")})
-    return Machine("w C' A' b X Y Z t", components, locations, {"A": (0, 0, 50)}), knots
+    locations = {name: random.normal(0.0, 30 * URAD) for name in ("EC0Y", "EB0Z", "EA0Z") + tilts}
+    locations.update({name: random.normal(0.0, 15 * UM) for name in offsets})
+    return Machine(structure, components, locations, centres), knots
 
 
 def measure_five(machine, knots, folder, seed):
     bench = Bench(machine, folder, [seed, 4])
     laser = ("laser", bench.noise(0.25e-6))
-    q = {"X": 0.0, "Y": 0.0, "Z": 150.0, "A": 0.0, "C": 0.0}
+    tilting = next(axis for axis in knots if axis in "AB")
+    q = {"X": 0.0, "Y": 0.0, "Z": 150.0, tilting: 0.0, "C": 0.0}
     tools = [(0, 0, -120), (100, 0, -120), (0, 90, -220)]
     for axis in "XYZ":
         for k in range(3):
@@ -363,20 +374,23 @@ def measure_five(machine, knots, folder, seed):
         bench.squareness(axes, start, tools[0], lengths, 1.0 * URAD)
     for plane in ("XY", "YZ", "XZ"):
         bench.circle(f"circle {plane}", plane, q, tools[0], 150, 0.5 * UM, 0.3 * UM)
-    bench.turning("A, autocollimator", "A", q, knots["A"], 1 * URAD)
+    bench.turning(f"{tilting}, autocollimator", tilting, q, knots[tilting], 1 * URAD)
     bench.turning("C, polygon", "C", q, knots["C"], 1 * URAD)
-    bench.turning("C, polygon on the tilted table", "C", {**q, "A": np.radians(-30)}, knots["C"], 1 * URAD)
-    poses = [{**q, "A": a, "C": c} for a in knots["A"][::2] for c in knots["C"][::2]] + [{**q, "A": a, "C": c} for a in knots["A"][1::2] for c in knots["C"][1::2]]
+    bench.turning("C, polygon, tilted", "C", {**q, tilting: np.radians(-30)}, knots["C"], 1 * URAD)
+    tilts = knots[tilting] if tilting == "A" else knots[tilting][2:-2]  # a head has less room
+    poses = [{**q, tilting: a, "C": c} for k in (0, 1) for a in tilts[k::2] for c in knots["C"][k::2]]
     bench.r_test("nest, low", poses, tools[0], (120, 40, 60), 0.6 * UM)
     bench.r_test("nest, high", poses, tools[2], (-70, 90, 180), 0.6 * UM)
     bench.spheres("spheres", {"a": (150, 0, 60), "b": (-60, 120, 100)}, poses, tools[0], 0.6 * UM)
     bench.spheres("spheres, long stylus", {"a": (150, 0, 60), "b": (-60, 120, 100)}, poses[::2], (0, 0, -220), 0.6 * UM, adjusted=True)
     bench.touches("touches", {"a": (140, 30, 60), "b": (-80, 100, 120)}, poses[::2], tools[0], 25, 6, 0.4 * UM)
+    structure = machine.structure.replace(" t", " (C1) t")
+    centre = ", ".join(f"{c:g}" for c in machine.centres[tilting])
     with open(os.path.join(folder, "machine.toml"), "w", encoding="utf-8") as file:
-        file.write('name = "foreign trunnion"\nsource = "drawn at random"\nstructure = "[w C\' A\' b X Y Z (C1) t]"\n\n')
-        for axis, (lower, upper) in {"X": (-450, 450), "Y": (-450, 450), "Z": (-250, 520)}.items():
+        file.write(f'name = "foreign five axes"\nsource = "drawn at random"\nstructure = "[{structure}]"\n\n')
+        for axis, (lower, upper) in {"X": (-600, 600), "Y": (-600, 600), "Z": (-350, 620)}.items():
             file.write(f"[axis.{axis}]\ntravel_mm = [{lower}, {upper}]\n\n")
-        file.write('[axis.A]\ntravel_deg = [-110, 110]\ncentre_mm = [0, 0, 50]\n\n[axis.C]\n')
+        file.write(f"[axis.{tilting}]\ntravel_deg = [-110, 110]\ncentre_mm = [{centre}]\n\n[axis.C]\n")
     with open(os.path.join(folder, "readings.toml"), "w", encoding="utf-8") as file:
         file.write('machine = "machine.toml"\n\n[[instrument]]\nname = "laser"\nscale_uncertainty_um_per_m = 0.25\n\n' + "\n".join(bench.text))
 
@@ -384,7 +398,7 @@ def measure_five(machine, knots, folder, seed):
 def make(folder, seed, kind):
     """Draws a machine, measures it, writes all files; returns the machine."""
     os.makedirs(folder, exist_ok=True)
-    machine, knots = three_axes(seed) if kind == "three" else five_axes(seed)
+    machine, knots = three_axes(seed) if kind == "three" else five_axes(seed, kind)
     (measure_three if kind == "three" else measure_five)(machine, knots, folder, seed)
     return machine
 

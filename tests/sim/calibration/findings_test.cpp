@@ -47,6 +47,44 @@ TEST(Findings, FindsTheGroupWhoseSignIsWrong) {
   EXPECT_EQ(found.suspects[0].factor, -1.0);
 }
 
+// Errors are polynomials of degree 4: less does not predict a target that was left out, more not
+// better.
+TEST(Findings, ChoosesTheSmoothnessThatPredictsTargetsLeftOut) {
+  Normal normal(41);
+  readings::Readings all = shop_readings();
+  CalibrationSettings settings;
+  settings.form_linear.degree = 4;
+  const Truth truth = random_truth(calibrated(all, settings).adjustment.unknowns, normal);
+  make_up(all, gantry(), truth.errors, 42);
+  settings.form_linear.degree.reset();
+  settings.form_linear.degree_by_data = true;
+  const Calibration found = calibrated(all, settings);
+  ASSERT_EQ(found.smoothness.size(), 1u);
+  EXPECT_EQ(found.smoothness[0].chosen, 4);
+  ASSERT_EQ(found.smoothness[0].errors.size(), 9u);
+  EXPECT_GT(found.smoothness[0].errors[1].second, 2.0 * found.smoothness[0].errors[3].second);
+  // above 1: what predicts a target is uncertain, too
+  EXPECT_GT(found.smoothness[0].errors[3].second, 1.0);
+  EXPECT_LT(found.smoothness[0].errors[3].second, 2.5);
+  EXPECT_NE(report(found).find("degree of linear by cross-validation: 4; readings left out"),
+            std::string::npos);
+}
+
+// Knots at the quarters of the travel.
+TEST(Findings, ChoosesTheNumberOfKnots) {
+  Normal normal(43);
+  readings::Readings all = shop_readings();
+  CalibrationSettings settings;
+  settings.form_linear.number_of_knots = 5;
+  const Truth truth = random_truth(calibrated(all, settings).adjustment.unknowns, normal);
+  make_up(all, gantry(), truth.errors, 44);
+  settings.form_linear.number_of_knots.reset();
+  settings.form_linear.knots_by_data = true;
+  const Calibration found = calibrated(all, settings);
+  ASSERT_EQ(found.smoothness.size(), 1u);
+  EXPECT_EQ(found.smoothness[0].chosen, 5);
+}
+
 TEST(Findings, NamesAnOutlierOfATenthOfAMillimetre) {
   readings::Readings all = shop_readings();
   make_up(all, gantry(), {}, 6);
