@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Machines drawn and measured by a generator that knows the READMEs only (foreign_machine.py, foreign_readings.py), and calibrated.
+"""Machines drawn and measured by a generator that knows the READMEs only (foreign_machine.py, foreign_bench.py, foreign_readings.py), and calibrated.
 
     blind.py SERVOMILL      SERVOMILL_FOREIGN_THREE, _FIVE, _HEAD: machines (3, 1, 1)
 """
