@@ -137,8 +137,9 @@ std::string setting_text(const TableExport& e) {
 
 }  // namespace
 
-SkewSettings skew_settings_of(const TableSource& source, const std::vector<TableLine>& lines,
-                              TableFormat format) {
+std::optional<SkewSettings> skew_settings_of(const TableSource& source,
+                                             const std::vector<TableLine>& lines,
+                                             TableFormat format, bool is_required) {
   const auto linear = std::count_if(
       lines.begin(), lines.end(), [](const TableLine& line) { return line.joint < kLinearJoints; });
   if (linear != kLinearJoints) {
@@ -154,6 +155,7 @@ SkewSettings skew_settings_of(const TableSource& source, const std::vector<Table
   s.c = rounded(c);
   s.b = rounded(x.dot(z - c * y) / x.dot(x));
   if (s.a == 0.0 && s.b == 0.0 && s.c == 0.0) {
+    if (!is_required) return std::nullopt;
     throw InputError({}, fmt::format("{} can hold nothing of this error model: X, Y and Z are at "
                                      "right angles; it holds EC0Y, EB0Z, EA0Z and the like",
                                      name_of(format)));

@@ -1,6 +1,7 @@
 /// Squareness of X, Y and Z as a skew correction of a firmware.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,11 @@
 
 namespace servomill::sim::tables {
 
-/// @throws InputError if the machine has no X, Y and Z or its axes are at right angles
-SkewSettings skew_settings_of(const TableSource& source, const std::vector<TableLine>& lines,
-                              TableFormat format);
+/// @param is_required  axes at right angles are a fault; otherwise nothing is returned
+/// @throws InputError if the machine has no X, Y and Z
+std::optional<SkewSettings> skew_settings_of(const TableSource& source,
+                                             const std::vector<TableLine>& lines,
+                                             TableFormat format, bool is_required);
 
 std::vector<std::string> skew_report(const TableExport& tables);
 

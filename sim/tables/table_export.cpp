@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "sim/tables/tool_side_errors.h"
 
@@ -182,7 +183,8 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
               {0.0, 0.0, -request.tool_length},
               reference_of(request, e.lines, machine.chain.layout)};
   if (e.rules().skew) {
-    e.skew = skew_settings_of(e.source, e.lines, request.format);
+    e.skew = skew_settings_of(e.source, e.lines, request.format, !request.mesh);
+    if (request.mesh) e.mesh = bed_mesh_of(e.source, e.lines, e.skew, *request.mesh);
     return e;
   }
   const bool csv = e.rules().components;

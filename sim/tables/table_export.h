@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/model/machine.h"
+#include "sim/tables/bed_mesh.h"
 #include "sim/tables/compensation_tables.h"
 #include "sim/tables/skew.h"
 #include "sim/tables/table_residuals.h"
@@ -25,6 +26,7 @@ struct TableRequest {
   std::optional<double> rotary_spacing;    // rad
   std::optional<std::size_t> most_points;  // absent: what the format takes
   int comp_file_type = 0;                  // of LinuxCNC: 0 positions, 1 trims
+  std::optional<std::array<int, 2>> mesh;  // points along X and Y of a bed mesh, of firmwares
   std::array<AxisRequest, kJoints> axes;
 };
 
@@ -39,6 +41,7 @@ struct TableExport {
   std::vector<TableResidual> left;
   Volume volume;
   std::optional<SkewSettings> skew;  // of the formats that hold nothing else
+  std::optional<BedMesh> mesh;       // of firmwares, where it is wanted
   std::vector<std::string> coarse;   // what points lie too far apart for
 
   const FormatRules& rules() const { return rules_of(request.format); }

@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/tables/exchange_files.h"
+#include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 
 namespace servomill::sim::tables {
@@ -315,6 +316,13 @@ std::vector<TextFile> csv_files(const TableExport& e) {
   return files;
 }
 
+std::vector<TextFile> firmware_files(const TableExport& e) {
+  std::vector<TextFile> out;
+  if (e.skew) out = skew_files(e);
+  if (e.mesh) out.push_back(mesh_file(e));
+  return out;
+}
+
 }  // namespace
 
 std::vector<TextFile> table_files(const TableExport& e) {
@@ -332,7 +340,7 @@ std::vector<TextFile> table_files(const TableExport& e) {
     case TableFormat::marlin:
     case TableFormat::klipper:
     case TableFormat::reprapfirmware:
-      return skew_files(e);
+      return firmware_files(e);
     case TableFormat::csv:
       break;
   }

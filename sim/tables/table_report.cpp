@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 
 namespace servomill::sim::tables {
@@ -212,7 +213,14 @@ void add_unheld(const TableExport& e, std::vector<std::string>& out) {
 }  // namespace
 
 std::vector<std::string> report(const TableExport& e) {
-  if (e.skew) return skew_report(e);
+  if (e.rules().skew) {
+    std::vector<std::string> out;
+    if (e.skew) out = skew_report(e);
+    if (e.mesh) {
+      for (std::string& line : mesh_report(e)) out.push_back(std::move(line));
+    }
+    return out;
+  }
   const bool csv = e.rules().components;
   std::vector<std::string> out;
   out.push_back(

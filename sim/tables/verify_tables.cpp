@@ -15,6 +15,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "sim/tables/table_comparison.h"
 
@@ -192,14 +193,21 @@ class Displacements {
 }  // namespace
 
 TableVerification verify_tables(const TableExport& e, const std::vector<TextFile>& files) {
-  if (e.skew) return verify_skew(e, files);
+  if (e.rules().skew) {
+    TableVerification out;
+    if (e.skew) out = verify_skew(e, files);
+    if (e.mesh) verify_mesh(e, files, out);
+    return out;
+  }
   return e.rules().components ? verify_columns(e, files) : Displacements(e, files).run();
 }
 
 std::string to_string(const TableVerification& v) {
   if (v.right_angles > 0) {
-    return fmt::format("verified: {} right angles, largest deviation {:.4f} urad", v.right_angles,
-                       v.angle / urad);
+    const std::string mesh =
+        fmt::format("; Z at {} points of the mesh within {:.4f} um", v.positions, v.length / um);
+    return fmt::format("verified: {} right angles, largest deviation {:.4f} urad{}", v.right_angles,
+                       v.angle / urad, v.positions > 0 ? mesh : "");
   }
   std::string text =
       fmt::format("verified: {} positions, largest difference to the error model {:.4f} um",

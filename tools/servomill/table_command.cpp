@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -139,7 +140,8 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
   }
   if (sim::tables::rules_of(format).skew) {
     for (const char* name : {"at", "spacing", "rotary-spacing", "max-points"}) {
-      if (!options.has(name)) continue;
+      if (!options.has(name) || (name == std::string_view("at") && options.has("bed-mesh")))
+        continue;
       throw InputError({std::string("--") + name},
                        fmt::format("means nothing to {}, which holds three angles",
                                    sim::tables::name_of(format)));
@@ -172,6 +174,25 @@ void refuse_undocumented(const std::string& format) {
     if (format != refusal.name) continue;
     throw InputError({"--format"}, fmt::format("{} {}", refusal.name, refusal.reason));
   }
+}
+
+// "7x5": points along X and Y.
+std::array<int, 2> mesh_of(const Options& options, sim::tables::TableFormat format) {
+  const auto& text = options.get<std::string>("bed-mesh");
+  if (!sim::tables::rules_of(format).skew) {
+    throw InputError({"--bed-mesh"},
+                     fmt::format("means nothing to {}; marlin, klipper and reprapfirmware take one",
+                                 sim::tables::name_of(format)));
+  }
+  constexpr int kMost = 100;
+  std::array<int, 2> out{};
+  int read = 0;
+  const bool is_read = std::sscanf(text.c_str(), "%4dx%4d%n", out.data(), &out[1], &read) == 2 &&
+                       read == static_cast<int>(text.size());
+  if (is_read && std::min(out[0], out[1]) >= 3 && std::max(out[0], out[1]) <= kMost) return out;
+  throw InputError(
+      {"--bed-mesh"},
+      fmt::format("'{}'; must be points along X and Y, such as 7x5, 3 to {} each", text, kMost));
 }
 
 sim::tables::TableRequest request_of(const Options& options,
@@ -212,6 +233,7 @@ sim::tables::TableRequest request_of(const Options& options,
                        fmt::format("{}; must be 0 or 1", request.comp_file_type));
     }
   }
+  if (options.has("bed-mesh")) request.mesh = mesh_of(options, request.format);
   read_axes(options, machine, request);
   return request;
 }
@@ -269,6 +291,9 @@ void add_table_options(Options& options) {
                 "the middle of travel (linear) or 0 (rotary)");
   options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
                 "from the spindle nose to the tip, 0 unless given; bare numbers in mm");
+  options.add()("bed-mesh", po::value<std::string>()->value_name("7x5"),
+                "of marlin, klipper and reprapfirmware: also writes a bed mesh of that many points "
+                "along X and Y, at the reference of Z (--at)");
   options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
                 "of linuxcnc: 0 positions reached (unless you say so), 1 trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),

@@ -1,0 +1,27 @@
+/// Z of the tip over X and Y as the bed mesh of a firmware.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/tables/table_files.h"
+#include "sim/tables/verify_tables.h"
+
+namespace servomill::sim::tables {
+
+/// @param skew  correction that acts, too; none: nullopt
+BedMesh bed_mesh_of(const TableSource& source, const std::vector<TableLine>& lines,
+                    const std::optional<SkewSettings>& skew, const std::array<int, 2>& points);
+
+std::vector<std::string> mesh_report(const TableExport& tables);
+
+/// bed_mesh.gcode (Marlin), bed_mesh.cfg (Klipper), heightmap.csv (RepRapFirmware).
+TextFile mesh_file(const TableExport& tables);
+
+/// Reads the file as the firmware does and adds its heights to the commands of the machine with
+/// errors: at the points Z must be in a plane to a digit.
+/// @throws InputError with the file
+void verify_mesh(const TableExport& tables, const std::vector<TextFile>& files,
+                 TableVerification& out);
+
+}  // namespace servomill::sim::tables
