@@ -138,6 +138,8 @@ TABLES = [
           "servomill table errors.toml --machine machine.toml --format csv -o out",
           write={"errors.toml": "[errors.found]\nEXC = { constant_um = 1.0 }\n"}),
     typed("formats that no document found defines", TABLE.replace("siemens", "fanuc"), TABLE.replace("siemens", "vcs")),
+    typed("bed meshes of too few points, of no points and of a control that takes none", TABLE.replace("siemens", "klipper") + " --bed-mesh 2x5",
+          TABLE.replace("siemens", "marlin") + " --bed-mesh 7", TABLE + " --bed-mesh 7x5"),
     typed("a skew correction of axes at right angles", TABLE.replace("siemens", "marlin"), TABLE.replace("siemens", "klipper") + " --spacing 5",
           TABLE.replace("siemens", "reprapfirmware") + " --max-points 9"),
     typed("a parameter file that holds something else", IMPORT, write={"volcomp.csv": "X,EXX\n0,0\n1,0\n"}),
