@@ -110,6 +110,7 @@ void Translator::begin_program() {
   const std::vector<Fault>& faults = program().faults();
   if (!faults.empty()) throw InputError(faults);
   const auto block = program().begin();
+  place_ = {program().file(), block ? block->place.line : 1, 1};
   if (program().lines_before_begin() > 0) {
     warn_once("title",
               fmt::format("{} lines before BEGIN PGM: left out", program().lines_before_begin()));

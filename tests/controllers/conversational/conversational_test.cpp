@@ -62,6 +62,7 @@ TEST(Conversational, LinesInBracketsBeforeTheProgramAreLeftOut) {
   EXPECT_EQ(interpreter.rest().size(), 4u);
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(interpreter.warnings()[0].message, "2 lines before BEGIN PGM: left out");
+  EXPECT_EQ(interpreter.warnings()[0].place, (Place{"t.h", 4, 1}));
 }
 
 std::vector<std::string> warnings_of(const std::string& program, const ProgramSetup& setup) {
