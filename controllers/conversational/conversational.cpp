@@ -89,11 +89,11 @@ void add_tool(const HeidenhainBlock& block, double unit, ToolTable& tools) {
     Words words(std::span(block.words).subspan(3));
     const auto L = words.take_number("L");
     const auto R = words.take_number("R");
-    if (!L || !R || L->name || R->name) return;
+    if (!L || L->name || (R && R->name)) return;
     ToolEntry tool;
     tool.number = static_cast<int>(*number);
     tool.offset[2] = L->number * unit;
-    tool.diameter = 2.0 * R->number * unit;
+    if (R) tool.diameter = 2.0 * R->number * unit;  // else unknown: the block itself says so
     tools.add(tool);
   } catch (const InputError&) {  // reported where the block runs
   }

@@ -249,7 +249,9 @@ void Translator::refresh_system_parameters() {
   parameters_.set({'Q', 109}, 2.0);
   const ToolEntry* tool = setup_.tools.find(tool_);
   if (!has_tool_call_ || tool == nullptr) return;
-  parameters_.set({'Q', 108}, tool->diameter / 2e-3 + delta_radius_);
+  if (!tools_without_radius_.contains(tool_)) {
+    parameters_.set({'Q', 108}, tool->diameter / 2e-3 + delta_radius_);
+  }
   parameters_.set({'Q', 114}, tool->offset[2] * 1e3 + delta_length_);
 }
 

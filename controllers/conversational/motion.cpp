@@ -92,6 +92,10 @@ double Translator::tool_radius(const Place& place) const {
                             "--tools",
                             tool_));
   }
+  if (tools_without_radius_.contains(tool_)) {
+    fail(place,
+         fmt::format("RL and RR: TOOL DEF {} has no R, so the radius is unknown; write it", tool_));
+  }
   return tool->diameter / 2.0 / mm + delta_radius_;
 }
 

@@ -134,6 +134,7 @@ void Translator::define_tool(const HeidenhainBlock& block) {
   if (!L && !R) return;
   const ToolEntry* tool = setup_.tools.entry_of(number);
   if (tool == nullptr) fail("TOOL DEF with Q parameters; write numbers, or pass --tools");
+  if (!R && tool->diameter == 0.0) tools_without_radius_.insert(number);
   constexpr double kSame = 1e-6;  // mm
   const bool differs = (L && std::abs(length(*L) - tool->offset[2] / mm) > kSame) ||
                        (R && std::abs(length(*R) - tool->diameter / 2.0 / mm) > kSame);

@@ -264,6 +264,7 @@ class Translator {
   std::array<double, kAxisWords> revolutions_{};
 
   std::map<std::string, int> tool_names_;  // of TOOL CALL "NAME", with the number made up for each
+  std::set<int> tools_without_radius_;     // of TOOL DEF with L alone
   int tool_ = 0;
   bool has_tool_call_ = false;
   double delta_length_ = 0.0, delta_radius_ = 0.0;  // of TOOL CALL, mm

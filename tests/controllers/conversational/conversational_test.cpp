@@ -207,6 +207,23 @@ TEST(Conversational, ToolsDefinedInTheProgram) {
             "7 feed -9 9 0 F100\n7 end\n");
 }
 
+// The length counts from the definition; the radius is needed by RL and RR alone.
+TEST(Conversational, ToolsDefinedByTheirLengthAlone) {
+  const std::string head = "BEGIN PGM T MM\nTOOL DEF1 L+20,5 F300\nTOOL CALL 1 Z S1\n";
+  ProgramSetup setup;
+  setup.reader = Reader::any;
+  EXPECT_EQ(all_moves(head + "L X-9 Y+0 Z+0 FMAX\nEND PGM T MM\n", setup),
+            "3 tool 1\n3 spindle 0 S1\n4 rapid -9 0 0\n5 end\n");
+  try {
+    all_moves(head + "L X+0 Y+0 RL F100\nL Y+9\nEND PGM T MM\n", setup);
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "t.h:4:1: error: RL and RR: TOOL DEF 1 has no R, so the radius is unknown; write "
+                 "it");
+  }
+}
+
 TEST(Conversational, RecognisedByContentExtensionAndReader) {
   const std::string text = "0  BEGIN PGM T MM\n1 L X+1 R0 FMAX\n2 END PGM T MM\n";
   ProgramSetup setup = example_setup();
