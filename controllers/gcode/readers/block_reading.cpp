@@ -218,17 +218,14 @@ std::optional<int> ReadingStep::chosen_reading(WordDifference difference, int co
   if (own) return own;
   if (options.is_trial) throw Undetermined();
   const PossibleReaders* possible = options.possible_readers ? options.possible_readers() : nullptr;
-  const std::optional<int> deduced =
+  const std::optional<DeducedReading> deduced =
       possible != nullptr ? possible->reading_of(difference) : std::nullopt;
   if (!deduced) return std::nullopt;
   const WordDifferenceEntry& entry = word_differences()[static_cast<std::size_t>(difference)];
-  const WordReading& reading = entry.readings[static_cast<std::size_t>(*deduced)];
-  const std::string stops = possible->who_stops();
-  reading_.notes_.push_back(
-      {column, fmt::format("{}: read as {} ({}), {}", entry.found, reading.text, reading.controls,
-                           stops.empty() ? "as all of these controls would read the program"
-                                         : "since " + stops)});
-  return deduced;
+  const WordReading& reading = entry.readings[static_cast<std::size_t>(deduced->reading)];
+  reading_.notes_.push_back({column, fmt::format("{}: read as {} ({}), {}", entry.found,
+                                                 reading.text, reading.controls, deduced->why)});
+  return deduced->reading;
 }
 
 void ReadingStep::fail(int column, std::string message) const {

@@ -47,7 +47,8 @@ int stop_of(Reader reader, ProgramText text, ProgramSetup setup) {
 
 }  // namespace
 
-PossibleReaders::PossibleReaders(const ProgramText& text, const ProgramSetup& setup) {
+PossibleReaders::PossibleReaders(const ProgramText& text, const ProgramSetup& setup)
+    : evidence_(control_evidence(text.again())) {
   ProgramText again = text.again();
   const int macro_line = macro::first_macro_line(again);
   for (const Control& control : kControls) {
@@ -65,15 +66,31 @@ PossibleReaders::PossibleReaders(const ProgramText& text, const ProgramSetup& se
   }
 }
 
-std::optional<int> PossibleReaders::reading_of(WordDifference difference) const {
+std::optional<int> PossibleReaders::common_reading(WordDifference difference,
+                                                   std::uint8_t readers) {
   std::optional<int> out;
   for (const Control& control : kControls) {
-    if ((possible_ & bit(control.reader)) == 0) continue;
+    if ((readers & bit(control.reader)) == 0) continue;
     const std::optional<int> one = controllers::reading_of(difference, control.reader);
     if (!one || (out && *out != *one)) return std::nullopt;
     out = one;
   }
   return out;
+}
+
+std::optional<DeducedReading> PossibleReaders::reading_of(WordDifference difference) const {
+  if (const auto of_all = common_reading(difference, possible_)) {
+    const std::string stops = who_stops();
+    return DeducedReading{*of_all, stops.empty() ? "as all of these controls would read the program"
+                                                 : "since " + stops};
+  }
+  const auto named = static_cast<std::uint8_t>(possible_ & evidence_.readers);
+  const std::optional<int> of_named = common_reading(difference, named);
+  if (!of_named) return std::nullopt;
+  const WordDifferenceEntry& entry = word_differences()[static_cast<std::size_t>(difference)];
+  const WordReading& other = entry.readings[static_cast<std::size_t>(1 - *of_named)];
+  return DeducedReading{*of_named, fmt::format("since {}; not as {} ({}), which --reader chooses",
+                                               evidence_.text, other.text, other.controls)};
 }
 
 std::string PossibleReaders::who_stops() const {

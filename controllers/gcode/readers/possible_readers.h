@@ -6,9 +6,16 @@
 #include <string>
 
 #include "controllers/gcode/interpreter.h"
+#include "controllers/gcode/readers/control_evidence.h"
 #include "controllers/gcode/readers/differences.h"
 
 namespace servomill::controllers {
+
+/// A reading, and why it is that one: "since LinuxCNC would stop at line 4, grbl at line 5".
+struct DeducedReading {
+  int reading = 0;
+  std::string why;
+};
 
 class PossibleReaders {
  public:
@@ -16,12 +23,14 @@ class PossibleReaders {
   /// @param setup  that the program begins with; its reader does not count
   PossibleReaders(const ProgramText& text, const ProgramSetup& setup);
 
-  /// The reading on which all controls agree that would read the program, or nullopt.
-  std::optional<int> reading_of(WordDifference difference) const;
-  /// "LinuxCNC would stop at line 4, grbl at line 5"
-  std::string who_stops() const;
+  /// The reading on which all controls agree that would read the program; or on which those of them
+  /// agree that the program itself names; or nullopt.
+  std::optional<DeducedReading> reading_of(WordDifference difference) const;
 
  private:
+  static std::optional<int> common_reading(WordDifference difference, std::uint8_t readers);
+  std::string who_stops() const;
+
   struct Stop {
     std::string control;
     int line = 0;
@@ -29,6 +38,7 @@ class PossibleReaders {
 
   std::uint8_t possible_ = 0;  // of `Reader`, a bit each
   std::vector<Stop> stops_;
+  ControlEvidence evidence_;
 };
 
 }  // namespace servomill::controllers

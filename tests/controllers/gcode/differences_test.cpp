@@ -7,16 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/input_error.h"
+#include "tests/controllers/gcode/tolerant_reading.h"
 
 namespace servomill::controllers {
 namespace {
+
+using program_reader_test::without_lines;
 
 std::string moves_of(const std::string& text, ProgramSetup setup) {
   std::string out;
@@ -26,10 +28,7 @@ std::string moves_of(const std::string& text, ProgramSetup setup) {
   } catch (const InputError& error) {
     return error.what();
   }
-  for (std::size_t at; (at = out.find("\"line\":")) != std::string::npos;) {
-    out.erase(at, out.find_first_of(",}", at) - at);
-  }
-  return out;
+  return without_lines(out);
 }
 
 ProgramSetup setup_for(Reader reader, DecimalPoint decimal_point = DecimalPoint::calculator) {
@@ -271,6 +270,17 @@ TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
             std::string(kBoth) + "; how long it dwells is left unknown");
 }
 
+// Clamps of the fifth axis on Haas; no control moves an axis by them.
+TEST(MachineFunctions, WithTwoMeaningsOfWhichNoneMovesAnAxisBecomeComments) {
+  EXPECT_EQ(moves_of("M13\nG0 X1. C2.\nM12\nM2\n", setup_for(Reader::any)),
+            moves_of("G0 X1 C2\nM2\n", setup_for(Reader::linuxcnc)));
+  const std::vector<std::string> found = warnings_of("M13\nG0 X1. C2.\nM2\n");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1],
+            "p.nc:1:1: error: M13: the brake of the fifth axis (Haas), or the spindle or the "
+            "coolant of other builders; neither moves an axis");
+}
+
 // G9 stops at the end of its block only.
 TEST(ExactStop, OfOneBlockGivesThePathModeBack) {
   const ProgramSetup strict = setup_for(Reader::linuxcnc);
@@ -322,41 +332,6 @@ TEST(DecimalPoint, TheFirstLengthWithoutOneIsReported) {
   ProgramSetup chosen;
   chosen.decimal_point = DecimalPoint::calculator;
   EXPECT_TRUE(warnings_of("G0 X1000\nM2\n", chosen).empty());
-}
-
-// G28 beside G0 stops LinuxCNC and grbl; the others agree on H0.
-TEST(WordDifferences, AreReadAsAllControlsDoThatWouldReadTheProgram) {
-  const std::string program = "G0 G28 Z0.\nG43 H0 Z1.\nM2\n";
-  EXPECT_EQ(moves_of(program, setup_for(Reader::any)),
-            moves_of("G28 Z0\nG49 G0 Z1\nM2\n", setup_for(Reader::linuxcnc)));
-  const std::vector<std::string> found = warnings_of(program);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[1],
-            "p.nc:2:5: error: G43 H0: read as no length (Fanuc, Haas, Mach), since LinuxCNC would "
-            "stop at line 1, grbl at line 1");
-}
-
-TEST(WordDifferences, AreTriedOnceForRunsThatShareTheTrials) {
-  const std::string program = "G0 G28 Z0.\nG43 H0 Z1.\nM2\n";
-  ProgramSetup setup = setup_for(Reader::any);
-  setup.trials = std::make_shared<SharedTrials>();
-  const std::string first = moves_of(program, setup);
-  const auto found = setup.trials->found;
-  ASSERT_NE(found, nullptr);
-  EXPECT_EQ(moves_of(program, setup), first);
-  EXPECT_EQ(setup.trials->found, found);
-}
-
-// Behind the word, too: what stops LinuxCNC stands in line 3.
-TEST(WordDifferences, AreReadByTheWholeProgram) {
-  EXPECT_EQ(moves_of("T1 M6\nG43 H0\nG0 G28 Z0.\nM2\n", setup_for(Reader::any)),
-            moves_of("T1 M6\nG49\nG28 Z0\nM2\n", setup_for(Reader::linuxcnc)));
-}
-
-// G28 beside G0 leaves Mach, whose dwell is as it is set.
-TEST(WordDifferences, AreNotReadAsOneOfThePossibleControlsDoes) {
-  EXPECT_EQ(moves_of("G0 G28 Z0.\nG4 P5\nM2\n", setup_for(Reader::any)),
-            "p.nc:2:4: error: " + both_readings(WordDifference::dwell_unit));
 }
 
 TEST(WordDifferences, LeaveADwellUnknownThatIsNotNeeded) {

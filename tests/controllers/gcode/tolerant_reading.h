@@ -36,6 +36,13 @@ inline std::string refusal(const std::string& text, Reader reader = Reader::any)
   return read(text, reader).refusal;
 }
 
+inline std::string without_lines(std::string moves) {
+  for (std::size_t at; (at = moves.find("\"line\":")) != std::string::npos;) {
+    moves.erase(at, moves.find_first_of(",}", at) - at);
+  }
+  return moves;
+}
+
 /// Has the subprogram 7 in O0007.nc.
 inline ProgramSetup with_subprogram_file() {
   ProgramSetup setup;
