@@ -119,6 +119,7 @@ class Interpreter::Machine {
   void saw_percent();
   void end_of_text();
   [[noreturn]] void fail_at_end();
+  bool goes_on_behind_end();
   bool has_more_words();
   void run_end(ReaderRule rule);
   bool tolerates(ReaderRule rule, int column, const std::string& detail = {});

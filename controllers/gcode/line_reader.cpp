@@ -160,9 +160,9 @@ class LexicalRules {
     if (at(at_) != '/') return;
     if (at(at_ + 1) == '/') {
       const std::size_t first = text().find_first_not_of("/ \t", at_);
-      const bool is_word =
-          first != std::string::npos && is_letter(at(first)) && !is_letter(at(first + 1));
-      if (is_word || !apply(ReaderRule::slash_comment, at_)) return;
+      const bool is_block = first != std::string::npos && is_letter(at(first)) &&
+                            !is_letter(at(first + 1)) && !has_name(first);
+      if (is_block || !apply(ReaderRule::slash_comment, at_)) return;
       text()[at_] = ';';
       return;
     }
@@ -171,6 +171,16 @@ class LexicalRules {
     }
     ++at_;
     skip_blanks();
+  }
+
+  // Three letters in a row outside of brackets: a text, and no block of words.
+  bool has_name(std::size_t begin) const {
+    const std::size_t end = std::min(text().find_first_of("(;[<", begin), text().size());
+    int letters = 0;
+    for (std::size_t i = begin; i < end && letters < 3; ++i) {
+      letters = is_letter(at(i)) ? letters + 1 : 0;
+    }
+    return letters == 3;
   }
 
   void program_number() {
@@ -306,12 +316,19 @@ class LexicalRules {
       if (apply(ReaderRule::open_comment, open)) text()[open] = ';';
       return;
     }
-    if (!is_nested || depth > 0 || has_words(first + 1, end)) return;
+    if (!is_nested || depth > 0) return;
+    if (!is_comment_behind(first, end) && has_words(first + 1, end)) return;
     if (!apply(ReaderRule::nested_comment, text().find('(', open + 1))) return;
     for (std::size_t i = open + 1; i < end; ++i) {
       if (at(i) == '(') text()[i] = '[';
       if (at(i) == ')') text()[i] = ']';
     }
+  }
+
+  // "(mill (6 mm); S5 (fast))": behind the first ')' there is a comment, too, up to the end.
+  bool is_comment_behind(std::size_t first, std::size_t end) const {
+    const std::size_t next = text().find_first_not_of(" \t", first + 1);
+    return at(next) == ';' && text().find_first_not_of(" \t\r", end + 1) == std::string::npos;
   }
 
   // Detects words that a control which ends the comment at its first ')' would read.

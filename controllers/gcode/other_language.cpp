@@ -103,6 +103,40 @@ bool is_engraving(std::string_view line) {
   return false;
 }
 
+// A line of a control whose programs have blocks of their own kind: its refusal, or nothing.
+std::string other_blocks(std::string_view line) {
+  const std::size_t last = line.find_last_not_of(" \t\r");
+  if (last == std::string_view::npos) return {};
+  line = line.substr(0, last + 1);
+  if (line.front() == '$' && line.back() == '%') {
+    return fmt::format(
+        "'{}' begins a program of Okuma; programs in G-code of other controls are "
+        "read here: let the post-processor write for Fanuc or LinuxCNC",
+        line);
+  }
+  const bool has_word = line.size() > 2 && line.find_first_of("GXYZMTN%") != line.npos;
+  if (line.back() == '*' && has_word && line.find_first_of("[(;#") == line.npos) {
+    return "a '*' ends the blocks of DIN/ISO programs of Heidenhain; programs in G-code of other "
+           "controls and Heidenhain conversational are read here";
+  }
+  constexpr std::array<std::string_view, 13> kShopBot = {"SA", "SR", "CN", "MS", "MX", "MY", "MZ",
+                                                         "M2", "M3", "JX", "JY", "JZ", "J2"};
+  const bool is_command =
+      std::find(kShopBot.begin(), kShopBot.end(), line.substr(0, 2)) != kShopBot.end() &&
+      (line.size() == 2 || line[2] == ',');
+  const bool is_ambiguous = line.size() == 2 && line.front() == 'M';  // M2 and M3 of G-code
+  if (line.front() == '\'' || (is_command && !is_ambiguous)) {
+    return "this is a program of ShopBot (OpenSBP); programs in G-code are read here";
+  }
+  return {};
+}
+
+// VC1=10 of Okuma, among names of Siemens.
+bool is_okuma_variable(std::string_view name) {
+  return name.size() > 2 && name.substr(0, 2) == "VC" &&
+         name.find_first_not_of("0123456789", 2) == name.npos;
+}
+
 bool contains_word(std::string_view line, std::string_view word) {
   const std::size_t at = line.find(word);
   if (at == std::string_view::npos) return false;
@@ -142,6 +176,8 @@ std::string siemens_program(ProgramText& text) {
 }
 
 std::string other_language(std::string_view line, int column) {
+  if (line.starts_with("//")) return {};  // a comment, or a block that may be skipped
+  if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
   if (line.starts_with('$') && !is_report_request(line)) {
     return fmt::format(
         "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
@@ -158,6 +194,12 @@ std::string other_language(std::string_view line, int column) {
         "'%{}=' is a variable of the sender cncjs, which replaces it while it streams; write its "
         "value",
         name);
+  }
+  if (is_okuma_variable(assigned_name(line))) {
+    return fmt::format(
+        "'{}=' is a variable of Okuma; programs in G-code of other controls are "
+        "read here",
+        assigned_name(line));
   }
   if (const std::string word = siemens_word(line); !word.empty()) {
     return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
@@ -188,9 +230,8 @@ std::string other_language(std::string_view line, int column) {
       return "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
              "write their moves";
     }
-    return "an E word feeds the extruder of a printer, or sets the generator of wire EDM; programs "
-           "for "
-           "milling are read here";
+    return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
+           "work offset (Fadal); programs for milling are read here, with G54 ... G59";
   }
   return {};
 }

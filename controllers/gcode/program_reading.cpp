@@ -172,7 +172,7 @@ void Interpreter::Machine::warn(int column, std::string message) {
 void Interpreter::Machine::read_skipped_line() {
   reader_.parse(line_, file(), line(), block_, Parser::Extent::flow_only);
   if (block_.percent) {
-    if (!texts_[text_].percent.is_framed()) return block_.clear();
+    if (!texts_[text_].percent.is_framed() || goes_on_behind_end()) return block_.clear();
     return saw_percent();
   }
   texts_[text_].percent.saw_line();
@@ -237,6 +237,12 @@ void Interpreter::Machine::run_end(ReaderRule rule) {
   execute();
 }
 
+// The subprogram that is looked for may stand behind the closing '%' in this file.
+bool Interpreter::Machine::goes_on_behind_end() {
+  const bool may_go_on = flow_.skips_to_sub && text_ == 0 && !text().is_generated();
+  return may_go_on && has_more_words() && tolerates(ReaderRule::subprogram_behind_end, 1);
+}
+
 bool Interpreter::Machine::has_more_words() {
   const ProgramText::Mark here = text().mark();
   bool found = false;
@@ -258,11 +264,11 @@ void Interpreter::Machine::fail_at_end() {
   ended_ = true;
   std::string message(kNoEnd);
   if (flow_.skips_to_sub) {
-    message = fmt::format("no subroutine O<{0}> up to here, which line {1} calls{2}",
-                          *flow_.skip_to, flow_.skip_from,
-                          text_ == flow_.calls.back().return_to.text
-                              ? fmt::format(", and no file {}.ngc", *flow_.skip_to)
-                              : "");
+    message = fmt::format(
+        "no subroutine O<{0}> up to here, which line {1} calls{2}", *flow_.skip_to, flow_.skip_from,
+        text_ == flow_.calls.back().return_to.text
+            ? fmt::format(", and no file {}.ngc (--subs names its folder)", *flow_.skip_to)
+            : "");
     flow_.calls.pop_back();  // it has not begun
   } else if (flow_.skip_to) {
     const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);

@@ -213,6 +213,16 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {macro_output, "POPEN, DPRNT, BPRNT, PCLOS, and values for outputs and timers",
      "without effect on motion", "Fanuc, Haas", kFanuc | kHaas,
      "Fanuc B-63944EN, external output commands, from memory"},
+    {arc_without_axes, "I, J or K without axis words while G2 or G3 is in force",
+     "read as a full circle", "Fanuc, Haas, Mach", kFanuc | kHaas | kMach,
+     "Fanuc B-63944EN, circular interpolation (without an end point a circle of 360 degrees), from "
+     "memory"},
+    {home_under_tip_control, "G28 or G30 by no way under G43.4",
+     "read as a rapid of those axes; the tip is controlled again behind it", "Fanuc", kFanuc,
+     "none found: posts for Fanuc write it before G49"},
+    {subprogram_behind_end, "a subprogram behind the closing '%'", "read as one before it",
+     "no control documents it, and without it the program stops at its call", kFanuc | kHaas,
+     "none found"},
 });
 
 constexpr bool is_in_order() {

@@ -90,6 +90,9 @@ enum class ReaderRule : std::uint8_t {
   macro_call,
   modal_macro_call,
   macro_output,
+  arc_without_axes,
+  home_under_tip_control,
+  subprogram_behind_end,
   count
 };
 

@@ -93,10 +93,15 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   const bool takes_no_P = codes.turns_spindle ||
                           (codes.groups & 1U << static_cast<unsigned>(Group::g_work_system)) != 0;
   if (takes_no_P && (letters & word_bit('P')) != 0) return true;
+  if (codes.turns_spindle && (letters & word_bit('S')) != 0) return true;  // of a laser, S0
   const bool has_unit = (codes.groups & 1U << static_cast<unsigned>(Group::g_units)) != 0;
   if (has_unit && (letters & word_bit('F')) != 0) return true;
   if ((letters & kPlaces) == 0) return codes.motion == 800;
-  if ((motion == 20 || motion == 30) && (letters & kCentres) == kCentres) return true;
+  if (motion == 20 || motion == 30) {
+    const bool has_no_end = codes.motion < 0 && (letters & kAxisWordBits) == 0;
+    if (has_no_end || (letters & kCentres) == kCentres) return true;
+  }
+  if (motion <= 10 && (letters & word_bit('R')) != 0) return true;
   const bool lacks_feed = motion > 0 && state.feed_linear == 0.0;
   return motion == 800 || lacks_feed || (letters & word_bit('S')) != 0;
 }
@@ -165,6 +170,8 @@ void ReadingStep::run() {
   if (has_unknown_code()) return;  // which is then what is wrong with the block
   cycles();
   home();
+  home_under_tip_control();
+  arc_without_axes();
   motion_in_force();
   radius_of_line();
   arc_centre();

@@ -69,11 +69,12 @@ struct ReadingMemory {
   // counts from there
   Eigen::Vector3d behind_corner = Eigen::Vector3d::Zero();
   int power_changes = 0;                       // feeds that change S without an M code
+  bool is_idle_beam = false;                   // M3 or M4 with S0, no other since
   int lone_G53_line = 0, lone_G53_column = 0;  // without axis words, no work offset since; 0: none
   int first_left_out = -1;                     // tenths of the first M code that was left out
   bool has_any_mode() const {
     return pending_motion >= 0 || is_in_cycle || frame.is_active() || polar.is_on ||
-           lone_G53_line > 0 || !behind_corner.isZero(0.0);
+           lone_G53_line > 0 || is_idle_beam || !behind_corner.isZero(0.0);
   }
 };
 

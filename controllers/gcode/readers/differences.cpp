@@ -192,8 +192,8 @@ struct ForeignCodes {
   int from, to;
   std::uint8_t without;
 };
-// LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); Fanuc, Haas and Mach from
-// memory
+// LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); CNC Conversion, G and M
+// codes used by Mach3 (no G87); Fanuc, Haas and other codes of Mach from memory
 constexpr auto kForeign = std::to_array<ForeignCodes>({
     {'G', 410, 429, kGrbl},
     {'G', 430, 430, kGrbl},
@@ -201,6 +201,7 @@ constexpr auto kForeign = std::to_array<ForeignCodes>({
     {'G', 640, 640, kGrbl},
     {'G', 730, 730, kGrbl},
     {'G', 810, 890, kGrbl},
+    {'G', 870, 870, kMach},
     {'G', 901, 901, kFanuc | kHaas | kGrbl},
     {'G', 911, 911, kFanuc | kHaas},
     {'G', 922, 923, kFanuc | kHaas | kGrbl},

@@ -38,6 +38,21 @@ void ReadingStep::home() {
   memory.is_pending_known = true;
 }
 
+// G28 G91 Z0 under G43.4: the axes go where G28 sends them, and then the tip is controlled again.
+// Switching the control of the tip moves no axis.
+void ReadingStep::home_under_tip_control() {
+  if (state.tool_control != ToolControl::rotary_axes || !is_incremental()) return;
+  const BlockWord* code = words.code('G', 280);
+  if (code == nullptr) code = words.code('G', 300);
+  if (code == nullptr || !words.has_axis() || state.plane) return;
+  for (const Axis axis : kAllAxes) {
+    if (words.has(letter(axis)) && words[letter(axis)] != 0.0) return;
+  }
+  need(ReaderRule::home_under_tip_control, code->column);
+  before.emplace_back("G49");
+  behind.push_back(fmt::format("G43.4 H{}", state.tool_offset_number));
+}
+
 // G28.2 X0 Y0: one axis after the other, Z first, to machine zero.
 void ReadingStep::homing_cycle() {
   BlockWord* code = words.code('G', 282);

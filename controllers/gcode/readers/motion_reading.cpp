@@ -1,4 +1,4 @@
-// The motion code in force, and the feed.
+// The motion code in force, exact stops and the feed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,18 @@ void ReadingStep::leave_cycle() {
   memory.cycle = {};
   memory.motion_before_cycle = memory.pending_motion = -1;
   memory.is_pending_known = false;
+}
+
+// I J alone, G2 in force: round the centre, back to where it began.
+void ReadingStep::arc_without_axes() {
+  const int motion = motion_in_block();
+  const bool is_arc = motion == 20 || motion == 30;
+  const bool has_centre = words.has('I') || words.has('J') || words.has('K');
+  if (!is_arc || motion_code() >= 0 || !has_centre || words.has_axis() || has_axis_taker()) return;
+  const int column = words.all().front().column;
+  need(ReaderRule::arc_without_axes, column);
+  words.add('G', motion / 10.0, column);
+  memory.pending_motion = -1;
 }
 
 // Groups 01 (G0 ... G3) and 09 (cycles) are apart on Fanuc, one group in LinuxCNC.
@@ -92,6 +104,19 @@ void ReadingStep::refuse_arc_behind_cycle(int motion, int column) const {
   if (motion <= 10) return;
   fail(column, fmt::format("axis words behind G80 while {} is in force; write the code",
                            code_name('G', motion)));
+}
+
+// G9: an exact stop at the end of this block.
+void ReadingStep::exact_stop() {
+  BlockWord* code = words.code('G', 90);
+  if (code == nullptr) return;
+  need(ReaderRule::exact_stop, code->column);
+  words.erase(*code);
+  if (state.path_mode != PathMode::continuous) return;
+  before.emplace_back("G61.1");
+  behind.push_back(state.path_tolerance > 0.0
+                       ? "G64 " + word_text('P', state.path_tolerance / state.unit)
+                       : "G64");
 }
 
 void ReadingStep::feed() {

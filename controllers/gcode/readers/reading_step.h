@@ -59,6 +59,7 @@ class ReadingStep {
   void dwell_of_other_controls();
   // home_reading.cpp
   void home();
+  void home_under_tip_control();
   void homing_cycle();
   void machine_coordinates();
   bool has_work_offset() const;
@@ -67,6 +68,7 @@ class ReadingStep {
   // tool_reading.cpp
   void length_offset();
   void diameter_offset();
+  void idle_beam();
   void laser_power();
   // subprogram_reading.cpp
   void subprograms();
@@ -74,6 +76,7 @@ class ReadingStep {
   void call_behind_words();
   void local_call();
   // motion_reading.cpp
+  void arc_without_axes();
   void motion_in_force();
   void rapid_at_start(int column);
   void arc_centre();

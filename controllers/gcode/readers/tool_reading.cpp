@@ -69,8 +69,21 @@ void ReadingStep::diameter_offset() {
   words.erase(*words.code('G', tenths_of(on->value)));
 }
 
+// M4 S0, and then S500: the beam is switched by S. A spindle is switched on with its speed.
+void ReadingStep::idle_beam() {
+  const bool is_on = words.has_code('M', 30) || words.has_code('M', 40);
+  if (is_on || words.has_code('M', 50)) memory.is_idle_beam = false;
+  if (!words.has('S')) return;
+  if (is_on) memory.is_idle_beam = words['S'] == 0.0;
+  if (is_on || !memory.is_idle_beam || words['S'] == 0.0) return;
+  fail(words.column('S'),
+       "S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; programs for "
+       "milling are read here");
+}
+
 // A laser's power follows the path; the speed of a spindle does not.
 void ReadingStep::laser_power() {
+  idle_beam();
   const int motion = motion_in_block();
   const bool is_feed = motion == 10 || motion == 20 || motion == 30;
   if (!is_feed || !words.has('S') || !words.has_axis()) return;

@@ -102,7 +102,9 @@ constexpr auto kRefused = std::to_array<Refused>({
     {'G', 2540,
      "shifts the work offset with the rotary axes (Haas), by centres of rotation that "
      "are in the control; post it with G68.2 or G43.4"},
-    {'M', 170, "ends a subprogram of Siemens; write M99"},
+    {'M', 170,
+     "ends a subprogram of Siemens, or switches the motors on that drive a hobby machine; write "
+     "M99, or take it out"},
     {'M', 470, "starts the program again and again (Mach); write M30"},
     {'M', 960, "lets a signal interrupt the program, and none are simulated"},
     {'M', 1040, "heats the extruder of a printer; programs for milling are read here"},
@@ -242,6 +244,14 @@ void ReadingStep::machine_functions() {
       word.is_changed = true;
       continue;
     }
+    if (tenths == 120 || tenths == 130) {
+      reading_.notes_.push_back(
+          {word.column, fmt::format("{}: the brake of the fifth axis (Haas), or the spindle or the "
+                                    "coolant of other builders; neither moves an axis",
+                                    name_of(word))});
+      leave_out(ReaderRule::machine_function, word);
+      continue;
+    }
     const bool is_ignored = tenths % 10 == 0 && options.ignored_codes.contains(tenths / 10);
     if (tenths % 10 == 0 && (is_ignored || is_idle_function(tenths / 10))) {
       leave_out(is_ignored ? ReaderRule::ignored_function : ReaderRule::machine_function, word);
@@ -285,19 +295,6 @@ void ReadingStep::coolant_codes() {
   need(ReaderRule::coolant_codes, flood->column);
   before.emplace_back("M8");
   words.erase(*flood);
-}
-
-// G9: an exact stop at the end of this block.
-void ReadingStep::exact_stop() {
-  BlockWord* code = words.code('G', 90);
-  if (code == nullptr) return;
-  need(ReaderRule::exact_stop, code->column);
-  words.erase(*code);
-  if (state.path_mode != PathMode::continuous) return;
-  before.emplace_back("G61.1");
-  behind.push_back(state.path_tolerance > 0.0
-                       ? "G64 " + word_text('P', state.path_tolerance / state.unit)
-                       : "G64");
 }
 
 // M3 P100: a power in percent.

@@ -40,7 +40,13 @@ const std::vector<Style>& styles() {
        ":3:1: error: G38.2: what a probe touches is not known here; [touch_probe] of a scenario "
        "says it"},
       {"camotics_tplang.nc", {5, 6, 12}, 2, 10.0, 0.0},
-      {"cncjs_laser.gcode", {5, 5}, 2, 10.0, 10.0},
+      {"cncjs_laser.gcode",
+       {},
+       0,
+       0,
+       0,
+       ":5:8: error: S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; "
+       "programs for milling are read here"},
       {"cncjs_macro.nc", {2, 4}, 5, 0.0, 0.0},
       {"cncjs_variables.nc",
        {},

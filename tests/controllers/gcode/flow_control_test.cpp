@@ -121,7 +121,8 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
       {"o1 sub\no1 endsub\nM98 P1",
        "p.nc:1:1: error: O<1> is a subroutine; call it with O<1> CALL; in O<1>, called in p.nc:3"},
       {"o<hole> call\nG0 X1",
-       "p.nc:3: error: no subroutine O<hole> up to here, which line 1 calls, and no file hole.ngc"},
+       "p.nc:3: error: no subroutine O<hole> up to here, which line 1 calls, and no file hole.ngc "
+       "(--subs names its folder)"},
       {"o1.5 sub", "p.nc:1:1: error: O1.5; must be an integer"},
       {"o1 frob", "p.nc:1:4: error: unknown keyword 'FROB' after an O-word"},
       {"o1 cal", "p.nc:1:4: error: unknown keyword 'CAL' after an O-word; did you mean 'CALL'?"},

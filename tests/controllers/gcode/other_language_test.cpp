@@ -12,6 +12,8 @@
 namespace servomill::controllers::other_language_test {
 namespace {
 
+using program_reader_test::refusal;
+
 // A word may mean something else there (G4 F, G64, D): none is read by the rules of another
 // control unless the user names it.
 TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
@@ -64,16 +66,68 @@ TEST(OtherLanguage, TextsAndEngravingAreNamed) {
 }
 
 TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
-  using program_reader_test::refusal;
   EXPECT_EQ(
       refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
       "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; --reader heidenhain reads it");
   EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
             "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
             "here");
-  EXPECT_EQ(refusal("G1 X1 F100 E0.5\nM2\n"),
-            "p.nc:1:12: error: an E word feeds the extruder of a printer, or sets the generator of "
-            "wire EDM; programs for milling are read here");
+  EXPECT_EQ(
+      refusal("G1 X1 F100 E0.5\nM2\n"),
+      "p.nc:1:12: error: an E word feeds the extruder of a printer, sets the generator of wire "
+      "EDM, or names a work offset (Fadal); programs for milling are read here, with G54 ... "
+      "G59");
+}
+
+TEST(OtherLanguage, IsNamedByTheFormOfItsBlocks) {
+  const std::string star =
+      "a '*' ends the blocks of DIN/ISO programs of Heidenhain; programs in G-code of other "
+      "controls and Heidenhain conversational are read here";
+  EXPECT_EQ(other_language("N50 G00 G40 G90 Z+250 *", 23), star);
+  EXPECT_EQ(other_language("#1=#2*", 6), "");
+  EXPECT_EQ(other_language("$PART.MIN%", 1),
+            "'$PART.MIN%' begins a program of Okuma; programs in G-code of other controls are read "
+            "here: let the post-processor write for Fanuc or LinuxCNC");
+  EXPECT_EQ(other_language("VC1=10", 1),
+            "'VC1=' is a variable of Okuma; programs in G-code of other controls are read here");
+  const std::string shopbot =
+      "this is a program of ShopBot (OpenSBP); programs in G-code are read here";
+  EXPECT_EQ(other_language("'SHOPBOT FILE", 1), shopbot);
+  EXPECT_EQ(other_language("MS,2.0,1.0", 3), shopbot);
+  EXPECT_EQ(other_language("M3,1.0,2.0", 3), shopbot);
+  EXPECT_EQ(other_language("M3", 1), "");
+}
+
+// A block of words has no three letters in a row.
+TEST(OtherLanguage, TextBehindTwoSlashesIsAComment) {
+  EXPECT_EQ(refusal("//O0000Bracket\n//DATE=DD-MM-YY\nG0 X1.\nM2\n"), "");
+  EXPECT_EQ(refusal("//G0 X1. (BRACKET)\nM2\n").substr(0, 36),
+            "p.nc:1:2: error: '//' before words: ");
+}
+
+TEST(OtherLanguage, ALaserIsRefusedByName) {
+  const std::string refused =
+      ": error: S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; programs "
+      "for milling are read here";
+  EXPECT_EQ(refusal("M4 S0\nG0 X1.\nG1 X2. S500 F100.\nM2\n"), "p.nc:3:8" + refused);
+  EXPECT_EQ(refusal("M3 S0\nG0 X1.\nS1000\nG1 X2. F100.\nM2\n"), "p.nc:3:1" + refused);
+  // a spindle that is switched on with its speed, or does not turn
+  EXPECT_EQ(refusal("M3 S0\nG0 X1.\nM3 S1000\nS2000\nG1 X2. F100.\nM2\n"), "");
+  EXPECT_EQ(refusal("M3 S0\nG1 X2. S0 F100.\nM5\nS500\nM2\n"), "");
+}
+
+TEST(OtherLanguage, ATextThatEndsInASubroutineIsNoProgram) {
+  EXPECT_EQ(refusal("O1 sub\nG0 X1\n"),
+            "p.nc:2: error: the program ends while it skips to O1 from line 1");
+  EXPECT_EQ(refusal("%\nO1 if [0]\nG0 X1\n%\n"),
+            "p.nc:4: error: the program ends while it skips to O1 from line 2");
+}
+
+TEST(OtherLanguage, AnEmptyTextIsNoProgram) {
+  for (const char* text : {"", "\n\n"}) {
+    EXPECT_NE(refusal(text).find("the program ends without M2, M30 or a closing '%'"),
+              std::string::npos);
+  }
 }
 
 }  // namespace

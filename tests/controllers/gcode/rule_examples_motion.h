@@ -207,6 +207,23 @@ inline std::vector<RuleExample> motion_examples() {
        "p.nc:2:3",
        kMemory,
        {.skips_blocks = true}},
+      // the end is the begin
+      {ReaderRule::arc_without_axes, Reader::fanuc, "G2 X2. I1. F100.\nI-1.\nG1 X0.\nM2\n",
+       "CW 2 0 0 o 1 0 0 f100 | CW 2 0 0 o 1 0 0 | F 0 0 0", "p.nc:2:1", kMemory},
+      {ReaderRule::arc_without_axes, Reader::any,
+       "G91 G18 G3 X2. I1. F100.\nI-1. K0.\nG1 Z1.\nM2\n",
+       "CCW18 2 0 0 o 1 0 0 f100 | CCW18 2 0 0 o 1 0 0 | F 2 0 1", "p.nc:2:1", kMemory},
+      // spindle at Z15 and the way over there; machine zero of Z, and the tip under control again
+      {ReaderRule::home_under_tip_control,
+       Reader::fanuc,
+       "T1 M6\nG43.4 H1\nG0 X1. Y2. Z5.\nG91 G28 Z0.\nG90 G49\nG0 X3.\nM2\n",
+       "T1 | R 1 2 5 | R 1 2 15 | R 1 2 0 | R 3 2 0",
+       "p.nc:4:5",
+       "none found",
+       {.has_tools = true}},
+      {ReaderRule::subprogram_behind_end, Reader::fanuc,
+       "%\nM98 P7\nG0 Y2.\nM30\n%\nO7\nG0 X1.\nM99\n", "R 1 0 0 | R 1 2 0", "p.nc:5:1",
+       "none found"},
       {ReaderRule::unit_codes, Reader::mach, "G70\nG0 X1.\nG91 X1.\nG71 X1.\nM2\n",
        "R 25.4 0 0 | R 50.8 0 0 | R 51.8 0 0", "p.nc:1:1", kMemory},
   };
