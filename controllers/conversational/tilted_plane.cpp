@@ -201,11 +201,24 @@ bool Translator::turn_to_plane(const Positioning& p) {
   return true;
 }
 
+// True if no rotary axis stands elsewhere than at zero, where programs begin.
+bool Translator::rotary_axes_are_at_zero() const {
+  for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (work_[i].value_or(0.0) != 0.0 || frame_.shift[i] != 0.0) return false;
+  }
+  return true;
+}
+
 void Translator::reset_plane(const std::string& behaviour) {
   require_no_compensation("PLANE RESET");
   if (!plane_) {
     if (behaviour == "STAY" || behaviour.empty()) return;
     // nothing is tilted: rotary axes go to zero
+    if (!setup_.machine && rotary_axes_are_at_zero()) {
+      return warn_once("PLANE RESET",
+                       "PLANE RESET TURN or MOVE: takes the rotary axes to zero, where they are "
+                       "taken to be: no line before it turns one");
+    }
   } else {
     if (!frame_.is_plain()) {
       fail(

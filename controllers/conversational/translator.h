@@ -190,6 +190,7 @@ class Translator {
   std::string turn_of_plane(const Eigen::Matrix3d& R, int seq);
   bool turn_to_plane(const Positioning& p);
   void reset_plane(const std::string& behaviour);
+  bool rotary_axes_are_at_zero() const;
 
   // patterns.cpp: PATTERN DEF and CYCL CALL PAT
   struct PatternPoint {

@@ -52,6 +52,10 @@ std::vector<Example> transformation_examples() {
        "PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY SEQ+ TABLE ROT\nPLANE RESET STAY\nL A+Q120 C+Q122 "
        "FMAX\nL X+1 Y+2 Z+3 F100\n",
        "3 rapid 0 0 0\n4 feed 1 2 3 F100\n"},
+      // rotary axes are at zero, where programs begin
+      {"PLANE RESET TURN without a plane",
+       "PLANE RESET TURN FMAX\nL A+0 FMAX\nPLANE RESET MOVE FMAX\nL X+1 F100\n",
+       "2 rapid 0 0 0\n4 feed 1 0 0 F100\n"},
       {"M128", "L A+0 B+0 C+0 FMAX\nL M128\nL X+1 C+90 F100\nL C+0\nL M129\n",
        "1 rapid 0 0 0\n3 feed 1 0 0 C90 F100\n4 feed 1 0 0 F100\n"},
   };
