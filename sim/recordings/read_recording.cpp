@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string_view>
 #include <system_error>
 
@@ -19,6 +20,7 @@
 #include "sim/recordings/tncscope_reader.h"
 #include "sim/recordings/twincat_reader.h"
 #include "sim/system/read_file.h"
+#include "sim/system/trial_process.h"
 
 namespace servomill::sim::recordings {
 namespace {
@@ -40,6 +42,20 @@ bool is_hdf5_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   return file && head == kHdf5;
+}
+
+// Damaged files crash or hang the libraries of binary formats: they are tried in another process
+// first. The time grows with the file.
+void refuse_if_fatal(const std::string& path, const std::function<void()>& read) {
+  constexpr double kBytesPerSecond = 10e6;
+  constexpr int kLeastSeconds = 2;
+  std::error_code fault;
+  const auto bytes = std::filesystem::file_size(path, fault);
+  if (fault) return;
+  const int seconds =
+      kLeastSeconds + static_cast<int>(static_cast<double>(bytes) / kBytesPerSecond);
+  const std::string way = system::try_in_process(read, seconds);
+  if (!way.empty()) throw InputError({path}, fmt::format("is damaged: reading it {}", way));
 }
 
 // A text has no NUL; UTF-16 and binary files have.
@@ -93,6 +109,7 @@ std::string format_names() {
 
 Recording read_recording(const std::string& path, const std::string& time_unit) {
   if (is_hdf5_file(path)) {
+    refuse_if_fatal(path, [&] { read_hdf5(path); });
     Recording out = read_hdf5(path);
     set_time_unit(out, time_unit);
     return out;
@@ -104,6 +121,7 @@ Recording read_recording(const std::string& path, const std::string& time_unit) 
   }
   for (const Format& format : kFormats) {
     if (!format.is(bytes)) continue;
+    if (format.read == read_mat) refuse_if_fatal(path, [&] { read_mat(bytes, path); });
     Recording out = format.read(bytes, path);
     set_time_unit(out, time_unit);
     return out;
