@@ -216,8 +216,20 @@ def response_section(file):
                 f"<p>Median misfit {100 * fit['median_misfit'][()]:.2f} %, {ratio:.1f} times the noise" +
                 ("; the uncertainty includes the model error.</p>" if ratio > 1.5 else ".</p>")]
         model = response_in(fit)
+    name = "the fitted two masses"
+    if "rational" in file:
+        fit = file["rational"]
+        rows = [(kind.removesuffix("s"), f"{f:.5g}", f"{of_f:.2g}", f"{damping:.3g}", f"{of_damping:.2g}")
+                for kind in ("zeros", "poles") if "frequency" in fit[kind]
+                for f, of_f, damping, of_damping in zip(*(fit[kind][key][:] for key in ("frequency", "frequency_half_width", "damping",
+                                                                                         "damping_half_width")))]
+        ratio = fit["noise_ratio"][()]
+        out += [table(("rational function", "Hz", "&plusmn; (k = 2)", "damping", "&plusmn; (k = 2)"), rows),
+                f"<p>Dead time {1e3 * fit['dead_time'][()]:.4g} ms; median misfit {100 * fit['median_misfit'][()]:.2f} %, {ratio:.1f} times the "
+                "noise" + ("; the uncertainty includes the model error.</p>" if ratio > 1.5 else ".</p>")]
+        model, name = response_in(fit), "the fitted rational function"
     unit = str(file["response/real"].attrs["units"])
-    out.append(frequency_response(file["response"], model, unit, (signals, "the fitted two masses")))
+    out.append(frequency_response(file["response"], model, unit, (signals, name)))
     return "\n".join(out)
 
 

@@ -56,12 +56,6 @@ std::vector<std::size_t> excited_lines(const std::vector<Spectrum>& periods, con
   return out;
 }
 
-// Quantile of Fisher's distribution with 2 and 2 (M - 1) degrees of freedom, for 95 %.
-double fisher_95(std::size_t periods) {
-  const double nu = 2.0 * static_cast<double>(periods - 1);
-  return 0.5 * nu * (std::pow(0.05, -2.0 / nu) - 1.0);
-}
-
 // Lowest point on the way from a maximum to something higher, on the side where it is higher up.
 double saddle_of(const std::vector<double>& level, std::size_t at) {
   double saddle = -std::numeric_limits<double>::infinity();
@@ -94,6 +88,8 @@ void add_maxima(const std::vector<double>& level, const MeasuredResponse& respon
 
 }  // namespace
 
+double fisher_95(double n) { return n * (std::pow(0.05, -1.0 / n) - 1.0); }
+
 MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<const double> output,
                                     const PeriodSettings& s, const std::string& name) {
   const std::size_t all = s.samples > 0 ? input.size() / s.samples : 0;
@@ -124,7 +120,7 @@ MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<con
     const double variance =
         own + std::norm(line.value) * of_input - 2.0 * (std::conj(line.value) * cross).real();
     line.variance = std::max(variance, 0.0) / std::norm(U[k]);
-    line.radius_95 = std::sqrt(fisher_95(periods) * line.variance);
+    line.radius_95 = std::sqrt(fisher_95(static_cast<double>(periods - 1)) * line.variance);
     out.lines.push_back(line);
   }
   return out;

@@ -23,8 +23,9 @@ struct ResponseLine {
 
 struct MeasuredResponse {
   std::vector<ResponseLine> lines;
-  std::size_t periods = 0;    // that were averaged
-  std::size_t unexcited = 0;  // lines within the range of the others that hold no excitation
+  std::size_t periods = 0;          // that were averaged
+  double lines_per_estimate = 1.0;  // neighbours that share samples: so many carry as much as one
+  std::size_t unexcited = 0;        // lines within the range of the others that hold no excitation
 };
 
 /// Periods of a record.
@@ -45,6 +46,10 @@ struct PeriodSettings {
 /// @throws InputError if fewer than two periods remain, or nothing is excited
 MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<const double> output,
                                     const PeriodSettings& settings, const std::string& name);
+
+/// Quantile for 95 % of Fisher's distribution with 2 and 2 n degrees of freedom: of |error|^2 over
+/// an estimated variance with n complex degrees of freedom.
+double fisher_95(double n);
 
 /// Frequencies at which the amplitude is least and greatest between neighbours, refined by a
 /// parabola through the logarithms of three lines; the most marked first (Hz).

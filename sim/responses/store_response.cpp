@@ -47,7 +47,8 @@ void store_lines(records::Hdf5Group group, const MeasuredResponse& response,
 
 // Frequencies at equal ratios from the first line to the last: a resonance may be between two
 // lines.
-void store_model(records::Hdf5Group& group, const TwoMass& model, const MeasuredResponse& response,
+template <class Model>
+void store_model(records::Hdf5Group& group, const Model& model, const MeasuredResponse& response,
                  const std::string& unit) {
   const double first = response.lines.front().frequency, last = response.lines.back().frequency;
   Columns columns;
@@ -77,6 +78,33 @@ void store_fit(records::Hdf5Group group, const TwoMassFit& fit, const MeasuredRe
   store_model(group, fit.model, response, unit);
 }
 
+void store_roots(records::Hdf5Group group, const std::vector<Root>& roots) {
+  if (roots.empty()) return;
+  std::vector<double> number, frequency, damping, of_frequency, of_damping;
+  for (const Root& root : roots) {
+    number.push_back(static_cast<double>(number.size()));
+    frequency.push_back(root.frequency);
+    damping.push_back(root.damping);
+    of_frequency.push_back(2.0 * root.frequency_deviation);
+    of_damping.push_back(2.0 * root.damping_deviation);
+  }
+  group.list("root", number, {"1", "number of the root, one a conjugate pair"});
+  group.list("frequency", frequency, {"Hz", "absolute value"}, "root");
+  group.list("frequency_half_width", of_frequency, {"Hz", "expanded uncertainty, k = 2"}, "root");
+  group.list("damping", damping, {"1", "- real part over absolute value"}, "root");
+  group.list("damping_half_width", of_damping, {"1", "expanded uncertainty, k = 2"}, "root");
+}
+
+void store_fit(records::Hdf5Group group, const RationalFit& fit, const MeasuredResponse& response,
+               const std::string& unit) {
+  store_roots(group.group("zeros"), fit.zeros);
+  store_roots(group.group("poles"), fit.poles);
+  group.scalar("dead_time", fit.model.dead_time, {"s", "dead time"});
+  group.scalar("noise_ratio", fit.noise_ratio, {"1", "rms misfit over the noise of the lines"});
+  group.scalar("median_misfit", fit.median_misfit, {"1", "median of |fit - measured|/|measured|"});
+  store_model(group, fit.model, response, unit);
+}
+
 }  // namespace
 
 std::string response_unit(const SignalName& output, const SignalName& input) {
@@ -95,6 +123,7 @@ void store_response(const ResponseRecord& record, const std::string& path, bool 
   const std::string unit = response_unit(record.output, record.input);
   store_lines(root.group("response"), record.response, unit);
   if (record.fit) store_fit(root.group("two_mass"), *record.fit, record.response, unit);
+  if (record.rational) store_fit(root.group("rational"), *record.rational, record.response, unit);
   file.commit();
 }
 

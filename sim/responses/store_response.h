@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/responses/rational_fit.h"
 #include "sim/responses/two_mass_fit.h"
 
 namespace servomill::sim::responses {
@@ -19,13 +20,15 @@ struct ResponseRecord {
   SignalName input, output;
   MeasuredResponse response;
   std::optional<TwoMassFit> fit;
+  std::optional<RationalFit> rational;
 };
 
 /// Unit of output over input: "rad/A"; "1" for equal units, "unknown" where one of them is.
 std::string response_unit(const SignalName& output, const SignalName& input);
 
 /// Writes HDF5: group `response` with the lines, group `two_mass` with the values of the fit and
-/// its response on a grid that is finer than the lines.
+/// its response on a grid that is finer than the lines; or the same of a rational function in group
+/// `rational`.
 /// @throws InputError if `path` exists and `force` is not set
 void store_response(const ResponseRecord& record, const std::string& path, bool force);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/responses/response_misfit.h"
 
 namespace servomill::sim::responses {
 namespace {
@@ -112,31 +113,9 @@ std::vector<double> start_of(const MeasuredResponse& response, const std::string
   return x;
 }
 
-double median_misfit(const MeasuredResponse& response, const TwoMass& model) {
-  std::vector<double> misfit;
-  for (const ResponseLine& line : response.lines) {
-    misfit.push_back(std::abs(model.at(line.frequency) - line.value) / std::abs(line.value));
-  }
-  const auto middle = misfit.begin() + static_cast<std::ptrdiff_t>(misfit.size() / 2);
-  std::nth_element(misfit.begin(), middle, misfit.end());
-  return *middle;
-}
-
-// Rms of the misfit over the noise.
-double noise_ratio(const MeasuredResponse& response, const TwoMass& model) {
-  double sum = 0.0;
-  for (const ResponseLine& line : response.lines) {
-    sum += 2.0 * std::norm(model.at(line.frequency) - line.value) / std::max(line.variance, 1e-300);
-  }
-  return std::sqrt(sum / static_cast<double>(2 * response.lines.size() - TwoMass::kParameters));
-}
-
-std::vector<double> weights(const MeasuredResponse& response, double floor) {
-  std::vector<double> out;
-  for (const ResponseLine& line : response.lines) {
-    const double least = std::max(floor, 1e-9) * std::abs(line.value);
-    out.push_back(1.0 / std::sqrt(0.5 * line.variance + 0.5 * least * least));
-  }
+std::vector<Complex> at_lines(const MeasuredResponse& response, const TwoMass& model) {
+  std::vector<Complex> out;
+  for (const ResponseLine& line : response.lines) out.push_back(model.at(line.frequency));
   return out;
 }
 
@@ -177,19 +156,21 @@ TwoMassFit fit_two_mass(const MeasuredResponse& response, const std::string& nam
   double floor = 1.0;
   Solved solved;
   for (int round = 0; round < 4; ++round) {
-    solved = solve(positive, weights(positive, floor), x);
+    solved = solve(positive, line_weights(positive, floor), x);
     x = solved.x;
-    floor = median_misfit(positive, model_of(x.data()));
+    floor = median_misfit(positive, at_lines(positive, model_of(x.data())));
   }
-  out.noise_ratio = noise_ratio(positive, model_of(x.data()));
+  out.noise_ratio =
+      noise_ratio(positive, at_lines(positive, model_of(x.data())), TwoMass::kParameters);
   if (!out.has_model_error()) {
-    solved = solve(positive, weights(positive, 0.0), x);
+    solved = solve(positive, line_weights(positive, 0.0), x);
     x = solved.x;
   }
   out.model = model_of(x.data());
-  out.noise_ratio = noise_ratio(positive, out.model);
-  out.median_misfit = median_misfit(positive, out.model);
-  out.covariance = solved.covariance * std::max(solved.cost / rows, 1.0);
+  out.noise_ratio = noise_ratio(positive, at_lines(positive, out.model), TwoMass::kParameters);
+  out.median_misfit = median_misfit(positive, at_lines(positive, out.model));
+  out.covariance =
+      solved.covariance * std::max(solved.cost / rows, 1.0) * response.lines_per_estimate;
   for (std::size_t a = 0; a < TwoMass::kParameters; ++a) {
     for (std::size_t b = 0; b < TwoMass::kParameters; ++b) {
       out.covariance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) *=

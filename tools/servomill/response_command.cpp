@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/read_recording.h"
+#include "sim/responses/control_response.h"
+#include "sim/responses/local_polynomial.h"
 #include "sim/responses/store_response.h"
 #include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
@@ -25,13 +28,19 @@ void add_response_options(Options& options) {
   options.add()("input", text("CHANNEL"), "excitation: current, torque or position command");
   options.add()("output", text("CHANNEL"), "what answers: an angle or a position");
   options.add()("period", po::value<double>()->value_name("S"),
-                "period of the excitation in s (samples, where the file knows no time)");
+                "period of the excitation in s (samples, where the file knows no time); without it "
+                "the local polynomial method takes the record as it is: a chirp, a pseudo-random "
+                "binary signal");
+  options.add()("of-control",
+                "takes the response that the control has computed itself; CHANNEL is "
+                "the number of a signal");
   options.add()("skip", po::value<int>()->default_value(1)->value_name("N"),
                 "periods at the beginning, in which the transient has not ended");
   options.add()("from", po::value<double>()->value_name("HZ"), "lines below are left out");
   options.add()("to", po::value<double>()->value_name("HZ"), "lines above are left out");
-  options.add()("fit", text("two-mass"),
-                "fits the two-mass model from a current or torque to the motor's angle");
+  options.add()("fit", text("two-mass|N/M|N/M+delay"),
+                "fits the two-mass model from a current or torque to the motor's angle, or a "
+                "rational function: degrees of numerator and denominator, dead time");
   options.add()("lines", "prints every line, not just those that tell most");
   options.add()("table", text("OUT.csv"), "writes all lines with their uncertainty");
   options.add()("signals", text("OUT.h5"),
@@ -56,12 +65,32 @@ const sim::recordings::Channel& channel_of(const sim::recordings::Recording& rec
                                       did_you_mean(name, names)));
 }
 
+// A transform needs every sample, at equal intervals.
+void refuse_unusable(const sim::recordings::Recording& recording,
+                     const sim::recordings::Channel& channel) {
+  const auto& base = recording.bases[channel.base];
+  for (std::size_t k = 0; k < channel.samples.size(); ++k) {
+    if (!std::isnan(channel.samples[k])) continue;
+    throw InputError(
+        {recording.file},
+        fmt::format("'{}' lacks a sample at {}; a frequency response needs all of them",
+                    channel.name, sim::recordings::at_text(base, k)));
+  }
+  const double mean = (base.values.back() - base.values.front()) /
+                      static_cast<double>(std::max<std::size_t>(base.values.size() - 1, 1));
+  for (std::size_t k = 1; k < base.values.size(); ++k) {
+    if (base.values[k] - base.values[k - 1] < 1.5 * mean) continue;
+    throw InputError({recording.file},
+                     fmt::format("'{}' has a gap after {}; a frequency response needs samples at "
+                                 "equal intervals",
+                                 channel.name, sim::recordings::at_text(base, k - 1)));
+  }
+}
+
 // Samples of one period and their rate.
 sim::responses::PeriodSettings periods_of(const Options& options,
                                           const sim::recordings::Base& base) {
   const Place place{"--period"};
-  if (!options.has("period"))
-    throw InputError(place, "must be given: the period of the excitation");
   const auto count = static_cast<double>(base.values.size() - 1);
   const double interval = (base.values.back() - base.values.front()) / count;
   const double samples = options.get<double>("period") / interval;
@@ -96,8 +125,14 @@ double degrees(const sim::responses::Complex& value) {
 }
 
 void print_response(const MeasuredResponse& response, bool all) {
-  fmt::print("{} lines from {:g} to {:g} Hz, mean of {} periods", response.lines.size(),
-             response.lines.front().frequency, response.lines.back().frequency, response.periods);
+  fmt::print("{} lines from {:g} to {:g} Hz, ", response.lines.size(),
+             response.lines.front().frequency, response.lines.back().frequency);
+  if (response.lines_per_estimate > 1.0) {
+    fmt::print("local polynomials: {:.1f} neighbours carry as much as one",
+               response.lines_per_estimate);
+  } else {
+    fmt::print("mean of {} periods", response.periods);
+  }
   if (response.unexcited > 0) fmt::print(", {} lines between them not excited", response.unexcited);
   fmt::print("\n");
   std::vector<std::vector<std::string>> table = {{"Hz", "magnitude", "+- (95 %)", "phase deg"}};
@@ -110,8 +145,10 @@ void print_response(const MeasuredResponse& response, bool all) {
   }
   fmt::print("{}", sim::system::text_table(table, 0, {0, 1, 2, 3}));
   constexpr double kMarked = 2.0;  // amplitudes
+  constexpr int kMostMarked = 10;
+  int count = 0;
   for (const auto& one : sim::responses::extremes(response)) {
-    if (one.prominence < kMarked) break;
+    if (one.prominence < kMarked || ++count > kMostMarked) break;
     fmt::print("{} at {:.2f} Hz\n", one.is_maximum ? "resonance" : "antiresonance", one.frequency);
   }
 }
@@ -133,6 +170,56 @@ void print_fit(const sim::responses::TwoMassFit& fit) {
         fit.noise_ratio);
   }
   fmt::print("only these ratios can be identified: inertias themselves need the torque constant\n");
+}
+
+void print_roots(const std::vector<sim::responses::Root>& roots, const char* name,
+                 std::vector<std::vector<std::string>>& table) {
+  for (const auto& root : roots) {
+    table.push_back(
+        {root.is_pair ? fmt::format("{} pair", name) : name, fmt::format("{:.5g}", root.frequency),
+         fmt::format("{:.2g}", 2.0 * root.frequency_deviation), fmt::format("{:.3g}", root.damping),
+         fmt::format("{:.2g}", 2.0 * root.damping_deviation)});
+  }
+}
+
+void print_fit(const sim::responses::RationalFit& fit) {
+  std::vector<std::vector<std::string>> table = {
+      {"rational function", "Hz", "+- (k = 2)", "damping", "+- (k = 2)"}};
+  print_roots(fit.zeros, "zero", table);
+  print_roots(fit.poles, "pole", table);
+  fmt::print("\n{}", sim::system::text_table(table, 0, {1, 2, 3, 4}));
+  if (fit.dead_time_deviation > 0.0) {
+    fmt::print("dead time {:.4g} +- {:.2g} ms (k = 2)\n", 1e3 * fit.model.dead_time,
+               2e3 * fit.dead_time_deviation);
+  }
+  fmt::print("median misfit {:.2f} %, {:.1f} times the noise{}\n", 100.0 * fit.median_misfit,
+             fit.noise_ratio,
+             fit.has_model_error() ? ": the order is too low, or the axis is not linear; the "
+                                     "uncertainty includes it"
+                                   : "");
+}
+
+// "2/4", "2/4+delay".
+std::optional<sim::responses::RationalOrder> rational_order(const std::string& text) {
+  const std::string_view ending = "+delay";
+  std::string_view rest = text;
+  sim::responses::RationalOrder order;
+  order.with_dead_time = rest.ends_with(ending);
+  if (order.with_dead_time) rest.remove_suffix(ending.size());
+  const std::size_t slash = rest.find('/');
+  const auto degree = [](std::string_view word) {
+    const bool is_number =
+        !word.empty() && word.size() <= 2 &&
+        std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return is_number ? std::stoi(std::string(word)) : -1;
+  };
+  if (slash == std::string_view::npos) return std::nullopt;
+  order.numerator = degree(rest.substr(0, slash));
+  order.denominator = degree(rest.substr(slash + 1));
+  const bool fits = order.numerator >= 0 && order.denominator >= 1 &&
+                    order.numerator <= order.denominator &&
+                    order.denominator <= sim::responses::kMostOrder;
+  return fits ? std::optional(order) : std::nullopt;
 }
 
 std::string csv_of(const MeasuredResponse& response) {
@@ -158,6 +245,43 @@ void write_outputs(const sim::responses::ResponseRecord& record, const Options& 
   }
 }
 
+MeasuredResponse measured_response(const sim::recordings::Recording& recording,
+                                   const Options& options) {
+  if (options.has("of-control")) {
+    const auto word = [&](const char* option) {
+      return options.has(option) ? options.get<std::string>(option) : std::string();
+    };
+    return sim::responses::control_response(
+        sim::responses::control_spectra(recording, word("input"), word("output")), recording.file);
+  }
+  const auto& input = channel_of(recording, options, "input");
+  const auto& output = channel_of(recording, options, "output");
+  if (input.base != output.base) {
+    throw InputError({recording.file}, fmt::format("'{}' and '{}' have different rates or times",
+                                                   input.name, output.name));
+  }
+  const auto& base = recording.bases[input.base];
+  refuse_unusable(recording, input);
+  refuse_unusable(recording, output);
+  if (options.has("period")) {
+    return sim::responses::maximum_likelihood(input.samples, output.samples,
+                                              periods_of(options, base), recording.file);
+  }
+  sim::responses::LocalPolynomialSettings settings;
+  settings.rate =
+      static_cast<double>(base.values.size() - 1) / (base.values.back() - base.values.front());
+  if (options.has("from")) settings.from = options.get<double>("from");
+  if (options.has("to")) settings.to = options.get<double>("to");
+  return sim::responses::local_polynomial(input.samples, output.samples, settings, recording.file);
+}
+
+sim::responses::SignalName signal_name(const sim::recordings::Recording& recording,
+                                       const Options& options, const char* option) {
+  if (options.has("of-control")) return {"signal " + options.get<std::string>(option), ""};
+  const auto& channel = channel_of(recording, options, option);
+  return {channel.name, channel.unit};
+}
+
 }  // namespace
 
 int response_command(const Arguments& arguments) {
@@ -170,9 +294,13 @@ int response_command(const Arguments& arguments) {
   add_response_options(options);
   if (!options.parse(arguments)) return kDone;
   const std::string file = options.word();
-  if (options.has("fit") && options.get<std::string>("fit") != "two-mass") {
+  const std::string fit = options.has("fit") ? options.get<std::string>("fit") : "";
+  const auto order = rational_order(fit);
+  if (!fit.empty() && fit != "two-mass" && !order) {
     throw InputError(
-        {"--fit"}, fmt::format("'{}' is not known; two-mass is", options.get<std::string>("fit")));
+        {"--fit"}, fmt::format("'{}' is not known; two-mass is, and N/M or N/M+delay with degrees "
+                               "N <= M of numerator and denominator, M from 1 to {}",
+                               fit, sim::responses::kMostOrder));
   }
   const bool force = options.has("force");
   if (options.has("table")) {
@@ -182,21 +310,17 @@ int response_command(const Arguments& arguments) {
   if (!signals.empty()) sim::run::writable_name(signals, force);
   const auto recording = sim::recordings::read_recording(
       file, options.has("time-unit") ? options.get<std::string>("time-unit") : "");
-  const auto& input = channel_of(recording, options, "input");
-  const auto& output = channel_of(recording, options, "output");
-  if (input.base != output.base) {
-    throw InputError({file}, fmt::format("'{}' and '{}' have different rates or times", input.name,
-                                         output.name));
-  }
-  const auto& base = recording.bases[input.base];
-  const MeasuredResponse response =
-      within(sim::responses::maximum_likelihood(input.samples, output.samples,
-                                                periods_of(options, base), file),
-             options);
+  const MeasuredResponse response = within(measured_response(recording, options), options);
   print_response(response, options.has("lines"));
-  sim::responses::ResponseRecord record{
-      file, {input.name, input.unit}, {output.name, output.unit}, response, {}};
-  if (options.has("fit")) {
+  sim::responses::ResponseRecord record;
+  record.recording = file;
+  record.input = signal_name(recording, options, "input");
+  record.output = signal_name(recording, options, "output");
+  record.response = response;
+  if (order) {
+    record.rational = sim::responses::fit_rational(response, *order, file);
+    print_fit(*record.rational);
+  } else if (!fit.empty()) {
     record.fit = sim::responses::fit_two_mass(response, file);
     print_fit(*record.fit);
   }

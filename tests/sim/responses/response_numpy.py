@@ -57,6 +57,47 @@ def compare(servomill, recording, table, names, period, samples, rate, folder, o
     return printed
 
 
+def local_polynomial(u, y, half_width=6, order=2):
+    """Response and variance of all lines by the local polynomial method, each window by numpy's least squares."""
+    U, Y = (np.fft.fft(x - x.mean())[:len(x) // 2] for x in (u, y))
+    out = {}
+    for k in range(1, len(U)):
+        first = min(max(k - half_width, 1), len(U) - 2 * half_width - 1)
+        lines = np.arange(first, first + 2 * half_width + 1)
+        powers = ((lines - k) / half_width)[:, None] ** np.arange(order + 1)
+        scale = np.sqrt(np.mean(np.abs(U[lines]) ** 2))
+        K = np.hstack([powers * U[lines, None] / scale, powers])
+        values = np.linalg.lstsq(K, Y[lines], rcond=None)[0]
+        left = np.sum(np.abs(Y[lines] - K @ values) ** 2) / (len(lines) - 2 * (order + 1))
+        out[k] = values[0] / scale, left * np.linalg.inv(K.conj().T @ K)[0, 0].real / scale ** 2
+    return out
+
+
+def chirp(servomill, folder):
+    """One sweep through a resonance, with noise: the local polynomial method takes it without a period."""
+    rng = np.random.default_rng(3)
+    t = np.arange(4000) * 1e-3
+    u = np.sin(2 * np.pi * (5 * t + 0.5 * 50 * t ** 2))
+    y = np.zeros_like(u)
+    for n in range(2, len(u)):
+        y[n] = 0.02 * u[n - 1] + 1.8 * y[n - 1] - 0.97 * y[n - 2]
+    y += 1e-3 * rng.standard_normal(len(y))
+    np.savetxt(folder / "chirp.csv", np.column_stack([t, u, y]), "%.17g", ",", header="time [s],u,y", comments="")
+    out = folder / "chirp_response.csv"
+    printed = run(servomill, "response", folder / "chirp.csv", "--input", "u", "--output", "y", "--from", 20, "--to", 150, "--table", out,
+                  "--fit", "2/2+delay")
+    found, wanted = np.loadtxt(out, delimiter=",", skiprows=1), local_polynomial(u, y)
+    lines = np.rint(found[:, 0] * 4).astype(int)
+    G, variance = (np.array([wanted[k][part] for k in lines]) for part in (0, 1))
+    error = np.abs(found[:, 1] + 1j * found[:, 2] - G) / np.abs(G)
+    print(f"chirp: {len(lines)} lines, greatest relative difference {error.max():.2g}")
+    assert len(lines) > 400 and error.max() <= TOLERANCE
+    assert np.allclose(found[:, 3], variance, rtol=1e-6)
+    pole = np.log(np.roots([1, -1.8, 0.97])[0]) * 1000 / 2 / np.pi
+    frequency, half_width = (float(x) for x in re.search(r"pole pair +([\d.]+) +([\d.]+)", printed).groups())
+    assert abs(frequency - abs(pole)) < half_width + 0.01 * abs(pole), (frequency, half_width, abs(pole))
+
+
 def made_up(folder):
     rng = np.random.default_rng(1)
     t = np.arange(6 * 400)
@@ -76,6 +117,7 @@ def main():
         folder = pathlib.Path(name)
         path, table = made_up(folder)
         compare(servomill, path, table, ("u", "y"), 0.4, 400, 1000.0, folder)
+        chirp(servomill, folder)
         if not BENCH.is_file():
             print(f"skipped: no {BENCH.name}")
             return
