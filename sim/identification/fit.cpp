@@ -32,8 +32,8 @@ class Differences {
 
   // One-sided differences, to the side that is possible; half the work of central ones.
   // @param steps  0 or NaN: the column is 0
-  std::optional<Eigen::MatrixXd> slopes(const Values& at, const Values& steps,
-                                        const Eigen::VectorXd& here) const {
+  // @return columns of NaN where neither side is possible
+  Eigen::MatrixXd slopes(const Values& at, const Values& steps, const Eigen::VectorXd& here) const {
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(here.size(), static_cast<Eigen::Index>(steps.size()));
     std::vector<std::size_t> open;
     for (std::size_t p = 0; p < steps.size(); ++p) {
@@ -56,9 +56,9 @@ class Differences {
             (prediction_.residual(*signals[n], mask_) - here) / (sign * steps[open[n]]);
       }
       open = std::move(refused);
-      if (open.empty()) return J;
     }
-    return std::nullopt;
+    for (const std::size_t p : open) J.col(static_cast<Eigen::Index>(p)).setConstant(kNaN);
+    return J;
   }
 
   // Central differences where both sides are possible, else one-sided.
@@ -135,12 +135,16 @@ Values find_scales(const Prediction& prediction, const Differences& differences,
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t p = 0; p < at.size(); ++p) steps[p] = searches[p].step();
     if (std::none_of(steps.begin(), steps.end(), [](double x) { return std::isfinite(x); })) break;
-    const auto J = differences.slopes(at, steps, here);
+    const Eigen::MatrixXd J = differences.slopes(at, steps, here);
     for (std::size_t p = 0; p < at.size(); ++p) {
-      searches[p].look(J ? rms_of(J->col(static_cast<Eigen::Index>(p))) * steps[p] : kNaN, wanted);
+      searches[p].look(rms_of(J.col(static_cast<Eigen::Index>(p))) * steps[p], wanted);
     }
   }
-  for (std::size_t p = 0; p < at.size(); ++p) scales[p] = searches[p].scale();
+  constexpr double kLeast = 1e-9;  // of a value: smaller steps are lost in its rounding
+  for (std::size_t p = 0; p < at.size(); ++p) {
+    scales[p] = searches[p].scale();
+    if (std::isfinite(scales[p])) scales[p] = std::max(scales[p], kLeast * std::abs(at[p]));
+  }
   return scales;
 }
 
@@ -180,13 +184,13 @@ class Cost : public ceres::CostFunction {
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     Values steps(at.size(), kNaN);
     for (const std::size_t p : active_) steps[p] = kDifference * fit_.scales[p];
-    const auto J = differences_.slopes(at, steps, *here);
-    if (!J) return false;
+    const Eigen::MatrixXd J = differences_.slopes(at, steps, *here);
+    if (!J.allFinite()) return false;
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<Rows> into(jacobians[0], here->size(), static_cast<Eigen::Index>(active_.size()));
     for (std::size_t k = 0; k < active_.size(); ++k) {
       into.col(static_cast<Eigen::Index>(k)) =
-          J->col(static_cast<Eigen::Index>(active_[k])) * (fit_.scales[active_[k]] / unit_);
+          J.col(static_cast<Eigen::Index>(active_[k])) * (fit_.scales[active_[k]] / unit_);
     }
     return true;
   }
@@ -268,17 +272,14 @@ double rms(const Eigen::VectorXd& residual, const Mask& mask) {
   return count == 0 ? 0.0 : std::sqrt(residual.squaredNorm() / static_cast<double>(count));
 }
 
-Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
-  const Differences differences(prediction, mask);
-  Fit out;
-  out.values = start;
-  const auto first = differences.residual(start);
-  if (!first) prediction.refuse(start);
+namespace {
+
+// From values of which the residual is known to a minimum.
+void descend(const Prediction& prediction, const Differences& differences, Fit& out) {
   // far from the recording scales are rough, and so are differences by them: they are found again
   // where that has ended, and what had no effect may have one there
   constexpr double kFar = 5.0;
   constexpr int kMostRuns = 4;
-  out.residual = *first;
   double wanted = 0.0;
   for (int run = 0; run < kMostRuns; ++run) {
     wanted = rms_of(out.residual);
@@ -286,6 +287,39 @@ Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
     minimise(prediction, differences, out);
     out.residual = differences.residual(out.values).value();
     if (rms_of(out.residual) > wanted / kFar) break;
+  }
+}
+
+// Values that have run to where they hardly matter, back where they were started from: nothing is
+// left there that would bring them back. Nothing if there are none.
+std::optional<Values> without_runaways(const Fit& fit, const Values& start) {
+  constexpr double kHardly = 0.3;  // of a value, moves the feedback by the residual's rms
+  Values out = fit.values;
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    if (std::isfinite(fit.scales[p]) && fit.scales[p] > kHardly * std::abs(out[p]))
+      out[p] = start[p];
+  }
+  return out == fit.values ? std::nullopt : std::optional(out);
+}
+
+}  // namespace
+
+Fit fit(const Prediction& prediction, const Values& start, const Mask& mask) {
+  const Differences differences(prediction, mask);
+  Fit out;
+  out.values = start;
+  const auto first = differences.residual(start);
+  if (!first) prediction.refuse(start);
+  out.residual = *first;
+  descend(prediction, differences, out);
+  if (const auto other = without_runaways(out, start)) {
+    Fit again = out;
+    again.values = *other;
+    if (const auto residual = differences.residual(*other)) {
+      again.residual = *residual;
+      descend(prediction, differences, again);
+      if (again.residual.squaredNorm() < out.residual.squaredNorm()) out = std::move(again);
+    }
   }
   Values steps = out.scales;
   for (double& step : steps) step *= kDifference;

@@ -45,6 +45,12 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
     const Estimate& one = result.estimates[k];
     for (const std::string& key : one.keys) {
       if (key.starts_with("loop.")) continue;
+      if (one.record != Estimate::kAllRecords) {
+        out.comments.push_back(fmt::format("{} of {}: {:.6g} {}, of this recording alone", key,
+                                           experiment.records[one.record].record.name, one.start,
+                                           one.unit));
+        continue;
+      }
       if (!result.uncertainty.identifiable[k]) {
         out.identified.unidentifiable.push_back(key);
         continue;

@@ -21,6 +21,8 @@ struct RecordResult {
   double feedback_rms = 0.0;  // m or rad
   double force_rms = 0.0;     // share of the rms of the recorded force; 0: none was recorded
   double effective_samples = 0.0;
+  // with the disturbance that was recorded: what its other sign, and none at all, would leave
+  std::optional<double> reversed_rms, undisturbed_rms;  // m or rad
 };
 
 /// One friction law in the comparison.
@@ -39,6 +41,7 @@ struct Identification {
   std::vector<InverseDynamics> inverse_dynamics;  // of the first record: symmetric as in the
                                                   // literature, then symmetric, by direction
   std::vector<Estimate> estimates;                // with the identified values as start
+  std::vector<std::string> implausible;           // "axis.X.stiffness = 180 N/m; ..."
   Fit fit;
   Uncertainty uncertainty;
   std::optional<Bootstrap> bootstrap;

@@ -25,14 +25,21 @@ struct ModelOfValues {
   LoopSettings loop;
 };
 
-/// Reads the document with the values set.
+/// Reads the document with the values set. With LoopKind::nc the machine's NC is that of the table
+/// `controller`: a mass that it does not know changes none of its gains.
 /// @param values  one for each estimate, in its unit
+/// @param record  number of the record that the model is for; those of others are left out
 /// @throws InputError if the machine refuses them
 ModelOfValues model_of(const config::Document& document, std::span<const Estimate> estimates,
-                       std::span<const double> values);
+                       std::span<const double> values, std::size_t record = Estimate::kAllRecords);
 
-/// The document with the starting values of the estimates set.
-config::Document with_values(const config::Document& document, std::span<const Estimate> estimates);
+/// The document with the starting values of the estimates set that are for this record.
+config::Document with_values(const config::Document& document, std::span<const Estimate> estimates,
+                             std::size_t record = Estimate::kAllRecords);
+
+/// Puts the table `controller` into a document, and marks the estimates that the NC has, too: those
+/// that change nothing of drives and encoders.
+void add_controller(config::Document& document, std::vector<Estimate>& estimates);
 
 /// Letter of an axis of the experiment's machine.
 char letter_of(const Experiment& experiment, int joint);

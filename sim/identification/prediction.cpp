@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <memory>
 
 namespace servomill::sim::identification {
 
@@ -44,16 +45,24 @@ Mask Prediction::all_samples() const {
   return mask;
 }
 
-std::optional<ModelOfValues> Prediction::model(const Values& values) const {
+std::optional<ModelOfValues> Prediction::model(const Values& values, std::size_t record) const {
   try {
-    return model_of(document_, estimates_, std::span(values).first(estimates_.size()));
+    return model_of(document_, estimates_, std::span(values).first(estimates_.size()), record);
   } catch (const InputError&) {
     return std::nullopt;  // outside of what a machine can be
   }
 }
 
+// Some are for one record alone.
+bool Prediction::has_own() const {
+  return std::any_of(estimates_.begin(), estimates_.end(),
+                     [](const Estimate& one) { return one.record != Estimate::kAllRecords; });
+}
+
 void Prediction::refuse(const Values& values) const {
-  model_of(document_, estimates_, std::span(values).first(estimates_.size()));
+  for (const AxisRecord* record : records_) {
+    model_of(document_, estimates_, std::span(values).first(estimates_.size()), record->number);
+  }
   throw InputError({records_.front()->record.name},
                    "cannot be simulated with these values: the friction is too stiff for the exact "
                    "step");
@@ -61,39 +70,49 @@ void Prediction::refuse(const Values& values) const {
 
 std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
     std::span<const Values> values) const {
-  std::vector<std::optional<Signals>> out(values.size());
-  std::vector<std::size_t> possible;
-  std::vector<ModelOfValues> models;
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    assert(values[n].size() == size());
-    auto one = model(values[n]);
-    if (!one) continue;
-    possible.push_back(n);
-    models.push_back(std::move(*one));
-    out[n].emplace();
-  }
+  std::vector<std::optional<Signals>> out(values.size(), Signals{});
+  const bool own = has_own();
+  std::vector<std::optional<ModelOfValues>> models;
   for (std::size_t r = 0; r < records_.size(); ++r) {
-    const auto joint = static_cast<std::size_t>(records_[r]->joint);
+    if (r == 0 || own) {
+      models.clear();
+      for (const Values& at : values) models.push_back(model(at, records_[r]->number));
+    }
     std::vector<AxisModel> axes;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      const Values& at = values[possible[m]];
-      const std::size_t own = estimates_.size() + 2 * r;
-      axes.push_back({.drive = models[m].machine.drives[joint],
-                      .loop = models[m].loop,
-                      .position = at[own],
-                      .speed = at[own + 1]});
+    std::vector<std::size_t> possible;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      assert(values[n].size() == size());
+      if (!models[n]) out[n].reset();
+      if (!out[n]) continue;
+      possible.push_back(n);
+      axes.push_back(axis_model(*models[n], values[n], r));
     }
     std::vector<Simulated> simulated =
         identification::simulate(records_[r]->record, axes, threads_);
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      out[possible[m]]->of_record.push_back(std::move(simulated[m]));
+    for (std::size_t m = 0; m < possible.size(); ++m) {
+      if (simulated[m].resolved) {
+        out[possible[m]]->of_record.push_back(std::move(simulated[m]));
+      } else {
+        out[possible[m]].reset();
+      }
     }
   }
-  for (auto& signals : out) {
-    const auto is_wrong = [](const Simulated& one) { return !one.resolved; };
-    if (signals && std::any_of(signals->of_record.begin(), signals->of_record.end(), is_wrong)) {
-      signals.reset();
-    }
+  return out;
+}
+
+AxisModel Prediction::axis_model(const ModelOfValues& model, const Values& values,
+                                 std::size_t record) const {
+  const std::size_t own = estimates_.size() + 2 * record;
+  const int joint = records_[record]->joint;
+  AxisModel out{.drive = model.machine.drives[static_cast<std::size_t>(joint)],
+                .loop = model.loop,
+                .position = values[own],
+                .speed = values[own + 1],
+                .step = 0.0,
+                .machine = nullptr,
+                .joint = joint};
+  if (model.loop.kind == LoopKind::nc) {
+    out.machine = std::make_shared<model::MachineSettings>(model.machine);
   }
   return out;
 }

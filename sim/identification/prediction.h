@@ -43,6 +43,11 @@ class Prediction {
   /// All samples but those that a record omits.
   Mask all_samples() const;
 
+  /// The same with another record in place of all.
+  Prediction of_one(const AxisRecord& record) const {
+    return Prediction(document_, estimates_, {&record}, threads_);
+  }
+
   /// Signals for each of several values; none where the machine refuses them or the drive cannot be
   /// resolved.
   struct Signals {
@@ -58,7 +63,9 @@ class Prediction {
   Eigen::VectorXd residual(const Signals& signals, const Mask& mask) const;
 
  private:
-  std::optional<ModelOfValues> model(const Values& values) const;
+  std::optional<ModelOfValues> model(const Values& values, std::size_t record) const;
+  bool has_own() const;
+  AxisModel axis_model(const ModelOfValues& model, const Values& values, std::size_t record) const;
 
   const config::Document& document_;
   std::vector<Estimate> estimates_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -10,13 +11,14 @@
 #include "sim/identification/parameter_space.h"
 #include "sim/identification/read_records.h"
 #include "sim/input/input_files.h"
+#include "sim/input/read_servo.h"
 #include "sim/input/scenario_document.h"
 #include "sim/model/design.h"
 
 namespace servomill::sim::identification {
 namespace {
 
-constexpr std::array<std::string_view, 2> kLoops = {"open", "cascade"};
+constexpr std::array<std::string_view, 3> kLoops = {"open", "cascade", "nc"};
 constexpr std::array<std::string_view, 2> kSpeedFeedbacks = {"scale", "motor"};
 
 // The value that the document has at a dotted key, or nullptr.
@@ -67,7 +69,40 @@ model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
   return number.value_or(model::WrittenNumber{});
 }
 
-std::vector<Estimate> read_estimates(config::Reader& root, const config::Document& document) {
+// Estimates of which each recording has a value of its own become one for each.
+std::vector<Estimate> with_own(const std::vector<Estimate>& estimates,
+                               const std::vector<std::size_t>& own,
+                               const std::vector<AxisRecord>& records) {
+  std::vector<Estimate> out;
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    if (std::find(own.begin(), own.end(), k) == own.end()) {
+      out.push_back(estimates[k]);
+      continue;
+    }
+    for (const AxisRecord& record : records) {
+      if (record.record.validation) continue;
+      out.push_back(estimates[k]);
+      out.back().record = record.number;
+    }
+  }
+  return out;
+}
+
+// The NC closes its loops on its own clock.
+void check_nc_period(config::Reader& loop, const LoopSettings& settings,
+                     const model::MachineSettings& machine) {
+  if (settings.kind != LoopKind::nc) return;
+  const double position = machine.nc.periods.seconds(machine.nc.periods.position);
+  const double periods = settings.period / position;
+  if (std::abs(periods - std::round(periods)) < 1e-6 && periods > 0.5) return;
+  loop.fault("period_ms", fmt::format("must be a whole multiple of the position period of the NC, "
+                                      "{:g} ms",
+                                      position / ms));
+}
+
+// @param own  numbers of those of which each recording has its own
+std::vector<Estimate> read_estimates(config::Reader& root, const config::Document& document,
+                                     std::vector<std::size_t>& own) {
   std::vector<Estimate> estimates;
   for (config::Reader& table : root.tables("estimate")) {
     Estimate one;
@@ -82,6 +117,7 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
     one.unit = start.unit;
     one.lower = read_bound(table, "min", one.unit, one.lower);
     one.upper = read_bound(table, "max", one.unit, one.upper);
+    if (table.boolean_or("own", false)) own.push_back(estimates.size());
     if (!(one.lower <= one.start && one.start <= one.upper)) {
       table.fault(fmt::format("start {:g} lies outside of min and max", one.start));
     }
@@ -113,12 +149,23 @@ NoiseSettings read_noise(config::Reader& root) {
 
 LoopSettings read_loop(config::Reader& table) {
   LoopSettings loop;
+  const std::size_t before = table.faults();
   loop.kind = static_cast<LoopKind>(table.choice_or("kind", 1, kLoops));
+  if (table.faults() > before) {
+    table.skip_rest();  // it decides about the other keys
+    return loop;
+  }
   loop.period = table.real("period_ms", config::kTime, {config::above(0.0)});
+  loop.feedback_delay = table.real_or("feedback_delay_ms", 0.0, config::kTime);
+  loop.feedback_offset = table.real_or("feedback_offset", 0.0, config::kLength);
+  if (loop.kind == LoopKind::nc) return loop;
+  loop.dead_time =
+      table.real_or("dead_time_ms", 0.0, config::kTime,
+                    {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
+  loop.position_feedback =
+      static_cast<PositionSource>(table.choice_or("position_feedback", 0, kSpeedFeedbacks));
   if (loop.kind == LoopKind::open) {
-    loop.dead_time =
-        table.real_or("dead_time_ms", 0.0, config::kTime,
-                      {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
+    loop.force_offset = table.real_or("force_offset", 0.0, config::kForce);
     return loop;
   }
   const double infinite = std::numeric_limits<double>::infinity();
@@ -132,13 +179,11 @@ LoopSettings read_loop(config::Reader& table) {
       "feedback_mean_of", 1, {config::at_least(1.0), config::at_most(kMostMeanOf)}));
   loop.speed_feedback =
       static_cast<SpeedFeedback>(table.choice_or("speed_feedback", 0, kSpeedFeedbacks));
-  loop.dead_time =
-      table.real_or("dead_time_ms", 0.0, config::kTime,
-                    {config::at_least(0.0), config::at_most(kLongestDeadTime * loop.period)});
+  loop.filters = input::read_filters(table, loop.period);
   return loop;
 }
 
-Experiment read_experiment(const std::string& path) {
+Experiment read_experiment(const std::string& path, const RecordingFiles& recordings) {
   input::InputFiles files;
   const config::Document own = config::Document::from_file(path);
   if (const config::Value* overrides = own.root().find("machine_override")) {
@@ -165,12 +210,17 @@ Experiment read_experiment(const std::string& path) {
   config::Reader loop = root.table("loop");
   out.loop = read_loop(loop);
   const model::MachineSettings settings = read_axes(root);
+  if (root.faults() == 0) check_nc_period(loop, out.loop, settings);
   out.noise = read_noise(root);
   out.compares_laws = root.boolean_or("compare_laws", false);
-  out.estimates = read_estimates(root, out.document);
-  if (root.faults() == 0) out.records = read_records(root, settings, out.loop);
+  std::vector<std::size_t> repeated;
+  out.estimates = read_estimates(root, out.document, repeated);
+  if (root.faults() == 0) out.records = read_records(root, settings, out.loop, recordings);
   if (root.faults() > 0) root.skip_rest();
   root.finish();
+  for (std::size_t k = 0; k < out.records.size(); ++k) out.records[k].number = k;
+  out.estimates = with_own(out.estimates, repeated, out.records);
+  if (out.loop.kind == LoopKind::nc) add_controller(out.document, out.estimates);
   return out;
 }
 

@@ -8,9 +8,12 @@
 #include <optional>
 
 #include "sim/config/quantity.h"
+#include "sim/identification/channel_signal.h"
+#include "sim/identification/possible_record.h"
 #include "sim/input/scenario_document.h"
 #include "sim/recordings/read_recording.h"
 #include "sim/recordings/survey.h"
+#include "sim/system/counted.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -19,14 +22,22 @@ constexpr std::array<std::string_view, 2> kUses = {"estimation", "validation"};
 constexpr double kEqualPeriods = 1e-3;  // of a period: clocks of recorder and loop are one clock
 
 // Roles of channels.
-enum class Role : std::uint8_t { command, feedback, force, motor_current, disturbance_force };
-constexpr std::array<std::string_view, 5> kRoles = {"command", "feedback", "force", "motor_current",
-                                                    "disturbance_force"};
+enum class Role : std::uint8_t {
+  command,
+  feedback,
+  scale,
+  force,
+  motor_current,
+  disturbance_force
+};
+constexpr std::array<std::string_view, 6> kRoles = {
+    "command", "feedback", "scale", "force", "motor_current", "disturbance_force"};
 
 config::Quantity quantity_of(Role role, bool linear) {
   switch (role) {
     case Role::command:
     case Role::feedback:
+    case Role::scale:
       return linear ? config::kLength : config::kAngle;
     case Role::motor_current:
       return config::kCurrent;
@@ -34,14 +45,6 @@ config::Quantity quantity_of(Role role, bool linear) {
       return linear ? config::kForce : config::kTorque;
   }
 }
-
-// A channel with its role: SI = factor sample + offset, `delay` late.
-struct ChannelUse {
-  std::string channel;
-  double factor = 1.0, offset = 0.0;
-  double delay = 0.0;
-  bool present = false;
-};
 
 // Factor of the unit: said in the experiment, or in the file, or SI.
 double unit_factor(config::Reader& table, const std::string& unit, config::Quantity quantity) {
@@ -64,48 +67,16 @@ const recordings::Channel* find_channel(config::Reader& at, std::string_view key
     if (channel.name == name) return &channel;
     names.push_back(channel.name);
   }
+  // the reader has skipped it for a reason
+  for (const std::string& note : recording.notes) {
+    if (!note.starts_with(fmt::format("'{}' ", name))) continue;
+    at.fault(key, fmt::format("is no channel of {}: {}", recording.file, note));
+    return nullptr;
+  }
   at.fault(key, fmt::format("is no channel of {}{}; it has {}", recording.file,
                             did_you_mean(name, names), fmt::join(names, ", ")));
   return nullptr;
 }
-
-// Samples of a channel at times that rise, by linear interpolation; missing ones are left out.
-class Interpolated {
- public:
-  Interpolated(const recordings::Channel& channel, const recordings::Base& base,
-               const ChannelUse& use, double time_factor)
-      : use_(use) {
-    for (std::size_t k = 0; k < channel.samples.size(); ++k) {
-      if (std::isnan(channel.samples[k])) continue;
-      t_.push_back(base.values[k] * time_factor);
-      y_.push_back(use.factor * channel.samples[k] + use.offset);
-    }
-  }
-  bool empty() const { return t_.empty(); }
-  double first() const { return t_.front() - use_.delay; }
-  double last() const { return t_.back() - use_.delay; }
-  // Longest time from one sample to the next around t.
-  double gap(double t) {
-    find(t + use_.delay);
-    return at_ + 1 < t_.size() ? t_[at_ + 1] - t_[at_] : 0.0;
-  }
-  double operator()(double t) {
-    t += use_.delay;
-    find(t);
-    if (at_ + 1 >= t_.size()) return y_.back();
-    const double share = std::clamp((t - t_[at_]) / (t_[at_ + 1] - t_[at_]), 0.0, 1.0);
-    return share == 0.0 ? y_[at_] : y_[at_] + share * (y_[at_ + 1] - y_[at_]);
-  }
-
- private:
-  void find(double t) {
-    while (at_ > 0 && t_[at_] > t) --at_;
-    while (at_ + 1 < t_.size() && t_[at_ + 1] <= t) ++at_;
-  }
-  ChannelUse use_;
-  std::vector<double> t_, y_;
-  std::size_t at_ = 0;
-};
 
 double median_interval(const std::vector<double>& t) {
   std::vector<double> steps;
@@ -118,9 +89,10 @@ double median_interval(const std::vector<double>& t) {
 // Reads one item of the list `recording`.
 class RecordReader {
  public:
+  /// @param file  in place of the one that the table names, as the user names it; empty: none
   RecordReader(config::Reader& table, const model::MachineSettings& machine,
-               const LoopSettings& loop)
-      : table_(table), machine_(machine), loop_(loop) {}
+               const LoopSettings& loop, std::string file)
+      : table_(table), machine_(machine), loop_(loop), own_file_(std::move(file)) {}
 
   std::optional<AxisRecord> read() {
     out_.place = table_.place("file");
@@ -129,16 +101,22 @@ class RecordReader {
     out_.record.period = loop_.period;
     from_ = table_.real_or("from_s", -kForever, config::kTime);
     to_ = table_.real_or("to_s", kForever, config::kTime);
+    std::string path = input::beside(out_.place, out_.record.name);
+    if (!own_file_.empty()) {
+      out_.record.name = path = own_file_;
+      from_ = -kForever;  // parts are those of the file that the table names
+      to_ = kForever;
+    }
     longest_gap_ =
         table_.real_or("longest_gap_ms", 1.5 * loop_.period, config::kTime, {config::above(0.0)});
     const std::string unit = table_.text_or("time_unit", "");
     if (table_.faults() > 0) return std::nullopt;
-    recording_ = recordings::read_recording(input::beside(out_.place, out_.record.name), unit);
+    recording_ = recordings::read_recording(path, unit);
     read_roles();
     if (table_.faults() > 0) return std::nullopt;
     sample();
     if (table_.faults() > 0) return std::nullopt;
-    refuse_impossible();
+    if (const auto fault = impossible(out_.record)) table_.fault("file", *fault);
     return std::move(out_);
   }
 
@@ -168,15 +146,15 @@ class RecordReader {
     config::Reader axis = axes.table(letters.front());
     for (std::size_t role = 0; role < kRoles.size(); ++role)
       read_role(axis, static_cast<Role>(role));
-    const bool cascade = loop_.kind == LoopKind::cascade;
+    const bool closed = loop_.kind != LoopKind::open;
     const auto needs = [&](Role role, std::string_view why) {
       const bool by_current = role == Role::force && use(Role::motor_current).present;
       if (use(role).present || by_current) return;
       axis.fault(fmt::format("lacks {}, which {}", kRoles[static_cast<std::size_t>(role)], why));
     };
     needs(Role::feedback, "is compared with the simulation");
-    if (cascade) needs(Role::command, "drives the loop");
-    if (!cascade) needs(Role::force, "drives the axis; or motor_current");
+    if (closed) needs(Role::command, "drives the loop");
+    if (!closed) needs(Role::force, "drives the axis; or motor_current");
     if (use(Role::force).present && use(Role::motor_current).present) {
       axis.fault("has both force and motor_current; name one of them");
     }
@@ -207,7 +185,16 @@ class RecordReader {
     }
     config::Reader table = axis.table(key);
     one.channel = table.text("channel");
-    const recordings::Channel* channel = find_channel(table, "channel", recording_, one.channel);
+    const bool optional = table.boolean_or("optional", false);
+    const recordings::Channel* channel =
+        optional && channel_named(one.channel) == nullptr
+            ? nullptr
+            : find_channel(table, "channel", recording_, one.channel);
+    if (optional && channel == nullptr) {
+      one.present = false;
+      out_.notes.push_back(fmt::format("{}: has no channel '{}' for {}, which is optional",
+                                       out_.record.name, one.channel, key));
+    }
     const double factor = table.real_or("factor", 1.0, config::kNumber);
     if (factor == 0.0) table.fault("factor", "must not be 0");
     const std::string in_file = channel != nullptr ? channel->unit : "";
@@ -250,16 +237,18 @@ class RecordReader {
     fill(stretch);
   }
 
-  const recordings::Channel* channel_of(Role role) {
-    if (!use(role).present) return nullptr;
+  const recordings::Channel* channel_named(const std::string& name) const {
     for (const recordings::Channel& channel : recording_.channels) {
-      if (channel.name == use(role).channel) return &channel;
+      if (channel.name == name) return &channel;
     }
     return nullptr;
   }
+  const recordings::Channel* channel_of(Role role) {
+    return use(role).present ? channel_named(use(role).channel) : nullptr;
+  }
 
   void fill(double stretch) {
-    std::array<std::optional<Interpolated>, kRoles.size()> signals;
+    std::array<std::optional<ChannelSignal>, kRoles.size()> signals;
     double first = from_, last = to_;
     for (std::size_t role = 0; role < kRoles.size(); ++role) {
       const recordings::Channel* channel = channel_of(static_cast<Role>(role));
@@ -282,8 +271,8 @@ class RecordReader {
     const auto count = static_cast<std::size_t>((last - first) / T + 1e-6) + 1;
     out_.record.start = first;
     const std::array<std::vector<double>*, kRoles.size()> into = {
-        &out_.record.command, &out_.record.feedback, &out_.record.force, &out_.record.force,
-        &out_.record.disturbance};
+        &out_.record.command, &out_.record.feedback, &out_.record.scale,
+        &out_.record.force,   &out_.record.force,    &out_.record.disturbance};
     for (std::size_t role = 0; role < kRoles.size(); ++role) {
       if (!signals[role]) continue;
       const double to_force =
@@ -293,6 +282,7 @@ class RecordReader {
         (*into[role])[k] = to_force * (*signals[role])(first + T * static_cast<double>(k));
       }
     }
+    if (use(Role::motor_current).present) out_.record.force_per_current = current_to_force();
     note_clipping();
     omit_gaps(*signals[static_cast<std::size_t>(Role::feedback)], first);
   }
@@ -319,7 +309,7 @@ class RecordReader {
     return drive.Kt / drive.r;
   }
 
-  void omit_gaps(Interpolated& feedback, double first) {
+  void omit_gaps(ChannelSignal& feedback, double first) {
     Record& r = out_.record;
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (feedback.gap(first + r.period * static_cast<double>(k)) <= longest_gap_) continue;
@@ -331,40 +321,11 @@ class RecordReader {
     }
   }
 
-  // Nothing moves, or it moves the other way: no axis does that.
-  void refuse_impossible() {
-    const Record& r = out_.record;
-    const auto [least, greatest] = std::minmax_element(r.feedback.begin(), r.feedback.end());
-    if (*greatest == *least) {
-      table_.fault("file", fmt::format("does not move: its feedback is {:g} throughout; there is "
-                                       "nothing to identify",
-                                       *least));
-      return;
-    }
-    if (r.command.empty()) return;
-    double along = 0.0;
-    for (std::size_t k = 1; k < r.size(); ++k) {
-      along += (r.command[k] - r.command[k - 1]) * (r.feedback[k] - r.feedback[k - 1]);
-    }
-    const auto [low, high] = std::minmax_element(r.command.begin(), r.command.end());
-    if (*high > *low && along < 0.0) {
-      table_.fault("file",
-                   "has a feedback that moves against the command: one of them has the "
-                   "wrong sign; give it factor = -1");
-      return;
-    }
-    const double ratio = (*greatest - *least) / (*high - *low);
-    if (*high > *low && (ratio > 30.0 || ratio < 1.0 / 30.0)) {
-      table_.fault("file", fmt::format("has a feedback that moves {:.3g} times as far as the "
-                                       "command: one of them has another unit",
-                                       ratio));
-    }
-  }
-
   config::Reader& table_;
   const model::MachineSettings& machine_;
   const LoopSettings& loop_;
   AxisRecord out_;
+  std::string own_file_;
   double from_ = 0.0, to_ = 0.0, longest_gap_ = 0.0;
   recordings::Recording recording_;
   std::array<ChannelUse, kRoles.size()> uses_;
@@ -373,10 +334,25 @@ class RecordReader {
 }  // namespace
 
 std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineSettings& machine,
-                                     const LoopSettings& loop) {
+                                     const LoopSettings& loop, const RecordingFiles& files) {
   std::vector<AxisRecord> out;
-  for (config::Reader& table : root.tables("recording")) {
-    if (auto record = RecordReader(table, machine, loop).read()) out.push_back(std::move(*record));
+  std::vector<config::Reader> tables = root.tables("recording");
+  const auto read = [&](config::Reader& table, const std::string& file, bool validates) {
+    auto record = RecordReader(table, machine, loop, file).read();
+    if (!record) return;
+    record->record.validation |= validates;
+    out.push_back(std::move(*record));
+  };
+  if (files.estimation.size() > tables.size()) {
+    throw InputError({"--recording"}, fmt::format("is given {} times; the experiment has {}",
+                                                  files.estimation.size(),
+                                                  system::counted(tables.size(), "recording")));
+  }
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    read(tables[k], k < files.estimation.size() ? files.estimation[k] : "", false);
+  }
+  for (const std::string& file : files.validation) {
+    if (!tables.empty()) read(tables.front(), file, true);
   }
   const bool any =
       std::any_of(out.begin(), out.end(), [](const AxisRecord& r) { return !r.record.validation; });

@@ -12,7 +12,8 @@ namespace servomill::sim::identification {
 /// Reads the list `recording` of an experiment and the files that it names. Faults go to the
 /// reader.
 /// @param machine  whose axes the channels belong to
+/// @param files    named beside the experiment
 std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineSettings& machine,
-                                     const LoopSettings& loop);
+                                     const LoopSettings& loop, const RecordingFiles& files);
 
 }  // namespace servomill::sim::identification

@@ -21,8 +21,10 @@ struct Record {
   double start = 0.0;                // s, of the first sample, in the time of the file
   std::vector<double> command;       // m or rad: setpoint of the position loop
   std::vector<double> feedback;      // m or rad: position that the loop reads
+  std::vector<double> scale;         // m or rad: of the slide, where the loop reads another one
   std::vector<double> force;         // N or N m: of the drive, towards +x, by its command
   std::vector<double> disturbance;   // N or N m: from outside on the slide, towards +x
+  double force_per_current = 0.0;    // N/A: with which a current became the force; 0: it is one
   std::vector<SampleRange> omitted;  // samples that do not count: gaps, clipped current
   bool validation = false;           // not used for estimation
 

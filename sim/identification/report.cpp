@@ -7,12 +7,25 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/identification/interval_report.h"
+#include "sim/identification/motion_facts.h"
 
 namespace servomill::sim::identification {
 namespace {
 
+// " of a.csv" where each recording has its own value.
+std::string own_record(const Identification& result, const Estimate& one) {
+  if (one.record == Estimate::kAllRecords) return {};
+  for (const RecordResult& record : result.estimation) {
+    if (record.record->number == one.record) return " of " + record.record->record.name;
+  }
+  return {};
+}
+
 std::string parameter_name(const Identification& result, std::size_t p) {
-  if (p < result.estimates.size()) return result.estimates[p].keys.front();
+  if (p < result.estimates.size()) {
+    const Estimate& one = result.estimates[p];
+    return one.keys.front() + own_record(result, one);
+  }
   const std::size_t own = p - result.estimates.size();
   return fmt::format("{} at the start of {}", own % 2 == 0 ? "position" : "speed",
                      result.estimation[own / 2].record->record.name);
@@ -24,12 +37,13 @@ std::string parameters(const Identification& result) {
     const Estimate& one = result.estimates[k];
     const double half = 2.0 * result.uncertainty.standard(k);
     if (!result.uncertainty.identifiable[k]) {
-      table.add(
-          {names_of(one), fmt::format("{:.5g}", one.start), "unidentifiable", one.unit, "-", "-"});
+      table.add({names_of(one) + own_record(result, one), fmt::format("{:.5g}", one.start),
+                 "unidentifiable", one.unit, "-", "-"});
       continue;
     }
-    table.add({names_of(one), with_uncertainty(one.start, half), fmt::format("{:.2g}", half),
-               one.unit, fmt::format("{:.2g} %", 100.0 * half / std::abs(one.start)),
+    table.add({names_of(one) + own_record(result, one), with_uncertainty(one.start, half),
+               fmt::format("{:.2g}", half), one.unit,
+               fmt::format("{:.2g} %", 100.0 * half / std::abs(one.start)),
                fmt::format("{:.2g}", 2.0 * result.uncertainty.counted[k])});
   }
   return table.text() +
@@ -112,6 +126,25 @@ double unexplained(const RecordResult& one) {
   return sum > 0.0 ? one.feedback_rms / std::sqrt(sum) : 0.0;
 }
 
+// A recorded disturbance that makes the prediction worse has the wrong sign or is none.
+std::string disturbance_warning(const RecordResult& one) {
+  constexpr double kClearly = 0.9;
+  const double limit = kClearly * one.feedback_rms;
+  const auto text = [&](double rms, const char* way, const char* remedy) {
+    return fmt::format(
+        "{}: {} of disturbance_force the position rms is {:.3g} um in place of {:.3g} um; {}",
+        one.record->record.name, way, rms / um, one.feedback_rms / um, remedy);
+  };
+  if (one.reversed_rms.value_or(limit) < limit) {
+    return text(*one.reversed_rms, "with the other sign", "give it factor = -1");
+  }
+  if (one.undisturbed_rms.value_or(limit) < limit) {
+    return text(*one.undisturbed_rms, "without the force",
+                "it does not act on the slide, or has another unit or delay");
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> unidentifiable_sentences(const Identification& result) {
@@ -121,7 +154,7 @@ std::vector<std::string> unidentifiable_sentences(const Identification& result) 
       out.push_back(
           fmt::format("{}: the recordings do not depend on it; its value is the one that "
                       "was started from",
-                      result.estimates[k].keys.front()));
+                      parameter_name(result, k)));
     }
   }
   for (const UnidentifiableDirection& one : result.uncertainty.unidentifiable) {
@@ -149,9 +182,17 @@ std::vector<std::string> warnings(const Identification& result) {
           fmt::format("{} has ended at its bound {:g} {}", one.keys.front(), one.start, one.unit));
     }
   }
+  for (const std::string& one : result.implausible) {
+    const std::string& file = result.estimation.front().record->record.name;
+    out.push_back(
+        fmt::format("{}: {}: a channel has another unit or factor, or the loop is not that of "
+                    "the recording",
+                    file, one));
+  }
   for (const auto* list : {&result.estimation, &result.validation}) {
     for (const RecordResult& one : *list) {
       const double share = unexplained(one);
+      if (const std::string said = disturbance_warning(one); !said.empty()) out.push_back(said);
       if (one.force_rms > kForeignLoop) {
         out.push_back(fmt::format(
             "{}: the simulated force is {:.0f} % off the recorded one; the loop is not that of the "
@@ -172,6 +213,11 @@ std::string report(const Experiment& experiment, const Identification& result) {
   std::string out;
   for (const AxisRecord& record : experiment.records) {
     for (const std::string& note : record.notes) out += note + "\n";
+  }
+  for (const RecordResult& one : result.estimation) {
+    if (one.record->record.command.empty()) continue;
+    const std::string facts = motion_facts_text(motion_facts(one.record->record));
+    if (!facts.empty()) out += one.record->record.name + ": " + facts;
   }
   out += inverse_dynamics_table(result) + "\n";
   out += parameters(result) + "\n" + interval_tables(result) + record_table(result);

@@ -23,6 +23,7 @@ void SampledLoop::start(std::size_t lane, double position, double speed, double 
   latest_[lane] = held;
   integral_[lane] = 0.0;
   first_force_[lane] = force;
+  filters_[lane] = controllers::standing_at(loop.filters, held);
   first_ = true;
 }
 
@@ -31,12 +32,10 @@ void SampledLoop::remember(const LaneArray& force) {
   past_.front() = latest_ = force;
 }
 
-void SampledLoop::force_sample(double force) {
-  LaneArray all{};
-  all.fill(force);
-  if (first_) past_.fill(all);
+void SampledLoop::force_sample(const LaneArray& force) {
+  if (first_) past_.fill(force);
   first_ = false;
-  remember(all);
+  remember(force);
 }
 
 void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedback,
@@ -55,7 +54,9 @@ void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedb
     const double v_cmd = loop.Kv * (q - feedback[l]) + loop.kvf * dq;
     const double error = loop.Kp * (v_cmd - speed);
     const double wanted = error + integral_[l] + loop.kaf * ddq;
-    force[l] = std::clamp(wanted, -loop.F_max, loop.F_max);
+    const double limited = std::clamp(wanted, -loop.F_max, loop.F_max);
+    force[l] = std::clamp(controllers::advance(loop.filters, filters_[l], limited), -loop.F_max,
+                          loop.F_max);
     const bool has_reset = std::isfinite(loop.Tn);
     if (first_ && !std::isnan(first_force_[l])) {
       // the readings and the integral before it are not known, their result is

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plant/drives/drive_bank.h"
+#include "sim/identification/nc_loop.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::identification {
@@ -106,6 +107,7 @@ class EightModels {
       state_.set_lane(l, state_at_start(m, force));
       loop_.start(l, m.position, m.speed, force);
       out[l].feedback.resize(record_.size());
+      out[l].scale.resize(record_.size());
       out[l].force.resize(record_.size());
     }
     input_.blocks.front().active.fill(false);
@@ -115,20 +117,39 @@ class EightModels {
   void look(std::size_t k, std::span<Simulated> out) const {
     const plant::DriveBlock& s = state_.blocks.front();
     for (std::size_t l = 0; l < models_.size(); ++l) {
-      out[l].feedback[k] = quantised(s.x[l] - models_[l].reading_delay * s.v[l], models_[l].step);
+      const LoopSettings& loop = models_[l].loop;
+      const bool by_motor = loop.position_feedback == PositionSource::motor;
+      const double x = s.x[l] - loop.feedback_delay * s.v[l];
+      out[l].scale[k] = quantised(x, models_[l].step);
+      out[l].feedback[k] = quantised(by_motor ? x + s.delta[l] : x, models_[l].step);
+      out[l].feedback[k] += loop.feedback_offset;
     }
   }
 
   void close_loop(std::size_t k) {
-    if (is_open()) return loop_.force_sample(record_.force[k]);
+    if (is_open()) return loop_.force_sample(recorded_force(k));
     const Command c = command_at(record_, k);
     const plant::DriveBlock& s = state_.blocks.front();
     LaneArray feedback{}, motor{};
     for (std::size_t l = 0; l < models_.size(); ++l) {
-      feedback[l] = quantised(s.x[l], models_[l].step);
+      const double scale = quantised(s.x[l], models_[l].step);
       motor[l] = quantised(s.x[l] + s.delta[l], models_[l].step);
+      const bool by_motor = models_[l].loop.position_feedback == PositionSource::motor;
+      feedback[l] = by_motor ? motor[l] : scale;
     }
     loop_.sample(c.q, c.dq, c.ddq, feedback, motor);
+  }
+
+  // Force by a recorded current and the torque constant of each model.
+  LaneArray recorded_force(std::size_t k) const {
+    LaneArray force{};
+    for (std::size_t l = 0; l < models_.size(); ++l) {
+      const plant::FeedDriveParams& drive = models_[l].drive;
+      const double factor =
+          record_.force_per_current > 0.0 ? drive.Kt / (drive.r * record_.force_per_current) : 1.0;
+      force[l] = factor * (record_.force[k] - models_[l].loop.force_offset);
+    }
+    return force;
   }
 
   void move(std::size_t k) {
@@ -161,7 +182,13 @@ std::vector<Simulated> simulate(const Record& record, std::span<const AxisModel>
   system::for_each_index(blocks, system::thread_count(threads), [&](std::size_t block) {
     const std::size_t first = block * kLaneWidth;
     const std::size_t count = std::min(kLaneWidth, models.size() - first);
-    EightModels(record, models.subspan(first, count)).run(std::span(out).subspan(first, count));
+    const auto some = models.subspan(first, count);
+    const auto into = std::span(out).subspan(first, count);
+    if (some.front().loop.kind == LoopKind::nc) {
+      simulate_nc(record, some, into);
+    } else {
+      EightModels(record, some).run(into);
+    }
   });
   return out;
 }

@@ -1,12 +1,14 @@
 /// A recording simulated: the axis with its drive under the loop that the recording was made with.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "plant/drives/feed_drive.h"
 #include "sim/identification/record.h"
 #include "sim/identification/sampled_loop.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::identification {
 
@@ -15,15 +17,16 @@ struct AxisModel {
   plant::FeedDriveParams drive;
   LoopSettings loop;
   double position = 0.0, speed = 0.0;  // m or rad, m/s: when the recording begins
-  double reading_delay = 0.0;          // s, of the feedback as it was recorded
   double step = 0.0;                   // m or rad, of the encoders; 0: not quantised
-
-  bool operator==(const AxisModel&) const = default;
+  std::shared_ptr<const model::MachineSettings> machine =
+      nullptr;    // its NC closes the loops: LoopKind::nc
+  int joint = 0;  // the same
 };
 
 /// Signals of the recording as the model gives them.
 struct Simulated {
   std::vector<double> feedback;  // m or rad
+  std::vector<double> scale;     // m or rad: of the slide
   std::vector<double> force;     // N or N m, computed by the loop
   bool resolved = true;          // false: friction too stiff for the exact step, not to be trusted
 };

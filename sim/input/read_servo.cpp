@@ -83,18 +83,6 @@ controllers::Biquad read_filter_section(config::Reader& filter, double Tv) {
   return controllers::notch(f, damping * std::pow(10.0, -depth / 20.0), damping, Tv);
 }
 
-void read_filters(config::Reader& axis, controllers::CascadeParams& cascade) {
-  const std::size_t before = axis.faults();
-  for (config::Reader& filter : axis.tables_or_none("filter")) {
-    const controllers::Biquad section = read_filter_section(filter, cascade.Tv);
-    if (cascade.filters.count < controllers::kMaxSections) {
-      cascade.filters.append(section);
-    } else if (axis.faults() == before) {
-      axis.fault(fmt::format("has more than {} tables 'filter'", controllers::kMaxSections));
-    }
-  }
-}
-
 controllers::CurrentLoopParams read_current_loop(config::Reader& axis,
                                                  const plant::FeedDriveParams& drive,
                                                  const model::LoopPeriods& periods) {
@@ -192,6 +180,20 @@ controllers::SupervisionParams read_supervision(config::Reader& axis, const Comm
 
 }  // namespace
 
+controllers::FilterChain read_filters(config::Reader& table, double period) {
+  controllers::FilterChain chain;
+  const std::size_t before = table.faults();
+  for (config::Reader& filter : table.tables_or_none("filter")) {
+    const controllers::Biquad section = read_filter_section(filter, period);
+    if (chain.count < controllers::kMaxSections) {
+      chain.append(section);
+    } else if (table.faults() == before) {
+      table.fault(fmt::format("has more than {} tables 'filter'", controllers::kMaxSections));
+    }
+  }
+  return chain;
+}
+
 CommonServo read_common_servo(config::Reader& nc) {
   CommonServo common;
   controllers::CascadeParams& c = common.cascade;
@@ -216,7 +218,7 @@ void read_servo(config::Reader& axis, const CommonServo& common, int joint,
   const double Tp = periods.seconds(periods.position), Tv = periods.seconds(periods.velocity);
   controllers::CascadeParams& cascade = machine.nc.cascade[j];
   cascade = read_cascade(axis, common.cascade, drive, linear, periods);
-  read_filters(axis, cascade);
+  cascade.filters = read_filters(axis, cascade.Tv);
   model::AxisFunctions& functions = machine.nc.functions[j];
   functions.current_loop = read_current_loop(axis, drive, periods);
   functions.position_feedback = read_feedback(axis, common, periods);

@@ -16,6 +16,9 @@ struct CommonServo {
 };
 CommonServo read_common_servo(config::Reader& nc);
 
+/// Filters of the list `filter` of a table, run once per `period` (s).
+controllers::FilterChain read_filters(config::Reader& table, double period);
+
 /// Cascade and functions of one axis, from its table.
 /// @pre machine.drives and machine.nc.periods are read
 void read_servo(config::Reader& axis, const CommonServo& common, int joint,

@@ -23,7 +23,7 @@ SLOW = (  # take longer than 5 s: parsed only
     r"run scenarios/(iso|parts)/",
 )
 PLACEHOLDER = re.compile(r"\b(SCENARIO|SECTION|PROGRAM|COMMAND|OUT|SHARD|FILE|KEY|NAME|FORMAT|FOLDER|PART|M\.toml|I/N|I-of-N|A-B)\b|\.\.\.|\.\*|\*")
-INPUT = re.compile(r"\.(toml|ngc|cls|h5|tbl|var|csv|nc)$")
+INPUT = re.compile(r"\.(toml|ngc|cls|h5|tbl|var|csv|nc|mat|xml)$")
 
 
 def command_lines(page):

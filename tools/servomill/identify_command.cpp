@@ -20,6 +20,12 @@ void add_identify_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
                 "writes the identified machine: the machine that was started from with the "
                 "identified values over it, their uncertainty and covariance");
+  options.add()("recording", po::value<std::vector<std::string>>()->value_name("FILE"),
+                "file of the first recording in place of the one that the experiment names; again: "
+                "of the second, ...");
+  options.add()("validation", po::value<std::vector<std::string>>()->value_name("FILE"),
+                "a further recording that the fit does not see, with the channels of the first; "
+                "can be repeated");
   options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
                 "writes measured and simulated signals, residuals and parameters");
   options.add()("make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
@@ -91,7 +97,12 @@ int identify_command(const Arguments& arguments) {
   const std::string signals = output_of(options, "signals", ".h5");
   const std::string made_up = output_of(options, "make-up", "");
   if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
-  sim::identification::Experiment experiment = sim::identification::read_experiment(options.word());
+  const auto files = [&](const char* option) {
+    return options.has(option) ? options.get<std::vector<std::string>>(option)
+                               : std::vector<std::string>();
+  };
+  sim::identification::Experiment experiment = sim::identification::read_experiment(
+      options.word(), {files("recording"), files("validation")});
   if (options.has("compare-laws")) experiment.compares_laws = true;
   if (!made_up.empty()) {
     sim::identification::make_up(experiment, made_up, options.has("force"));

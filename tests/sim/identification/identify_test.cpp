@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "sim/identification/identified_machine.h"
 #include "sim/identification/report.h"
 #include "sim/identification/synthesize.h"
@@ -161,6 +164,44 @@ TEST(Identify, AForeignLoopShowsInTheResidual) {
   ASSERT_FALSE(said.empty());
   EXPECT_NE(said.back().find("off the recorded one; the loop is not that of the recording"),
             std::string::npos);
+}
+
+TEST(Identify, AMassOf95TonsIsNamed) {
+  const AxisExperiment files;
+  Record record = recorded(ramps(2.0), truth());
+  for (double& force : record.force) force *= 1000.0;  // mN taken for N
+  files.write_recording(record);
+  std::ofstream(files.path("open.toml")) << R"(machine = "machine.toml"
+[loop]
+kind = "open"
+period_ms = 1.0
+[[recording]]
+file = "recording.csv"
+axis.X = { feedback = "y", force = "F" }
+[[estimate]]
+key = "axis.X.moving_mass"
+)";
+  const Experiment experiment = read_experiment(files.path("open.toml"));
+  const Identification found = identify(experiment, 2);
+  ASSERT_FALSE(found.implausible.empty());
+  EXPECT_NE(warnings(found).front().find("recording.csv: axis.X.moving_mass = "), std::string::npos)
+      << warnings(found).front();
+  EXPECT_NE(warnings(found).front().find("times the value that it was started from: a channel has "
+                                         "another unit or factor"),
+            std::string::npos);
+}
+
+TEST(Identify, AValueAtItsBoundIsNamed) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(1.0), truth()));
+  const Identified result(files, R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+min = "92 kg"
+)");
+  const auto said = warnings(result.found);
+  EXPECT_NE(std::find(said.begin(), said.end(), "axis.X.moving_mass has ended at its bound 92 kg"),
+            said.end());
 }
 
 TEST(Identify, AMachineInTheExperimentCannotBeLaidOver) {
