@@ -21,6 +21,16 @@ ACTUAL = {"axis.Y.moving_mass": 640.0, "axis.Y.slide_viscous_friction": 1700.0, 
           "axis.Y.friction.coulomb_negative": 430.0}
 
 
+MEASURED = os.path.abspath(os.path.join(SCENARIOS, "..", "..", "shared", "data", "measured", "emps_train.mat"))
+
+
+def copy_scenarios(cls):
+    cls.folder = tempfile.mkdtemp()
+    for name in ("identification", "machines", "guevel2025", "programs"):
+        shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
+    cls.cwd = os.path.join(cls.folder, "identification", "experiments")
+
+
 class Way(unittest.TestCase):
     """The shipped way from a motion to an identified machine, in a copy of its folder."""
 
@@ -112,6 +122,25 @@ class Way(unittest.TestCase):
         done = self.run_in_folder("identify", "identify.toml", "--profile", "axis.Y.moving_mas", status=2)
         self.assertIn("axis.Y.moving_mas is not estimated in identify.toml; did you mean 'axis.Y.moving_mass'?", done.stderr)
 
+    def test_the_motion_of_our_own_nc_tells_its_gains_and_its_drive(self):
+        """The recording is a run of the engine with its program; the loop is that of the machine, in every function."""
+        known = {"axis.Y.moving_mass": (500.0, "kg", 550.0), "axis.Y.Kv": (80.0, "1/s", 83.333), "nc.velocity_feed_forward": (0.9, None, 1.0),
+                 "axis.Y.velocity_bandwidth": (180.0, "rad/s", 200.0), "axis.Y.current_time_constant_ms": (0.5, None, 0.35),
+                 "axis.Y.stiffness": (1.5e8, "N/m", 2.2e8)}
+        text = ('machine = "../machines/start.toml"\n[loop]\nkind = "nc"\nperiod_ms = 0.2\n[[recording]]\nfile = "motion.h5"\n'
+                'axis.Y.command = "cases/motion/servo/cmd_linear_Y"\naxis.Y.feedback = "cases/motion/servo/fb_linear_Y"\n')
+        for key, (start, unit, _) in known.items():
+            text += f'[[estimate]]\nkey = "{key}"\nstart = ' + (f'"{start} {unit}"\n' if unit else f"{start}\n")
+        self.write("nc.toml", text)
+        self.run_in_folder("identify", "nc.toml", "-o", "nc_identified.toml")
+        keys, values, _ = self.identified("nc_identified.toml")
+        for key, (_, _, actual) in known.items():
+            self.assertAlmostEqual(values[keys.index(key)] / actual, 1.0, delta=5e-3, msg=key)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+
     def test_friction_laws_are_compared(self):
         with open(self.path("identify.toml"), encoding="utf-8") as file:
             text = file.read().replace('file = "recording.csv"', 'file = "recording.csv"\nto_s = 1.5')
@@ -121,6 +150,123 @@ class Way(unittest.TestCase):
         rows = re.findall(r"^(viscous|Coulomb, viscous, offset|LuGre by direction) .* um +[\d.]+ um", printed, re.MULTILINE)
         self.assertEqual(rows, ["viscous", "Coulomb, viscous, offset", "LuGre by direction"])
         self.assertIn("the simplest law that is not worse than the best: ", printed)
+
+
+class Emps(unittest.TestCase):
+    """The command of the README on recordings with the channels of the EMPS benchmark, made up: one with pulses of force."""
+    MADE_UP = """name = "made up"
+machine = "../machines/emps_start.toml"
+[loop]
+period_ms = 1.0
+position_gain = "160.18 1/s"
+velocity_gain = "8557.2675 N s/m"
+feedback_mean_of = 2
+dead_time_ms = 0.45
+[noise]
+force_rms = "1 N"
+force_time_ms = 8.0
+feedback_step_nm = 50
+seed = {seed}
+[[recording]]
+file = "motion.csv"
+axis.Y.command = "qg"
+axis.Y.feedback = "qg"
+axis.Y.disturbance_force = {{ channel = "pulses_N", factor = {factor} }}
+[[estimate]]
+key = "axis.Y.moving_mass"
+start = "95 kg"
+"""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        for name in ("identification", "machines"):
+            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
+        cls.cwd = os.path.join(cls.folder, "identification", "experiments")
+        cls.make_up("emps_train.csv", seed=1, factor=1e-12)
+        cls.make_up("emps_test.csv", seed=2, factor=1)
+
+    tearDownClass = Way.__dict__["tearDownClass"]
+    run_in_folder = Way.__dict__["run_in_folder"]
+    path, write = Way.path, Way.write
+
+    @classmethod
+    def make_up(cls, name, seed, factor):
+        """A ramp to each speed: both directions; pulses of 30 N and 50 ms in the second half."""
+        t = np.arange(8000) * 1e-3
+        wanted = np.array([0.15, -0.15, 0.05, -0.1, 0.02, 0.12, -0.02, -0.07])[(t // 1).astype(int)]
+        v = np.zeros_like(t)
+        for k in range(1, len(t)):
+            v[k] = v[k - 1] + np.clip(wanted[k] - v[k - 1], -2e-3, 2e-3)
+        q = np.cumsum(v) * 1e-3
+        pulses = np.where((t > 4) & (t % 0.5 < 0.05), 30.0, 0.0)
+        np.savetxt(os.path.join(cls.cwd, "motion.csv"), np.column_stack([t, q, pulses]), "%.17g", ",",
+                   header="time [s],qg [m],pulses_N [N]", comments="")
+        with open(os.path.join(cls.cwd, "made_up.toml"), "w", encoding="utf-8") as file:
+            file.write(cls.MADE_UP.format(seed=seed, factor=factor))
+        cls.run_in_folder("identify", "made_up.toml", "--make-up", "made_up.csv", "--force")
+        made = np.genfromtxt(os.path.join(cls.cwd, "made_up.csv"), delimiter=",", names=True)
+        t, command, feedback, force = (made[key] for key in made.dtype.names)
+        columns, names = [t, command, feedback, force / 35.15], "t,qg,qm,vir"
+        if factor == 1:
+            columns, names = [*columns, pulses[:len(t)]], names + ",pulses_N"
+        np.savetxt(os.path.join(cls.cwd, name), np.column_stack(columns), "%.17g", ",", header=names, comments="")
+
+    def identified(self, *options):
+        return self.run_in_folder("identify", "emps.toml", "--recording", "emps_train.csv", "--validation", "emps_test.csv", *options).stdout
+
+    def test_the_pulses_are_predicted_as_well_as_the_rest(self):
+        printed = self.identified("-o", "found.toml")
+        rms = {use: float(value) for use, value in re.findall(r"emps_\w+\.csv +(estimation|validation) +[\d.]+ s +([\d.]+) um", printed)}
+        self.assertLess(rms["validation"], 1.35 * rms["estimation"], printed)
+        self.assertIn("emps_train.csv: has no channel 'pulses_N' for disturbance_force, which is optional", printed)
+        self.assertNotIn("warning", printed)
+        with open(self.path("found.toml"), "rb") as file:
+            identified = tomllib.load(file)["identified"]
+        k = identified["keys"].index("axis.Y.moving_mass")
+        self.assertAlmostEqual(identified["values"][k], 95.0, delta=3 * np.sqrt(identified["covariance"][k][k]))
+
+    def test_pulses_of_the_other_sign_are_noticed(self):
+        with open(self.path("emps.toml"), encoding="utf-8") as file:
+            text = file.read().replace('channel = "pulses_N", unit = "N"', 'channel = "pulses_N", factor = -1')
+        self.write("reversed.toml", text)
+        printed = self.run_in_folder("identify", "reversed.toml", "--recording", "emps_train.csv", "--validation", "emps_test.csv").stdout
+        self.assertRegex(printed, r"warning: emps_test.csv: with the other sign of disturbance_force the position rms is [\d.]+ um in place of "
+                                  r"[\d.]+ um; give it factor = -1")
+
+    def test_pulses_in_another_unit_are_noticed(self):
+        with open(self.path("emps.toml"), encoding="utf-8") as file:
+            text = file.read().replace('channel = "pulses_N", unit = "N"', 'channel = "pulses_N", unit = "kN"')
+        self.write("wrong_unit.toml", text)
+        printed = self.run_in_folder("identify", "wrong_unit.toml", "--recording", "emps_train.csv", "--validation", "emps_test.csv").stdout
+        self.assertIn("without the force of disturbance_force the position rms is", printed)
+
+    def test_more_recordings_than_there_are_in_the_experiment_are_refused(self):
+        done = self.run_in_folder("identify", "emps.toml", "--recording", "emps_train.csv", "--recording", "emps_test.csv", status=2)
+        self.assertIn("--recording: error: is given 2 times; the experiment has 1 recording", done.stderr)
+
+
+@unittest.skipUnless(os.path.exists(MEASURED), "no recording of the EMPS")
+class MeasuredEmps(unittest.TestCase):
+    """From the recording of a real drive to experiment 1 on it."""
+    folder = cwd = None
+    setUpClass = classmethod(lambda cls: copy_scenarios(cls))
+    tearDownClass = Way.__dict__["tearDownClass"]
+    run_in_folder = Way.__dict__["run_in_folder"]
+    path, identified = Way.path, Way.identified
+
+    def test_the_shipped_machine_is_what_comes_out_and_runs_experiment_1(self):
+        printed = self.run_in_folder("identify", "emps.toml", "--recording", MEASURED, "-o", "again.toml").stdout
+        self.assertRegex(printed, r"estimation +24\.8 s +0\.\d+ um +2\.\d+ %")
+        found, shipped = (self.identified(name) for name in ("again.toml", "../machines/emps_identified.toml"))
+        self.assertEqual(found[0], shipped[0])
+        np.testing.assert_allclose(found[1], shipped[1], rtol=1e-2)
+        self.run_in_folder("run", "../emps_experiment1.toml", "-q", "-o", "run.h5")
+        with h5py.File(self.path("run.h5")) as file:
+            rows = {(str(row.attrs["case"]), str(row.attrs["quantity"]), str(row.attrs["axis"])): float(row["value"][()])
+                    for row in file["comparison"].values() if "axis" in row.attrs}
+        table, feedback = (rows[case, "imposed_error_residual", "Y"] for case in ("table", "feedback"))
+        self.assertTrue(table > 0 and feedback > 0, rows)
 
 
 unittest.main()

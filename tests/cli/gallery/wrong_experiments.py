@@ -59,14 +59,41 @@ EXPERIMENTS = [
     experiment("identify: a recording of another kind", about="a page of HTML", record="<!DOCTYPE html><html><p>no recording</p></html>\n"),
     experiment("response: a recording without excitation", about="all of y is 0.5 mm", record=rows(feedback=lambda q: 0.5, time=lambda k: 2 * k),
                commands=("servomill response record.csv --input y --output q --period 0.02",)),
+    experiment("identify: a row that is shorter", about="the 21st row lacks its force", record="\n".join(
+        line.rsplit(",", 1)[0] if k == 21 else line for k, line in enumerate(rows(time=lambda k: 2 * k).split("\n")))),
+    experiment("identify: a channel without a sample", about="all of y is empty", record="\n".join(
+        line if k == 0 or not line else ",".join((line.split(",")[0], line.split(",")[1], "", line.split(",")[3]))
+        for k, line in enumerate(rows(time=lambda k: 2 * k).split("\n")))),
+    experiment("identify: an unknown loop", "[loop]", '[loop]\nkind = "cascaded"'),
+    experiment("identify: a period that our NC has not", "[loop]\nperiod_ms = 2.0\nposition_gain = \"60 1/s\"\nvelocity_gain = \"3e5 N s/m\"",
+               '[loop]\nkind = "nc"\nperiod_ms = 0.33'),
+    experiment("identify: a filter that there is not", "[[recording]]", '[[loop.filter]]\ntype = "notsch"\n[[recording]]'),
+    experiment("identify: more recordings than the experiment has", "", "", "named beside it",
+               commands=("servomill identify experiment.toml --recording record.csv --recording record.csv",
+                         "servomill identify experiment.toml --recording gone.csv", "servomill identify experiment.toml --validation gone.csv")),
+    experiment("response: a gap", about="rows 20 to 29 are missing", record="\n".join(
+        line for k, line in enumerate(rows(time=lambda k: 2 * k).split("\n")) if not 20 <= k < 30),
+               commands=("servomill response record.csv --input q --output y",)),
+    experiment("response: a sample that is missing", about="y is empty in the 30th row", record="\n".join(
+        ",".join((*line.split(",")[:2], "", line.split(",")[3])) if k == 30 else line
+        for k, line in enumerate(rows(time=lambda k: 2 * k).split("\n"))),
+               commands=("servomill response record.csv --input q --output y --period 0.02",)),
+    experiment("response: one that no control has computed", "", "", "a recording of a sine",
+               commands=("servomill response record.csv --of-control --input 61 --output 62",)),
+    typed("recording: damaged files of other kinds", "servomill recording cut.mat", "servomill recording cut.h5", "servomill recording zip.csv",
+          "servomill recording empty.csv", "servomill recording cut.xml", "servomill recording cut.sco",
+          write={"cut.mat": "MATLAB 5.0 MAT-file" + " " * 107 + "IM", "cut.h5": "\x89HDF\r\n", "zip.csv": "PK\x03\x04 a spreadsheet",
+                 "empty.csv": "", "cut.xml": "<traceData><dataFrame>", "cut.sco": "%[GLOBAL]\n%[CURVE1]\n%COUNT=3\n%[DATA]\n0;1\n"},
+          about="each is a few bytes"),
     experiment("identify: outputs", "", "", "the outputs are refused before anything is read",
                commands=("servomill identify experiment.toml -o machine.txt", "servomill identify experiment.toml -o machine.toml",
                          "servomill identify experiment.toml --signals out.csv", "servomill identify")),
     experiment("identify: intervals", "", "", "of estimates that there are not, from too few replicas",
                commands=("servomill identify experiment.toml --bootstrap 20", "servomill identify experiment.toml --profile axis.Y.moving_mas")),
     experiment("response: channels, periods, fits", "", "", "a recording of a sine, 64 samples of 2 ms",
-               commands=("servomill response record.csv --input q --output y", "servomill response record.csv --input q --output yy --period 0.02",
+               commands=("servomill response record.csv --input q --output yy --period 0.02",
                          "servomill response record.csv --input q --period 0.02", "servomill response record.csv --input q --output y --period 0.0213",
                          "servomill response record.csv --input q --output y --period 0.1",
-                         "servomill response record.csv --input q --output y --period 0.02 --fit three-mass")),
+                         "servomill response record.csv --input q --output y --period 0.02 --fit three-mass",
+                         "servomill response record.csv --input q --output y --period 0.02 --fit 4/2")),
 ]
