@@ -168,7 +168,9 @@ class LogReader {
           fmt::format("{}: target {:g} is approached in one direction only, {} "
                       "times: taken as a place to turn round, left out",
                       recording_.file, target / factor, times[target]));
-      std::erase_if(readings_, [&](const TargetReading& one) { return one.target == target; });
+      std::erase_if(readings_, [&, target = target](const TargetReading& one) {
+        return one.target == target;
+      });
     }
   }
 
