@@ -24,12 +24,13 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"cutting", "forces of the cut"},
     {"interpolation", "chords, path tolerance and filter of the NC"},
     {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
-    {"uncorrectable", "what the axes of the strategies cannot do"},
+    {"uncorrectable", "not possible with the axes, or of no cause that the strategy declares"},
     {"imposed", "what strategies bring out on purpose"},
 }};
 
 constexpr double kFine = 0.01;        // share of tolerances that are taken away
 constexpr double kLeastChord = 1e-9;  // m
+constexpr double kFineBlocks = 0.1;   // of the length: the chord error is the square of it
 
 model::MachineSettings& own_machine(const model::Scenario& scenario, model::CaseSpec& one) {
   if (!one.machine) one.machine = scenario.machine;
@@ -142,6 +143,24 @@ bool remove_uncorrected(const model::Scenario& scenario, model::CaseSpec& one) {
   return true;
 }
 
+// Refines the blocks of a strategy that rewrites: by its chord tolerance, or where it has none by
+// their length.
+void refine_blocks(model::StrategySpec& strategy) {
+  const auto has = [&](Shortcoming shortcoming) {
+    return std::any_of(strategy.entry->parameters.begin(), strategy.entry->parameters.end(),
+                       [&](const ParameterSpec& spec) { return spec.shortcoming == shortcoming; });
+  };
+  const bool by_chord = has(Shortcoming::chord_tolerance);
+  for (const ParameterSpec& spec : strategy.entry->parameters) {
+    Parameters& p = strategy.parameters;
+    if (by_chord && spec.shortcoming == Shortcoming::chord_tolerance) {
+      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
+    } else if (!by_chord && spec.shortcoming == Shortcoming::block_length && spec.is_number) {
+      p.set(spec.name, kFineBlocks * p.number(spec.name));
+    }
+  }
+}
+
 bool remove_interpolation(const model::Scenario& scenario, model::CaseSpec& one) {
   model::NcSettings& nc = own_machine(scenario, one).nc;
   nc.path_tolerance *= kFine;
@@ -149,13 +168,7 @@ bool remove_interpolation(const model::Scenario& scenario, model::CaseSpec& one)
   nc.tolerance_share *= kFine;
   nc.filter = {};
   nc.block_time = 0.0;
-  for (model::StrategySpec& strategy : one.strategies) {
-    for (const ParameterSpec& spec : strategy.entry->parameters) {
-      if (spec.shortcoming != Shortcoming::chord_tolerance) continue;
-      Parameters& p = strategy.parameters;
-      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
-    }
-  }
+  for (model::StrategySpec& strategy : one.strategies) refine_blocks(strategy);
   return true;  // there is always a tolerance
 }
 

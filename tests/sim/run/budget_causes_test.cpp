@@ -60,6 +60,40 @@ TEST(BudgetCauses, OfAnIdentificationErrorAlone) {
   }
 }
 
+// Interpolation is taken away by a chord tolerance a hundredth as large; where a strategy declares
+// nothing but the length of its blocks, by a tenth of that: the chord error is its square.
+TEST(BudgetCauses, RefineBlocksByTheirToleranceElseByTheirLength) {
+  const model::Scenario scenario =
+      small_scenario(kProgram, root("polynomial_um = [0.0, 10.0]") +
+                                   one_case("type = \"gcode\"\nmodel = \"imposed\"\n"));
+  struct Declared {
+    std::string key;
+    Shortcoming shortcoming;
+  };
+  const auto refined = [&](const std::vector<Declared>& declared) {
+    std::vector<ParameterSpec> specs;
+    for (const auto& [key, shortcoming] : declared) {
+      specs.push_back({.name = key, .help = "length", .unit = "mm", .shortcoming = shortcoming});
+    }
+    strategies::Entry entry = *scenario.cases.back().strategies.front().entry;
+    entry.parameters = specs;
+    model::Scenario own = scenario;
+    model::StrategySpec& strategy = own.cases.back().strategies.front();
+    strategy.entry = &entry;
+    for (const ParameterSpec& spec : specs) strategy.parameters.set(spec.name, 1e-3);
+    own = without(own, {Cause::interpolation}, {}, {{"one", {Cause::interpolation}}});
+    std::vector<double> out;
+    for (const ParameterSpec& spec : specs) {
+      out.push_back(own.cases.back().strategies.front().parameters.number(spec.name));
+    }
+    return out;
+  };
+  const Declared tolerance{"tolerance_mm", Shortcoming::chord_tolerance};
+  const Declared length{"block_mm", Shortcoming::block_length};
+  EXPECT_EQ(refined({tolerance, length}), (std::vector<double>{0.01 * 1e-3, 1e-3}));
+  EXPECT_EQ(refined({length}), (std::vector<double>{0.1 * 1e-3}));
+}
+
 // The origin of a rewritten program counts as identification: 10 um/mm, 7 mm away.
 TEST(BudgetCauses, OfAnotherOriginAlone) {
   const Budget budget =
