@@ -46,6 +46,13 @@ std::string wrong_with(const servomill_parameter* one) {
     return fmt::format("has the default '{}', which is no number", one->default_text);
   }
   if (!(one->min <= one->max)) return "has a minimum above its maximum";
+  if (!text(one->default_text).empty()) {
+    const double value = std::stod(one->default_text);
+    if (!(one->min <= value && value <= one->max)) {
+      return fmt::format("has the default {}, outside of its range {:g} to {:g}", one->default_text,
+                         one->min, one->max);
+    }
+  }
   return "";
 }
 

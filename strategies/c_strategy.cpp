@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -61,6 +62,14 @@ void error_at(const void* model, const double* Q, double* error) {
   std::copy_n(d.data(), 3, error);
 }
 
+// The same for a strategy that does not declare that it knows errors: its case ends, as it does for
+// all that is not finite.
+void no_error_at(const void*, const double*, double* error) {
+  std::fill_n(error, 3, std::numeric_limits<double>::quiet_NaN());
+}
+
+constexpr double kNoPeriod = std::numeric_limits<double>::quiet_NaN();
+
 // Declaration and parameters of a strategy; shared by its runs.
 struct Made {
   const servomill_strategy* declared;
@@ -80,6 +89,7 @@ struct Made {
     for (int j = 0; j < kJoints; ++j) {
       out.axes[j] = identified.layout.has(j) ? identified.layout.letter_of(j) : '\0';
     }
+    out.error_at = strategies::no_error_at;
     if (declared->knows_errors != 0) {
       out.sign = static_cast<double>(action);
       out.model = &identified;
@@ -214,7 +224,7 @@ class COffset final : public SetpointPart {
   template <class Find>
   void find(Find find_it) const {
     calls_.find("offset", [&] {
-      const Joints out = find_it(calls_.state(0.0));
+      const Joints out = find_it(calls_.state(kNoPeriod));
       if (out.allFinite()) offset_ = out;
       return out.allFinite();
     });
@@ -259,7 +269,7 @@ class CPositionLoop final : public PositionLoopPart {
 // Blocks that `rewrite` makes of a program.
 std::vector<servomill_block> blocks_of(const std::shared_ptr<const Made>& made, CProgram& program) {
   CState state;
-  void* mine = state.of(made, 0.0);
+  void* mine = state.of(made, kNoPeriod);
   {
     const PluginCall call(made->label);
     throw_if_refused(made->declared->rewrite(mine, program.program()));

@@ -58,13 +58,13 @@ typedef struct servomill_setup {
   size_t size;
   const double* parameters; /* in SI, in the order of servomill_strategy.parameters */
   size_t parameter_count;
-  double period;                  /* s, between two calls; 0: not known (`offset`, `rewrite`) */
+  double period;                  /* s, between two calls; NaN: not known (`offset`, `rewrite`) */
   double lower[SERVOMILL_JOINTS]; /* travel of the machine */
   double upper[SERVOMILL_JOINTS];
   char axes[SERVOMILL_JOINTS]; /* letter of each joint; 0: the machine has none there */
   double sign;                 /* knows_errors: +1 imposes the errors, -1 compensates them */
   /* knows_errors: displacement (3) of the tool centre point along X, Y and Z that the identified
-   * errors cause at Q; else both are NULL. For any thread, as long as the run. */
+   * errors cause at Q; else NaN. For any thread, as long as the run. */
   const void* model;
   void (*error_at)(const void* model, const double Q[SERVOMILL_JOINTS], double error[3]);
 } servomill_setup;
@@ -114,7 +114,7 @@ typedef struct servomill_strategy {
   const char* summary; /* one line */
   const servomill_parameter* const* parameters;
   size_t parameter_count;
-  int knows_errors;     /* takes the keys model and sign */
+  int knows_errors;     /* takes the keys model and action */
   int displaces_rotary; /* `displacement` and `rewrite` may displace rotary axes */
 
   /* State of one run. */
@@ -130,7 +130,7 @@ typedef struct servomill_strategy {
   /* Offset of the setpoint behind the feed-forward tap; once per position period. Or NULL. */
   const char* (*offset)(void* state, const servomill_reading* reading,
                         double offset[SERVOMILL_JOINTS]);
-  /* Rewrites the program before the run, by a state of its own, whose setup has the period 0. Or
+  /* Rewrites the program before the run, by a state of its own, whose period is NaN. Or
    * NULL. X, Y and Z of a motion of rotary axes alone stay where the block before has ended. */
   const char* (*rewrite)(void* state, const servomill_program* program);
   /* Adds to the velocity commands (m/s, rad/s) in the position loops, once per position period,

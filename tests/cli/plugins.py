@@ -195,7 +195,8 @@ class Plugins(unittest.TestCase):
                 ("no_function", "is no plug-in: it does not export the function servomill_plugin_c_entry"),
                 ("taken_name", "its strategy 'feedback' has the name of another one"),
                 ("small_struct", "strategy 1: its struct has 8 bytes, expected 88 to 1024"),
-                ("later_part", "strategy 1: has functions that this program does not know: it was built for a later one")):
+                ("later_part", "strategy 1: has functions that this program does not know: it was built for a later one"),
+                ("default_outside", "strategy 1: parameter 0 has the default 5, outside of its range 0 to 1")):
             done = self.servomill("list", "strategies", "--plugin", library(name), status=2)
             self.assertEqual(done.stderr, f"{library(name)}: error: {why}\n")
         self.assertEqual(self.servomill("list", "strategies", "--plugin", "no.so", status=2).stderr,
@@ -226,14 +227,17 @@ class Plugins(unittest.TestCase):
         for name, why in (("refusing", "displacement: X is beyond 10 mm"),
                           ("writing_nan", "displacement returned what is not finite"),
                           ("offset_nan", "offset returned what is not finite"),
+                          ("low_pass", "offset returned what is not finite"),
+                          ("undeclared", "offset returned what is not finite"),
                           ("turning", "displacement: displaces a rotary axis, and its declaration says that it does "
                                       "not"),
                           ("never_made", "settle: needs a licence")):
             self.write(scenario_text((name, "")).replace("X10", "X20"))
             self.write("G17 G21 G40 G49 G54 G90 G94\nG1 F1000 X5\nG1 X20\nM30\n", "part.ngc")
             done = self.servomill("run", "s.toml", "-f", "-o", "out.h5", "--plugin", library("faulty"), status=1)
-            line = 2 if name == "never_made" else 3
-            time = "0.0000" if name == "never_made" else r"0\.\d{4}"
+            at_begin = name in ("low_pass", "undeclared", "never_made")
+            line = 2 if at_begin else 3
+            time = "0.0000" if at_begin else r"0\.\d{4}"
             self.assertRegex(done.stdout, rf"{name} +stopped: strategy {name}: {why} at {time} s, line {line} of the "
                                           "program\n")
             with self.open("out.h5") as file:

@@ -7,7 +7,8 @@
 #define NO_FUNCTION 2
 #define TAKEN_NAME 3
 #define SMALL_STRUCT 4
-#define LATER_PART 5
+#define LATER_PART 5 /* 6: the same as far as it is known */
+#define DEFAULT_OUTSIDE 7
 
 static const char* create(const servomill_setup* setup, void** state) {
   (void)setup;
@@ -21,6 +22,15 @@ static const char* nothing(void* state, const servomill_reading* now, double d[S
   return NULL;
 }
 
+static const servomill_parameter kLimit = {.size = sizeof(servomill_parameter),
+                                           .name = "limit_um",
+                                           .help = "limit",
+                                           .unit = "um",
+                                           .default_text = "5",
+                                           .min = 0.0,
+                                           .max = 1.0};
+static const servomill_parameter* const kParameters[] = {&kLimit};
+
 /* The struct of a later program, with a function more. */
 static const struct {
   servomill_strategy known;
@@ -29,6 +39,8 @@ static const struct {
                         : REFUSED >= LATER_PART ? sizeof kStrategy
                                                 : sizeof(servomill_strategy),
                 .name = REFUSED == TAKEN_NAME ? "feedback" : "refused",
+                .parameters = kParameters,
+                .parameter_count = REFUSED == DEFAULT_OUTSIDE ? 1 : 0,
                 .create = create,
                 .displacement = nothing},
                REFUSED == LATER_PART ? create : NULL};
