@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/programs.h"
@@ -25,8 +26,7 @@ bool is_finite(const Move& move) {
 }
 
 // All lines, over all faults; the number of faults.
-std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& setup) {
-  controllers::Interpreter interpreter(std::string(text), std::string(kProgram), setup);
+std::size_t faults_in(controllers::Interpreter& interpreter, std::string_view text) {
   std::size_t faults = 0;
   double s = 0.0;
   for (std::size_t lines = 0; lines < kMostLines && faults < kMostFaults; ++lines) {
@@ -47,6 +47,18 @@ std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& se
   }
   require_program_places(interpreter.warnings(), text);
   return faults;
+}
+
+// The same, where a program of another language is one fault.
+std::size_t faults_of(std::string_view text, const controllers::ProgramSetup& setup) {
+  std::optional<controllers::Interpreter> interpreter;
+  try {
+    interpreter.emplace(std::string(text), std::string(kProgram), setup);
+  } catch (const InputError& error) {
+    require_program_places(error.faults(), text);
+    return 1;
+  }
+  return faults_in(*interpreter, text);
 }
 
 // Reads the text as each other control does: no law but those of faults_of.
