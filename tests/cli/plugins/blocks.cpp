@@ -1,4 +1,4 @@
-// The example of strategies/README.md, "Rewrite a program": blocks that are displaced by the errors
+// The example of strategies/README.md, "Strategies out of the tree": blocks that are displaced by the errors
 // of the identified model.
 #include <algorithm>
 #include <cmath>
