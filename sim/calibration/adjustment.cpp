@@ -7,6 +7,7 @@
 #include <map>
 
 #include "sim/calibration/error_effects.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -314,7 +315,8 @@ class Adjuster {
         r[k] = root * out_.residuals[i];
       }
       const MatrixXd rest = MatrixXd::Identity(n, n) - A * C * A.transpose();
-      squares += (rest + kControlled * MatrixXd::Identity(n, n)).ldlt().solve(r).squaredNorm();
+      const MatrixXd controlled = rest + kControlled * MatrixXd::Identity(n, n);
+      squares += numerics::solve_symmetric(controlled, r).squaredNorm();
     }
     return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rows_.size(), 1)));
   }
