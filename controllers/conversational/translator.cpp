@@ -213,7 +213,9 @@ void Translator::refuse_unknown(const HeidenhainBlock& block) const {
   const HeidenhainWord& first = block.words.front();
   for (const Refusal& refusal : kRefusals) {
     if (first.text == refusal.name || first.address == refusal.name) {
-      fail(first.place, fmt::format("{}: {}", refusal.name, refusal.why));
+      const char* skip =
+          block.is_optional ? "; --block-delete leaves out lines that start with '/'" : "";
+      fail(first.place, fmt::format("{}: {}{}", refusal.name, refusal.why, skip));
     }
   }
   fail(first.place,

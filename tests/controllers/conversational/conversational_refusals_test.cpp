@@ -37,6 +37,9 @@ const Refusal kRefusals[] = {
      "M128"},
     {"TCH PROBE 427\n",
      "t.h:4:1: error: TCH: touch probe cycles are not read: what they measure is not known"},
+    {"/ TCH PROBE 427\n",
+     "t.h:4:3: error: TCH: touch probe cycles are not read: what they measure is not known; "
+     "--block-delete leaves out lines that start with '/'"},
     {"L X+1 F1 M103\n", "t.h:4:10: error: M103: the feed factor for plunging is not read; write F"},
     {"L M136\n",
      "t.h:4:3: error: M136: F in micrometres per revolution on a TNC 426, in mm per revolution on "
