@@ -183,7 +183,7 @@ def frequency_response_figure(group, model, unit, names):
     axes[0].plot(f, size, MEASURED, lw=0.8, label="measured")
     if model:
         axes[0].plot(model[0], np.abs(model[1]), SIMULATED, lw=1, label=names[1])
-    axes[0].set(xscale="log", yscale="log", ylabel=f"{names[0]}\nmagnitude" + ("" if unit == "unknown" else f" / {unit}"))
+    axes[0].set(xscale="log", yscale="log", title=names[0], ylabel="magnitude" + ("" if unit == "unknown" else f" / {unit}"))
     axes[0].legend()
     draw_phase(axes[1], f, measured, radius, model)
     if model:
@@ -219,7 +219,7 @@ def response_section(file):
     name = "the fitted two masses"
     if "rational" in file:
         fit = file["rational"]
-        rows = [(kind.removesuffix("s"), f"{f:.5g}", f"{of_f:.2g}", f"{damping:.3g}", f"{of_damping:.2g}")
+        rows = [(kind.removesuffix("s"), f"{f:.5g}", f"{of_f:.2g}", *(("real", "") if abs(damping) == 1 else (f"{damping:.3g}", f"{of_damping:.2g}")))
                 for kind in ("zeros", "poles") if "frequency" in fit[kind]
                 for f, of_f, damping, of_damping in zip(*(fit[kind][key][:] for key in ("frequency", "frequency_half_width", "damping",
                                                                                          "damping_half_width")))]

@@ -29,11 +29,23 @@ double rms_of(const std::vector<double>& x, const std::vector<double>& y) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
+// Root mean square of x - y without its mean: two scales count from different zeros.
+double rms_without_mean(const std::vector<double>& x, const std::vector<double>& y) {
+  double mean = 0.0, sum = 0.0;
+  const auto n = static_cast<double>(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) mean += (x[k] - y[k]) / n;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += std::pow(x[k] - y[k] - mean, 2) / n;
+  return std::sqrt(sum);
+}
+
 RecordResult result_of(const AxisRecord& record, Simulated simulated, double feedback_rms) {
   RecordResult out;
   out.record = &record;
   out.simulated = std::move(simulated);
   out.feedback_rms = feedback_rms;
+  if (!record.record.scale.empty()) {
+    out.scale_rms = rms_without_mean(out.simulated.scale, record.record.scale);
+  }
   if (!record.record.force.empty()) {
     const double whole = rms_of(record.record.force, {});
     out.force_rms = whole > 0.0 ? rms_of(out.simulated.force, record.record.force) / whole : 0.0;

@@ -21,6 +21,7 @@ struct RecordResult {
   double feedback_rms = 0.0;  // m or rad
   double force_rms = 0.0;     // share of the rms of the recorded force; 0: none was recorded
   double effective_samples = 0.0;
+  double scale_rms = 0.0;  // m or rad, of the slide less its mean; compared, not fitted; 0: none
   // with the disturbance that was recorded: what its other sign, and none at all, would leave
   std::optional<double> reversed_rms, undisturbed_rms;  // m or rad
 };

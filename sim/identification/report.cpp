@@ -89,7 +89,15 @@ std::string record_table(const Identification& result) {
   };
   for (const RecordResult& one : result.estimation) add(one, "estimation");
   for (const RecordResult& one : result.validation) add(one, "validation");
-  return table.text();
+  std::string out = table.text();
+  for (const auto* list : {&result.estimation, &result.validation}) {
+    for (const RecordResult& one : *list) {
+      if (one.scale_rms == 0.0) continue;
+      out += fmt::format("{}: the scale of the slide is predicted to {:.3g} um rms (not fitted)\n",
+                         one.record->record.name, one.scale_rms / um);
+    }
+  }
+  return out;
 }
 
 std::string law_table(const Identification& result) {

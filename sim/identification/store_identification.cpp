@@ -28,6 +28,10 @@ void store_signals(records::Hdf5Group& group, const RecordResult& one) {
   signal("command", r.command, length, "commanded position");
   signal("feedback", r.feedback, length, "position feedback as recorded");
   signal("simulated_feedback", one.simulated.feedback, length, "position feedback as simulated");
+  signal("scale", r.scale, length, "position of the slide as recorded");
+  if (!r.scale.empty()) {
+    signal("simulated_scale", one.simulated.scale, length, "position of the slide as simulated");
+  }
   signal("residual", residual, length, "simulated less recorded position feedback");
   signal("force", r.force, force, "force of the drive as recorded");
   signal("simulated_force", one.simulated.force, force, "force of the drive as simulated");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
@@ -47,8 +49,23 @@ class Hdf5Walk {
     return file_.has_attribute(object, "units") ? file_.text(object, "units") : "";
   }
 
+  // Before memory is taken for all of it: compression makes a byte into 1032 at most.
+  void refuse_impossible_size(const std::string& dataset,
+                              const std::vector<std::size_t>& shape) const {
+    constexpr double kMostPerByte = 1032.0;
+    double count = 1.0;
+    for (const std::size_t extent : shape) count *= static_cast<double>(extent);
+    std::error_code fault;
+    const auto bytes = std::filesystem::file_size(file_.path(), fault);
+    if (fault || count <= kMostPerByte * static_cast<double>(bytes)) return;
+    throw InputError({file_.path()},
+                     fmt::format("is damaged: '{}' has {:g} values in a file of {} bytes", dataset,
+                                 count, bytes));
+  }
+
   void read_group(const std::string& group, const std::string& base_name) {
     const std::string dataset = group + "/" + base_name;
+    refuse_impossible_size(dataset, file_.shape(dataset));
     Base base;
     base.name = group.empty() ? base_name : group.substr(1) + "/" + base_name;
     if (is_recording_ && file_.has_attribute(dataset, "long_name")) {
@@ -66,6 +83,7 @@ class Hdf5Walk {
     const std::string dataset = group + "/" + name;
     const auto shape = file_.shape(dataset);
     if (shape.empty() || !file_.holds_numbers(dataset)) return;  // one value; labels of columns
+    refuse_impossible_size(dataset, shape);
     if (shape[0] != base.values.size()) {
       if (!is_recording_) return;  // another list, not of this base
       throw InputError({file_.path()},

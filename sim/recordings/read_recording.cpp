@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
@@ -56,6 +58,16 @@ void refuse_if_fatal(const std::string& path, const std::function<void()>& read)
       kLeastSeconds + static_cast<int>(static_cast<double>(bytes) / kBytesPerSecond);
   const std::string way = system::try_in_process(read, seconds);
   if (!way.empty()) throw InputError({path}, fmt::format("is damaged: reading it {}", way));
+}
+
+// A damaged file may promise more values than any memory holds.
+Recording read_within_memory(const std::string& path, const std::function<Recording()>& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  throw InputError({path}, "is damaged, or larger than the memory: an array in it cannot be held");
 }
 
 // A text has no NUL; UTF-16 and binary files have.
@@ -110,7 +122,7 @@ std::string format_names() {
 Recording read_recording(const std::string& path, const std::string& time_unit) {
   if (is_hdf5_file(path)) {
     refuse_if_fatal(path, [&] { read_hdf5(path); });
-    Recording out = read_hdf5(path);
+    Recording out = read_within_memory(path, [&] { return read_hdf5(path); });
     set_time_unit(out, time_unit);
     return out;
   }
@@ -122,7 +134,7 @@ Recording read_recording(const std::string& path, const std::string& time_unit) 
   for (const Format& format : kFormats) {
     if (!format.is(bytes)) continue;
     if (format.read == read_mat) refuse_if_fatal(path, [&] { read_mat(bytes, path); });
-    Recording out = format.read(bytes, path);
+    Recording out = read_within_memory(path, [&] { return format.read(bytes, path); });
     set_time_unit(out, time_unit);
     return out;
   }

@@ -175,10 +175,11 @@ void print_fit(const sim::responses::TwoMassFit& fit) {
 void print_roots(const std::vector<sim::responses::Root>& roots, const char* name,
                  std::vector<std::vector<std::string>>& table) {
   for (const auto& root : roots) {
-    table.push_back(
-        {root.is_pair ? fmt::format("{} pair", name) : name, fmt::format("{:.5g}", root.frequency),
-         fmt::format("{:.2g}", 2.0 * root.frequency_deviation), fmt::format("{:.3g}", root.damping),
-         fmt::format("{:.2g}", 2.0 * root.damping_deviation)});
+    table.push_back({root.is_pair ? fmt::format("{} pair", name) : name,
+                     fmt::format("{:.5g}", root.frequency),
+                     fmt::format("{:.2g}", 2.0 * root.frequency_deviation),
+                     root.is_pair ? fmt::format("{:.3g}", root.damping) : "real",
+                     root.is_pair ? fmt::format("{:.2g}", 2.0 * root.damping_deviation) : "-"});
   }
 }
 

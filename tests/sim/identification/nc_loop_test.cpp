@@ -184,6 +184,24 @@ TEST_F(Keys, TheMotorAsTheFeedbackShowsTheScrew) {
           {{"axis.X.stiffness", "\"2e7 N/m\"", 1.2, 1e-2}}, "stiff.toml");
 }
 
+// The slide is predicted from a fit to the motor alone, whatever its scale counts from.
+TEST_F(Keys, TheScaleOfTheSlideIsCompared) {
+  const std::string loop = std::string(kSlow).replace(1, 0, "position_feedback = \"motor\"\n");
+  Experiment e =
+      read(loop, {{"axis.X.moving_mass", "\"95 kg\""}}, "two.toml", "axis.X.scale = \"y\"\n");
+  ASSERT_EQ(e.records[0].record.scale.size(), e.records[0].record.size());
+  make_up(e);
+  const ModelOfValues model = model_of(e.document, {}, {});
+  AxisModel axis{model.machine.drives[0], model.loop, e.records[0].record.command.front()};
+  e.records[0].record.scale = simulate(e.records[0].record, {&axis, 1}, 1).front().scale;
+  for (double& x : e.records[0].record.scale) x += 0.25;
+  const Identification good = identify(e, 2);
+  EXPECT_LT(good.estimation[0].scale_rms, 1e-9);
+  EXPECT_GT(good.estimation[0].scale_rms, 0.0);
+  for (double& x : e.records[0].record.scale) x *= 1.001;
+  EXPECT_GT(identify(e, 2).estimation[0].scale_rms, 1e-5);
+}
+
 // The current drives the axis: its constant follows from a mass that is known, its offset by a
 // load.
 TEST_F(Keys, TorqueConstantAndOffsetOfTheCurrentSensor) {
