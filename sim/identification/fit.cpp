@@ -293,7 +293,7 @@ void descend(const Prediction& prediction, const Differences& differences, Fit& 
 // Values that have run to where they hardly matter, back where they were started from: nothing is
 // left there that would bring them back. Nothing if there are none.
 std::optional<Values> without_runaways(const Fit& fit, const Values& start) {
-  constexpr double kHardly = 0.3;  // of a value, moves the feedback by the residual's rms
+  constexpr double kHardly = 1.0;  // of a value, moves the feedback by the residual's rms
   Values out = fit.values;
   for (std::size_t p = 0; p < out.size(); ++p) {
     if (std::isfinite(fit.scales[p]) && fit.scales[p] > kHardly * std::abs(out[p]))

@@ -105,7 +105,9 @@ std::optional<SineFacts> sine_of(const Record& r) {
                (crossings.back() - crossings.front());
   double step = 0.02 * w_T;
   Harmonic best = harmonic_of(r.command, w_T);
-  for (int round = 0; round < 60; ++round, step *= 0.7) {
+  constexpr double kNearSine = 0.05;  // of the amplitude, before the frequency is refined
+  if (!(best.rest < kNearSine * best.size())) return std::nullopt;
+  for (int round = 0; round < 40; ++round, step *= 0.6) {
     for (const double other : {w_T - step, w_T + step}) {
       const Harmonic there = harmonic_of(r.command, other);
       if (there.rest >= best.rest) continue;
