@@ -73,7 +73,7 @@ void find_feedback_displacement(const IdentifiedMachine& b, Action action, Itera
 
 const ParameterSpec kIterationsSpec = {
     .name = "iterations",
-    .help = "1: one step, as the paper; converged: exact where a displacement changes the error",
+    .help = "1: one step, as in the paper; converged: exact where a displacement changes the error",
     .default_text = "1",
     .is_number = false,
     .words = kWords,
@@ -82,14 +82,16 @@ const ParameterSpec kIterationsSpec = {
 
 const ParameterSpec kAxesSpec = {
     .name = "axes",
-    .help = "linear: X, Y, Z correct the position; all: rotary axes correct the tool axis, too",
+    .help = "linear: X, Y, Z correct the position; all: rotary axes also correct the tool axis",
     .default_text = "linear",
     .is_number = false,
     .words = kAxesWords};
 
 const ParameterSpec kSingularSpec = {
     .name = "singular_deg",
-    .help = "axes = all: nearer to a singular direction, the axis that would turn far gives way",
+    .help =
+        "axes = all: closer to a singular direction than this, the correction of the axis that "
+        "would rotate far is reduced",
     .unit = "deg",
     .default_text = "1",
     .min = 1e-3,

@@ -43,7 +43,7 @@ std::string wrong_with(const servomill_parameter* one) {
   if (one == nullptr || one->size < sizeof(servomill_parameter)) return "is not declared";
   if (one->name == nullptr || *one->name == '\0') return "has no name";
   if (!text(one->default_text).empty() && !is_number(text(one->default_text))) {
-    return fmt::format("has the default '{}', which is no number", one->default_text);
+    return fmt::format("has the default '{}', which is not a number", one->default_text);
   }
   if (!(one->min <= one->max)) return "has a minimum above its maximum";
   if (!text(one->default_text).empty()) {
@@ -70,11 +70,12 @@ std::string wrong_with(const servomill_strategy& declared) {
                        kMostSize);
   }
   if (has_unknown_parts(declared)) {
-    return "has functions that this program does not know: it was built for a later one";
+    return "has functions unknown to this program: it was built for a later version";
   }
   const servomill_strategy full = completed(declared);
   if (!is_name(text(declared.name))) {
-    return fmt::format("'{}' is no name: lower case, digits and '_'", text(declared.name));
+    return fmt::format("'{}' is not a valid name: use lower case, digits and '_'",
+                       text(declared.name));
   }
   if (declared.create == nullptr) return "lacks the function create";
   if (full.displacement == nullptr && full.offset == nullptr && full.rewrite == nullptr &&

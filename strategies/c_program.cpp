@@ -139,9 +139,8 @@ class Replacing {
       }
     }
     if (wrong_.empty() && next_ < blocks_.size()) {
-      wrong_ =
-          fmt::format("block {} names motion {} behind motion {}, or one that the program lacks",
-                      next_ + 1, blocks_[next_].move, next_ > 0 ? blocks_[next_ - 1].move : 0);
+      wrong_ = fmt::format("block {} refers to motion {} after motion {}, or to a missing motion",
+                           next_ + 1, blocks_[next_].move, next_ > 0 ? blocks_[next_ - 1].move : 0);
     }
     return std::move(out_);
   }
@@ -198,14 +197,13 @@ class Replacing {
         return fmt::format("ends at {} = {:g}, which is not finite", letter, block.end[j]);
       }
       if (std::abs(block.end[j]) > kFarthest) {
-        return fmt::format("ends at {} = {:g} {}, beyond all machines", letter, block.end[j],
-                           j < kLinearJoints ? "m" : "rad");
+        return fmt::format("ends at {} = {:g} {}, implausible for any machine", letter,
+                           block.end[j], j < kLinearJoints ? "m" : "rad");
       }
       const bool moves_rotary =
           j >= kLinearJoints && std::abs(block.end[j] - programmed[j]) > kRotaryTol;
       if (moves_rotary && !displaces_rotary_) {
-        return fmt::format("displaces the rotary axis {}, and the declaration says that none is",
-                           letter);
+        return fmt::format("displaces the rotary axis {}, contrary to its declaration", letter);
       }
     }
     return "";

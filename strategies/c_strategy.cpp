@@ -154,7 +154,7 @@ struct CFeedback {
     const PluginCall call(made->label);
     throw_if_refused(made->declared->displacement(state, &reading, d.data()));
     if (made->declared->displaces_rotary == 0 && (d[3] != 0.0 || d[4] != 0.0)) {
-      throw Refused("displaces a rotary axis, and its declaration says that it does not");
+      throw Refused("displaces a rotary axis, contrary to its declaration");
     }
     return d;
   }
@@ -184,7 +184,7 @@ class GuardedCalls {
       failure_ = fmt::format("strategy {}: {}{}", made_->declared->name, function, why);
     };
     try {
-      if (!is_found()) fail(" returned what is not finite");
+      if (!is_found()) fail(" returned a value that is not finite");
     } catch (const std::exception& error) {
       fail(std::string(": ") + error.what());
     } catch (...) {

@@ -12,13 +12,13 @@ namespace {
 const std::array<ParameterSpec, 2>& specs() {
   static const std::array<ParameterSpec, 2> kSpecs = {{
       {.name = "tolerance_um",
-       .help = "by which the tip may leave the chord",
+       .help = "largest deviation of the TCP from the chord",
        .unit = "um",
        .default_text = "0.1",
        .min = 1e-3,
        .shortcoming = Shortcoming::chord_tolerance},
       {.name = "axis_tolerance_urad",
-       .help = "by which the tool axis may leave its great circle",
+       .help = "largest deviation of the tool axis from its great circle",
        .unit = "urad",
        .default_text = "100",
        .min = 1e-2,
@@ -44,16 +44,15 @@ class ExactStrategy final : public Strategy {
       if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
         throw InputError(
             Place{},
-            "the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
+            "the tool axis is reversed (180 deg): the direction of rotation is undetermined");
       }
       plant::LinearisedPath way = plant::linearise(
           inverse_, identified_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
       // the axes of the program may turn more than straight motion needs
       if (!way.is_complete || (way.points.back().Q - Q_1).norm() > kSameJoints) {
-        throw InputError(Place{},
-                         fmt::format("no straight way of the tool goes from these positions of the "
-                                     "axes to those; it ends after {:.1f} %",
-                                     100.0 * (way.is_complete ? 1.0 : way.t)));
+        throw InputError(Place{}, fmt::format("the TCP cannot follow a straight line between these "
+                                              "axis positions; it stops after {:.1f} %",
+                                              100.0 * (way.is_complete ? 1.0 : way.t)));
       }
       return std::move(way.points);
     });
@@ -73,7 +72,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry exact_entry() {
-  Entry entry = {"exact", "straightens lines with rotary axes to a tolerance", specs(), make};
+  Entry entry = {"exact", "linearises moves with rotary axes to a tolerance", specs(), make};
   entry.reads_errors = false;
   return entry;
 }

@@ -28,7 +28,7 @@ const std::array<ParameterSpec, 8>& specs() {
        .min = 1e-3,
        .shortcoming = Shortcoming::chord_tolerance},
       {.name = "max_block_mm",
-       .help = "largest length of a rewritten block",
+       .help = "maximum length of a rewritten block",
        .unit = "mm",
        .default_text = "1",
        .min = 1e-3,
@@ -40,15 +40,14 @@ const std::array<ParameterSpec, 8>& specs() {
        .min = 1e-3,
        .shortcoming = Shortcoming::chord_tolerance},
       {.name = "max_block_deg",
-       .help = "axes = all: largest turn of a rotary axis in a rewritten block",
+       .help = "axes = all: maximum rotation of a rotary axis in a rewritten block",
        .unit = "deg",
        .default_text = "1",
        .min = 1e-3,
        .shortcoming = Shortcoming::block_length},
       {.name = "rewrite_origin",
-       .help =
-           "work origin that the errors are evaluated for: where the case has the part, or where "
-           "the program's work_offset has it, before the case moves it by its own",
+       .help = "work origin for which the errors are evaluated: that of the case, or that of "
+               "program.work_offset without the offset of the case",
        .default_text = "case",
        .is_number = false,
        .words = kOrigins,
@@ -195,7 +194,7 @@ class Rewriter {
       // a rapid may turn where it stands: it cuts nothing
       if (!is_within && way_->controls_tip() && move_->kind != MoveKind::rapid) {
         throw InputError({{}, move_->line, 0},
-                         "cannot be rewritten: the rotary axes jump on the way, in a singular "
+                         "cannot be rewritten: the rotary axes jump within the move, in a singular "
                          "direction of the tool axis");
       }
       emit(b);
@@ -306,10 +305,8 @@ class RewrittenProgram final : public Strategy {
       if (move.kind != MoveKind::rapid) blocks += (move.s_end - move.s_begin) / params_.max_block;
     }
     if (blocks <= kMostBlocks) return;
-    throw TooManyBlocks(
-        fmt::format("max_block_mm = {:g} makes {:.2g} blocks of the program; must "
-                    "be <= {:.2g}",
-                    params_.max_block / mm, blocks, kMostBlocks));
+    throw TooManyBlocks(fmt::format("max_block_mm = {:g} gives {:.2g} blocks; must be <= {:.2g}",
+                                    params_.max_block / mm, blocks, kMostBlocks));
   }
 
   IdentifiedMachine identified_;

@@ -15,8 +15,8 @@ constexpr std::array<std::string_view, 2> kFrames = {"machine", "workpiece"};
 const std::array<ParameterSpec, 4>& specs() {
   static const std::array<ParameterSpec, 4> kSpecs = {{
       {.name = "definition",
-       .help = "error of the tip while joints go linearly, or of posts of locations between "
-               "against the line of the joints",
+       .help = "error of the TCP under linear joint interpolation, or of post-processed "
+               "intermediate locations against the joint line",
        .default_text = "joint_interpolation",
        .is_number = false,
        .words = kDefinitions},
@@ -27,12 +27,12 @@ const std::array<ParameterSpec, 4>& specs() {
        .is_number = false,
        .words = kFrames},
       {.name = "tolerance_um",
-       .help = "lines whose error is smaller by the model are left as they are",
+       .help = "moves with a smaller modelled error are left unchanged",
        .unit = "um",
        .default_text = "1",
        .min = 1e-3},
       {.name = "spacing_mm",
-       .help = "of the points that are put in, along the way of the tip",
+       .help = "spacing of the inserted points along the TCP path",
        .unit = "mm",
        .default_text = "0.1",
        .min = 1e-3,
@@ -61,8 +61,7 @@ class Inserter {
       throw_if_interrupted();
       if (move.kind == MoveKind::arc && turns(at_, move)) {
         throw InputError({{}, move.line, 0},
-                         "an arc on which rotary axes turn cannot be made straight; write it as "
-                         "lines");
+                         "an arc with rotary axis motion cannot be linearised; write it as lines");
       }
       if (move.kind == MoveKind::feed && turns(at_, move) && shifts(at_, move)) {
         insert(move);
@@ -126,7 +125,7 @@ class ErrorModelStrategy final : public Strategy {
       const plant::PostProcessedSegment segment(inverse_, identified_.p_ST, Q_0, Q_1);
       auto points = segment.compensated_points(params_.definition, params_.shape, params_.tolerance,
                                                params_.spacing, params_.frame);
-      if (!points) throw InputError(Place{}, "the axes cannot reach a location on the way");
+      if (!points) throw InputError(Place{}, "the axes cannot reach an intermediate location");
       return *std::move(points);
     });
   }

@@ -10,7 +10,7 @@ std::unique_ptr<Strategy> make(const Parameters&, Action, const IdentifiedMachin
 }  // namespace
 
 Entry none_entry() {
-  Entry entry = {"none", "leaves everything as it is", {}, make};
+  Entry entry = {"none", "changes nothing", {}, make};
   entry.reads_errors = false;
   entry.acts = false;
   return entry;

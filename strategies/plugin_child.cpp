@@ -132,7 +132,8 @@ bool PluginChild::wait(std::chrono::milliseconds patience) {
   read(&what, 1);
   if (what == kFailure) throw PluginFailed(rest_as_text());
   if (what == kException) throw std::runtime_error(rest_as_text());
-  if (what != kResult) throw PluginFailed(who_ + ": the plug-in wrote to what it did not open");
+  if (what != kResult)
+    throw PluginFailed(who_ + ": the plug-in wrote to a file descriptor that it did not open");
   return true;
 }
 

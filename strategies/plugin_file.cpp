@@ -88,7 +88,7 @@ class Loading {
     const auto entry =
         reinterpret_cast<servomill_plugin_c_function>(dlsym(library, SERVOMILL_PLUGIN_C_ENTRY));
     if (entry == nullptr) {
-      refuse("is no plug-in: it does not export the function " SERVOMILL_PLUGIN_C_ENTRY);
+      refuse("is not a plug-in: it does not export the function " SERVOMILL_PLUGIN_C_ENTRY);
     }
     const servomill_plugin_c* plugin = entry();
     if (plugin == nullptr) refuse(SERVOMILL_PLUGIN_C_ENTRY " returned NULL");
@@ -99,7 +99,7 @@ class Loading {
     if (plugin.abi != SERVOMILL_PLUGIN_ABI) {
       refuse(
           fmt::format("was built for version {} of the plug-in interface, this program has {}; "
-                      "build it again with the headers of this program",
+                      "rebuild it with the headers of this program",
                       plugin.abi, SERVOMILL_PLUGIN_ABI));
     }
     if (plugin.size < sizeof plugin) {

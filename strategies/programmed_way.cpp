@@ -34,7 +34,7 @@ Joints ProgrammedWay::at(double t, const Joints& Q_near) const {
 
 Joints ProgrammedWay::with_tip(const Eigen::Vector3d& p_WT, const Joints& Q_rotary) const {
   const auto Q = plant::inverse_fixed_rotary(inverse_.chain(), p_WT, Q_rotary, p_ST_);
-  if (!Q) throw InputError({{}, line_, 0}, "the linear axes cannot bring the tip there");
+  if (!Q) throw InputError({{}, line_, 0}, "the linear axes cannot reach this TCP position");
   return *Q;
 }
 

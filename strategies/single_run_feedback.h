@@ -98,7 +98,7 @@ class SingleRunFeedback final : public FeedbackPart {
         run.next = d;
         return;
       }
-      run.failure = "strategy " + name_ + ": " + function + " returned what is not finite";
+      run.failure = "strategy " + name_ + ": " + function + " returned a value that is not finite";
     } catch (const std::exception& error) {
       run.failure = "strategy " + name_ + ": " + function + ": " + error.what();
     } catch (...) {

@@ -32,24 +32,21 @@ constexpr double kGridStep =
 const std::array<ParameterSpec, 15>& specs() {
   static const std::array<ParameterSpec, 15> kSpecs = {{
       {.name = "layout",
-       .help =
-           "axis_tables: a table over each axis, summed; grid: one over all of them, linear in "
-           "each "
-           "axis between the corners of a cell; continuous: no table, but the error itself, as a "
-           "table with points everywhere would give it",
+       .help = "axis_tables: the sum of one table per axis; grid: one table over all axes, "
+               "multilinear within each cell; continuous: the error itself, as an infinitely fine "
+               "table would give it",
        .default_text = "axis_tables",
        .is_number = false,
        .words = kLayouts,
        .shortcoming = Shortcoming::points,
        .ideal = "continuous"},
       {.name = "base_axis",
-       .help = "axes over which tables run; all: each linear axis",
+       .help = "base axes of the tables; all: each linear axis",
        .default_text = "all",
        .is_number = false,
        .words = kBaseAxes},
       {.name = "compensated_axis",
-       .help = "axes that the tables displace; own: that over which the table runs, others: all "
-               "but that",
+       .help = "axes that the tables correct; own: the base axis, others: all except the base axis",
        .default_text = "all",
        .is_number = false,
        .words = kCompensatedAxes},
@@ -59,33 +56,33 @@ const std::array<ParameterSpec, 15>& specs() {
        .is_number = false,
        .words = kBoolean},
       {.name = "spacing_mm",
-       .help = "distance of the points",
+       .help = "spacing of the points",
        .unit = "mm",
        .default_text = "1.6384",
        .min = 1e-4},
       {.name = "spacing_rule",
-       .help = "power_of_two: spacing must be 2^n x 0.1 um; free: any spacing",
+       .help = "power_of_two: the spacing must be 2^n x 0.1 um; free: any spacing",
        .default_text = "power_of_two",
        .is_number = false,
        .words = kSpacingRules},
       {.name = "from_mm",
-       .help = "machine coordinate of the first point; travel: lower end of travel",
+       .help = "machine coordinate of the first point; travel: lower travel limit",
        .unit = "mm",
        .default_text = "travel",
        .words = kTravel},
       {.name = "to_mm",
-       .help = "machine coordinate that the last point must reach; travel: upper end of travel",
+       .help = "machine coordinate that the last point must reach; travel: upper travel limit",
        .unit = "mm",
        .default_text = "travel",
        .words = kTravel},
       {.name = "max_points",
-       .help = "points that the NC accepts in one table; auto: 256, in a grid 15625 (25 x 25 x 25)",
+       .help = "maximum number of points per table; auto: 256, in a grid 15625 (25 x 25 x 25)",
        .default_text = "auto",
        .min = 2,
        .max = 1e6,
        .words = kAuto},
       {.name = "max_step_ratio",
-       .help = "largest change of value between points that the NC accepts, over their distance",
+       .help = "maximum slope between points that the NC accepts",
        .default_text = "0.015625",
        .min = 0.0},
       {.name = "injection_point",
@@ -94,7 +91,7 @@ const std::array<ParameterSpec, 15>& specs() {
        .is_number = false,
        .words = kInjectionPoints},
       {.name = "time_constant_ms",
-       .help = "first-order lag of the NC's answer to a value",
+       .help = "time constant of the NC's first-order response to a value",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
@@ -102,7 +99,7 @@ const std::array<ParameterSpec, 15>& specs() {
        .shortcoming = Shortcoming::delay,
        .ideal = "0"},
       {.name = "dead_time_ms",
-       .help = "delay before the NC answers",
+       .help = "dead time of the NC's response",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
@@ -110,7 +107,7 @@ const std::array<ParameterSpec, 15>& specs() {
        .shortcoming = Shortcoming::delay,
        .ideal = "0"},
       {.name = "update_period_ms",
-       .help = "how often the NC looks into the table; 0: every position period",
+       .help = "interval at which the NC evaluates the table; 0: every position period",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
@@ -278,10 +275,9 @@ std::vector<GridTable> tables_of(const Tabulation& of) {
   std::vector<GridTable> tables;
   if (of.p.word("layout") == "grid") {
     if (output == "own" || output == "others") {
-      throw InputError(
-          {}, fmt::format("compensated_axis = \"{}\" belongs to layout = \"axis_tables\"; a "
-                          "grid runs over several axes",
-                          output));
+      throw InputError({}, fmt::format("compensated_axis = \"{}\" requires layout = "
+                                       "\"axis_tables\"; a grid has several base axes",
+                                       output));
     }
     const Eigen::Vector3d moved = moved_by(output, lines.front().joint, of.machine.layout);
     tables.push_back(of.table(std::move(lines), moved, from_reference));

@@ -81,7 +81,7 @@ GridLine Tabulation::line(int joint) const {
   const double intervals = std::max(1.0, std::ceil((to - line.first) / line.spacing - 1e-9));
   constexpr double kMostIntervals = 1e7;
   if (intervals > kMostIntervals) {
-    throw InputError({}, fmt::format("table over {}: {:.3g} points are more than any NC holds",
+    throw InputError({}, fmt::format("table over {}: {:.3g} points exceed the capacity of any NC",
                                      axis, intervals));
   }
   line.points = static_cast<std::size_t>(intervals) + 1;

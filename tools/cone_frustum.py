@@ -35,7 +35,7 @@ def check(options):
             raise InputError(f"cone_frustum.py: error: --{name} is {value:g}; must be > 0")
     blocks = 360.0 / options.step
     if options.step > COARSEST or abs(blocks - round(blocks)) > 1e-6 * blocks:
-        raise InputError(f"cone_frustum.py: error: --step is {options.step:g}; 360 deg must be a whole number of steps of at most "
+        raise InputError(f"cone_frustum.py: error: --step is {options.step:g}; 360 deg must be an integer number of steps of at most "
                          f"{COARSEST:g} deg")
 
 

@@ -30,7 +30,7 @@ def read_table(name):
     except OSError as error:
         raise InputError(f"errors_figure.py: error: {name}: {error.strerror}") from error
     if not rows or list(rows[0]) != HEAD:
-        raise InputError(f"errors_figure.py: error: {name} is no table of errors; expected the columns {', '.join(HEAD)}")
+        raise InputError(f"errors_figure.py: error: {name} is not a table of errors; expected the columns {', '.join(HEAD)}")
     functions, locations = {}, {}
     for row in rows:
         if row["position"]:

@@ -145,7 +145,7 @@ def laws(group):
     axis.barh(range(len(fitted)), 1e6 * group["held_out_rms"][:][fitted], xerr=2e6 * group["held_out_error"][:][fitted], color=MEASURED)
     axis.set_yticks(range(len(fitted)), [names[k] for k in fitted])
     axis.invert_yaxis()
-    axis.set_xlabel("rms of parts that the fit did not see / um")
+    axis.set_xlabel("rms of segments excluded from the fit / um")
     return table(("friction law", "parameters", "rms / um", "held out / um", "&plusmn; / um", "BIC"), rows) + \
         picture(figure, "Friction laws by the parts of the recordings that their fit did not see, with two standard errors")
 
@@ -265,7 +265,7 @@ def section(path):
         with h5py.File(path) as file:
             draw = SECTIONS.get(file.attrs.get("kind"))
             if draw is None:
-                raise InputError(f"identification_page.py: error: {path} is no file of servomill identify --signals or response --signals")
+                raise InputError(f"identification_page.py: error: {path} is not a file of servomill identify --signals or response --signals")
             return str(file.attrs["name"]), draw(file)
     except OSError as error:
         raise InputError(f"identification_page.py: error: {path}: {error}") from error
@@ -285,7 +285,7 @@ def main(arguments):
     options = parser.parse_args(arguments)
     out = options.output or os.path.splitext(options.files[0])[0] + ".html"
     if any(os.path.exists(out) and os.path.exists(file) and os.path.samefile(out, file) for file in options.files):
-        raise InputError(f"identification_page.py: error: {out} is the input, which is never overwritten")
+        raise InputError(f"identification_page.py: error: {out} is an input of this command and is never overwritten")
     if os.path.exists(out) and not options.force:
         raise InputError(f"identification_page.py: error: {out} exists; use --force to overwrite")
     text = page(options.files)

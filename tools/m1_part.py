@@ -69,7 +69,7 @@ def ledge(outer, inner, z):
         here[k] += 1
     triangles = np.array(out)
     if (np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])[:, 2] <= 0.0).any():
-        raise InputError("m1_part.py: error: two steps are too much alike for the triangles between them")
+        raise InputError("m1_part.py: error: two steps are too similar for the triangles between them")
     return triangles
 
 
@@ -131,7 +131,7 @@ def main(arguments):
     if path.exists() and not options.force:
         raise InputError(f"{path}: error: exists; use --force to overwrite")
     if not path.parent.is_dir():
-        raise InputError(f"{path}: error: there is no folder {path.parent}")
+        raise InputError(f"{path}: error: folder {path.parent} does not exist")
     check(options)
     triangles = triangles_of(options)
     path.write_bytes(stl(triangles))

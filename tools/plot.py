@@ -79,7 +79,7 @@ def draw_all(result, named):
             continue   # nobody expects motion in a frequency response, or a sweep in a run
         try:
             if figure.kind != result.kind:
-                raise NotInFile(f"the file holds a {result.kind}, not a {figure.kind}")
+                raise NotInFile(f"the file contains a {result.kind}, not a {figure.kind}")
             drawn[figure] = figure.draw(result)
         except NotInFile as reason:
             missing.append(NotDrawn(figure, f"{reason}"))
@@ -117,7 +117,7 @@ def pages_of(files, named, why, names):
         found |= drawn.keys()
         pages += [(f"{pathlib.Path(file).stem}-{figure.name}", picture) for figure, picture in drawn.items()]
         if not named and not drawn:
-            unread.append(f"{file}: error: holds nothing that can be drawn")
+            unread.append(f"{file}: error: contains nothing that can be drawn")
     if named and not pages:
         unread += [f"{file}: error: {one.figure.name}: {one.reason}" for file, _, lost in missing for one in lost]
     else:
@@ -138,7 +138,7 @@ def tell_not_drawn(where, lost, why):
             print(f"{where}{one.figure.name}: not drawn, {one.reason}", file=sys.stderr)
     others = sum(not one.failed for one in lost)
     if others and not why:
-        print(f"{where}{others} other figure{'s' if others > 1 else ''} would need what the file does not hold; see --why",
+        print(f"{where}{others} figure{'s' if others > 1 else ''} skipped: the file lacks {'their' if others > 1 else 'its'} data (--why)",
               file=sys.stderr)
 
 
@@ -156,7 +156,7 @@ def formats_of(text, target):
     if ending in PICTURES:
         raise InputError(f"{target}: error: figures are written as " + ", ".join(FORMATS))
     if ending and ending not in FORMATS and not target.exists():
-        raise InputError(f"{target}: error: .{ending} is no format of figures; they are written as " + ", ".join(FORMATS) +
+        raise InputError(f"{target}: error: .{ending} is not a figure format; must be one of " + ", ".join(FORMATS) +
                          "; make a folder of that name first")
     if ending not in FORMATS and target.exists() and not target.is_dir():
         raise InputError(f"{target}: error: is a file; figures go into a folder, or into a file that ends in ." +
@@ -169,7 +169,7 @@ def paths_of(drawn, target, formats):
     if ending_of(target) not in FORMATS:
         return [(target / f"{name}.{ending}", figure, ending) for name, figure in drawn for ending in formats]
     if len(drawn) > 1:
-        raise InputError(f"{target}: error: holds one figure, not {len(drawn)} ({', '.join(name for name, _ in drawn)}); "
+        raise InputError(f"{target}: error: takes one figure, not {len(drawn)} ({', '.join(name for name, _ in drawn)}); "
                          "name one with --figures, or a folder with -o")
     return [(target, figure, formats[0]) for _, figure in drawn]
 
@@ -179,7 +179,7 @@ def refuse_unwritable(path, inputs, force):
     if path.is_dir():
         raise InputError(f"{path}: error: is a folder")
     if path.exists() and any(pathlib.Path(file).exists() and path.samefile(file) for file in inputs):
-        raise InputError(f"{path}: error: is one of the files that are read")
+        raise InputError(f"{path}: error: is an input of this command")
     if path.exists() and not force:
         raise InputError(f"{path}: error: exists; use --force to overwrite")
 
@@ -196,7 +196,7 @@ def main(arguments):
                         help="section or probed feature to draw for that of the paper's figures: " + ", ".join(naming.SECTIONS))
     reader.add_argument("--case", metavar="NAME=YOURS", action="append",
                         help="case to draw for that of the paper's figures: " + ", ".join(naming.CASES))
-    reader.add_argument("--why", action="store_true", help="say of every figure that is not drawn why")
+    reader.add_argument("--why", action="store_true", help="give the reason for every skipped figure")
     reader.add_argument("--list", action="store_true", help="print the names of all figures")
     reader.add_argument("--force", action="store_true", help="overwrite existing figures")
     options = reader.parse_args(arguments)
@@ -206,11 +206,11 @@ def main(arguments):
             print(f"{figure.name:<12}{figure.kind:<11}{figure.help}")
         return 0
     if not options.files:
-        raise InputError("plot.py: error: no result file is named; see plot.py --help")
+        raise InputError("plot.py: error: expected at least one result file; see plot.py --help")
     stems = [pathlib.Path(file).stem for file in options.files]
     for stem in stems:
         if stems.count(stem) > 1:
-            raise InputError(f"plot.py: error: two files are named {stem}; draw them apart")
+            raise InputError(f"plot.py: error: two files are named {stem}; draw them separately")
     target = pathlib.Path(options.o)
     formats = formats_of(options.format, target)
     names = naming.Names(naming.parse(options.case, naming.CASES, "case"),

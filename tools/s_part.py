@@ -192,7 +192,7 @@ def main(arguments):
     if path.exists() and not options.force:
         raise InputError(f"{path}: error: exists; use --force to overwrite")
     if not path.parent.is_dir():
-        raise InputError(f"{path}: error: there is no folder {path.parent}")
+        raise InputError(f"{path}: error: folder {path.parent} does not exist")
     part = SPart(options)
     tilt = check(options, part)
     p, k = locations(part, options.tolerance, options.axis_tolerance * 1e-6)

@@ -201,12 +201,12 @@ def read_reports(path):
             try:
                 report = json.loads(text)
                 if not {"standard", "name", "parameters", "tables"} <= set(report):
-                    raise ValueError("is no report of servomill evaluate --json")
+                    raise ValueError("is not a report of servomill evaluate --json")
             except (ValueError, TypeError) as error:
                 raise InputError(f"{path}:{line}: error: {error}") from error
             reports.append(report)
     if not reports:
-        raise InputError(f"{path}: error: is empty; servomill evaluate --json prints one test a line")
+        raise InputError(f"{path}: error: is empty; servomill evaluate --json prints one test per line")
     return reports
 
 

@@ -44,8 +44,8 @@ std::pair<Run, Positioning> Translator::read_run(const HeidenhainBlock& block, R
   const auto LEN = words.take_number("LEN");
   const auto CCA = words.take_number("CCA");
   if (words.take("R0") != nullptr) {
-    fail(fmt::format("{} with R0: an iTNC 530 and a TNC 640 do different things; write RL or RR",
-                     name));
+    fail(
+        fmt::format("{} with R0: iTNC 530 and TNC 640 behave differently; program RL or RR", name));
   }
   const auto R = words.take_number("R");
   if (LEN) run.length = length(*LEN) * frame_.scale;
@@ -74,7 +74,7 @@ void Translator::approach(const HeidenhainBlock& block) {
   if (!p.side || *p.side == 0) {
     fail(fmt::format("{} without RL or RR", name));
   }
-  if (side_ != 0) fail(fmt::format("{} with RL or RR in force; write R0 before", name));
+  if (side_ != 0) fail(fmt::format("{} with RL or RR active; program R0 first", name));
   if (kind.is_polar) {
     if (!p.polar_radius && !p.polar_angle) fail(fmt::format("{} without PR and PA", name));
     if (pole_normal_ != 2) fail(fmt::format("{} in a plane with Z", name));
@@ -94,7 +94,8 @@ void Translator::approach(const HeidenhainBlock& block) {
   tool_radius(place_);
   bool is_incremental = false;
   const Values end = ends(p, is_incremental);
-  if (is_incremental) fail(fmt::format("{}: an increment from an unknown position", name));
+  if (is_incremental)
+    fail(fmt::format("{}: an incremental coordinate from an unknown position", name));
   if (end[2]) run.depth = *end[2] + delta_length_;
   for (std::size_t i = 0; i < end.size(); ++i) {
     if (end[i]) work_[i] = end[i];
@@ -110,8 +111,8 @@ void Translator::depart(const HeidenhainBlock& block) {
   auto [run, p] = read_run(block, kind.kind, name);
   if (p.target[2]) {
     fail(
-        fmt::format("{} with Z: some controls move it with the departure, some behind; write it in "
-                    "the next block",
+        fmt::format("{} with Z: some controls move Z during the departure, others after it; "
+                    "program Z in the next block",
                     name));
   }
   require_arc(p);
@@ -123,7 +124,7 @@ void Translator::depart(const HeidenhainBlock& block) {
     if (!now || is_incremental) fail(fmt::format("{}: the position is unknown here", name));
     run.target = Point(end[0].value_or(now->x()), end[1].value_or(now->y()));
   } else if (p.has_target()) {
-    fail(fmt::format("{} takes no coordinates", name));
+    fail(fmt::format("{} does not accept coordinates", name));
   }
   begin_functions(p);
   run.feed = feed_of(p);

@@ -32,7 +32,7 @@ void Translator::pole(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(1));
   Positioning p = read_positioning(words, "CC");
   words.refuse_rest("CC");
-  if (p.feed || p.side || p.direction || !p.functions.empty()) fail("CC takes coordinates only");
+  if (p.feed || p.side || p.direction || !p.functions.empty()) fail("CC accepts coordinates only");
   if (!p.has_target()) {
     pole_ = program_point(2);
     pole_normal_ = 2;
@@ -41,9 +41,9 @@ void Translator::pole(const HeidenhainBlock& block) {
   }
   int count = 0;
   for (std::size_t i = 0; i < p.target.size(); ++i) count += p.target[i] ? i < 3 ? 1 : 3 : 0;
-  if (count == 3) fail("CC takes two of X, Y, Z, or no coordinate");
+  if (count == 3) fail("CC needs two of X, Y, Z, or no coordinate");
   const int normal = count == 2 ? plane_of(p, 2) : 2;
-  if (count == 1 && p.target[2]) fail("CC takes two of X, Y, Z, or no coordinate");
+  if (count == 1 && p.target[2]) fail("CC needs two of X, Y, Z, or no coordinate");
   const auto axes = plane_axes(normal);
   const auto now = program_point(normal);
   Point at;
@@ -53,7 +53,7 @@ void Translator::pole(const HeidenhainBlock& block) {
     if ((!target || target->is_increment) && !now) fail("CC: the position is unknown here");
     if (!target) {
       // [407] p. 5-15: a coordinate that is left out stays that of the last pole
-      if (!pole_ || pole_normal_ != normal) fail("CC with one coordinate, and no CC before it");
+      if (!pole_ || pole_normal_ != normal) fail("CC with one coordinate and no preceding CC");
       at[k] = (*pole_)[k];
     } else {
       at[k] = length(target->value) + (target->is_increment ? (*now)[k] : 0.0);
@@ -64,10 +64,10 @@ void Translator::pole(const HeidenhainBlock& block) {
 }
 
 void Translator::require_arc(const Positioning& p) const {
-  if (p.target[3] || p.target[4] || p.target[5]) fail("a rotary axis on a circle is not read");
+  if (p.target[3] || p.target[4] || p.target[5]) fail("a rotary axis on a circle is not supported");
   if (p.has(91)) fail("M91 on a circle");
   if (p.retract || p.is_retract_to_limit) fail("M140 on a circle");
-  if (p.feed && p.feed->kind == Feed::Kind::rapid) fail("FMAX on a circle; write F");
+  if (p.feed && p.feed->kind == Feed::Kind::rapid) fail("FMAX on a circle; program F");
 }
 
 // From program coordinates to work coordinates and on.
@@ -113,26 +113,26 @@ void Translator::circle(const HeidenhainBlock& block, bool is_polar) {
   Positioning p = read_positioning(words, name);
   words.refuse_rest(name);
   if (p.polar_radius || p.polar_angle.has_value() != is_polar) {
-    fail(is_polar ? "CP needs PA, and takes no PR" : "C with PA or PR; CP takes PA");
+    fail(is_polar ? "CP needs PA and does not accept PR" : "C with PA or PR; use CP with PA");
   }
-  if (!pole_) fail("no CC before the circle, or its frame has changed");
+  if (!pole_) fail("no CC before the circle, or its coordinate system has changed");
   if (!is_polar && !p.has_target()) fail(fmt::format("{} without coordinates", name));
   require_arc(p);
   const int normal = pole_normal_;
   const auto begin = program_point(normal);
-  if (!begin) fail("the circle begins at a position that is unknown");
+  if (!begin) fail("the circle starts at an unknown position");
   const double radius = (*begin - *pole_).norm();
-  if (radius < kSmallestRadius) fail("the circle begins at CC");
+  if (radius < kSmallestRadius) fail("the circle starts at CC");
   begin_functions(p);
   set_side(p);
   if (is_polar) {
     helix(p, normal);
     return end_functions(p);
   }
-  if (!p.direction) fail("C without DR: which way holds then is up to the block before; write DR");
+  if (!p.direction) fail("C without DR: the direction depends on the preceding block; program DR");
   const auto axes = plane_axes(normal);
   if (p.target[static_cast<std::size_t>(normal)])
-    fail("C with the axis across its plane; CP makes helices");
+    fail("C with the axis normal to its plane; use CP for helices");
   Point end = *begin;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -142,16 +142,17 @@ void Translator::circle(const HeidenhainBlock& block, bool is_polar) {
   const double end_radius = (end - *pole_).norm();
   if (std::abs(end_radius - radius) > kRadiusTolerance) {
     fail(
-        fmt::format("the end of the circle is {:.4f} mm from CC, its begin {:.4f} mm; controls "
-                    "take {} mm at most (MP7431)",
+        fmt::format("the end of the circle is {:.4f} mm from CC, its start {:.4f} mm; controls "
+                    "accept {} mm at most (MP7431)",
                     end_radius, radius, kRadiusTolerance));
   }
   Element arc{*begin, end, true, *pole_, sweep_between(*pole_, *begin, end, *p.direction)};
   const double size = std::abs(arc.sweep);
   const bool is_closed = (end - *begin).norm() < 1e-6;
   if (!is_closed && (size < kSmallestSweep || kFullTurn - size < kSmallestSweep)) {
-    fail(fmt::format("an arc of {:.5f} degrees: rounding decides between a full circle and none",
-                     size / deg));
+    fail(fmt::format(
+        "an arc of {:.5f} degrees: rounding decides between a full circle and no motion",
+        size / deg));
   }
   add_arc(p, normal, arc);
   end_functions(p);
@@ -169,15 +170,15 @@ void Translator::helix(const Positioning& p, int normal) {
   if (p.polar_angle->is_increment) {
     if (p.direction && written != 0.0 && (written > 0.0) != (*p.direction > 0)) {
       fail(p.polar_angle->value.place,
-           "IPA and DR turn to different sides: the sign of IPA must be that of DR");
+           "IPA and DR have opposite directions; the sign of IPA must match DR");
     }
   } else {
     if (!p.direction)
-      fail("CP without DR: which way holds then is up to the block before; write DR");
+      fail("CP without DR: the direction depends on the preceding block; program DR");
     sweep = std::remainder(written - from, kFullTurn);
     if (*p.direction * sweep <= 1e-9) sweep += *p.direction * kFullTurn;
   }
-  if (std::abs(sweep) < kSmallestSweep) fail("CP: an arc without length");
+  if (std::abs(sweep) < kSmallestSweep) fail("CP: the arc has zero length");
   const double to = from + sweep;
   Element arc;
   arc.begin = begin;
@@ -201,12 +202,12 @@ void Translator::circle_of_radius(const HeidenhainBlock& block) {
   if (!p.side) p.side = more.side;
   p.functions.insert(p.functions.end(), more.functions.begin(), more.functions.end());
   if (!R) fail("CR without R");
-  if (!p.direction) fail("CR without DR: which way holds then is up to the block before; write DR");
+  if (!p.direction) fail("CR without DR: the direction depends on the preceding block; program DR");
   require_arc(p);
   const int normal = plane_of(p, 2);
   if (p.target[static_cast<std::size_t>(normal)]) fail("CR takes two coordinates");
   const auto begin = program_point(normal);
-  if (!begin) fail("the circle begins at a position that is unknown");
+  if (!begin) fail("the circle starts at an unknown position");
   const auto axes = plane_axes(normal);
   Point end = *begin;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -220,8 +221,8 @@ void Translator::circle_of_radius(const HeidenhainBlock& block) {
   const auto arc = arc_of_radius(*begin, end, std::abs(radius), *p.direction, radius < 0.0);
   if (!arc) {
     fail(
-        fmt::format("CR R{:g}: the ends are {:.4f} mm apart; a full circle takes two blocks, and "
-                    "no arc spans more than its diameter",
+        fmt::format("CR R{:g}: the ends are {:.4f} mm apart; a full circle needs two blocks, and "
+                    "no chord exceeds the diameter",
                     radius, (end - *begin).norm()));
   }
   add_arc(p, normal, *arc);
@@ -235,10 +236,12 @@ void Translator::tangential_circle(const HeidenhainBlock& block, bool is_polar) 
   Positioning p = read_positioning(words, name);
   words.refuse_rest(name);
   require_arc(p);
-  if (p.direction) fail(fmt::format("{} takes no DR: the element before it decides", name));
+  if (p.direction)
+    fail(
+        fmt::format("{} does not accept DR: the preceding element determines the direction", name));
   const int normal = is_polar ? pole_normal_ : plane_of(p, 2);
   if (!last_element_ || last_normal_ != normal) {
-    fail(fmt::format("{}: the block before it must move in the plane of the arc", name));
+    fail(fmt::format("{}: the preceding block must move in the plane of the arc", name));
   }
   const Element before = *last_element_;
   begin_functions(p);
@@ -255,11 +258,11 @@ void Translator::tangential_circle(const HeidenhainBlock& block, bool is_polar) 
     const auto& target = p.target[axes[i]];
     if (target) end[k] = length(target->value) + (target->is_increment ? begin[k] : 0.0);
   }
-  if ((end - begin).norm() < kSmallestRadius) fail(fmt::format("{} ends where it begins", name));
+  if ((end - begin).norm() < kSmallestRadius) fail(fmt::format("{} ends at its start", name));
   const auto arc = tangential_arc(begin, direction_at_end(before), end);
   if (!arc) {
     const bool is_ahead = direction_at_end(before).dot(end - begin) > 0.0;
-    if (!is_ahead) fail(fmt::format("{}: its end lies straight behind", name));
+    if (!is_ahead) fail(fmt::format("{}: its end is directly behind the start", name));
     move_straight(p);
     return end_functions(p);
   }

@@ -43,7 +43,8 @@ Point tangent_point(const Point& centre, double radius, const Point& outside, do
   const Point d = outside - centre;
   if (d.norm() < radius) {
     fail(place,
-         fmt::format("no line touches the arc of R{:g}: the other end of it lies inside", radius));
+         fmt::format("no line is tangent to the arc of R{:g}: its other end is inside the arc",
+                     radius));
   }
   return centre + radius * rotated(d.normalized(), sign * std::acos(radius / d.norm()));
 }
@@ -91,7 +92,7 @@ Motion ContourPath::cut_corner(Motion& next) {
   Element &a = *before.element, &b = *next.element;
   const auto n = static_cast<std::size_t>(before.normal);
   if (before.normal != next.normal || before.words[n] || next.words[n]) {
-    fail(corner.place, "RND and CHF: both elements must lie in the plane; write the depth before");
+    fail(corner.place, "RND and CHF: both elements must be in the plane; program the depth first");
   }
   const double turn = turn_at(direction_at_end(a), direction_at_begin(b));
   if (std::abs(turn) < kPositionTol) fail(corner.place, "RND and CHF: there is no corner here");
@@ -123,7 +124,7 @@ Motion ContourPath::cut_corner(Motion& next) {
   inserted.place = corner.place;
   set_end(inserted, between.end);
   if (next.side == 0) inserted.side = before.side, inserted.radius = before.radius;
-  if (!corner.feed) fail(corner.place, "RND and CHF: no F is in force");
+  if (!corner.feed) fail(corner.place, "RND and CHF: no F is active");
   inserted.feed = *corner.feed;
   return inserted;
 }
@@ -166,18 +167,18 @@ void ContourPath::compensate(Motion motion) {
   if (side_ == 0 && !approach_) return begin_compensation(std::move(motion));
   const int side = approach_ ? approach_->side : side_;
   if (motion.side != side) {
-    fail(motion.place, "RL and RR: the other side is in force; write a block with R0 between");
+    fail(motion.place, "RL and RR: the other side is active; program a block with R0 in between");
   }
   if (!motion.element) {
     fail(motion.place,
-         "with RL and RR every element must begin at a known position and have a length");
+         "with RL and RR every element must start at a known position and have non-zero length");
   }
   join(std::move(motion));
 }
 
 void ContourPath::begin_compensation(Motion motion) {
   if (motion.element && motion.element->is_arc) {
-    fail(motion.place, "RL and RR cannot begin in a circle; write a straight line before");
+    fail(motion.place, "RL and RR cannot start on a circle; program a straight line first");
   }
   side_ = motion.side;
   entry_ = std::move(motion);
@@ -249,7 +250,7 @@ void ContourPath::round_outside(const Motion& next, const Element& to) {
   corner.element = line(beside_->end, to.begin);
   if (!is_inside) {
     if (corner.feed.kind == Feed::Kind::rapid) {
-      fail(next.place, "FMAX behind an outside corner with RL and RR; write F");
+      fail(next.place, "FMAX after an outside corner with RL and RR; program F");
     }
     corner.element->is_arc = true;
     corner.element->centre = centre;

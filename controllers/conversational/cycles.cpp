@@ -16,28 +16,28 @@ struct Refusal {
 };
 
 constexpr auto kRefusals = std::to_array<Refusal>({
-    {4, 6, "pockets and contour cycles are not read; let the CAM system write their moves"},
+    {4, 6, "pockets and contour cycles are not supported; have the CAM system output the moves"},
     {12, 12, "write CALL PGM"},
     {13, 13, "orientation of the spindle"},
-    {14, 16, "SL cycles are not read; let the CAM system write their moves"},
-    {19, 19, "cycle 19 leaves the rotary axes to the program; write PLANE SPATIAL"},
-    {20, 25, "SL cycles are not read; let the CAM system write their moves"},
-    {27, 30, "cylinder surfaces and digitized data are not read"},
-    {39, 39, "cylinder surfaces are not read"},
+    {14, 16, "SL cycles are not supported; have the CAM system output the moves"},
+    {19, 19, "cycle 19 leaves positioning of the rotary axes to the program; use PLANE SPATIAL"},
+    {20, 25, "SL cycles are not supported; have the CAM system output the moves"},
+    {27, 30, "cylinder surfaces and digitized data are not supported"},
+    {39, 39, "cylinder surfaces are not supported"},
     {204, 204,
-     "back boring: the feed at which the tool is displaced was not found in a manual; write the "
-     "moves"},
+     "back boring: no manual found gives the feed of the tool displacement; program the moves"},
     {208, 208,
-     "bore milling: the way to the wall of the hole is the control's; write it with CC and CP IPA"},
-    {210, 219, "pockets, slots and studs are not read; let the CAM system write their moves"},
-    {220, 221, "patterns are not read; write the positions with M99"},
-    {230, 233, "face milling is not read; let the CAM system write its moves"},
-    {241, 241, "single-lip drilling is not read"},
+     "bore milling: the approach path to the wall is internal to the control; program it with CC "
+     "and CP IPA"},
+    {210, 219, "pockets, slots and studs are not supported; have the CAM system output the moves"},
+    {220, 221, "patterns are not supported; program the positions with M99"},
+    {230, 233, "face milling is not supported; have the CAM system output the moves"},
+    {241, 241, "single-lip drilling is not supported"},
     {253, 254,
-     "slots: the path of the roughing is the control's; let the CAM system write the moves"},
+     "slots: the roughing path is internal to the control; have the CAM system output the moves"},
     {251, 279,
-     "pockets, slots, studs and threads are not read; let the CAM system write their moves"},
-    {400, 499, "touch probe cycles are not read: what they measure is not known"},
+     "pockets, slots, studs and threads are not supported; have the CAM system output the moves"},
+    {400, 499, "touch probe cycles are not supported: the measured values are unknown"},
 });
 
 constexpr long kApplicationTuning = 392;  // ATC, of machines of DMG MORI
@@ -70,24 +70,23 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   const auto number = integer_of(head.substr(0, dot));
   const auto step =
       dot == std::string::npos ? std::optional<long>(-1) : integer_of(head.substr(dot + 1));
-  if (!number || !step) fail(words[2].place, fmt::format("'{}' is no number of a cycle", head));
+  if (!number || !step) fail(words[2].place, fmt::format("'{}' is not a cycle number", head));
   for (const Refusal& refusal : kRefusals) {
     if (*number < refusal.first || *number > refusal.last) continue;
     if (*number == 13) {
-      return warn_once("cycle 13", "CYCL DEF 13: the spindle is oriented; read as without effect");
+      return warn_once("cycle 13", "CYCL DEF 13: spindle orientation is ignored");
     }
     fail(words[2].place, fmt::format("CYCL DEF {}: {}", *number, refusal.why));
   }
   if (*number == kApplicationTuning) {
-    return warn_once("cycle 392",
-                     "CYCL DEF 392: matches the drives to the load; read as without effect");
+    return warn_once("cycle 392", "CYCL DEF 392: adapts the drives to the load; ignored");
   }
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);
   }
   const bool is_known = is_drilling(static_cast<int>(*number)) || *number == 247;
   if (!is_known || *number == 1) {
-    fail(words[2].place, fmt::format("CYCL DEF {}: this cycle is not known", *number));
+    fail(words[2].place, fmt::format("CYCL DEF {}: unknown cycle", *number));
   }
   cycle_ = Cycle{static_cast<int>(*number), {}, true, place_};
   is_modal_call_ = false;
@@ -108,8 +107,8 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
     }
     const bool is_old = number == 2 || number == 17 || number == 18 || number == 3;
     fail(all[2].place, fmt::format("CYCL DEF {}: {}", number,
-                                   is_old ? "this old cycle is not read; use 206, 207 or CP"
-                                          : "this cycle is not known"));
+                                   is_old ? "this legacy cycle is not supported; use 206, 207 or CP"
+                                          : "unknown cycle"));
   }
   if (open_cycle_ != number) {
     fail(all[2].place,
@@ -132,7 +131,7 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   }
   const auto text = last_number(rest);
   if (number == 9) {
-    if (!text) fail("cycle 9: seconds must stand here");
+    if (!text) fail("cycle 9: expected a time in seconds");
     return cycle_dwell(value(operand_of(*text, rest.back().place)));
   }
   if (number == 32) {
@@ -141,10 +140,10 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
     const double tolerance = T ? length(*T) : 0.0;
     return note(tolerance > 0.0 ? "G64 " + word('P', tolerance) : "G64");
   }
-  if (!text) fail("cycle 1: a number must stand here");
+  if (!text) fail("cycle 1: expected a number");
   std::string number_text = *text;
   if (rest.back().address == "F") number_text = rest.back().rest;
-  if (number_text == "MAX") fail("cycle 1: F MAX for drilling");
+  if (number_text == "MAX") fail("cycle 1: F MAX is not allowed for drilling");
   cycle_->values.push_back(value(operand_of(number_text, rest.back().place)));
   cycle_->is_complete = cycle_->values.size() == 5;
 }
@@ -156,13 +155,11 @@ void Translator::call_cycle(const HeidenhainBlock& block) {
   const bool has_position = words.take("POS") != nullptr;
   const Positioning p = read_positioning(words, "CYCL CALL");
   words.refuse_rest("CYCL CALL");
-  if (p.has_target() != has_position) fail("CYCL CALL takes coordinates behind POS only");
+  if (p.has_target() != has_position) fail("CYCL CALL accepts coordinates only after POS");
   begin_functions(p);
   if (has_position) {
     if (p.target[2]) {
-      fail(
-          "CYCL CALL POS with Z, which moves the surface; write Q203 and CYCL CALL POS with X and "
-          "Y");
+      fail("CYCL CALL POS with Z moves the surface; use Q203 and CYCL CALL POS with X and Y");
     }
     move_straight(p);
   }

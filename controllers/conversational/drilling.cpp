@@ -22,7 +22,7 @@ struct Translator::Hole {
 double Translator::q(int number) const { return parameters_.get({'Q', number}, place_); }
 
 Feed Translator::cycle_feed(double per_minute) const {
-  if (!(per_minute > 0.0)) fail(fmt::format("the cycle moves with F{:g}; must be > 0", per_minute));
+  if (!(per_minute > 0.0)) fail(fmt::format("the cycle feed is F{:g}; must be > 0", per_minute));
   if (per_minute >= 99999.0) return {};  // FMAX
   return {Feed::Kind::per_minute, per_minute * (is_inch_ ? 2.54 : 1.0)};
 }
@@ -47,7 +47,7 @@ Translator::Hole Translator::hole() const {
   const double depth = q(201) * unit();
   if (q(200) < 0.0) fail("Q200 must be >= 0");
   if (depth > 0.0)
-    fail("Q201 > 0: MP7441 decides if the control refuses it; write a negative depth");
+    fail("Q201 > 0: MP7441 determines whether the control rejects it; program a negative depth");
   out.surface = q(203) * unit();
   out.clearance = out.surface + q(200) * unit();
   out.bottom = out.surface + depth;
@@ -61,9 +61,8 @@ void Translator::leave_hole(const Hole& hole) {
 }
 
 void Translator::drill() {
-  if (!cycle_ || cycle_->number == 247 || cycle_->number == 32)
-    fail("no cycle is defined to be called");
-  if (!cycle_->is_complete) fail("cycle 1 lacks blocks; CYCL DEF 1.1 to 1.5 must be complete");
+  if (!cycle_ || cycle_->number == 247 || cycle_->number == 32) fail("no cycle is defined");
+  if (!cycle_->is_complete) fail("cycle 1 is incomplete; CYCL DEF 1.1 to 1.5 are required");
   require_no_compensation("a drilling cycle");
   if (is_tcp_) fail("a drilling cycle with M128; end it with M129");
   if (frame_.scale != 1.0) fail("a drilling cycle while cycle 11 is active");
@@ -104,7 +103,7 @@ void Translator::drill() {
 // is. It returns to t above the depth before: 0.6 mm up to 30 mm of depth, else 1/50 of it, 7 mm at
 // most. [407] p. 8-5
 void Translator::drill_old() {
-  if (!work_[2]) fail("cycle 1 begins at the present Z, which is unknown here; write Z before");
+  if (!work_[2]) fail("cycle 1 starts at the current Z, which is unknown here; program Z first");
   const double start = frame_.to_program(2, *work_[2]);
   const double clearance = std::abs(cycle_->values[0]) * unit(), depth = cycle_->values[1] * unit();
   const double peck = std::abs(cycle_->values[2]) * unit(), dwell = cycle_->values[3];
@@ -164,12 +163,11 @@ void Translator::ream_201() {
 void Translator::bore_202() {
   if (q(214) != 0.0) {
     fail(
-        "cycle 202 with Q214: the feed at which the tool leaves the wall is not known; Q214=0, or "
-        "write the moves");
+        "cycle 202 with Q214: the feed of the disengaging move is unknown; set Q214=0, or program "
+        "the moves");
   }
   warn_once("cycle 202",
-            "CYCL DEF 202: the spindle is oriented at the bottom; read as without "
-            "effect on motion");
+            "CYCL DEF 202: the spindle orientation at the bottom is ignored: no effect on motion");
   ream_201();
 }
 
@@ -222,10 +220,10 @@ void Translator::peck_205() {
   if (!(peck > 0.0)) fail("Q202 must be > 0");
   if (q(258) != q(259))
     fail(
-        "cycle 205 with Q258 and Q259 that differ: how they change between was not found in a "
-        "manual");
+        "cycle 205 with Q258 and Q259 that differ: no manual found describes the transition "
+        "between them");
   if (parameters_.find({'Q', 379}).value_or(0.0) != 0.0)
-    fail("cycle 205 with Q379, a deepened start");
+    fail("cycle 205 with Q379 (recessed starting point) is not supported");
   const double above = q(258) * unit(), step = q(257) * unit(), back = q(256) * unit();
   const double smaller = q(212) * unit(), smallest = q(205) * unit();
   cycle_move({}, h.clearance);
@@ -259,7 +257,7 @@ void Translator::tap(bool is_rigid) {
   const double pitch = is_rigid ? q(239) * unit() : 0.0;
   if (is_rigid && pitch == 0.0) fail("Q239 must not be 0");
   const bool is_left = is_rigid ? pitch < 0.0 : spindle_ < 0;
-  if (!is_rigid && spindle_ == 0) fail("cycle 206: M3 or M4 must be in force");
+  if (!is_rigid && spindle_ == 0) fail("cycle 206: M3 or M4 must be active");
   const Feed feed =
       is_rigid ? Feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_} : cycle_feed(q(206));
   cycle_move({}, h.clearance);
@@ -287,7 +285,7 @@ void Translator::tap_209() {
   if (pitch == 0.0) fail("Q239 must not be 0");
   if (step < 0.0 || back < 0.0) fail("Q257 and Q256 must be >= 0");
   if (parameters_.find({'Q', 403}).value_or(1.0) != 1.0) {
-    fail("cycle 209 with Q403, another speed on the way out, is not read; write Q403=1");
+    fail("cycle 209 with Q403 (another retraction speed) is not supported; set Q403=1");
   }
   const std::string in = pitch < 0.0 ? "M4" : "M3", out = pitch < 0.0 ? "M3" : "M4";
   const Feed feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_};
@@ -313,7 +311,7 @@ void Translator::tap_209() {
 // Q343 = 1 centres to a diameter, which needs the point angle of the tool.
 void Translator::centre_240() {
   if (q(343) != 0.0)
-    fail("cycle 240 with Q343=1: the point angle of the tool is not known; write Q343=0 and Q201");
+    fail("cycle 240 with Q343=1: the point angle of the tool is unknown; set Q343=0 and Q201");
   const Hole h = hole();
   cycle_move({}, h.clearance);
   cycle_move(cycle_feed(q(206)), h.bottom);

@@ -17,12 +17,12 @@ constexpr std::size_t kMostCalls = 19;  // in each other: TNC 640; 8 on the iTNC
 
 int Translator::whole(double value, int most, const Place& place, std::string_view what) const {
   if (value >= 0.0 && value <= most && value == std::floor(value)) return static_cast<int>(value);
-  fail(place, fmt::format("{} {:g}: must be a whole number in 0 ... {}", what, value, most));
+  fail(place, fmt::format("{} {:g}: must be an integer from 0 to {}", what, value, most));
 }
 
 void Translator::count_jump() {
   if (++jumps_ <= setup_.most_jumps) return;
-  fail(fmt::format("{} jumps: the program seems endless; raise it with --max-jumps",
+  fail(fmt::format("{} jumps: the program looks endless; raise --max-jumps if intended",
                    setup_.most_jumps));
 }
 
@@ -45,9 +45,9 @@ void Translator::label(const HeidenhainBlock& block) {
 
 void Translator::call(const HeidenhainBlock& block) {
   const std::span<const HeidenhainWord> words(block.words);
-  if (words.size() < 3) fail("CALL LBL or CALL PGM must name what it calls");
+  if (words.size() < 3) fail("CALL LBL or CALL PGM must name the label or program to call");
   if (words[1].text == "PGM") return call_program(words.subspan(2));
-  if (words[1].text != "LBL") fail(words[1].place, "CALL LBL or CALL PGM must stand here");
+  if (words[1].text != "LBL") fail(words[1].place, "expected CALL LBL or CALL PGM");
   // a name in quotation marks may hold blanks
   std::size_t end = 3;
   if (words[2].text.front() == '"') {
@@ -66,7 +66,7 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
   if (label == "0") fail("LBL 0 cannot be called");
   if (rest.empty() || (rest.size() == 1 && rest.front().text == "REP")) {
     if (returns_.size() >= kMostCalls) {
-      fail(fmt::format("more than {} calls in each other", kMostCalls));
+      fail(fmt::format("calls nested deeper than {}", kMostCalls));
     }
     const BlockMark behind = program().mark();
     go_to(label);
@@ -75,7 +75,7 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
   }
   std::string text;
   for (const HeidenhainWord& word : rest) text += word.text;
-  if (!text.starts_with("REP")) fail(rest.front().place, "REP must stand here");
+  if (!text.starts_with("REP")) fail(rest.front().place, "expected REP");
   text = text.substr(3, text.find('/') - 3);
   constexpr int kMostRepeats = 65534;  // [640] p. 631
   const Place& at = rest.front().place;
@@ -91,10 +91,9 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
 }
 
 void Translator::call_program(std::span<const HeidenhainWord> words) {
-  if (words.size() > 1) fail(words[1].place, "nothing may follow the name of the program");
+  if (words.size() > 1) fail(words[1].place, "unexpected text after the program name");
   const std::string name = program_name(words.front().text);
-  if (returns_.size() >= kMostCalls)
-    fail(fmt::format("more than {} calls in each other", kMostCalls));
+  if (returns_.size() >= kMostCalls) fail(fmt::format("calls nested deeper than {}", kMostCalls));
   std::optional<ProgramText> text;
   if (setup_.subroutine_file) text = setup_.subroutine_file(name);
   if (!text) {
@@ -128,7 +127,7 @@ std::size_t Translator::file_of_program(ProgramText& text, const std::string& na
   const bool begins = begin && begin->words.size() > 2 && begin->words[0].text == "BEGIN";
   if (!begins) fail(place, fmt::format("{} does not begin with BEGIN PGM", name));
   if ((begin->words.back().text == "INCH") != is_inch_) {
-    fail(place, fmt::format("CALL PGM {}: it is in another unit", name));
+    fail(place, fmt::format("CALL PGM {}: the called program uses the other unit", name));
   }
   files_.push_back(std::move(file));
   return files_.size() - 1;
@@ -193,7 +192,7 @@ bool Translator::run_function(const HeidenhainBlock& block) {
   const auto number = integer_of(head);
   if (!number) return false;
   const auto rest = words.subspan(is_split ? 2 : 1);
-  if (rest.empty()) fail(fmt::format("FN {}: without what it is to do", *number));
+  if (rest.empty()) fail(fmt::format("FN {}: the operation is missing", *number));
   if (*number <= 8 || *number == 13) {
     const Assignment made = evaluate_function(static_cast<int>(*number), rest, parameters_);
     assign(made.name, made.value);
@@ -209,13 +208,13 @@ bool Translator::run_function(const HeidenhainBlock& block) {
   constexpr std::array kWithoutMotion = {15, 16, 19, 20, 26, 27, 38};
   if (std::find(kWithoutMotion.begin(), kWithoutMotion.end(), *number) != kWithoutMotion.end()) {
     warn_once(fmt::format("FN {}", *number),
-              fmt::format("FN {}: read as without effect on motion", *number));
+              fmt::format("FN {}: ignored: no effect on motion", *number));
     return true;
   }
-  fail(fmt::format(
-      "FN {}: writes data of the control or of its PLC, whose effect is not known here; "
-      "take the block out if it moves nothing",
-      *number));
+  fail(
+      fmt::format("FN {}: writes data of the control or its PLC with unknown effect; remove the "
+                  "block if it causes no motion",
+                  *number));
 }
 
 // FN 18: SYSREAD Q1 = ID270 NR1 IDX3, FN 28: TABREAD Q1 = 6/"DOC": the value is the control's; a
@@ -229,7 +228,7 @@ bool Translator::read_of_control(int number, std::span<const HeidenhainWord> res
     if (found && !name && text.find('=') == std::string::npos) name = found;
     text += (text.empty() ? "" : " ") + word.text;
   }
-  if (!name) fail(fmt::format("FN {}: a Q parameter that takes the value is expected", number));
+  if (!name) fail(fmt::format("FN {}: expected a Q parameter for the result", number));
   const bool is_given = setup_.parameters.contains(to_string(*name));
   if (is_given) {
     assign(*name, setup_.parameters.at(to_string(*name)));
@@ -237,10 +236,9 @@ bool Translator::read_of_control(int number, std::span<const HeidenhainWord> res
     parameters_.forget(*name, fmt::format("was read from the control (FN {}: {})", number, text));
   }
   warn_once(fmt::format("FN {} {}", number, to_string(*name)),
-            is_given
-                ? fmt::format("FN {}: {} is taken as given by the user", number, to_string(*name))
-                : fmt::format("FN {}: {} is not known here; --parameter {}=NUMBER gives it", number,
-                              to_string(*name), to_string(*name)));
+            is_given ? fmt::format("FN {}: {} set by --parameter", number, to_string(*name))
+                     : fmt::format("FN {}: {} is unknown here; set it with --parameter {}=NUMBER",
+                                   number, to_string(*name), to_string(*name)));
   return true;
 }
 

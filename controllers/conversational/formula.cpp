@@ -120,9 +120,9 @@ class Parser {
 
   QName target() {
     const Token token = take();
-    if (token.kind != Token::Kind::name) fail(token, "a Q parameter must come first");
+    if (token.kind != Token::Kind::name) fail(token, "expected a Q parameter first");
     const Token equals = take();
-    if (equals.text != "=") fail(equals, "'=' must follow the Q parameter");
+    if (equals.text != "=") fail(equals, "expected '=' after the Q parameter");
     return token.name;
   }
 
@@ -143,19 +143,19 @@ class Parser {
     const Token token = take();
     if (token.kind == Token::Kind::number) return sign * token.number;
     if (token.kind == Token::Kind::name) return sign * parameters_.get(token.name, token.place);
-    fail(token, "a number or a Q parameter must stand here");
+    fail(token, "expected a number or a Q parameter");
   }
 
   Token take_word(std::initializer_list<std::string_view> names) {
     const Token token = take();
     if (std::find(names.begin(), names.end(), token.text) == names.end()) {
-      fail(token, fmt::format("'{}' must stand here", *names.begin()));
+      fail(token, fmt::format("expected '{}'", *names.begin()));
     }
     return token;
   }
   Token take() { return at_ < tokens_.size() ? tokens_[at_++] : end_; }
   void finish() {
-    if (at_ < tokens_.size()) fail(tokens_[at_], "nothing may follow here");
+    if (at_ < tokens_.size()) fail(tokens_[at_], "unexpected text at the end of the block");
   }
   [[noreturn]] static void fail(const Token& token, std::string_view why) {
     throw InputError(token.place, fmt::format("'{}': {}", token.text, why));
@@ -185,7 +185,7 @@ class Parser {
   }
 
   static double remainder(double a, double b, const Token& sign) {
-    if (a < 0.0 || b <= 0.0) fail(sign, "of a negative number was not found in a manual");
+    if (a < 0.0 || b <= 0.0) fail(sign, "of a negative number is described in no manual found");
     return std::fmod(a, b);
   }
 
@@ -194,9 +194,10 @@ class Parser {
     const double base = factor();
     if (next().text != "^") return base;
     const Token sign = take();
-    if (is_signed) fail(sign, "behind a sign: the order was not found in a manual; use brackets");
+    if (is_signed)
+      fail(sign, "after a sign: no manual found gives the order of evaluation; use parentheses");
     const double value = std::pow(base, factor());
-    if (next().text == "^") fail(next(), "two powers in a row; use brackets");
+    if (next().text == "^") fail(next(), "two powers in a row; use parentheses");
     if (!std::isfinite(value)) fail(sign, "the power is not a number");
     return value;
   }
@@ -211,7 +212,7 @@ class Parser {
       take();
       const double value = sum();
       const Token close = take();
-      if (close.text != ")") fail(close, "')' must stand here");
+      if (close.text != ")") fail(close, "expected ')'");
       return value;
     }
     if (token.text == "PI") return take(), std::numbers::pi;
@@ -219,7 +220,7 @@ class Parser {
     take();
     const auto* found = std::find(kFunctions.begin(), kFunctions.end(), token.text);
     if (found == kFunctions.end()) {
-      fail(token, fmt::format("no function{}", did_you_mean(token.text, kFunctions)));
+      fail(token, fmt::format("unknown function{}", did_you_mean(token.text, kFunctions)));
     }
     return function_value(*found, factor(), token.place);
   }
@@ -237,10 +238,9 @@ void refuse_rounding(double a, double b, const Place& place) {
   if (difference == 0.0 || difference > kRounding * std::max({1.0, std::abs(a), std::abs(b)})) {
     return;
   }
-  throw InputError(place,
-                   fmt::format("{0:.15g} and {1:.15g} differ by rounding only, which differs "
-                               "between controls; compare with a margin",
-                               a, b));
+  throw InputError(place, fmt::format("{0:.15g} and {1:.15g} differ only by rounding, which "
+                                      "depends on the control; compare with a margin",
+                                      a, b));
 }
 
 double two_operands(int number, Parser& parser) {

@@ -49,8 +49,8 @@ double Frame::to_program(std::size_t axis, double work) const {
 // do; mirroring and rotating in either order differ.
 std::string Frame::ambiguity() const {
   if (is_any_mirrored() && rotation != 0.0) {
-    return "cycles 8 and 10 are both active: what they make together depends on their order; "
-           "reset one";
+    return "cycles 8 and 10 are both active: their combined effect depends on their order; reset "
+           "one";
   }
   return {};
 }

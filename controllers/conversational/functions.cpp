@@ -36,45 +36,46 @@ constexpr auto kFunctions = std::to_array<Function>({
     {91, Effect::start, ""},
     {92, Effect::start, ""},
     {94, Effect::start, ""},
-    {97, Effect::refused, "machining of small contour steps is not read"},
-    {98, Effect::refused, "complete machining of open corners is not read"},
+    {97, Effect::refused, "machining of small contour steps is not supported"},
+    {98, Effect::refused, "complete machining of open corners is not supported"},
     {99, Effect::end, ""},
     {101, Effect::none, "change to a replacement tool"},
     {102, Effect::none, "change to a replacement tool"},
-    {103, Effect::refused, "the feed factor for plunging is not read; write F"},
-    {104, Effect::refused, "the datum set by hand is not in the program"},
-    {105, Effect::none, "choice of the Kv factor"},
-    {106, Effect::none, "choice of the Kv factor"},
+    {103, Effect::refused, "the plunging feed factor is not supported; program F"},
+    {104, Effect::refused, "the manually set datum is not in the program"},
+    {105, Effect::none, "selection of the Kv factor"},
+    {106, Effect::none, "selection of the Kv factor"},
     {107, Effect::none, "error message for oversized replacement tools"},
     {108, Effect::none, "error message for oversized replacement tools"},
-    {109, Effect::refused, "feed of the cutting edge on arcs is not read; write M111"},
-    {110, Effect::refused, "feed of the cutting edge on arcs is not read; write M111"},
+    {109, Effect::refused, "feed of the cutting edge on arcs is not supported; use M111"},
+    {110, Effect::refused, "feed of the cutting edge on arcs is not supported; use M111"},
     {111, Effect::start, ""},
-    {112, Effect::refused, "transitions with a tolerance are not read; use cycle 32"},
+    {112, Effect::refused, "transitions with a tolerance are not supported; use cycle 32"},
     {113, Effect::none, "end of M112"},
-    {114, Effect::refused, "compensation of the machine's geometry is not read; use M128"},
+    {114, Effect::refused, "compensation of the machine geometry is not supported; use M128"},
     {115, Effect::none, "end of M114"},
-    {116, Effect::refused, "feed of rotary axes in mm/min is not read; write M117"},
+    {116, Effect::refused, "feed of rotary axes in mm/min is not supported; use M117"},
     {117, Effect::start, ""},
     {118, Effect::none, "superimposed handwheel"},
     {120, Effect::none, "look-ahead of radius compensation"},
-    {124, Effect::refused, "points on short lines would be left out; that is not read"},
+    {124, Effect::refused, "omitting points on short lines is not supported"},
     {126, Effect::start, ""},
     {127, Effect::start, ""},
     {128, Effect::start, ""},
     {129, Effect::start, ""},
-    {130, Effect::refused, "points in the untilted system are not read; PLANE RESET first"},
+    {130, Effect::refused,
+     "points in the untilted coordinate system are not supported; PLANE RESET first"},
     {134, Effect::none, "exact stop at transitions with rotary axes"},
     {135, Effect::none, "end of M134"},
     {136, Effect::refused,
-     "F in micrometres per revolution on a TNC 426, in mm per revolution on an iTNC 530; write FU"},
+     "F in micrometres per revolution on a TNC 426, in mm per revolution on an iTNC 530; use FU"},
     {137, Effect::start, ""},
-    {138, Effect::refused, "the choice of axes for tilting is not read"},
+    {138, Effect::refused, "the selection of tilting axes is not supported"},
     {140, Effect::start, ""},
     {141, Effect::none, "suppression of touch-probe monitoring"},
     {142, Effect::none, "deletion of modal program data"},
-    {143, Effect::refused, "deletion of the basic rotation: the basic rotation is not known"},
-    {144, Effect::refused, "compensation of the machine's kinematics is not read; use M128"},
+    {143, Effect::refused, "deletion of the basic rotation: the basic rotation is unknown"},
+    {144, Effect::refused, "compensation of the machine kinematics is not supported; use M128"},
     {145, Effect::start, ""},
     {148, Effect::none, "retraction at an NC stop"},
     {149, Effect::none, "end of M148"},
@@ -93,12 +94,12 @@ void Translator::begin_functions(const Positioning& p) {
   for (const auto& [m, place] : p.functions) {
     const Function* function = find_function(m);
     if (function == nullptr || function->effect == Effect::none) {
-      warn_once(fmt::format("M{}", m), fmt::format("M{}: {}; read as without effect on motion", m,
+      warn_once(fmt::format("M{}", m), fmt::format("M{}: {}; ignored: no effect on motion", m,
                                                    function != nullptr ? function->text
                                                    : m < 90 ? "a function of the machine builder"
                                                             : "not known"));
       if (function == nullptr && m >= 90) {
-        fail(place, fmt::format("M{}: this function is not known", m));
+        fail(place, fmt::format("M{}: unknown function", m));
       }
       continue;
     }
@@ -163,7 +164,7 @@ void Translator::end_function(int m, const Place& place) {
       return stop(m);
     case 2:
     case 30:
-      if (file_ != 0) fail(place, fmt::format("M{} in a program that CALL PGM has called", m));
+      if (file_ != 0) fail(place, fmt::format("M{} in a program called by CALL PGM", m));
       path_.flush();
       lines_.put(fmt::format("M{}", m), place_);
       has_ended_ = true;

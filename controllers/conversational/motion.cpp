@@ -25,7 +25,7 @@ void Translator::line(const HeidenhainBlock& block) {
   const Positioning p = read_positioning(words, "L");
   words.refuse_rest("L");
   if (p.direction || p.polar_angle || p.polar_radius)
-    fail("L with DR, PR or PA; LP takes PR and PA");
+    fail("L with DR, PR or PA; use LP with PR and PA");
   begin_functions(p);
   set_side(p);
   move_straight(p);
@@ -53,8 +53,8 @@ void Translator::move_straight(const Positioning& p) {
   const Feed feed = feed_of(p);
   if (moves_rotary(p) && !is_rotary_only(p) && !is_tcp_ && feed.kind == Feed::Kind::per_minute) {
     warn_once("mixed feed",
-              "F of a block with linear and rotary axes: read as the feed of the "
-              "linear axes; on some machines it is that of all axes together");
+              "F of a block with linear and rotary axes: taken as the feed of the linear axes; on "
+              "some machines it is the feed of all axes combined");
   }
   Motion motion = motion_of(p);
   motion.feed = feed;
@@ -86,7 +86,7 @@ Motion Translator::motion_of(const Positioning& p) {
 
 double Translator::tool_radius(const Place& place) const {
   const ToolEntry* tool = setup_.tools.find(tool_);
-  if (!has_tool_call_ && tool_ == 0) fail(place, "RL and RR before any TOOL CALL");
+  if (!has_tool_call_ && tool_ == 0) fail(place, "RL and RR before the first TOOL CALL");
   if (tool == nullptr) {
     fail(place, fmt::format("RL and RR: the radius of tool {} is unknown; pass a tool table with "
                             "--tools",
@@ -115,8 +115,8 @@ void Translator::add(Motion motion) {
   if (is_beside_ && side_ == 0 && in_plane) {
     if (!names_first || !names_second) {
       fail(
-          "the block that ends RL or RR must name both axes of the plane: where the other one goes "
-          "was not found in a manual");
+          "the block that cancels RL or RR must program both axes of the plane: no manual found "
+          "specifies the other one");
     }
     is_beside_ = false;
   }
@@ -164,15 +164,16 @@ void Translator::move_to_machine(const Positioning& p) {
 // 530: MP960; from memory). Surveys take the second home of G30, which is not known either.
 void Translator::move_to_reference(const Positioning& p) {
   require_no_compensation("M92");
-  if (is_tcp_ || plane_) fail("M92 with M128 or in a tilted plane; end them before");
-  const std::string why = "M92: the builder's reference point is not known; use M91";
+  if (is_tcp_ || plane_) fail("M92 with M128 or in a tilted plane; cancel them first");
+  const std::string why = "M92: the machine builder's reference point is unknown; use M91";
   if (!setup_.accepts_unknown_positions) fail(why);
   feed_of(p);
   warn_once("M92", why);
   std::string axes;
   for (std::size_t i = 0; i < work_.size(); ++i) {
     if (!p.target[i]) continue;
-    if (p.target[i]->is_increment) fail(p.target[i]->value.place, "M92 with an increment");
+    if (p.target[i]->is_increment)
+      fail(p.target[i]->value.place, "M92 with an incremental coordinate");
     axes += fmt::format(" {}0", letter(kAllAxes[i]));
     work_[i].reset();
   }
@@ -183,8 +184,8 @@ void Translator::move_to_reference(const Positioning& p) {
 
 // M140 MB: along the tool axis.
 void Translator::retract(const Positioning& p) {
-  if (p.has_target()) fail("M140 with coordinates; write them in a block of their own");
-  if (is_tcp_) fail("M140 with M128: the direction is that of the inclined tool; write L");
+  if (p.has_target()) fail("M140 with coordinates; program them in a separate block");
+  if (is_tcp_) fail("M140 with M128: the direction is that of the inclined tool; program L");
   Motion motion;
   motion.place = place_;
   motion.feed = p.feed ? *p.feed : Feed{};
@@ -196,11 +197,11 @@ void Translator::retract(const Positioning& p) {
 // M140 MB MAX: along the tool axis to the end of travel, at rapid where the block has no F. Where
 // the machine is unknown, surveys take the stored position of G28 for a position that is not known.
 void Translator::retract_to_limit(const Positioning& p) {
-  if (p.has_target()) fail("M140 with coordinates; write them in a block of their own");
+  if (p.has_target()) fail("M140 with coordinates; program them in a separate block");
   if (is_tcp_ || plane_) {
     fail(
         "M140 MB MAX with M128 or in a tilted plane: the direction is that of the inclined tool; "
-        "end them before, or write MB with a number");
+        "cancel them first, or give MB a number");
   }
   require_no_compensation("M140 MB MAX");
   std::optional<double> end;
@@ -210,9 +211,8 @@ void Translator::retract_to_limit(const Positioning& p) {
     if (std::isfinite(upper)) end = upper / mm;
   }
   const std::string why =
-      "M140 MB MAX: the end of travel of Z is the machine's; name a machine that has it "
-      "(--machine), "
-      "or write MB with a number or M91";
+      "M140 MB MAX: the upper travel limit of Z is unknown; pass a machine with --machine, or use "
+      "MB with a number or M91";
   if (!end && !setup_.accepts_unknown_positions) fail(why);
   if (end) {
     Motion motion;
@@ -234,7 +234,7 @@ void Translator::retract_to_limit(const Positioning& p) {
 // PR and PA about the pole, in program coordinates; a coordinate left out keeps its value.
 // Increments count from the position: [530] p. 231.
 std::optional<Point> Translator::polar_point(const Positioning& p, int normal) const {
-  if (!pole_) fail("no CC before the polar coordinates, or its frame has changed");
+  if (!pole_) fail("no CC before the polar coordinates, or its coordinate system has changed");
   const auto now = program_point(normal);
   const bool needs_now = !p.polar_radius || !p.polar_angle || p.polar_radius->is_increment ||
                          p.polar_angle->is_increment;

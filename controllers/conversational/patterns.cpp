@@ -59,7 +59,7 @@ void Translator::define_pattern(const HeidenhainBlock& block) {
   while (begin < words.size()) {
     if (!is_kind(words[begin])) {
       fail(words[begin].place,
-           "PATTERN DEF: POS, ROW, PAT, FRAME, CIRC or PITCHCIRC with its number is expected");
+           "PATTERN DEF: expected POS, ROW, PAT, FRAME, CIRC or PITCHCIRC with its number");
     }
     std::size_t end = begin + 1;
     while (end < words.size() && !is_kind(words[end])) ++end;
@@ -89,7 +89,7 @@ void Translator::add_pattern(const std::string& kind, Words& words) {
   const double rotation = pattern_number(words, "ROT", 1.0, 0.0);
   for (const char* skew : {"ROTX", "ROTY"}) {
     if (!is_row && pattern_number(words, skew, 1.0, 0.0) != 0.0) {
-      fail(fmt::format("PATTERN DEF with {}, which distorts the pattern, is not read; write POS",
+      fail(fmt::format("PATTERN DEF with {}, which distorts the pattern, is not supported; use POS",
                        skew));
     }
   }

@@ -37,7 +37,7 @@ Positioning Translator::read_positioning(Words& words, std::string_view block) {
     if (axis) {
       auto& target = p.target[*axis];
       if (target) {
-        fail(place, fmt::format("'{}': {} is in the block already", text, letter_of(*axis)));
+        fail(place, fmt::format("'{}': {} appears twice in the block", text, letter_of(*axis)));
       }
       const auto operand = words.take_number(address);
       target = target_of(*operand, is_increment);
@@ -57,9 +57,9 @@ Positioning Translator::read_positioning(Words& words, std::string_view block) {
     } else if (!address.empty() && address.front() == 'F') {
       read_feed(words, p);
     } else if (text == "R+" || text == "R-") {
-      fail(place, fmt::format("'{}': compensation parallel to an axis is not read; write the "
-                              "position with R0",
-                              text));
+      fail(place,
+           fmt::format("'{}': paraxial compensation is not supported; program the position with R0",
+                       text));
     } else {
       if (block == "L" && (address == "U" || address == "V" || address == "W")) {
         fail(place, fmt::format("'{}': there are no axes U, V, W", text));
@@ -119,13 +119,13 @@ bool Translator::read_feed(Words& words, Positioning& p) {
     if (!speed_) fail(place, "FU: no S since the last TOOL CALL");
     p.feed = Feed{Feed::Kind::per_minute, length(*words.take_number("FU")) * *speed_};
   } else {
-    fail(place, fmt::format("'{}': this feed is not read; write F in mm/min", text));
+    fail(place, fmt::format("'{}': this feed is not supported; program F in mm/min", text));
   }
   return true;
 }
 
 Feed Translator::modal_feed() const {
-  if (!feed_) fail("no F in the block, and none is in force");
+  if (!feed_) fail("no F in the block, and none is active");
   return {Feed::Kind::per_minute, *feed_};
 }
 
@@ -178,7 +178,8 @@ void Translator::ends_in_plane(const Positioning& p, Values& end, bool& is_incre
     if (target) to[i] = (target->is_increment ? to[i] : 0.0) + length(target->value);
   }
   if (needs_now && !now) {
-    if (!is_free) fail("coordinates are rotated, and the position of X or Y is unknown here");
+    if (!is_free)
+      fail("the coordinate system is rotated, and the position of X or Y is unknown here");
     is_incremental = true;
     to = frame_.to_work(to) - frame_.to_work(Point::Zero());
   } else {
@@ -203,8 +204,8 @@ Values Translator::ends(const Positioning& p, bool& is_incremental) {
     for (std::size_t i = 0; i < end.size(); ++i) {
       if (!p.target[i] || !p.target[i]->is_increment || work_[i]) continue;
       fail(p.target[i]->value.place,
-           fmt::format("I{}: the position of {} is unknown here; write it without I", letter_of(i),
-                       letter_of(i)));
+           fmt::format("I{}: the position of {} is unknown here; program an absolute position",
+                       letter_of(i), letter_of(i)));
     }
   }
   const bool is_coupled = frame_.couples_plane();
@@ -222,7 +223,7 @@ Values Translator::ends(const Positioning& p, bool& is_incremental) {
     }
   }
   if (end[2] && frame_.scale != 1.0) {
-    fail("Z moves while cycle 11 is active: MP7410 decides if it is scaled; move Z before");
+    fail("Z moves while cycle 11 is active: MP7410 determines whether it is scaled; move Z first");
   }
   return end;
 }
@@ -248,15 +249,17 @@ double Translator::rotary_end(std::size_t axis, double program, const Place& pla
   if (is_known && !is_endless) return to;
   const double shorter = std::remainder(way, 2.0 * kHalfTurn);
   if (!is_shorter_path_ || !is_known) {
-    fail(place, fmt::format("{0} would turn by {1:g} degrees, or by {2:g} on the shorter way: {3}",
-                            letter_of(axis), way, shorter,
-                            is_shorter_path_ ? "M126 acts on axes without ends of travel only; "
-                                               "name the machine with --machine"
-                                             : "the machine decides (MP7682); write M126 or M127"));
+    fail(place,
+         fmt::format(
+             "{0} would rotate by {1:g} degrees, or by {2:g} in the shorter direction: {3}",
+             letter_of(axis), way, shorter,
+             is_shorter_path_
+                 ? "M126 acts only on axes without travel limits; pass the machine with --machine"
+                 : "this depends on the machine (MP7682); program M126 or M127"));
   }
   if (std::abs(std::abs(shorter) - kHalfTurn) < 1e-6) {
-    fail(place,
-         fmt::format("{} would turn by 180 degrees: which way is not determined", letter_of(axis)));
+    fail(place, fmt::format("{} would rotate by 180 degrees: the direction is undetermined",
+                            letter_of(axis)));
   }
   revolutions_[axis] = *work_[axis] + shorter - target;
   return *work_[axis] + shorter;

@@ -148,7 +148,7 @@ void ProgramFile::index(const HeidenhainBlock& block) {
   const std::string label = label_of(words.size() > 1 ? all.subspan(1) : all);
   if (label == "0" || label.empty()) return;
   if (!labels_.emplace(label, at_).second) {
-    faults_.push_back({block.place, fmt::format("LBL {} stands twice in the program", label)});
+    faults_.push_back({block.place, fmt::format("LBL {} appears twice", label)});
   }
 }
 

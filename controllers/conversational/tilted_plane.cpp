@@ -46,7 +46,7 @@ void Translator::plane(const HeidenhainBlock& block) {
     if (!is_tcpm) {
       fail(
           "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, and RESET TCPM are "
-          "read");
+          "supported");
     }
     words.refuse_rest("FUNCTION TCPM");
     return tcp_control(true);
@@ -64,7 +64,7 @@ void Translator::plane(const HeidenhainBlock& block) {
     return reset_plane(how);
   }
   if (words.take("SPATIAL") == nullptr) {
-    fail("PLANE: only SPATIAL and RESET are read; write the plane with spatial angles");
+    fail("PLANE: only SPATIAL and RESET are supported; define the plane with spatial angles");
   }
   std::array<double, 3> angles{};
   constexpr std::array<std::string_view, 3> kNames = {"SPA", "SPB", "SPC"};
@@ -80,19 +80,19 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
                       Words& words) {
   require_no_compensation("PLANE");
   if (is_tcp_) fail("PLANE with M128; end it with M129");
-  if (behaviour.empty()) fail("PLANE SPATIAL must say STAY, TURN or MOVE");
+  if (behaviour.empty()) fail("PLANE SPATIAL needs STAY, TURN or MOVE");
   if (behaviour == "MOVE") {
-    fail("PLANE ... MOVE: the compensating movement of the linear axes is not read; write TURN");
+    fail("PLANE ... MOVE: the compensating movement of the linear axes is not supported; use TURN");
   }
   const int seq = words.take("SEQ+") != nullptr ? 1 : words.take("SEQ-") != nullptr ? -1 : 0;
   if (words.take("SYM+") != nullptr || words.take("SYM-") != nullptr) {
-    fail("PLANE: SYM chooses a solution by a rule of the machine; write SEQ+, SEQ- or neither");
+    fail("PLANE: SYM selects a solution by a machine-specific rule; use SEQ+, SEQ- or neither");
   }
   if (words.take("TABLE") != nullptr || words.take("COORD") != nullptr) {
     if (words.take("ROT") == nullptr) fail("PLANE: ROT must follow TABLE and COORD");
-    warn_once("TABLE ROT",
-              "PLANE: TABLE ROT and COORD ROT read as without effect; they choose "
-              "where a table axis is free");
+    warn_once(
+        "TABLE ROT",
+        "PLANE: TABLE ROT and COORD ROT are ignored; they matter only where a table axis is free");
   }
   words.take_number("MB");
   while (words.peek() != nullptr && words.peek()->address.starts_with('F')) {
@@ -102,7 +102,7 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
   words.refuse_rest("PLANE SPATIAL");
   if (!frame_.is_plain() &&
       (frame_.rotation != 0.0 || frame_.is_any_mirrored() || frame_.scale != 1.0)) {
-    fail("PLANE while cycle 8, 10 or 11 is active; define them behind it");
+    fail("PLANE while cycle 8, 10 or 11 is active; define them after it");
   }
   if (setup_.tools.find(tool_) == nullptr) {
     const std::string why = fmt::format(
@@ -168,8 +168,7 @@ std::string Translator::turn_of_plane(const Eigen::Matrix3d& R, int seq) {
     return text;
   }
   fail(fmt::format(
-      "PLANE: no position of the rotary axes within their travel has {} {} 0, as {} "
-      "wants it",
+      "PLANE: no position of the rotary axes within their travel has {} {} 0, as {} requires",
       chain.layout.letter_of(principal), seq > 0 ? ">=" : "<=", seq > 0 ? "SEQ+" : "SEQ-"));
 }
 
@@ -185,7 +184,7 @@ bool Translator::turn_to_plane(const Positioning& p) {
   }
   if (!is_turn) return false;
   if (p.feed && p.feed->kind != Feed::Kind::rapid) {
-    warn_once("turn", "the rotary axes turn to the plane with F: read as with FMAX");
+    warn_once("turn", "the rotary axes are positioned to the plane with F: taken as FMAX");
   }
   path_.flush();
   if (plane_turn_.empty()) {
@@ -231,14 +230,14 @@ void Translator::reset_plane(const std::string& behaviour) {
     forget_linear_positions();
   }
   if (behaviour == "MOVE") {
-    fail("PLANE RESET MOVE: the compensating movement of the linear axes is not read; write TURN");
+    fail(
+        "PLANE RESET MOVE: the compensating movement of the linear axes is not supported; use "
+        "TURN");
   }
   if (behaviour != "TURN") return;
   path_.flush();
   if (!setup_.machine) {
-    fail(
-        "PLANE RESET TURN: which rotary axes there are depends on the machine; name it with "
-        "--machine");
+    fail("PLANE RESET TURN: the rotary axes depend on the machine; pass it with --machine");
   }
   std::string text = "G0";
   const JointLayout& layout = setup_.machine->chain().layout;

@@ -20,15 +20,15 @@ int Translator::named_tool(Words& words) {
   }
   if (!setup_.tools.empty()) {
     fail(place,
-         "a tool called by its name: the tool table of the control has the names, "
-         "the one here numbers; write the number");
+         "a tool called by name: only the control's own tool table has names; use the tool number");
   }
   const auto [found, is_new] =
       tool_names_.try_emplace(name, kFirst + static_cast<int>(tool_names_.size()));
   if (is_new) {
-    warn_once(name, fmt::format("TOOL CALL {}: read as tool {} of unknown length, since no tool "
-                                "table is given",
-                                name, found->second));
+    warn_once(name,
+              fmt::format(
+                  "TOOL CALL {}: taken as tool {} of unknown length, since no tool table is given",
+                  name, found->second));
   }
   return found->second;
 }
@@ -47,14 +47,14 @@ void Translator::call_tool(const HeidenhainBlock& block) {
       const double written = value(operand_of(word->text, at));
       words.take_next();
       if (written != std::floor(written)) {
-        fail(at, "an indexed tool (5.1): the tool table here has whole numbers");
+        fail(at, "an indexed tool (5.1): this tool table has integer numbers only");
       }
       number = whole(written, 32767, at, "TOOL CALL");
     }
   }
   for (const char* axis : {"X", "Y", "U", "V", "W"}) {
     if (words.take(axis) != nullptr) {
-      fail(fmt::format("tool axis {}: only Z is read", axis));
+      fail(fmt::format("tool axis {}: only Z is supported", axis));
     }
   }
   words.take("Z");
@@ -71,9 +71,9 @@ void Translator::call_tool(const HeidenhainBlock& block) {
     words.take_next();
     return Operand{};
   };
-  if (DR2()) warn_once("DR2", "DR2: read as without effect");
+  if (DR2()) warn_once("DR2", "DR2 is ignored");
   const auto DR = words.take_number("DR");
-  if (DR2()) warn_once("DR2", "DR2: read as without effect");
+  if (DR2()) warn_once("DR2", "DR2 is ignored");
   words.refuse_rest("TOOL CALL");
   require_no_compensation("TOOL CALL");
   if (number && is_tcp_) fail("TOOL CALL with M128; end it with M129: [530] p. 290");
@@ -108,8 +108,8 @@ void Translator::change_tool(int number) {
   const bool is_known = number != 0 && setup_.tools.find(number) != nullptr;
   lines_.put(is_known ? fmt::format("G43 H{}", number) : "G49", place_);
   if (number == 0 || is_known || !setup_.tools.empty()) return;
-  warn_once("length", fmt::format("TOOL CALL {0}: the length of tool {0} is unknown, and Z of the "
-                                  "machine then that of the tip; pass a tool table with --tools",
+  warn_once("length", fmt::format("TOOL CALL {0}: the length of tool {0} is unknown, so machine Z "
+                                  "is taken as the tip position; pass a tool table with --tools",
                                   number));
 }
 
@@ -124,10 +124,9 @@ void Translator::define_tool(const HeidenhainBlock& block) {
   const auto L = words.take_number("L");
   const auto R = words.take_number("R");
   if (words.take_number("F")) {
-    warn_once(
-        "TOOL DEF F",
-        "F of TOOL DEF: read as without effect, since no manual has it; the next move at feed "
-        "must name F");
+    warn_once("TOOL DEF F",
+              "F of TOOL DEF is ignored, since no manual found describes it; the next feed move "
+              "must program F");
     feed_.reset();
   }
   words.refuse_rest("TOOL DEF");
@@ -140,8 +139,8 @@ void Translator::define_tool(const HeidenhainBlock& block) {
                        (R && std::abs(length(*R) - tool->diameter / 2.0 / mm) > kSame);
   if (!differs) return;
   fail(
-      fmt::format("TOOL DEF {}: the tool table has L{:g} R{:g}; a control with a tool table takes "
-                  "those, one without takes the block; leave out one of them",
+      fmt::format("TOOL DEF {}: the tool table has L{:g} R{:g}; a control with a tool table uses "
+                  "those values, one without uses the block; remove one of them",
                   number, tool->offset[2] / mm, tool->diameter / 2.0 / mm));
 }
 

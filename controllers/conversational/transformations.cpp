@@ -23,8 +23,7 @@ std::optional<std::size_t> axis_of_word(const HeidenhainWord& word, bool& is_inc
 }  // namespace
 
 void Translator::require_no_compensation(std::string_view what) {
-  if (side_ != 0)
-    fail(fmt::format("{} with RL or RR in force; write a block with R0 before", what));
+  if (side_ != 0) fail(fmt::format("{} with RL or RR active; program a block with R0 first", what));
 }
 
 void Translator::set_frame(const Frame& frame) {
@@ -46,7 +45,7 @@ void Translator::datum_shift(const Cycle&, std::span<const HeidenhainWord> words
     if (!axis) {
       if (word.text.front() == '#')
         fail(word.place, "a line of a datum table, which is not in the program");
-      fail(word.place, fmt::format("'{}': an axis with its shift must stand here", word.text));
+      fail(word.place, fmt::format("'{}': expected an axis with its shift", word.text));
     }
     const double written = value(operand_of(word.rest, word.place)) * (*axis < 3 ? unit() : 1.0);
     frame.shift[*axis] = (is_increment ? frame.shift[*axis] : 0.0) + written;
@@ -56,8 +55,8 @@ void Translator::datum_shift(const Cycle&, std::span<const HeidenhainWord> words
       std::any_of(frame.shift.begin(), frame.shift.end(), [](double one) { return one != 0.0; });
   if (is_shifted && (frame.rotation != 0.0 || frame.is_any_mirrored() || frame.scale != 1.0)) {
     fail(
-        "cycle 7 while cycle 8, 10 or 11 is active: if the shift is transformed depends on the "
-        "order; reset that cycle, shift, and define it again");
+        "cycle 7 while cycle 8, 10 or 11 is active: whether the shift is transformed depends on "
+        "the order; reset that cycle, shift, and define it again");
   }
   set_frame(frame);
 }
@@ -70,7 +69,7 @@ void Translator::trans_datum(Words& words) {
     frame.shift.fill(0.0);
     return set_frame(frame);
   }
-  if (words.take("AXIS") == nullptr) fail("TRANS DATUM: only AXIS and RESET are read");
+  if (words.take("AXIS") == nullptr) fail("TRANS DATUM: only AXIS and RESET are supported");
   std::vector<HeidenhainWord> axes;
   while (const HeidenhainWord* word = words.take_next()) axes.push_back(*word);
   datum_shift({}, axes);
@@ -83,7 +82,7 @@ void Translator::mirror(std::span<const HeidenhainWord> words) {
   for (const HeidenhainWord& word : words) {
     for (const char c : word.text) {
       const auto axis = servomill::axis_of(c);
-      if (!axis) fail(word.place, fmt::format("'{}': axes must stand here", word.text));
+      if (!axis) fail(word.place, fmt::format("'{}': expected axes", word.text));
       frame.is_mirrored[static_cast<std::size_t>(index_of(*axis))] = true;
     }
   }
@@ -99,7 +98,7 @@ void Translator::rotate(Words& words) {
   } else if (const auto IROT = words.take_number("IROT")) {
     frame.rotation += value(*IROT);
   } else {
-    fail("cycle 10: ROT with an angle must stand here");
+    fail("cycle 10: expected ROT with an angle");
   }
   words.refuse_rest("cycle 10");
   set_frame(frame);
@@ -108,7 +107,7 @@ void Translator::rotate(Words& words) {
 void Translator::scale(Words& words) {
   Frame frame = frame_;
   const auto SCL = words.take_number("SCL");
-  if (!SCL) fail("cycle 11: SCL with a factor must stand here");
+  if (!SCL) fail("cycle 11: expected SCL with a factor");
   words.refuse_rest("cycle 11");
   frame.scale = value(*SCL);
   if (!(frame.scale > 0.0)) fail("cycle 11: the factor must be > 0");
@@ -120,9 +119,10 @@ void Translator::scale_axes(Words& words) {
   for (const std::string_view axis : {"X", "Y", "Z", "CCX", "CCY"}) {
     const auto factor = words.take_number(axis);
     if (!factor || axis.starts_with("CC") || value(*factor) == 1.0) continue;
-    fail(factor->place, fmt::format("cycle 26: {} scaled by {:g}; only factors of 1, which end it, "
-                                    "are read",
-                                    axis, value(*factor)));
+    fail(factor->place,
+         fmt::format(
+             "cycle 26: {} scaled by {:g}; only factors of 1, which cancel it, are supported", axis,
+             value(*factor)));
   }
   words.refuse_rest("cycle 26");
 }
@@ -130,11 +130,11 @@ void Translator::scale_axes(Words& words) {
 // Presets 1 to 9 are the work systems G54 to G59.3.
 void Translator::set_preset(double number) {
   if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {
-    fail(fmt::format("preset {:g}: presets 1 to 9 are known here, as G54 to G59.3", number));
+    fail(fmt::format("preset {:g}: only presets 1 to 9 are supported, as G54 to G59.3", number));
   }
   const int preset = static_cast<int>(number);
   if (preset == preset_) return;
-  if (preset == 0) fail("preset 0 is the one set by hand; it is not known here");
+  if (preset == 0) fail("preset 0 is the manually set datum; it is unknown here");
   require_no_compensation("cycle 247");
   if (plane_ || is_tcp_) fail("cycle 247 with PLANE or M128 active");
   preset_ = preset;
@@ -156,7 +156,7 @@ void Translator::tcp_control(bool is_on) {
   if (is_on && plane_) fail("M128 in a tilted plane");
   if (is_on && delta_length_ != 0.0) fail("M128 with DL in TOOL CALL; enter it in the tool table");
   if (is_on && !has_tool_call_)
-    fail("M128 before any TOOL CALL: the length of the tool is unknown");
+    fail("M128 before the first TOOL CALL: the length of the tool is unknown");
   is_tcp_ = is_on;
   path_.flush();
   lines_.put(fmt::format("{} H{}", is_on ? "G43.4" : "G43", tool_), place_);

@@ -20,21 +20,29 @@ struct Refusal {
 
 // Blocks of the language that are not supported.
 constexpr auto kRefusals = std::to_array<Refusal>({
-    {"FL", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"FLT", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"FC", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"FCT", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"FPOL", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"FSELECT", "free contour programming (FK) is not read; let the control convert it to L and C"},
-    {"LN", "lines with surface normals (3-D compensation) are not read; post L with M128"},
-    {"SPL", "splines are not read; post lines"},
-    {"TCH", "touch probe cycles are not read: what they measure is not known"},
-    {"SEL", "SEL chooses a table or contour that is not in the program; write CALL PGM or cycle 7"},
-    {"DECLARE", "string and contour declarations are not read"},
-    {"QS", "string parameters are not read"},
+    {"FL",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"FLT",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"FC",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"FCT",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"FPOL",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"FSELECT",
+     "free contour programming (FK) is not supported; have the control convert it to L and C"},
+    {"LN",
+     "lines with surface normals (3-D compensation) are not supported; post-process to L with "
+     "M128"},
+    {"SPL", "splines are not supported; post-process to lines"},
+    {"TCH", "touch probe cycles are not supported: the measured values are unknown"},
+    {"SEL", "SEL selects a table or contour that is not in the program; use CALL PGM or cycle 7"},
+    {"DECLARE", "string and contour declarations are not supported"},
+    {"QS", "string parameters are not supported"},
     {"PATTERN", "PATTERN must be followed by DEF"},
-    {"CONTOUR", "CONTOUR DEF is not read; write the contour with L and C"},
-    {"PARAXCOMP", "parallel axes are not read"},
+    {"CONTOUR", "CONTOUR DEF is not supported; program the contour with L and C"},
+    {"PARAXCOMP", "parallel axes are not supported"},
 });
 
 bool is_program_word(const HeidenhainBlock& block, std::string_view first) {
@@ -99,7 +107,7 @@ void Translator::run_block() {
   if (jumps_ > 0 && ++blocks_ / kMostBlocks > setup_.most_jumps)
     jumps_ = setup_.most_jumps, count_jump();
   if (block->is_continued_comment) {
-    warn_once("comment", "a comment that ends with '~': the next line is read as a part of it");
+    warn_once("comment", "a comment that ends with '~': the next line is taken as part of it");
   }
   if (block->words.empty() || (block->is_optional && setup_.block_delete)) return;
   execute(*block);
@@ -113,14 +121,14 @@ void Translator::begin_program() {
   place_ = {program().file(), block ? block->place.line : 1, 1};
   if (program().lines_before_begin() > 0) {
     warn_once("title",
-              fmt::format("{} lines before BEGIN PGM: left out", program().lines_before_begin()));
+              fmt::format("{} lines before BEGIN PGM are ignored", program().lines_before_begin()));
   }
   if (program().has_numbers_with_N()) {
-    warn_once("N", "block numbers with N: read as block numbers, which controls write without N");
+    warn_once("N", "block numbers with N: accepted, although controls write them without N");
   }
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},
-         "a conversational program begins with BEGIN PGM");
+         "a conversational program starts with BEGIN PGM");
   }
   place_ = block->place;
   const std::string& last = block->words.back().text;
@@ -128,7 +136,7 @@ void Translator::begin_program() {
   is_inch_ = last == "INCH";
   parameters_.set({'Q', 113}, is_inch_ ? 1.0 : 0.0);
   if (is_inch_) {
-    warn_once("inch", "F of a program in INCH: read as tenths of an inch per minute");
+    warn_once("inch", "F of a program in INCH: taken as tenths of an inch per minute");
   }
   lines_.put("G17 G21 G40 G49 G80 G90 G91.1 G94", place_);
 }
@@ -219,7 +227,7 @@ void Translator::refuse_unknown(const HeidenhainBlock& block) const {
     }
   }
   fail(first.place,
-       fmt::format("'{}' begins no block{}", first.text, did_you_mean(first.text, kKinds)));
+       fmt::format("'{}' does not start a block{}", first.text, did_you_mean(first.text, kKinds)));
 }
 
 void Translator::warn_once(const std::string& key, std::string message) {

@@ -149,7 +149,7 @@ const HeidenhainWord* Words::peek() const {
 
 void Words::refuse_rest(std::string_view block) const {
   if (const HeidenhainWord* word = peek()) {
-    throw InputError(word->place, fmt::format("'{}': no word of {}", word->text, block));
+    throw InputError(word->place, fmt::format("'{}': not a word of {}", word->text, block));
   }
 }
 

@@ -64,7 +64,7 @@ void FanucMachine::read_codes() {
       return std::abs(known.tenths - tenths) < 1e-6;
     });
     if (found == kCodes.end()) {
-      fail(one.column, fmt::format("G{:g} is not read here", one.value()));
+      fail(one.column, fmt::format("G{:g} is not supported here", one.value()));
     }
     check_function(found->tenths, one.column);
     Code& place = codes_[static_cast<std::size_t>(found->group)];
@@ -84,7 +84,7 @@ void FanucMachine::check_function(int tenths, int column) const {
                                            {970, settings_.has_surface_speed}};
   for (const auto& [code, is_there] : optional) {
     if (code != tenths || is_there) continue;
-    fail(column, fmt::format("{} is an alarm on a control without its function", code_text(code)));
+    fail(column, fmt::format("{} is an alarm on a control without the option", code_text(code)));
   }
 }
 
@@ -98,11 +98,12 @@ bool FanucMachine::is_switch() const {
 // G59, G92.1 of 0 their shift by G92 (M: none of Fanuc's manuals was found; G52 of 0 is so in those
 // of two controls that follow them, GSK 980MDc p. 61 and Mitsubishi M700V p. 531).
 void FanucMachine::run_switch() {
-  if (block_->words.front().letter != 'G') fail("G5.1, G50.1, G52 and G92.1 begin their block");
+  if (block_->words.front().letter != 'G')
+    fail("G5.1, G50.1, G52 and G92.1 must come first in their block");
   if (has(Group::contour)) return;
   const int one_shot = code(Group::one_shot);
   if (one_shot == 921 && length_.mode == FanucLength::Mode::on) {
-    fail("G92.1 while a tool length is in force cancels it");
+    fail("G92.1 while a tool length is active cancels it");
   }
   auto& is_off = has(Group::mirror) ? modes_.is_mirror_off
                  : one_shot == 520  ? modes_.is_local_off
@@ -111,7 +112,7 @@ void FanucMachine::run_switch() {
     const FanucWord* one = word(letter(axis));
     if (one == nullptr) continue;
     if (one->mantissa != 0 && !has(Group::mirror)) {
-      fail(one->column, fmt::format("G52 and G92.1 with another value than 0 are not read"));
+      fail(one->column, fmt::format("G52 and G92.1 with values other than 0 are not supported"));
     }
     is_off[static_cast<std::size_t>(index_of(axis))] = true;
   }
@@ -122,7 +123,7 @@ void FanucMachine::read_M(const FanucWord& word) {
   constexpr std::array kRead = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30};
   if (M_.tenths >= 0) fail(word.column, "two M codes in a block depend on No. 3404#7 (M3B)");
   if (!word.is_integer() || std::find(kRead.begin(), kRead.end(), word.mantissa) == kRead.end()) {
-    fail(word.column, fmt::format("M{:g} is not read here", word.value()));
+    fail(word.column, fmt::format("M{:g} is not supported here", word.value()));
   }
   M_ = {static_cast<int>(word.mantissa), word.column};
 }
@@ -141,8 +142,7 @@ void FanucMachine::check_words() const {
     if (one.letter == 'P') is_taken = code(Group::one_shot) == 40 || code(Group::one_shot) == 300;
     if (one.letter == 'Q' || one.letter == 'R') is_taken = has(Group::contour);
     if (!is_taken) {
-      fail(one.column,
-           fmt::format("{} belongs to no code of the block that is read here", one.letter));
+      fail(one.column, fmt::format("{} belongs to no supported code of the block", one.letter));
     }
   }
 }
@@ -176,7 +176,7 @@ void FanucMachine::set_unit() {
   if (!has(Group::unit)) return;
   const int at = column(Group::unit);
   if (block_->words.size() > 1) {
-    fail(at, "G20 and G21 stand in a block of their own at the begin of the program");
+    fail(at, "G20 and G21 must be in a separate block at the start of the program");
   }
   const double unit = code(Group::unit) == 200 ? rules_.inch_in_mm * mm : mm;
   if (modes_.unit && *modes_.unit != unit) {
@@ -198,12 +198,12 @@ void FanucMachine::set_cancels() {
 void FanucMachine::set_feed() {
   const FanucWord* F = word('F');
   if (F == nullptr) return;
-  if (!modes_.feed_mode) fail(F->column, "F while none of G93, G94 and G95 is in force");
-  if (!modes_.unit) fail(F->column, "F while neither G20 nor G21 is in force");
+  if (!modes_.feed_mode) fail(F->column, "F while none of G93, G94 and G95 is active");
+  if (!modes_.unit) fail(F->column, "F while neither G20 nor G21 is active");
   const bool is_metric_minute =
       *modes_.feed_mode == FeedMode::units_per_minute && *modes_.unit == mm;
   if (F->is_integer() && !is_metric_minute) {
-    fail(F->column, "F without a point, whose increment depends on parameters");
+    fail(F->column, "F without a decimal point: its increment depends on parameters");
   }
   if (F->mantissa <= 0) fail(F->column, "F must be above 0");
   feed_ = F->value();
@@ -212,10 +212,10 @@ void FanucMachine::set_feed() {
 void FanucMachine::set_spindle() {
   const FanucWord* S = word('S');
   if (S == nullptr) return;
-  if (!S->is_integer()) fail(S->column, "S takes an integer");
+  if (!S->is_integer()) fail(S->column, "S must be an integer");
   if (S->mantissa < 0) fail(S->column, "S must not be negative");
   if (!modes_.is_surface_speed_off) {
-    fail(S->column, "S while G97 is not known to be in force: under G96 it is a cutting speed");
+    fail(S->column, "S while G97 is not known to be active: under G96 it is a cutting speed");
   }
   speed_ = S->value() * rpm;
   const bool switches = M_.tenths >= 3 && M_.tenths <= 5;
@@ -239,7 +239,7 @@ int FanucMachine::integer(char letter, int max) const {
 // (M), so that they are refused.
 double FanucMachine::dimension(const FanucWord& word, bool is_linear) const {
   if (is_linear && !modes_.unit) {
-    fail(word.column, fmt::format("{} while neither G20 nor G21 is in force", word.letter));
+    fail(word.column, fmt::format("{} while neither G20 nor G21 is active", word.letter));
   }
   const double unit = is_linear ? *modes_.unit : deg;
   const bool is_inch = is_linear && unit != mm;
@@ -251,7 +251,7 @@ double FanucMachine::dimension(const FanucWord& word, bool is_linear) const {
   int decimals = word.decimals;
   for (; decimals > 0 && rest % 10 == 0; --decimals) rest /= 10;
   if (decimals > digits) {
-    fail(word.column, fmt::format("{} has {} decimals; the control cuts off after {}", word.letter,
+    fail(word.column, fmt::format("{} has {} decimals; the control truncates after {}", word.letter,
                                   decimals, digits));
   }
   return word.value() * unit;
@@ -261,7 +261,7 @@ double FanucMachine::length_of(int number, int column) const {
   if (number == 0) return 0.0;
   const auto found = setup_.tool_length.find(number);
   if (found == setup_.tool_length.end()) {
-    fail(column, fmt::format("the length H{} is not known", number));
+    fail(column, fmt::format("the length H{} is unknown", number));
   }
   return found->second;
 }
@@ -272,7 +272,7 @@ void FanucMachine::set_length() {
   const FanucWord* H = word('H');
   if (!has(Group::length)) {
     if (H == nullptr) return;
-    if (length_.mode != FanucLength::Mode::on) fail(H->column, "H while no G43 is in force");
+    if (length_.mode != FanucLength::Mode::on) fail(H->column, "H while G43 is not active");
     change_length(FanucLength::Mode::on, length_.sign, integer('H', 999), H->column);
     return;
   }
@@ -283,7 +283,8 @@ void FanucMachine::set_length() {
   }
   if (H == nullptr) fail(at, "G43 without H");
   if (settings_.TLB && modes_.normal_axis != 2) {
-    fail(at, "G43 outside G17: where No. 5001#1 (TLB) is 1 the length is of another axis than Z");
+    fail(at,
+         "G43 outside G17: where No. 5001#1 (TLB) is 1 the length applies to another axis than Z");
   }
   const double sign = (code(Group::length) == 430 ? 1.0 : -1.0) * rules_.G43_sign;
   change_length(FanucLength::Mode::on, sign, integer('H', 999), at);
@@ -300,7 +301,7 @@ void FanucMachine::change_length(FanucLength::Mode mode, double sign, int number
   }
   if (word('Z') != nullptr) {
     if (is_machine) return;
-    if (!modes_.is_incremental) fail(column, "neither G90 nor G91 is in force");
+    if (!modes_.is_incremental) fail(column, "neither G90 nor G91 is active");
     if (*modes_.is_incremental)
       fail(column, "a change of the tool length under G91 depends on No. 5006#6 (TOS)");
     return;
@@ -311,8 +312,8 @@ void FanucMachine::change_length(FanucLength::Mode mode, double sign, int number
   if (before == after || settings_.TOS || !moves) return;
   if (!before) {
     fail(column,
-         "moves Z by the change of the tool length where No. 5006#6 (TOS) is 0, and the "
-         "length before is not known");
+         "moves Z by the change of the tool length where No. 5006#6 (TOS) is 0, and the previous "
+         "length is unknown");
   }
   if (names_axis()) fail(column, "a change of the tool length in a block that moves other axes");
   if (!modes_.motion || *modes_.motion > 1)
@@ -336,7 +337,7 @@ void FanucMachine::suspend_length() {
 // Length with which an absolute Z is reached.
 double FanucMachine::acting_length(int column) {
   if (length_.mode == FanucLength::Mode::unknown) {
-    fail(column, "Z while none of G43, G44 and G49 is known to be in force");
+    fail(column, "Z while none of G43, G44 and G49 is known to be active");
   }
   const bool returns = settings_.EVO || !rules_.length_returns_only_with_EVO;
   if (length_.is_suspended && returns) {

@@ -25,7 +25,7 @@ bool FanucMachine::has_centre() const {
 
 void FanucMachine::check_modes_of_motion() const {
   const auto need = [&](bool is_known, std::string_view what) {
-    if (!is_known) fail(fmt::format("moves while {} is not known to be in force", what));
+    if (!is_known) fail(fmt::format("moves while {} is not known to be active", what));
   };
   need(modes_.motion.has_value(), "G0, G1, G2 or G3");
   need(modes_.is_incremental.has_value(), "G90 or G91");
@@ -37,7 +37,7 @@ void FanucMachine::check_modes_of_motion() const {
   for (const Axis axis : kAllAxes) {
     if (!is_linear(axis) && word(letter(axis)) == nullptr) continue;
     if (modes_.is_mirror_off[static_cast<std::size_t>(index_of(axis))]) continue;
-    fail(fmt::format("moves while G51.1 may mirror {}; G50.1 {}0. ends it", letter(axis),
+    fail(fmt::format("moves while G51.1 may mirror {}; cancel it with G50.1 {}0.", letter(axis),
                      letter(axis)));
   }
 }
@@ -46,7 +46,7 @@ double FanucMachine::required(int axis, int column, const char* reason) const {
   const auto& known = position_[static_cast<std::size_t>(axis)];
   if (!known) {
     fail(column,
-         fmt::format("{} needs the position of {}, which is not known", reason, "XYZABC"[axis]));
+         fmt::format("{} needs the position of {}, which is unknown", reason, "XYZABC"[axis]));
   }
   return *known;
 }
@@ -56,7 +56,7 @@ void FanucMachine::run_dwell() {
   const FanucWord* X = word('X');
   const FanucWord* P = word('P');
   const int at = column(Group::one_shot);
-  if ((X == nullptr) == (P == nullptr)) fail(at, "G4 takes either X or P");
+  if ((X == nullptr) == (P == nullptr)) fail(at, "G4 needs either X or P");
   for (const FanucWord& one : block_->words) {
     const bool is_own = one.letter == 'G' || one.letter == 'X' || one.letter == 'P';
     if (!is_own) fail(one.column, fmt::format("{} in a block with G4", one.letter));
@@ -65,7 +65,7 @@ void FanucMachine::run_dwell() {
     fail(at, "G4 while neither G93 nor G94 is in force depends on No. 3405#1 (DWL)");
   }
   const FanucWord& one = X != nullptr ? *X : *P;
-  if (P != nullptr && !P->is_integer()) fail(P->column, "P takes an integer");
+  if (P != nullptr && !P->is_integer()) fail(P->column, "P must be an integer");
   if (one.mantissa < 0) fail(one.column, "a dwell must not be negative");
   const double increment = rules_.dwell_P_in_increments / (settings_.is_IS_C ? 10.0 : 1.0);
   MachineAction out = action(ActionKind::dwell);
@@ -79,7 +79,7 @@ void FanucMachine::run_machine_position() {
   if (!names_axis()) fail(at, "G53 without an axis");
   check_modes_of_motion();
   if (*modes_.is_incremental) fail(at, "G53 under G91 has no effect");
-  if (*modes_.motion != 0) fail(at, "G53 while G0 is not in force");
+  if (*modes_.motion != 0) fail(at, "G53 while G0 is not active");
   MachineAction out = action(ActionKind::rapid);
   out.is_machine_position = true;
   out.is_straight = settings_.LRP;
@@ -156,10 +156,10 @@ double FanucMachine::target(int axis, const FanucWord& word) {
     }
     return required(axis, word.column, "an incremental move") + value;
   }
-  if (!modes_.work_system) fail(word.column, "moves while none of G54 ... G59 is in force");
+  if (!modes_.work_system) fail(word.column, "moves while none of G54 ... G59 is active");
   const auto& offset = setup_.work_offset[static_cast<std::size_t>(*modes_.work_system - 1)];
   if (!offset) {
-    fail(word.column, fmt::format("the place of G{} is not known", 53 + *modes_.work_system));
+    fail(word.column, fmt::format("work offset G{} is unknown", 53 + *modes_.work_system));
   }
   const auto k = static_cast<std::size_t>(axis);
   const std::pair<bool, int> shifts[] = {{modes_.is_local_off[k], 52},
@@ -167,7 +167,7 @@ double FanucMachine::target(int axis, const FanucWord& word) {
   for (const auto& [is_off, code] : shifts) {
     if (is_off) continue;
     fail(word.column,
-         fmt::format("moves {} while a shift by G{} may be in force", word.letter, code));
+         fmt::format("moves {} while a shift by G{} may be active", word.letter, code));
   }
   if (!is_linear) return within_a_turn(axis, (*offset)[axis] + value, (*offset)[axis], word.column);
   return (*offset)[axis] + value + (axis == 2 ? acting_length(word.column) : 0.0);
@@ -187,9 +187,10 @@ double FanucMachine::within_a_turn(int axis, double machine, double offset, int 
   }
   const double way = std::remainder(machine - *before, kTurn);
   if (std::abs(std::abs(way) - 0.5 * kTurn) < 1e-9) {
-    fail(column, fmt::format("moves {} by half a turn: which way is not determined where No. "
-                             "1008#0 (ROA) is 1",
-                             "XYZABC"[axis]));
+    fail(column,
+         fmt::format(
+             "moves {} by half a turn: the direction is undetermined where No. 1008#0 (ROA) is 1",
+             "XYZABC"[axis]));
   }
   return *before + way;
 }
@@ -211,8 +212,8 @@ void FanucMachine::run_motion() {
   check_modes_of_motion();
   if (settings_.TLB && length_.mode == FanucLength::Mode::on && modes_.normal_axis != 2) {
     fail(
-        "moves outside G17 with a tool length: whether it follows the plane where No. 5001#1 (TLB) "
-        "is 1 was not found in a manual");
+        "moves outside G17 with a tool length: no manual found says whether it follows the plane "
+        "where No. 5001#1 (TLB) is 1");
   }
   const int motion = *modes_.motion;
   MachineAction out = action(motion == 0   ? ActionKind::rapid
@@ -227,7 +228,7 @@ void FanucMachine::run_motion() {
 }
 
 void FanucMachine::set_arc(MachineAction& out) const {
-  if (!modes_.normal_axis) fail("an arc while none of G17, G18 and G19 is in force");
+  if (!modes_.normal_axis) fail("an arc while none of G17, G18 and G19 is active");
   const int normal = *modes_.normal_axis;
   const int a = (normal + 1) % 3, b = (normal + 2) % 3;
   if (!has_centre()) fail("an arc without I, J or K");
@@ -259,11 +260,11 @@ void FanucMachine::set_arc(MachineAction& out) const {
 }
 
 void FanucMachine::set_action_feed(MachineAction& out) const {
-  if (!modes_.feed_mode) fail("feeds while none of G93, G94 and G95 is in force");
+  if (!modes_.feed_mode) fail("feeds while none of G93, G94 and G95 is active");
   out.feed_mode = *modes_.feed_mode;
   const bool is_inverse = out.feed_mode == FeedMode::inverse_time;
   if (is_inverse && word('F') == nullptr) fail("a block under G93 needs F");
-  if (!feed_) fail("feeds while no F is known");
+  if (!feed_) fail("feeds while F is unknown");
   if (is_inverse) {
     // for arcs the manuals divide by the radius, not by the length (M)
     if (out.kind == ActionKind::arc) fail("an arc under G93");
@@ -276,7 +277,7 @@ void FanucMachine::set_action_feed(MachineAction& out) const {
     (i <= kZ ? moves_linear : moves_rotary) = true;
   }
   if (moves_linear && moves_rotary) {
-    fail("linear and rotary axes together have no common feed but under G93");
+    fail("linear and rotary axes together have a common feed only under G93");
   }
   const bool is_linear_feed = moves_linear || out.kind == ActionKind::arc || !moves_rotary;
   const double unit = is_linear_feed ? *modes_.unit : deg;

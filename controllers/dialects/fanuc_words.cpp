@@ -68,7 +68,7 @@ std::optional<std::string_view> FanucLexer::next_line() {
 bool FanucLexer::take_percent(std::string_view line) {
   if (line.empty() || line.front() != '%') return false;
   if (line.find_first_not_of(" \t", 1) != std::string_view::npos) {
-    fail(1, "% stands alone in its line");
+    fail(1, "% must be alone on its line");
   }
   ++percents_;
   if (percents_ == 1 && has_begun_) percents_ = 2;
@@ -103,14 +103,15 @@ FanucBlock FanucLexer::split(std::string_view line) {
       block.has_slash = true;
       ++i;
       if (i < line.size() && line[i] == '1') ++i;
-      if (i < line.size() && is_digit(line[i])) fail(i, "only the first switch for '/' is read");
+      if (i < line.size() && is_digit(line[i]))
+        fail(i, "only the first block-delete switch '/' is supported");
       is_first = false;
     } else if (c >= 'A' && c <= 'Z') {
       const FanucWord one = word(line, i);
       keep(block, one);
       is_first = false;
     } else {
-      fail(i, fmt::format("'{}' begins no word", c));
+      fail(i, fmt::format("'{}' does not start a word", c));
     }
     has_begun_ = has_begun_ || !is_first;
   }
@@ -128,7 +129,7 @@ FanucWord FanucLexer::word(std::string_view line, std::size_t& i) const {
   int digits = 0, significant = 0;
   for (; i < line.size() && (is_digit(line[i]) || line[i] == '.'); ++i) {
     if (line[i] == '.') {
-      if (out.has_point) fail(i, "a number with two points");
+      if (out.has_point) fail(i, "a number with two decimal points");
       out.has_point = true;
       continue;
     }
@@ -151,14 +152,14 @@ void FanucLexer::keep(FanucBlock& block, const FanucWord& word) {
     if (!word.is_integer() || word.mantissa < 1 || word.mantissa > kMaxBlock) {
       fail(i, fmt::format("N must be an integer in 1 ... {}", kMaxBlock));
     }
-    if (!block.words.empty()) fail(i, "N stands at the begin of its block");
+    if (!block.words.empty()) fail(i, "N must be at the start of its block");
     return;
   }
   if (word.letter == 'O') {
     if (!word.is_integer() || word.mantissa < 1 || word.mantissa > kMaxProgram) {
       fail(i, fmt::format("O must be an integer in 1 ... {}", kMaxProgram));
     }
-    if (has_name_ || has_begun_) fail(i, "O stands at the begin of the program");
+    if (has_name_ || has_begun_) fail(i, "O must be at the start of the program");
     has_name_ = true;
     return;
   }

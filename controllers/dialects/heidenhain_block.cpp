@@ -196,8 +196,8 @@ double heidenhain_number(const HeidenhainWord& word, std::string_view digits,
   const std::size_t decimals =
       separator == std::string_view::npos ? 0 : digits.size() - separator - 1;
   if (decimals > static_cast<std::size_t>(format.decimals)) {
-    throw InputError(word.place, fmt::format("'{}': the control takes {} decimals here", word.text,
-                                             format.decimals));
+    throw InputError(word.place, fmt::format("'{}': the control accepts {} decimals here",
+                                             word.text, format.decimals));
   }
   std::string text;
   for (const char c : digits) {
@@ -206,7 +206,7 @@ double heidenhain_number(const HeidenhainWord& word, std::string_view digits,
   double value = 0.0;
   std::from_chars(text.data(), text.data() + text.size(), value);
   if (std::abs(value) > format.max) {
-    throw InputError(word.place, fmt::format("'{}': the control takes up to {}{} here", word.text,
+    throw InputError(word.place, fmt::format("'{}': the control accepts up to {}{} here", word.text,
                                              format.has_sign ? "+-" : "", format.max));
   }
   return value;

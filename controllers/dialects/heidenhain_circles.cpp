@@ -39,7 +39,7 @@ void Control::run_pole(const HeidenhainBlock& block) {
   Positioning p = read_words(block, 1);
   if (p.feed_word != Positioning::FeedWord::none || p.functions_count > 0 || p.direction ||
       p.radius_angle) {
-    fail(place_, "CC takes two coordinates, or none");
+    fail(place_, "CC needs two coordinates, or none");
   }
   State::Pole pole;
   KnownPosition at = state_.position;
@@ -48,7 +48,7 @@ void Control::run_pole(const HeidenhainBlock& block) {
     for (int axis = 0; axis < kAxisWords; ++axis) {
       if (p.target[static_cast<std::size_t>(axis)].word) count += axis < 3 ? 1 : 3;
     }
-    if (count != 2) fail(place_, "CC takes two of X, Y, Z, or no coordinate");
+    if (count != 2) fail(place_, "CC needs two of X, Y, Z, or no coordinate");
     pole.normal = !p.target[0].word ? 0 : !p.target[1].word ? 1 : 2;
     require_arc_frame(p);
     for (auto& target : p.target) {
@@ -80,11 +80,11 @@ void Control::require_arc_frame(const Positioning& p) const {
 }
 
 Point Control::start_on_plane() const {
-  if (!state_.pole) fail(place_, "no CC before the circle, or what it counted from has changed");
+  if (!state_.pole) fail(place_, "no CC before the circle, or its reference has changed");
   const auto axes = plane_axes(state_.pole->normal);
   const auto& first = state_.position[axes[0]];
   const auto& second = state_.position[axes[1]];
-  if (!first || !second) fail(place_, "the circle starts at a position that is unknown");
+  if (!first || !second) fail(place_, "the circle starts at an unknown position");
   if (radius(state_.pole->at, {*first, *second}) < um) fail(place_, "the circle starts at CC");
   return {*first, *second};
 }
@@ -100,9 +100,10 @@ double Control::sweep_to(const Point& start, const Point& end, int direction) co
   while (direction * sweep > kFullTurn) sweep -= direction * kFullTurn;
   const double size = std::abs(sweep);
   if (size < kSmallestSweep || kFullTurn - size < kSmallestSweep) {
-    fail(place_, fmt::format("an arc of {:.5f} degrees: rounding decides between a full circle and "
-                             "none",
-                             size / deg));
+    fail(place_,
+         fmt::format(
+             "an arc of {:.5f} degrees: rounding decides between a full circle and no motion",
+             size / deg));
   }
   return sweep;
 }
@@ -138,8 +139,8 @@ void Control::check_ends(const Point& start, const Point& end) const {
 // C X+45 Y+25 DR+: about CC, from the position programmed last. Equal ends make a full circle.
 void Control::run_circle(const HeidenhainBlock& block) {
   const Positioning p = read_words(block, 1);
-  if (p.radius_angle) fail(place_, "C with a polar angle: CP takes that");
-  if (!p.direction) fail(place_, "C without DR: which way holds then is not determined");
+  if (p.radius_angle) fail(place_, "C with a polar angle; use CP");
+  if (!p.direction) fail(place_, "C without DR: the direction of rotation is undetermined");
   if (!p.has_target()) fail(place_, "C without coordinates");
   if (p.has_m(91) || p.is_retract) fail(place_, "M91 or M140 on a circle");
   act_at_start(p);
@@ -185,7 +186,7 @@ double Control::helix_sweep(const Positioning& p, double start_angle) const {
   if (state_.pole->normal == 1 && !rules_.zx_angle_starts_at_z) to = kFullTurn / 4.0 - to;
   double sweep = std::remainder(to - start_angle, kFullTurn);
   if (std::abs(sweep) < kSmallestSweep) {
-    fail(place_, "CP PA ends where it starts: a full circle or none");
+    fail(place_, "CP PA ends at its start: a full circle or no motion");
   }
   if (direction * sweep < 0.0) sweep += direction * kFullTurn;
   return sweep;
@@ -195,7 +196,7 @@ double Control::helix_sweep(const Positioning& p, double start_angle) const {
 void Control::run_helix(const HeidenhainBlock& block) {
   const Positioning p = read_words(block, 1);
   if (!p.radius_angle) fail(place_, "CP without PA or IPA");
-  if (!p.direction) fail(place_, "CP without DR: which way holds then is not determined");
+  if (!p.direction) fail(place_, "CP without DR: the direction of rotation is undetermined");
   if (p.has_m(91) || p.is_retract) fail(place_, "M91 or M140 on a circle");
   act_at_start(p);
   require_radius_off(p, block);

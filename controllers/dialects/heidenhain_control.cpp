@@ -77,8 +77,8 @@ MachineAction& Control::emit(ActionKind kind, const Place& place) {
 
 void Control::finish(const Place& place) const {
   if (cycle_ && cycle_->last == 0) {
-    fail(place,
-         fmt::format("cycle {} has begun and lacks CYCL DEF {}.1", cycle_->number, cycle_->number));
+    fail(place, fmt::format("cycle {} is incomplete: CYCL DEF {}.1 is missing", cycle_->number,
+                            cycle_->number));
   }
 }
 
@@ -123,7 +123,7 @@ void Control::run(const HeidenhainBlock& block) {
     fail(first.place, fmt::format("{}: this block is not covered by the verification", address));
   }
   fail(first.place,
-       fmt::format("'{}' begins no block{}", first.text, did_you_mean(first.text, kKinds)));
+       fmt::format("'{}' does not start a block{}", first.text, did_you_mean(first.text, kKinds)));
 }
 
 double Control::unit() const { return is_inch_ ? inch : mm; }
@@ -140,10 +140,10 @@ double Control::coordinate(const HeidenhainWord& word, int axis) const {
 void Control::read_coordinate(const HeidenhainWord& word, Positioning& p) const {
   bool is_increment = false;
   const auto axis = axis_of_address(word.address, is_increment);
-  if (!axis) fail(word.place, fmt::format("'{}': no word of this block", word.text));
+  if (!axis) fail(word.place, fmt::format("'{}': not a word of this block", word.text));
   Positioning::Target& target = p.target[static_cast<std::size_t>(*axis)];
   if (target.word) {
-    fail(word.place, fmt::format("'{}': {} is in the block already", word.text,
+    fail(word.place, fmt::format("'{}': {} appears twice in the block", word.text,
                                  letter(kAllAxes[static_cast<std::size_t>(*axis)])));
   }
   target = {&word, coordinate(word, *axis), is_increment};

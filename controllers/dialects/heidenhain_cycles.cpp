@@ -39,7 +39,7 @@ double cycle_value(const std::vector<HeidenhainWord>& words, std::string_view ad
   const bool is_split = words.size() == 5 && words[3].text == address;
   const bool is_one = words.size() == 4 && words[3].address == address;
   if (!is_split && !is_one) {
-    throw InputError(place, fmt::format("the cycle takes {} and a value", address));
+    throw InputError(place, fmt::format("the cycle needs {} and a value", address));
   }
   const HeidenhainWord& word = words.back();
   return heidenhain_number(word, is_split ? word.text : word.rest, format);
@@ -49,7 +49,7 @@ double cycle_value(const std::vector<HeidenhainWord>& words, std::string_view ad
 
 void Control::require_tilting(const Place& place, std::string_view what) const {
   if (!settings_.has_tilting) {
-    fail(place, fmt::format("{}: a control without the functions for tilting rejects it", what));
+    fail(place, fmt::format("{}: a control without the tilting option rejects it", what));
   }
 }
 

@@ -29,21 +29,23 @@ void Control::forget_positions() {
 void Control::require_frame(const Place& place, bool is_machine_position) const {
   const State& s = state_;
   if (!s.is_tilted || !s.is_tcp_control) {
-    fail(place, fmt::format("{} may be active from the program before: write {} first",
+    fail(place, fmt::format("{} may be active from the previous program: program {} first",
                             s.is_tilted ? "M128" : "a tilted plane",
                             s.is_tilted ? "M129" : "PLANE RESET STAY"));
   }
-  if (!s.is_mirrored) fail(place, "cycle 8 may be active from the program before: reset it first");
-  if (!s.rotation) fail(place, "cycle 10 may be active from the program before: reset it first");
-  if (!s.is_scaled) fail(place, "cycle 11 may be active from the program before: reset it first");
+  if (!s.is_mirrored)
+    fail(place, "cycle 8 may be active from the previous program: reset it first");
+  if (!s.rotation) fail(place, "cycle 10 may be active from the previous program: reset it first");
+  if (!s.is_scaled) fail(place, "cycle 11 may be active from the previous program: reset it first");
   for (std::size_t i = 0; i < s.is_axis_scaling_off.size(); ++i) {
     if (s.is_axis_scaling_off[i]) continue;
-    fail(place, fmt::format("cycle 26 may be active in {} from the program before: reset it first",
-                            "XYZ"[i]));
+    fail(place,
+         fmt::format("cycle 26 may be active in {} from the previous program: reset it first",
+                     "XYZ"[i]));
   }
   const bool is_changed = is_mirrored(0) || is_mirrored(1) || *s.rotation != 0.0;
   if (is_machine_position && is_changed) {
-    fail(place, "M91 while cycle 8 or 10 is active: what it does was not found in a manual");
+    fail(place, "M91 while cycle 8 or 10 is active: no manual found describes its effect");
   }
   if (!is_machine_position && !s.tool) {
     fail(place, "no TOOL CALL yet: the axis and the length of the tool are unknown");
@@ -68,7 +70,7 @@ double Control::origin(int axis, const Place& place) const {
                             setup_.first_preset + state_.preset));
   }
   if (!state_.shift[i]) {
-    fail(place, fmt::format("cycle 7 may be active in {} from the program before: reset it first",
+    fail(place, fmt::format("cycle 7 may be active in {} from the previous program: reset it first",
                             letter_of(axis)));
   }
   double value = (*offset)[axis] + *state_.shift[i];
@@ -106,14 +108,14 @@ double Control::on_shorter_path(double from, double to, const Place& place) cons
   if (std::abs(way) < kHalfTurn - 1e-9 || !settings_.is_rotary_display_reduced) return to;
   if (!settings_.is_shorter_path_usual && !state_.is_shorter_path && rules_.unknown_is_refused) {
     fail(place,
-         "a rotary axis would move 180 degrees or more, and M126 may be active from the "
-         "program before: write M127 or M126 first");
+         "a rotary axis would move 180 degrees or more, and M126 may be active from the previous "
+         "program: program M127 or M126 first");
   }
   const bool is_shorter = settings_.is_shorter_path_usual || state_.is_shorter_path.value_or(false);
   if (!is_shorter || !rules_.m126_takes_shorter_path) return to;
   const double shorter = std::remainder(way, 2.0 * kHalfTurn);
   if (std::abs(std::abs(shorter) - kHalfTurn) < 1e-9) {
-    fail(place, "a rotary axis would move 180 degrees: which way is not determined");
+    fail(place, "a rotary axis would move 180 degrees: the direction is undetermined");
   }
   return from + shorter;
 }
@@ -137,7 +139,7 @@ KnownPosition Control::rotated_targets(const Positioning& p, KnownPosition end) 
   const bool needs_now = !x.word || !y.word || x.is_increment || y.is_increment;
   if (needs_now) {
     if (!end[kX] || !end[kY]) {
-      fail(place, "coordinates are rotated, and the position of X or Y is unknown here");
+      fail(place, "the coordinate system is rotated, and the position of X or Y is unknown here");
     }
     const double dx = *end[kX] - origin_x;
     const double dy = *end[kY] - origin_y;

@@ -39,7 +39,7 @@ void Control::check_functions(const Positioning& p) const {
     const Place& place = p.functions[i]->place;
     const int m = p.m[i];
     if (m == 140) continue;
-    if (m == 7) fail(place, "M7: its meaning is the machine builder's");
+    if (m == 7) fail(place, "M7: its meaning is up to the machine builder");
     if (m == 92)
       fail(place,
            "M92: the builder's reference point is unknown; M91 counts from the "

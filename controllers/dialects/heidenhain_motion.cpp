@@ -44,7 +44,7 @@ void Control::require_radius_off(const Positioning& p, const HeidenhainBlock& bl
   const bool is_off = state_.is_radius_off.value_or(false);
   if (p.has_target() && !is_off) {
     fail(place_,
-         "cutter radius compensation may be active from the program before: write R0 first");
+         "cutter radius compensation may be active from the previous program: program R0 first");
   }
 }
 
@@ -55,9 +55,9 @@ double Control::effective_feed(const Positioning& p) {
     state_.feed = state_.tool_call_feed;
   }
   if (!state_.feed && state_.has_block_feed) {
-    fail(place_, "no F in the block; how long FT and FU hold was not found in a manual");
+    fail(place_, "no F in the block; no manual found says how long FT and FU stay active");
   }
-  if (!state_.feed) fail(place_, "no F in the block, and none is in force");
+  if (!state_.feed) fail(place_, "no F in the block, and none is active");
   const double feed = *state_.feed;
   if (!rules_.f_is_modal) state_.feed.reset();
   return feed;
@@ -72,13 +72,12 @@ double Control::feed_per_minute(double feed, const MachineAction& action,
   const Travel travel = travel_of(action, state_.position, end);
   if (!travel.is_rotary) return feed * length / minute;
   if (state_.is_rotary_feed_in_mm.value_or(rules_.unknown_is_refused)) {
-    fail(place_, "F moves a rotary axis, and M116 may be active: write M117 first");
+    fail(place_, "F moves a rotary axis, and M116 may be active: program M117 first");
   }
   if (!travel.is_linear) return feed * deg_per_min;
   if (!travel.is_known) {
     fail(place_,
-         "F moves linear and rotary axes from a position that is unknown: the "
-         "feed is not determined");
+         "F moves linear and rotary axes from an unknown position: the feed is undetermined");
   }
   if (!settings_.is_feed_of_all_axes) return feed * length / minute;
   const double path = std::hypot(travel.linear / mm, travel.rotary / deg);
@@ -99,7 +98,7 @@ void Control::set_feed(const Positioning& p, MachineAction& action, const KnownP
   if (is_fu) state_.feed.reset();
   state_.has_block_feed = is_fu;
   if (!is_fu && !state_.is_per_revolution) {
-    fail(place_, "M136 may be active from the program before: write M137 before F");
+    fail(place_, "M136 may be active from the previous program: program M137 before F");
   }
   if (!is_fu && !*state_.is_per_revolution) {
     action.feed = feed_per_minute(feed, action, end);
@@ -107,12 +106,10 @@ void Control::set_feed(const Positioning& p, MachineAction& action, const KnownP
   }
   const Travel travel = travel_of(action, state_.position, end);
   if (travel.is_rotary) {
-    fail(place_,
-         "feed per revolution of a rotary axis: its unit was not found in a "
-         "manual");
+    fail(place_, "feed per revolution of a rotary axis: no manual found gives its unit");
   }
   if (!is_fu && is_inch_) {
-    fail(place_, "M136 in a program in INCH: the unit of F was not found in a manual");
+    fail(place_, "M136 in a program in INCH: no manual found gives the unit of F");
   }
   action.feed_mode = FeedMode::units_per_revolution;
   const double unit_of_f = is_fu ? unit() : settings_.is_m136_in_micrometres ? um : mm;

@@ -32,11 +32,11 @@ void check_end(const HeidenhainBlock& block, const ProgramFrame& begin) {
   const ProgramFrame end = read_frame(block, "END");
   if (end.name != begin.name) {
     throw InputError(block.words[2].place,
-                     fmt::format("END PGM {}: the program begins as {}", end.name, begin.name));
+                     fmt::format("END PGM {}: the program starts as {}", end.name, begin.name));
   }
   if (end.is_inch != begin.is_inch) {
     throw InputError(block.words[3].place,
-                     fmt::format("END PGM in {}: the program begins in {}",
+                     fmt::format("END PGM in {}: the program starts in {}",
                                  end.is_inch ? "INCH" : "MM", begin.is_inch ? "INCH" : "MM"));
   }
 }
@@ -107,7 +107,7 @@ std::vector<MachineAction> read_heidenhain(std::string_view text, const std::str
                                            const HeidenhainRules& rules) {
   HeidenhainBlocks blocks(text, file);
   std::optional<HeidenhainBlock> block = blocks.next();
-  if (!block) throw InputError({file, 1, 1}, "no block; a program begins with BEGIN PGM");
+  if (!block) throw InputError({file, 1, 1}, "no block; a program starts with BEGIN PGM");
   const ProgramFrame begin = read_frame(*block, "BEGIN");
   const bool is_numbered = block->number.has_value();
   check_number(*block, is_numbered, 0);

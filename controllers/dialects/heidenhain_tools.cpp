@@ -83,7 +83,7 @@ void Control::forget_tool_change() {
 // TOOL CALL 5 Z S2500 F350 DL+0.2: a tool change. Without a number only S and F change.
 void Control::call_tool(const HeidenhainBlock& block) {
   if (block.words.size() < 2 || block.words[1].text != "CALL") {
-    fail(place_, "TOOL takes CALL or DEF");
+    fail(place_, "TOOL must be followed by CALL or DEF");
   }
   const ToolCall call = read_call(block);
   if (!call.number) {
@@ -100,9 +100,10 @@ void Control::call_tool(const HeidenhainBlock& block) {
   }
   if (!call.has_axis) fail(place_, "TOOL CALL without the tool axis Z");
   if (!state_.is_tcp_control || !state_.is_tilted) {
-    fail(place_, fmt::format("{} may be active from the program before: write {} before TOOL CALL",
-                             state_.is_tcp_control ? "a tilted plane" : "M128",
-                             state_.is_tcp_control ? "PLANE RESET STAY" : "M129"));
+    fail(place_,
+         fmt::format("{} may be active from the previous program: program {} before TOOL CALL",
+                     state_.is_tcp_control ? "a tilted plane" : "M128",
+                     state_.is_tcp_control ? "PLANE RESET STAY" : "M129"));
   }
   forget_tool_change();
   state_.tool = call.number;
@@ -123,7 +124,7 @@ void Control::call_tool(const HeidenhainBlock& block) {
 // TOOL DEF 5 selects the next tool in advance ([430] p. 108). With L and R it would define a tool.
 void Control::define_tool(const HeidenhainBlock& block) const {
   if (block.words.size() != 3) {
-    fail(place_, "TOOL DEF: only a number, which selects a tool in advance, is covered");
+    fail(place_, "TOOL DEF: only a number, which preselects a tool, is covered");
   }
   heidenhain_number(block.words[2], block.words[2].text, kToolNumber);
 }

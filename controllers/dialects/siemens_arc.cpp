@@ -26,7 +26,7 @@ void refuse_through_point(const SiemensState& state, const SiemensBlock& block,
                           const SiemensContext& context) {
   if (!block.has_through()) return;
   context.fail(block.line, block.column,
-               fmt::format("I1, J1 and K1 are for CIP; G{} is in force", *state.motion));
+               fmt::format("I1, J1 and K1 are for CIP; G{} is active", *state.motion));
 }
 
 void SiemensArc::fail(int column, std::string message) const {
@@ -51,9 +51,9 @@ void SiemensArc::read(MachineAction& out) {
 }
 
 void SiemensArc::check_centre_words() {
-  if (frame_.is_of_machine()) fail("SUPA with G2 or G3 is not read");
+  if (frame_.is_of_machine()) fail("SUPA with G2 or G3 is not supported");
   refuse_through_point(state_, block_, context_);
-  if (!state_.normal_axis) fail("the plane of the arc is not known; G17, G18 or G19 sets it");
+  if (!state_.normal_axis) fail("the plane of the arc is unknown; program G17, G18 or G19");
   normal_axis_ = *state_.normal_axis;
   u_ = (normal_axis_ + 1) % 3;
   v_ = (normal_axis_ + 2) % 3;
@@ -67,7 +67,7 @@ void SiemensArc::check_centre_words() {
   if (block_.CR && block_.has_centre()) fail(block_.CR->column, "CR and a centre in one block");
   if (!block_.CR && !block_.has_centre()) fail("the arc has neither a centre nor CR");
   if (frame_.rotation() != 0.0 && normal_axis_ != 2) {
-    fail("an arc outside the XY plane under a rotated work offset is not read");
+    fail("an arc outside the XY plane under a rotated work offset is not supported");
   }
   if (context_.rules.length_needs_a_line) refuse_new_length(normal_axis_);
 }
@@ -76,16 +76,16 @@ void SiemensArc::refuse_rotary_axes() const {
   for (int a = 3; a < kAxisWords; ++a) {
     if (!block_.axes[place_of(a)]) continue;
     fail(block_.axes[place_of(a)]->column,
-         fmt::format("{} in a block with an arc is not read", siemens_axis_letter(a)));
+         fmt::format("{} in a block with an arc is not supported", siemens_axis_letter(a)));
   }
 }
 
 // [P] p. 198 allows I1, J1 and K1 to be omitted only where their value is 0.
 void SiemensArc::check_through_words() const {
-  if (frame_.is_of_machine()) fail("SUPA with CIP is not read");
-  if (frame_.rotation() != 0.0) fail("CIP under a rotated work offset is not read");
+  if (frame_.is_of_machine()) fail("SUPA with CIP is not supported");
+  if (frame_.rotation() != 0.0) fail("CIP under a rotated work offset is not supported");
   if (block_.has_centre() || block_.CR || block_.TURN) {
-    fail("I, J, K, CR and TURN are for G2 and G3; CIP is in force");
+    fail("I, J, K, CR and TURN are for G2 and G3; CIP is active");
   }
   refuse_rotary_axes();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -161,15 +161,15 @@ void SiemensArc::read_through_point(MachineAction& out) {
   }
   const Eigen::Vector3d through = through_point(start);
   const Eigen::Vector3d p = through - start, q = end - start, normal = p.cross(q);
-  if (q.norm() < kSamePoint) fail("CIP with equal start and end: the circle is not determined");
+  if (q.norm() < kSamePoint) fail("CIP with equal start and end: the circle is undetermined");
   if (normal.norm() < kCollinear * p.norm() * q.norm()) {
-    fail("the three points of CIP are on a line");
+    fail("the three points of CIP are collinear");
   }
   normal.cwiseAbs().maxCoeff(&normal_axis_);
   u_ = (normal_axis_ + 1) % 3;
   v_ = (normal_axis_ + 2) % 3;
   if (std::max(std::abs(p[normal_axis_]), std::abs(q[normal_axis_])) > kMostTilt + 1e-12) {
-    fail("CIP in a plane that is not that of two axes is not read");
+    fail("CIP in a plane that is not spanned by two axes is not supported");
   }
   const Eigen::Vector3d centre =
       start + (p.squaredNorm() * q.cross(normal) + q.squaredNorm() * normal.cross(p)) /
@@ -202,7 +202,7 @@ Eigen::Vector2d SiemensArc::centre_of_radius(const Eigen::Vector2d& start,
   const Eigen::Vector2d chord = end - start;
   const double d = chord.norm();
   if (d < kSamePoint)
-    fail(block_.CR->column, "CR with equal start and end: the circle is not determined");
+    fail(block_.CR->column, "CR with equal start and end: the circle is undetermined");
   if (std::abs(r) < 0.5 * d - kMaxRadiusDifference) {
     fail(block_.CR->column,
          fmt::format("CR = {}: start and end are {:.6g} mm apart", block_.CR->value, d / mm));
@@ -231,7 +231,9 @@ int SiemensArc::turns_of(const Eigen::Vector2d& start, const Eigen::Vector2d& en
   const double angle = std::atan2(from[0] * to[1] - from[1] * to[0], from.dot(to));
   const bool is_full = (end - start).norm() < kSamePoint;
   if (!is_full && std::abs(angle) < kLeastSweep) {
-    fail("start and end of the arc nearly meet: rounding decides between none and a full circle");
+    fail(
+        "start and end of the arc nearly coincide: rounding decides between no motion and a full "
+        "circle");
   }
   if (is_full && !context_.rules.equal_ends_are_full_circle) --added;
   return is_clockwise ? -1 - added : 1 + added;

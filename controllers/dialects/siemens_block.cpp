@@ -77,17 +77,17 @@ constexpr CodeEntry kCodes[] = {
 
 // Words of the language that the reader does not support, with their function.
 constexpr std::pair<std::string_view, std::string_view> kNotRead[] = {
-    {"G41", "compensates the cutter radius"},
-    {"G42", "compensates the cutter radius"},
-    {"G53", "leaves the basic frame in force, which nothing here determines; SUPA suppresses it"},
-    {"G58", "is an axial offset of the programmable frame, no work offset"},
-    {"G59", "is an axial offset of the programmable frame, no work offset"},
+    {"G41", "activates cutter radius compensation"},
+    {"G42", "activates cutter radius compensation"},
+    {"G53", "leaves the basic frame active, which is unknown here; use SUPA to suppress it"},
+    {"G58", "is an axial offset of the programmable frame, not a work offset"},
+    {"G59", "is an axial offset of the programmable frame, not a work offset"},
     {"G74", "moves to the reference point"},
-    {"G75", "moves to a fixed point of the builder"},
+    {"G75", "moves to a fixed point of the machine builder"},
     {"G961", "sets a constant cutting speed"},
     {"G96", "sets a constant cutting speed"},
-    {"TRAORI", "switches a transformation on whose parameters nothing here determines"},
-    {"CYCLE800", "swivels the plane by data of the builder"},
+    {"TRAORI", "activates a transformation with unknown parameters"},
+    {"CYCLE800", "swivels the plane by data of the machine builder"},
     {"ATRANS", "shifts the programmable frame"},
     {"AROT", "rotates the programmable frame"},
     {"ASCALE", "scales the programmable frame"},
@@ -97,7 +97,7 @@ constexpr std::pair<std::string_view, std::string_view> kNotRead[] = {
     {"G112", "sets a pole of polar coordinates"},
     {"AP", "is a polar angle"},
     {"RP", "is a polar radius"},
-    {"CT", "is an arc that is tangential to what came before"},
+    {"CT", "is an arc tangential to the preceding element"},
     {"AR", "is the angle of an arc"},
     {"DIAMON", "makes X a diameter"},
     {"DIAM90", "makes X a diameter"},
@@ -176,7 +176,7 @@ class BlockBuilder {
   // Words with '=' or a number come here, too: "AP=30" is known, but not read.
   [[noreturn]] void refuse(const SiemensWord& word, const std::string& name) const {
     for (const auto& [known, does] : kNotRead) {
-      if (known == name) fail(word.column, fmt::format("{} {}; it is not read", name, does));
+      if (known == name) fail(word.column, fmt::format("{} {}; it is not supported", name, does));
     }
     if (word.name == "G") fail(word.column, fmt::format("{} is not read", name));
     std::vector<std::string_view> names;
@@ -194,7 +194,7 @@ class BlockBuilder {
 
   int whole(const SiemensWord& word, int least, int most) const {
     if (word.value != std::round(word.value) || word.value < least || word.value > most) {
-      fail(word.column, fmt::format("{} = {}; must be a whole number from {} to {}", word.name,
+      fail(word.column, fmt::format("{} = {}; must be an integer from {} to {}", word.name,
                                     word.value, least, most));
     }
     return static_cast<int>(word.value);
@@ -212,7 +212,7 @@ class BlockBuilder {
     if (word.form != SiemensForm::text || result.ec != std::errc() || result.ptr != end ||
         number < 0 || number > 32000) {
       fail(word.column,
-           fmt::format("T=\"{}\": only names that are numbers lead to a tool length", word.text));
+           fmt::format("T=\"{}\": only names that are numbers have a tool length here", word.text));
     }
     block_.T = SiemensTool{number, word.column};
   }
@@ -294,13 +294,14 @@ class BlockBuilder {
     }
     if (numbers.empty()) return std::nullopt;
     if (numbers.size() != 3) {
-      fail(word.column, fmt::format("CYCLE832({}): tolerance, kind and orientation tolerance are "
-                                    "needed",
-                                    word.text));
+      fail(word.column,
+           fmt::format("CYCLE832({}): tolerance, type and orientation tolerance are required",
+                       word.text));
     }
     constexpr double kKinds[] = {0, 1, 2, 3, 4, 10, 11, 12, 13, 14};
     if (std::find(std::begin(kKinds), std::end(kKinds), numbers[1]) == std::end(kKinds)) {
-      fail(word.column, fmt::format("CYCLE832({}): kinds 0 to 4 and 10 to 14 are read", word.text));
+      fail(word.column,
+           fmt::format("CYCLE832({}): types 0 to 4 and 10 to 14 are supported", word.text));
     }
     if (numbers[1] == 0.0 || numbers[1] == 10.0) return std::nullopt;
     if (!(numbers[0] > 0.0)) {

@@ -30,16 +30,16 @@ void SiemensFrame::fail(std::string message) const {
 
 void SiemensFrame::read_offset() {
   if (!state_.is_frame_clear) {
-    fail("a programmable frame may be active; TRANS in a block of its own clears it");
+    fail("a programmable frame may be active; clear it with TRANS in a separate block");
   }
   if (!state_.work_offset) fail("no work offset is programmed; any may be active");
   const int number = *state_.work_offset;
   if (number < 1 || number > kLastOffset) {
-    fail(fmt::format("{}: the place of this work offset is not known", name_of(number)));
+    fail(fmt::format("{}: the values of this work offset are unknown", name_of(number)));
   }
   const auto index = static_cast<std::size_t>(number - 1);
   const std::optional<AxisWords>& offset = context_.setup.work_offset[index];
-  if (!offset) fail(fmt::format("{}: the place of this work offset is not known", name_of(number)));
+  if (!offset) fail(fmt::format("{}: the values of this work offset are unknown", name_of(number)));
   offset_ = *offset;
   if (context_.rules.offset_rotates) rotation_ = context_.setup.work_rotation[index];
 }
@@ -56,23 +56,23 @@ std::optional<int> SiemensFrame::axis_of_any_length() const {
 int SiemensFrame::length_axis() const {
   if (!length_is_in_force()) return -1;
   const std::optional<int> axis = axis_of_any_length();
-  if (!axis) fail("the plane is not known, and with it the axis of the tool length; G17 sets it");
+  if (!axis) fail("the plane is unknown, so the axis of the tool length is unknown; program G17");
   return *axis;
 }
 
 double SiemensFrame::length(int axis) const {
   if (!is_linear(kAllAxes[static_cast<std::size_t>(axis)]) || axis != length_axis()) return 0.0;
   if (!state_.D) {
-    fail(fmt::format("{} needs a tool length, and D is not known here",
+    fail(fmt::format("{} needs a tool length, and D is unknown here",
                      letter(kAllAxes[static_cast<std::size_t>(axis)])));
   }
-  if (!state_.tool) fail(fmt::format("D{}: the tool in the spindle is not known", *state_.D));
+  if (!state_.tool) fail(fmt::format("D{}: the tool in the spindle is unknown", *state_.D));
   if (*state_.D != 1) {
     fail(fmt::format("D{} of tool {}: only the length of D1 is known", *state_.D, *state_.tool));
   }
   const auto length = context_.setup.tool_length.find(*state_.tool);
   if (length == context_.setup.tool_length.end()) {
-    fail(fmt::format("D1 of tool {}: its length is not known", *state_.tool));
+    fail(fmt::format("D1 of tool {}: its length is unknown", *state_.tool));
   }
   return context_.rules.length_is_added ? length->second : -length->second;
 }

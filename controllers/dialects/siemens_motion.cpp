@@ -19,14 +19,14 @@ void check_modes(const SiemensState& state, const SiemensBlock& block,
   const auto fail = [&](int column, std::string message) {
     context.fail(block.line, column, std::move(message));
   };
-  if (!state.motion) fail(block.column, "positions without a known G0, G1, G2 or G3");
+  if (!state.motion) fail(block.column, "positions without an active G0, G1, G2 or G3");
   if (!state.is_cutter_off) {
-    fail(block.column, "the cutter compensation may be on; G40 switches it off");
+    fail(block.column, "cutter radius compensation may be active; cancel it with G40");
   }
   for (int a = 3; a < kAxisWords; ++a) {
     const std::optional<SiemensNumber>& word = block.axes[place_of(a)];
     if (word && !state.is_transformation_off) {
-      fail(word->column, fmt::format("{}: a transformation may be active; TRAFOOF switches it off",
+      fail(word->column, fmt::format("{}: a transformation may be active; cancel it with TRAFOOF",
                                      siemens_axis_letter(a)));
     }
   }
@@ -71,7 +71,7 @@ class Motion {
 
   void check_line_words() const {
     if (block_.has_centre() || block_.CR || block_.TURN) {
-      fail(fmt::format("I, J, K, CR and TURN are for G2 and G3; G{} is in force", *state_.motion));
+      fail(fmt::format("I, J, K, CR and TURN are for G2 and G3; G{} is active", *state_.motion));
     }
     refuse_through_point(state_, block_, context_);
   }
@@ -136,7 +136,7 @@ class Motion {
   }
 
   void set_feed() {
-    if (!state_.feed_mode) fail("G93, G94 or G95 is not known");
+    if (!state_.feed_mode) fail("G93, G94 or G95 is unknown");
     if (!state_.F) fail("no feed is programmed since G93, G94 or G95");
     out_.feed_mode = *state_.feed_mode;
     if (out_.feed_mode == FeedMode::inverse_time) {
@@ -150,8 +150,7 @@ class Motion {
         std::any_of(moves_.begin() + 3, moves_.end(), [](bool b) { return b; });
     if (moves_linear && moves_rotary) {
       fail(
-          "linear and rotary axes together: settings decide which of them F counts; G93 does not "
-          "depend on them");
+          "linear and rotary axes together: settings determine which of them F refers to; use G93");
     }
     const bool has_linear =
         std::any_of(target_.is_used.begin(), target_.is_used.begin() + 3, [](bool b) { return b; });
@@ -161,9 +160,9 @@ class Motion {
   }
 
   double unit_of_feed() const {
-    if (!state_.units) fail("inch or metric is not known; G710 or G700 sets it");
+    if (!state_.units) fail("the unit system is unknown; program G710 or G700");
     if (!state_.units->is_of_feed && context_.rules.G71_leaves_F) {
-      fail("F counts in the basic unit of the control with G70 and G71; G700 and G710 set it");
+      fail("with G70 and G71 F is in the basic unit of the control; use G700 or G710");
     }
     return state_.units->length;
   }

@@ -108,16 +108,16 @@ class Reader {
     for (const SiemensGroup group : {SiemensGroup::frame, SiemensGroup::transformation}) {
       if (block_.has(group) && block_.words > 1) {
         fail(block_.code(group)->column,
-             fmt::format("{} needs a block of its own", block_.code(group)->name));
+             fmt::format("{} needs a separate block", block_.code(group)->name));
       }
     }
     if (block_.smoothing && block_.words > 1) {
-      fail(block_.smoothing->column, "CYCLE832 needs a block of its own");
+      fail(block_.smoothing->column, "CYCLE832 needs a separate block");
     }
     if (block_.has(SiemensGroup::dwell)) {
       const bool has_one = block_.F.has_value() != block_.S.has_value();
       if (!has_one || block_.words != 2) {
-        fail("G4 needs a block of its own, with F in seconds or S in revolutions");
+        fail("G4 needs a separate block, with F in seconds or S in revolutions");
       }
     }
     check_M();
@@ -135,23 +135,24 @@ class Reader {
     };
     if (of_group({0, 1, 2, 17, 30}) > 1 || of_group({3, 4, 5}) > 1 || of_group({7, 8, 9}) > 1 ||
         of_group({6}) > 1) {
-      fail(block_.M.back().column, "two M functions of one kind in one block");
+      fail(block_.M.back().column, "two M functions of one group in one block");
     }
     const bool has_T = block_.T || has_M(6);
     if (has_T && block_.words > (block_.T ? 1 : 0) + (has_M(6) ? 1 : 0) + (block_.D ? 1 : 0)) {
-      fail("a tool change needs a block of its own, with T, M6 and D only");
+      fail("a tool change needs a separate block, with T, M6 and D only");
     }
     if (!block_.moves()) return;
     for (const SiemensNumber& M : block_.M) {
       if (!is_stop(static_cast<int>(M.value)) && !is_end(static_cast<int>(M.value))) {
-        fail(M.column, fmt::format("M{} in a block with a motion: the builder decides whether it "
-                                   "acts before or after",
+        fail(M.column, fmt::format("M{} in a block with a motion: the machine builder defines "
+                                   "whether it acts before or after",
                                    M.value));
       }
     }
     if (block_.S) {
       fail(block_.S->column,
-           "S in a block with a motion: the builder decides whether it acts before or after");
+           "S in a block with a motion: the machine builder defines whether it acts before or "
+           "after");
     }
   }
 
@@ -189,7 +190,7 @@ class Reader {
   }
 
   double length_of(const SiemensNumber& word) const {
-    if (!state_.units) fail(word.column, "inch or metric is not known; G710 or G700 sets it");
+    if (!state_.units) fail(word.column, "the unit system is unknown; program G710 or G700");
     return word.value * state_.units->length;
   }
 
@@ -233,7 +234,8 @@ class Reader {
       seconds = block_.F->value;
     } else {
       if (!state_.S || *state_.S == 0.0 || !state_.direction || *state_.direction == 0) {
-        fail(block_.S->column, "G4 S counts revolutions, and the spindle is not known to turn");
+        fail(block_.S->column,
+             "G4 S counts revolutions, and the spindle is not known to be running");
       }
       seconds = block_.S->value * minute / *state_.S;
     }
@@ -248,10 +250,10 @@ class Reader {
     const bool changes_here = context_.settings.T_changes_tool ? block_.T.has_value() : is_M6;
     if (block_.D && !is_M6 && !context_.settings.T_changes_tool) {
       fail(block_.D->column,
-           "D with T and without M6: whether it is of the old or the new tool is not known");
+           "D with T and without M6: it is unknown whether it applies to the old or the new tool");
     }
     if (block_.T) state_.selected = block_.T->number;
-    if (is_M6 && !state_.selected) fail("M6 without T: the tool is not known");
+    if (is_M6 && !state_.selected) fail("M6 without T: the tool is unknown");
     if (changes_here) put_tool_in();
     if (changes_here || is_M6) forget_after_change();
     if (changes_here) add(ActionKind::tool).number = *state_.tool;
@@ -279,7 +281,7 @@ class Reader {
       // G96 would make it a cutting speed, and it is of the group of G93, G94 and G95.
       if (!state_.feed_mode)
         fail(block_.S->column,
-             "S needs a known G93, G94 or G95: with G96 it is no speed of rotation");
+             "S needs an active G93, G94 or G95: with G96 it is not a spindle speed");
       state_.S = block_.S->value;
     }
     if (has_switch) {
@@ -287,7 +289,7 @@ class Reader {
     } else if (!block_.S || state_.direction.value_or(0) == 0) {
       return;
     }
-    if (*state_.direction != 0 && !state_.S) fail("the spindle starts, and S is not known");
+    if (*state_.direction != 0 && !state_.S) fail("the spindle starts with an unknown S");
     MachineAction& action = add(ActionKind::spindle);
     action.direction = *state_.direction;
     action.value = action.direction == 0 ? 0.0 : *state_.S * rpm;

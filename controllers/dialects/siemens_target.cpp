@@ -18,7 +18,7 @@ void SiemensTarget::fail(int column, std::string message) const {
 
 double SiemensTarget::unit_of(int axis, int column) const {
   if (!is_linear_axis(axis)) return deg;
-  if (!state_.units) fail(column, "inch or metric is not known; G710 or G700 sets it");
+  if (!state_.units) fail(column, "the unit system is unknown; program G710 or G700");
   return state_.units->length;
 }
 
@@ -53,7 +53,7 @@ double SiemensTarget::angle_of(int a, SiemensForm form, double value) const {
 bool SiemensTarget::is_incremental(const SiemensNumber& word, char name) const {
   bool incremental = word.form == SiemensForm::incremental;
   if (word.form == SiemensForm::number) {
-    if (!state_.is_incremental) fail(word.column, "G90 or G91 is not known");
+    if (!state_.is_incremental) fail(word.column, "neither G90 nor G91 is known to be active");
     incremental = *state_.is_incremental;
   }
   if (incremental && frame_.is_of_machine()) {
@@ -67,13 +67,13 @@ bool SiemensTarget::is_incremental(const SiemensNumber& word, char name) const {
 double SiemensTarget::start_of_increment(int a, int column) const {
   const std::optional<double> start = frame_.program(state_.position, a);
   if (!start)
-    fail(column,
-         fmt::format("an increment from an unknown position of {}", siemens_axis_letter(a)));
+    fail(column, fmt::format("an incremental coordinate from an unknown position of {}",
+                             siemens_axis_letter(a)));
   const bool is_same = state_.frame_shift[place_of(a)] == frame_.offset(a) &&
                        state_.length_shift[place_of(a)] == frame_.length(a);
   if (!is_same && context_.rules.increment_needs_same_offset) {
     fail(column, fmt::format("an increment of {} after a new work offset or tool length: settings "
-                             "decide whether it carries that along",
+                             "determine whether the change is included",
                              siemens_axis_letter(a)));
   }
   return *start;
@@ -91,7 +91,7 @@ void SiemensTarget::complete_rotated_plane() {
 void SiemensTarget::add_start(int a) {
   const std::optional<double> start = frame_.program(state_.position, a);
   if (!start)
-    fail(block_.column, fmt::format("the position of {} is not known", siemens_axis_letter(a)));
+    fail(block_.column, fmt::format("the position of {} is unknown", siemens_axis_letter(a)));
   words[a] = *start;
   is_used[place_of(a)] = true;
 }

@@ -62,8 +62,9 @@ class LineReader {
     out.is_skippable = true;
     if (at_end() || !is_digit(now())) return;
     if (now() != '0') {
-      fail(at, fmt::format("/{}: skip level {} has a switch of its own; only that of / is known",
-                           now(), now()));
+      fail(at,
+           fmt::format("/{}: skip level {} has its own switch; only the switch of / is supported",
+                       now(), now()));
     }
     ++at_;
     if (!at_end() && is_digit(now())) fail(at, "skip levels are /0 ... /9");
@@ -107,7 +108,7 @@ class LineReader {
     SiemensWord word;
     const std::size_t begin = at_;
     word.column = static_cast<int>(begin) + 1;
-    if (!is_letter(now())) fail(at_, fmt::format("{} begins no word", shown(now())));
+    if (!is_letter(now())) fail(at_, fmt::format("{} does not start a word", shown(now())));
     word.name = read_name();
     const bool is_address = word.name.size() == 1;
     if (word.name == "F") skip_blanks();  // "F 100" [P] p. 108
@@ -124,7 +125,7 @@ class LineReader {
       word.value = read_number(word.name);
       refuse_extension(word, begin);
     } else if (is_now(':')) {
-      fail(begin, fmt::format("{}: labels and jumps are not read", word.name));
+      fail(begin, fmt::format("{}: labels and jumps are not supported", word.name));
     }
     return word;
   }
@@ -134,18 +135,18 @@ class LineReader {
     const std::size_t after = at_;
     skip_blanks();
     if (is_now('=')) {
-      fail(begin,
-           fmt::format("{}=: extended addresses are not read", line_.substr(begin, after - begin)));
+      fail(begin, fmt::format("{}=: extended addresses are not supported",
+                              line_.substr(begin, after - begin)));
     }
     at_ = after;
-    if (word.name == "N") fail(begin, "N is the block number and begins the block");
+    if (word.name == "N") fail(begin, "N is the block number and must start the block");
   }
 
   void read_value(SiemensWord& word) {
     skip_blanks();
     if (is_now('"')) {
       const std::size_t close = line_.find('"', at_ + 1);
-      if (close == std::string_view::npos) fail(at_, "the text has no closing quote");
+      if (close == std::string_view::npos) fail(at_, "the string has no closing quote");
       word.form = SiemensForm::text;
       word.text = line_.substr(at_ + 1, close - at_ - 1);
       at_ = close + 1;
@@ -156,7 +157,7 @@ class LineReader {
     word.value = read_number(word.name);
     skip_blanks();
     if (!at_end() && std::string_view("+-*/").find(now()) != std::string_view::npos) {
-      fail(at_, fmt::format("{}=: expressions are not read", word.name));
+      fail(at_, fmt::format("{}=: expressions are not supported", word.name));
     }
   }
 
@@ -167,7 +168,7 @@ class LineReader {
     while (!at_end() && (is_letter(now()) || is_digit(now()))) name += upper(line_[at_++]);
     if (name != "AC" && name != "IC") {
       fail(begin,
-           fmt::format("{}={}: plain numbers, AC(...) and IC(...) are read", word.name, name));
+           fmt::format("{}={}: only numbers, AC(...) and IC(...) are supported", word.name, name));
     }
     skip_blanks();
     if (!is_now('(')) fail(at_, fmt::format("{} needs a number in parentheses", name));

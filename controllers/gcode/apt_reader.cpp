@@ -31,14 +31,16 @@ class AptReader : ClReader {
       text.remove_prefix(std::min(end + 1, text.size()));
       if (goes_on && !text.empty()) continue;
       if (goes_on) {
-        guarded([&] { fail({line, 0}, "the last line ends with '$', but none follows"); });
+        guarded([&] {
+          fail({line, 0}, "the last line ends with the continuation '$', but no line follows");
+        });
       }
       guarded([&] { run(statement.trimmed(0, statement.text.size())); });
       statement.clear();
     }
     for (const auto& [word, skipped] : skipped_) {
       const int more = skipped.times - 1;
-      warn(skipped.first, fmt::format("{} is skipped{}", word,
+      warn(skipped.first, fmt::format("{} is ignored{}", word,
                                       more == 0   ? ""
                                       : more == 1 ? ", here and once more"
                                                   : fmt::format(", here and {} more times", more)));
@@ -123,9 +125,9 @@ class AptReader : ClReader {
   }
 
   [[noreturn]] void refuse_other_way(Spot at, std::string_view name) const {
-    fail(at, fmt::format("{} changes where the tool goes and is not supported; write the locations "
-                         "out as GOTO",
-                         name));
+    fail(at,
+         fmt::format("{} changes the tool path and is not supported; output GOTO locations instead",
+                     name));
   }
 
   void unknown(Spot at, const std::string& name) {
@@ -174,7 +176,7 @@ class AptReader : ClReader {
   }
 
   void unknown_minor(std::string_view major, const PlacedText& word) {
-    warn(word.spot(), fmt::format("'{}' of {} is skipped", word.text, major));
+    warn(word.spot(), fmt::format("'{}' of {} is ignored", word.text, major));
   }
 
   void go_to(Spot at, const Words& words) {
@@ -192,7 +194,7 @@ class AptReader : ClReader {
 
   double feed_at(Spot at) const {
     if (!per_revolution_) return feed_;
-    need(at, spindle_ > 0.0, "a feed per revolution needs the speed of the spindle (SPINDL)");
+    need(at, spindle_ > 0.0, "a feed per revolution needs a spindle speed (SPINDL)");
     return feed_ * spindle_;
   }
 
@@ -223,7 +225,7 @@ class AptReader : ClReader {
         std::array<std::string_view, kUnits.size()> names;
         std::transform(kUnits.begin(), kUnits.end(), names.begin(),
                        [](const Unit& one) { return one.name; });
-        fail(word.spot(), fmt::format("unknown unit '{}' of FEDRAT; there are: {}", word.text,
+        fail(word.spot(), fmt::format("unknown unit '{}' of FEDRAT; must be one of {}", word.text,
                                       fmt::join(names, ", ")));
       }
     }
@@ -233,7 +235,7 @@ class AptReader : ClReader {
   }
 
   void rapid(Spot at, const Words& words) {
-    need(at, words.empty(), "RAPID takes no words");
+    need(at, words.empty(), "RAPID does not accept parameters");
     rapid_ = true;
   }
 
@@ -260,7 +262,7 @@ class AptReader : ClReader {
       } else if (is(word, "SFM") || is(word, "SMM")) {
         fail(word.spot(), "a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
       } else if (const auto value = signed_number_in(word.text)) {
-        need(word.spot(), *value > 0.0, "the speed of the spindle must be > 0");
+        need(word.spot(), *value > 0.0, "the spindle speed must be > 0");
         spindle_ = *value * rpm;
       } else if (!is(word, "ON") && !is(word, "RPM")) {
         unknown_minor("SPINDL", word);
@@ -290,10 +292,10 @@ class AptReader : ClReader {
 
   void load_tool(Spot at, const Words& words) {
     constexpr double kMostTools = 99999.0;
-    need(at, !words.empty(), "LOADTL needs the number of a tool");
+    need(at, !words.empty(), "LOADTL needs a tool number");
     const double tool = number(words[0]);
     need(words[0].spot(), tool == std::floor(tool) && tool >= 1.0 && tool <= kMostTools,
-         "the number of a tool must be an integer >= 1 and <= 99999");
+         "the tool number must be an integer >= 1 and <= 99999");
     for (std::size_t i = 1; i < words.size(); ++i) unknown_minor("LOADTL", words[i]);
     add(MoveKind::tool, at).number = static_cast<int>(tool);
   }

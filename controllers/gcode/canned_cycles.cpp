@@ -154,14 +154,15 @@ void Interpreter::Machine::check_cycle() const {
   for (int i = kLinearJoints; i < kAxisWords; ++i) {
     if (has_axis(i)) {
       const char axis = letter(axis_at(i));
-      fail_at(axis, fmt::format("{} word with {}; rotary axes stand still in a cycle", axis, name));
+      fail_at(axis,
+              fmt::format("{} word with {}; rotary axes are not allowed in a cycle", axis, name));
     }
   }
   if (state_.feed_mode == FeedMode::inverse_time) {
     fail(chosen.column, fmt::format("{} under G93; a cycle needs G94 or G95", name));
   }
   if (state_.feed_linear == 0.0) {
-    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name));
+    fail(chosen.column, fmt::format("{} with zero feed; no F is active", name));
   }
   if (state_.tool_control == ToolControl::tool_axis) {
     fail(chosen.column, fmt::format("{} under G43.5; use G43.4 or G68.2", name));
@@ -176,9 +177,9 @@ double Interpreter::Machine::cycle_word(char letter, double kept, bool goes_on) 
   if (request().has(letter)) return request()[letter];
   const Request::Chosen& chosen = request().motion;
   if (!goes_on) {
-    fail(chosen.column, fmt::format("{} needs {}; none is kept from a {} before",
-                                    code_name('G', chosen.code->tenths), letter,
-                                    code_name('G', chosen.code->tenths)));
+    fail(chosen.column,
+         fmt::format("{} needs {}; no earlier {} has set it", code_name('G', chosen.code->tenths),
+                     letter, code_name('G', chosen.code->tenths)));
   }
   return kept;
 }
@@ -190,15 +191,16 @@ void Interpreter::Machine::check_cycle_spindle() const {
   if (!is_tapping(code) && code != 860 && code != 870 && code != 880) return;
   if (state_.spindle_direction == 0) {
     fail(chosen.column,
-         fmt::format("{} while the spindle stands still; start it with {}", code_name('G', code),
+         fmt::format("{} with the spindle stopped; start it with {}", code_name('G', code),
                      code == 840   ? "M3"
                      : code == 740 ? "M4"
                                    : "M3 or M4"));
   }
   if (state_.spindle_direction != wanted) {
     fail(chosen.column,
-         fmt::format("{} with the spindle turning {}; it needs {}", code_name('G', code),
-                     wanted > 0 ? "backwards (M4)" : "forwards (M3)", wanted > 0 ? "M3" : "M4"));
+         fmt::format("{} with the spindle running {}; it needs {}", code_name('G', code),
+                     wanted > 0 ? "counter-clockwise (M4)" : "clockwise (M3)",
+                     wanted > 0 ? "M3" : "M4"));
   }
 }
 
@@ -244,8 +246,8 @@ void Interpreter::Machine::require_known_level() {
   if (!state_.is_height_unknown) return;
   if (state_.is_incremental || !state_.retracts_to_r) {
     fail(request().motion.column,
-         "the cycle begins at a Z that depends on the length of the tool, which is unknown; name Z "
-         "before, or pass a tool table with --tools");
+         "the cycle starts at a Z that depends on the unknown tool length; program Z first, or "
+         "pass a tool table with --tools");
   }
   state_.is_height_unknown = false;
 }
@@ -263,7 +265,7 @@ double Interpreter::Machine::cycle_offsets(const CycleHole& hole, bool goes_on) 
 
 int Interpreter::Machine::cycle_repeats(const CycleHole& hole) const {
   const int repeats = request().has('L') ? integer('L') : 1;
-  if (repeats < 1) fail_at('L', fmt::format("L{}; a cycle is done at least once", repeats));
+  if (repeats < 1) fail_at('L', fmt::format("L{}; must be at least 1", repeats));
   const int code = request().motion_code();
   const double steps = (3.0 + cycle_step_count(code, hole)) * repeats;
   if (steps > kMostSteps) {
@@ -320,9 +322,10 @@ AxisWords Interpreter::Machine::confused_tap(const AxisWords& end) {
   out[n] = n == 0 ? end[second] : end[first];
   const Place place{file(), line(), request().motion.column};
   if (warnings_.empty() || warnings_.back().place != place) {
-    warnings_.push_back({place, fmt::format("{} outside of G17 moves to exchanged coordinates, as "
-                                            "LinuxCNC 2.9 does; tap in G17",
-                                            code_name('G', request().motion_code()))});
+    warnings_.push_back(
+        {place, fmt::format(
+                    "{} outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17",
+                    code_name('G', request().motion_code()))});
   }
   return out;
 }

@@ -70,23 +70,24 @@ class CsvReader : ClReader {
                                       [&](const Column& one) { return one.name == cell.text; });
       if (known == kColumns.end()) {
         fail(cell.spot(),
-             fmt::format("unknown column '{}'; there are: x, y, z (also x_mm, x_in), i, j, k, feed",
-                         cell.text));
+             fmt::format(
+                 "unknown column '{}'; must be one of x, y, z (also x_mm, x_in), i, j, k, feed",
+                 cell.text));
       }
       if (seen[known->value]) {
-        fail(cell.spot(), fmt::format("column {} a second time", kNames[known->value]));
+        fail(cell.spot(), fmt::format("column {} appears twice", kNames[known->value]));
       }
       seen[known->value] = true;
       columns_.push_back(*known);
     }
     for (std::size_t i = 0; i < kFeed; ++i) {
-      if (!seen[i]) fail(at, fmt::format("the header lacks the column {}", kNames[i]));
+      if (!seen[i]) fail(at, fmt::format("the header lacks column {}", kNames[i]));
     }
   }
 
   void location(const std::vector<PlacedText>& cells, Spot at) {
     if (cells.size() != columns_.size()) {
-      fail(at, fmt::format("{} values; the header names {}", cells.size(), columns_.size()));
+      fail(at, fmt::format("{} values; the header has {}", cells.size(), columns_.size()));
     }
     std::array<double, kValues> values{};
     Spot axis, feed;

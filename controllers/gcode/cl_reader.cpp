@@ -71,7 +71,7 @@ Eigen::Vector3d ClReader::unit_axis(const Eigen::Vector3d& k, Spot spot) {
 
 ClData ClReader::finish() {
   if (faults_.empty() && out_.locations() == 0) {
-    faults_.push_back({{file_}, "holds no cutter location"});
+    faults_.push_back({{file_}, "contains no cutter location"});
   }
   std::stable_sort(
       out_.warnings.begin(), out_.warnings.end(), [](const Warning& a, const Warning& b) {

@@ -55,7 +55,7 @@ double sweep_of(const Vector2d& begin, const Vector2d& end, const Vector2d& cent
 
 std::string tool_too_large(double arc_radius, const Cutter& cutter) {
   return fmt::format(
-      "the tool does not fit inside the arc: radius {:.4f} mm, that of the arc {:.4f} mm",
+      "the tool does not fit inside the arc: tool radius {:.4f} mm, arc radius {:.4f} mm",
       cutter.radius / mm, arc_radius / mm);
 }
 
@@ -150,7 +150,7 @@ Compensated entry_move(const Cutter& cutter, const PlaneMove& programmed) {
   if (distance <= cutter.radius) {
     return {{},
             fmt::format("the first move with cutter compensation is {:.4f} mm long; must be longer "
-                        "than the radius of the tool, {:.4f} mm",
+                        "than the tool radius, {:.4f} mm",
                         distance / mm, cutter.radius / mm)};
   }
   const Vector2d to_tool = to_tool_at_end(cutter, programmed);
@@ -171,7 +171,7 @@ Compensated entry_move(const Cutter& cutter, const PlaneMove& programmed) {
   const Vector2d chord = tool - held.end;
   const double cosine = chord.normalized().dot(ray);
   if (std::abs(cosine) < kLeastEntryCosine) {
-    return {held, "no arc leads from where the tool stands to the end of the programmed one"};
+    return {held, "no arc connects the tool position with the end of the programmed arc"};
   }
   held.centre = held.end + chord.norm() / (2.0 * cosine) * ray;
   held.sweep = sweep_of(tool, held.end, held.centre, held.turns);
@@ -225,8 +225,8 @@ std::string move_end(HeldMove& move, const std::optional<Vector2d>& begin, const
     const double before = (move.end - move.centre).norm(), after = (end - move.centre).norm();
     if (std::abs(before - after) > tolerance.radius) {
       return fmt::format(
-          "the compensated arc would have radius {:.4f} mm, but {:.4f} mm at its end", before / mm,
-          after / mm);
+          "the compensated arc would have radius {:.4f} mm at its start, but {:.4f} mm at its end",
+          before / mm, after / mm);
     }
     if (begin && std::abs(sweep_of(*begin, end, move.centre, move.turns)) >
                      std::abs(move.sweep) + tolerance.sweep) {

@@ -27,7 +27,7 @@ void Interpreter::Machine::refuse_code(Group group) const {
   const Request::Chosen& chosen = request().of(group);
   if (chosen.code == nullptr) return;
   const char letter = group >= Group::m_input_output ? 'M' : 'G';
-  fail(chosen.column, fmt::format("{} with cutter compensation on; G40 first",
+  fail(chosen.column, fmt::format("{} with cutter compensation active; G40 first",
                                   code_name(letter, chosen.code->tenths)));
 }
 
@@ -39,7 +39,7 @@ void Interpreter::Machine::refuse_codes_under_compensation() {
   const int code = request().code(Group::g_non_modal);
   if (code == 921 || code == 922 || code == 923) {
     warn(request().of(Group::g_non_modal).column,
-         fmt::format("{} has no effect while cutter compensation is on", code_name('G', code)));
+         fmt::format("{} has no effect while cutter compensation is active", code_name('G', code)));
     request_.codes[static_cast<std::size_t>(Group::g_non_modal)] = {};
   }
   const bool sets_active_system =
@@ -51,7 +51,7 @@ void Interpreter::Machine::refuse_codes_under_compensation() {
   const int motion_code = request().motion_code();
   if (motion_code > 30) {
     fail(request().motion.column,
-         fmt::format("{} with cutter compensation on; G40 first", code_name('G', motion_code)));
+         fmt::format("{} with cutter compensation active; G40 first", code_name('G', motion_code)));
   }
 }
 
@@ -63,7 +63,7 @@ void Interpreter::Machine::start_compensation() {
     fail(chosen.column, fmt::format("{} in the YZ plane; must be in G17 or G18", name));
   }
   if (compensation.is_on) {
-    fail(chosen.column, fmt::format("{} with cutter compensation on; G40 first", name));
+    fail(chosen.column, fmt::format("{} with cutter compensation active; G40 first", name));
   }
   if (state_.tool_control != ToolControl::none) {
     fail(chosen.column, fmt::format("{} under tool-centre-point control; G49 first", name));
@@ -214,14 +214,14 @@ void Interpreter::Machine::tell_of_entry(const PlaneMove& path, const Corner& fo
       found.kind == CornerKind::concave ? found.point : state_.in_plane(state_.position);
   const double distance = (point_beside_begin(compensation.cutter, path) - here).norm();
   constexpr double kSame = 1e-6;  // m
-  constexpr std::string_view kText =
-      "the entry of cutter compensation is read as LinuxCNC makes it";
+  constexpr std::string_view kText = "the entry of cutter compensation follows LinuxCNC";
   if (distance < kSame || !noted_.insert(std::string(kText)).second) return;
-  warn(request().motion.column,
-       fmt::format("{}: the tool ends line {} {:.4f} mm from where Fanuc and Haas end it, beside "
-                   "the start of the next move (or by two moves: parameter 5003, setting 43); an "
-                   "entry that goes on in a straight line is the same for all",
-                   kText, compensation.queue.front().move.line, distance / mm));
+  warn(
+      request().motion.column,
+      fmt::format("{}: the tool ends line {} {:.4f} mm away from where Fanuc and Haas end it, next "
+                  "to the start of the next move (or within two moves: parameter 5003, setting "
+                  "43); an entry followed by a move in the same direction is the same for all",
+                  kText, compensation.queue.front().move.line, distance / mm));
 }
 
 // Around a convex corner, which is of no length in the program. Rotary axes turn here, the axis

@@ -86,10 +86,9 @@ void Interpreter::Machine::count_jump() {
   const bool is_endless =
       ++flow_.jumps > setup_.most_jumps || flow_.lines > kLinesOfATurn * setup_.most_jumps;
   if (!is_endless) return;
-  fail(
-      block_.o_word.column,
-      fmt::format("{} turns of loops and calls of subroutines, {} lines; the program seems endless",
-                  flow_.jumps, flow_.lines));
+  fail(block_.o_word.column,
+       fmt::format("{} loop iterations and subroutine calls, {} lines; the program looks endless",
+                   flow_.jumps, flow_.lines));
 }
 
 Label& Interpreter::Machine::new_label(const std::string& name, Flow flow) {
@@ -166,8 +165,8 @@ void Interpreter::Machine::begin_subroutine(const std::string& name, const OWord
   if (known != flow_.labels.end()) {
     fail(o.column,
          known->second.place == here_
-             ? fmt::format("the program runs into O<{}>, which it has called before", name)
-             : fmt::format("O<{}> is defined before, in line {}", name,
+             ? fmt::format("the program runs into O<{}>, which it has already called", name)
+             : fmt::format("O<{}> is already defined in line {}", name,
                            known->second.place.mark.line + 1));
   }
   new_label(name, o.flow);
@@ -183,7 +182,7 @@ void Interpreter::Machine::keep_result(const OWord& o) {
 // As LinuxCNC: a definition that is passed over leaves its result, too.
 void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& o) {
   if (flow_.calls.empty()) {
-    if (!flow_.defining) fail(o.column, fmt::format("no subroutine O<{}> is begun here", name));
+    if (!flow_.defining) fail(o.column, fmt::format("no subroutine O<{}> starts here", name));
     const Forgiving forgiving(parameters_);
     keep_result(o);
     if (o.flow != Flow::endsub) return;
@@ -218,7 +217,7 @@ void Interpreter::Machine::leave_call() {
 
 void Interpreter::Machine::call_subroutine(const std::string& name, const OWord& o) {
   if (o.arguments.size() > kArguments) {
-    fail(o.column, fmt::format("{} arguments; a subroutine takes at most {}", o.arguments.size(),
+    fail(o.column, fmt::format("{} arguments; a subroutine accepts at most {}", o.arguments.size(),
                                kArguments));
   }
   std::array<double, kArguments> arguments{};
@@ -259,7 +258,7 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
 void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
                                       const LinePlace& return_to) {
   if (flow_.calls.size() == kMostCalls) {
-    fail(o.column, fmt::format("more than {} subroutines called by each other", kMostCalls));
+    fail(o.column, fmt::format("subroutine calls nested deeper than {}", kMostCalls));
   }
   count_jump();
   Call call;

@@ -34,14 +34,14 @@ Label& Interpreter::Machine::same_label(const std::string& name, Flow flow) {
   if (found == flow_.labels.end()) return new_label(name, flow);
   if (found->second.place == here_) return found->second;
   fail(block_.o_word.column,
-       fmt::format("label used before, in line {}, for {}", found->second.place.mark.line + 1,
+       fmt::format("label already used in line {} for {}", found->second.place.mark.line + 1,
                    name_of(found->second.flow)));
 }
 
 Label& Interpreter::Machine::known_label(const std::string& name, const OWord& o) {
   const auto found = flow_.labels.find(name);
   if (found != flow_.labels.end()) return found->second;
-  fail(o.column, fmt::format("O{} is not begun anywhere before", label_text(o)));
+  fail(o.column, fmt::format("O{} has no matching start before this line", label_text(o)));
 }
 
 void Interpreter::Machine::repeat(const std::string& name, const OWord& o) {
@@ -87,7 +87,7 @@ void Interpreter::Machine::branch(const std::string& name, const OWord& o) {
   }
   const Label& label = known_label(name, o);
   if (label.flow != Flow::if_) {
-    fail(o.column, fmt::format("O{} is no IF but {}, in line {}", label_text(o),
+    fail(o.column, fmt::format("O{} is not an IF but {}, in line {}", label_text(o),
                                name_of(label.flow), label.place.mark.line + 1));
   }
   // behind ENDIF an IF around this one was taken
@@ -104,7 +104,7 @@ void Interpreter::Machine::branch(const std::string& name, const OWord& o) {
 void Interpreter::Machine::leave_loop(const std::string& name, const OWord& o) {
   const Label& label = known_label(name, o);
   if (label.flow != Flow::while_ && label.flow != Flow::do_) {
-    fail(o.column, fmt::format("O{} is no WHILE and no DO but {}, in line {}", label_text(o),
+    fail(o.column, fmt::format("O{} is neither a WHILE nor a DO but {}, in line {}", label_text(o),
                                name_of(label.flow), label.place.mark.line + 1));
   }
   if (flow_.skip_to && o.flow == Flow::continue_) return;
@@ -116,7 +116,7 @@ void Interpreter::Machine::end_loop(const std::string& name, const OWord& o) {
   const Label& label = known_label(name, o);
   const Flow wanted = o.flow == Flow::endwhile ? Flow::while_ : Flow::repeat;
   if (label.flow != wanted) {
-    fail(o.column, fmt::format("O{} is no {} but {}, in line {}", label_text(o),
+    fail(o.column, fmt::format("O{} is not {} but {}, in line {}", label_text(o),
                                wanted == Flow::while_ ? "WHILE" : "REPEAT", name_of(label.flow),
                                label.place.mark.line + 1));
   }

@@ -209,9 +209,8 @@ const ToolEntry& Interpreter::Machine::tool_named(char letter, int number) const
     }
     fail_at(letter,
             setup_.tools.empty()
-                ? fmt::format("{}{}: no tool is known; a tool table says them", letter, number)
-                : fmt::format("{}{}: no such tool in the tool table of {} tools", letter, number,
-                              setup_.tools.size()));
+                ? fmt::format("{}{} is not defined; pass a tool table with --tools", letter, number)
+                : fmt::format("{}{} is not in the tool table", letter, number));
   }
   return *tool;
 }

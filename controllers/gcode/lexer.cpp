@@ -83,7 +83,7 @@ void check_characters(std::string_view line, const std::string& file, int number
       case kForbidden:
         fail(i, fmt::format("{} is not allowed outside comments{}", shown(line[i]),
                             number == 1 && i == 0 && is_of_utf_16(line[i])
-                                ? "; the file seems to be UTF-16: save it as UTF-8"
+                                ? "; the file looks like UTF-16: save it as UTF-8"
                                 : ""));
         break;
       default:

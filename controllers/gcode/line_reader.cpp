@@ -387,8 +387,8 @@ void LineReader::parse(std::string_view& line, const std::string& file, int numb
     if (!language.empty()) throw InputError({file, number, column}, language);
     if (other.applied.empty() && line.starts_with("//")) {
       throw InputError({file, number, column},
-                       "'//' before words: a comment for some controls, a block that the operator "
-                       "may skip for others; write ( ) or ;");
+                       "'//' before words: a comment on some controls, an optional block on "
+                       "others; use ( ) or ;");
     }
     if (other.applied.empty()) throw;
     tolerant_ = std::move(other);

@@ -15,7 +15,7 @@ constexpr long kEnd = 5001, kMachine = 5021, kCurrent = 5041, kExternalOffset = 
                kLastOffset = 5326;
 
 constexpr const char* kNoOffset =
-    "the work offset is not given; --work-offset (other than 0) or --parameter-file names it";
+    "the work offset is unknown; set it with --work-offset (other than 0) or --parameter-file";
 
 // An offset that nobody has given is 0 here, and somewhere else on the machine.
 bool is_offset_known(const Parameters& parameters, const std::map<int, double>& stored,
@@ -29,8 +29,8 @@ bool is_offset_known(const Parameters& parameters, const std::map<int, double>& 
 }
 
 constexpr std::string_view kOtherArithmetic =
-    "FIX, FUP, ATAN and MOD are read as LinuxCNC has them; Fanuc and Haas differ for numbers below "
-    "0 and in the range of angles; choose with --reader";
+    "FIX, FUP, ATAN and MOD follow LinuxCNC; Fanuc and Haas differ for negative numbers and in the "
+    "range of angles; choose with --reader";
 
 bool differs(OpCode code) {
   constexpr std::array kCodes = {OpCode::fix, OpCode::fup, OpCode::atan, OpCode::modulo};
@@ -61,8 +61,8 @@ void Interpreter::Machine::note_other_arithmetic() {
     const bool is_given = assigned_.contains(number) || setup_.stored.contains(number) ||
                           setup_.parameters.contains(fmt::format("#{}", number));
     if (is_given) continue;
-    note(op.column, fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, with its "
-                                "word left out (Fanuc, Haas); choose with --reader",
+    note(op.column, fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, so that "
+                                "its word is omitted (Fanuc, Haas); choose with --reader",
                                 number));
   }
 }
@@ -78,11 +78,11 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
   const Axis one = axis_at(static_cast<int>(axis));
   const bool needs_length = one == Axis::Z || first == kMachine;
   if (needs_length && (state_.is_height_unknown || state_.is_length_unknown)) {
-    why = "it depends on the length of the tool, which is unknown; pass a tool table with --tools";
+    why = "it depends on the unknown tool length; pass a tool table with --tools";
     return std::nullopt;
   }
   if (first != kEnd && state_.compensation.is_on) {
-    why = "cutter compensation is on: it is not known yet; G40 first";
+    why = "cutter compensation is active: it is not known yet; G40 first";
     return std::nullopt;
   }
   if (first == kMachine && !is_offset_known(parameters_, setup_.stored, state_.work_system)) {
@@ -90,7 +90,7 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
     return std::nullopt;
   }
   if (first == kCurrent && state_.tool_offset != AxisWords::Zero()) {
-    why = "controls differ in whether the tool length is in it; read #5001 and up";
+    why = "whether it includes the tool length differs between controls; read #5001 and up";
     return std::nullopt;
   }
   const AxisWords at = first == kMachine ? machine_now(0) : state_.programmed();
@@ -103,8 +103,8 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
   if (number == 4001 && state_.motion <= 30) return code(state_.motion / 10);
   if (number == 4001 && state_.motion == 800) {
     why =
-        "no G0, G1, G2 or G3 stands before it: which is in force then is set in the control "
-        "(Fanuc, parameter 3402#0); write one";
+        "no G0, G1, G2 or G3 precedes it: the active one is a control setting (Fanuc, parameter "
+        "3402#0); program one";
   }
   if (number == 4008) return code(state_.tool_offset_number > 0 ? 43 : 49);
   if (number == 4009) return code(state_.motion > 30 ? state_.motion / 10 : 80);
@@ -130,7 +130,7 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
       why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader";
     }
   }
-  if (why.empty()) why = "it is not kept here";
+  if (why.empty()) why = "it is not tracked here";
   return std::nullopt;
 }
 
@@ -144,7 +144,7 @@ std::optional<double> Interpreter::Machine::macro_tool_length(long number, std::
   const int tool = static_cast<int>(number - (is_haas ? kHaas : kFanuc) + 1);
   const ToolEntry* entry = setup_.tools.entry_of(tool);
   if (entry == nullptr) {
-    why = fmt::format("the length of tool {} is not known; pass a tool table with --tools", tool);
+    why = fmt::format("the length of tool {} is unknown; pass a tool table with --tools", tool);
     return std::nullopt;
   }
   return entry->offset[2] / state_.unit;

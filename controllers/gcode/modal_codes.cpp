@@ -59,7 +59,7 @@ void Interpreter::Machine::tool_length() {
   if (state_.controls_tip() && at_start != nullptr &&
       at_start->offset != tool_named('H', state_.tool_offset_number).offset) {
     fail(column, fmt::format("{}: G10 has changed T{}; tool-centre-point control and tilted planes "
-                             "need the offset of the tool table",
+                             "need the offset from the tool table",
                              code_name('G', code), state_.tool_offset_number));
   }
   if (state_.plane && state_.tool_offset_number == kOtherToolOffset) {

@@ -151,20 +151,20 @@ struct Refusal {
 };
 
 constexpr auto kGRefusals = std::to_array<Refusal>({
-    {50, 53, "splines are not interpolated here; post them as short lines or arcs"},
-    {70, 80, "diameter and radius mode belong to turning, and the machines here mill"},
-    {330, 331, "the axes cannot follow the angle of a spindle, which is not simulated"},
-    {700, 722, "turning cycles belong to lathes, and the machines here mill"},
-    {760, 760, "threading belongs to lathes, and the machines here mill"},
-    {960, 960, "constant surface speed belongs to turning; give the speed with G97 S"},
+    {50, 53, "splines are not interpolated here; post-process them to short lines or arcs"},
+    {70, 80, "diameter and radius mode are for turning; this is a milling simulator"},
+    {330, 331, "the spindle angle is not simulated, so the axes cannot follow it"},
+    {700, 722, "turning cycles are for lathes; this is a milling simulator"},
+    {760, 760, "threading is for lathes; this is a milling simulator"},
+    {960, 960, "constant surface speed is for turning; program the speed with G97 S"},
 });
 
 constexpr auto kMRefusals = std::to_array<Refusal>({
-    {190, 190, "the angle of the spindle is not simulated, so it cannot be oriented"},
+    {190, 190, "the spindle angle is not simulated, so it cannot be oriented"},
     {610, 610, "renames the tool in the spindle by hand; use T and M6"},
-    {620, 650, "switches outputs of the control, and none are simulated"},
-    {660, 660, "waits for an input of the control, and none are simulated"},
-    {670, 680, "sets analog outputs of the control, and none are simulated"},
+    {620, 650, "switches outputs of the control, which are not simulated"},
+    {660, 660, "waits for an input of the control, which is not simulated"},
+    {670, 680, "sets analog outputs of the control, which are not simulated"},
 });
 
 constexpr bool by_tenths(const Code& a, const Code& b) { return a.tenths < b.tenths; }

@@ -93,10 +93,10 @@ void Interpreter::Machine::require_feed() const {
       fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name()));
     }
   } else if (state_.feed_linear == 0.0) {
-    fail(chosen.column, fmt::format("{} with zero feed; no F is in force", name()));
+    fail(chosen.column, fmt::format("{} with zero feed; no F is active", name()));
   } else if (state_.feed_mode == FeedMode::units_per_revolution && state_.spindle_speed == 0.0) {
     fail(chosen.column,
-         fmt::format("{} under G95 with zero spindle speed; no S is in force", name()));
+         fmt::format("{} under G95 with zero spindle speed; no S is active", name()));
   }
 }
 
@@ -210,7 +210,7 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
 void Interpreter::Machine::arc() {
   require_feed();
   if (state_.compensation.refuses_arc) {
-    fail(request().motion.column, fmt::format("{} is the first move behind G40; must be G0 or G1",
+    fail(request().motion.column, fmt::format("{} is the first move after G40; must be G0 or G1",
                                               code_name('G', request().motion_code())));
   }
   if (state_.tool_control == ToolControl::tool_axis) {

@@ -8,7 +8,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr std::string_view kUnknownHeight =
-    "Z depends on the length of the tool, which is unknown; pass a tool table with --tools";
+    "Z depends on the unknown tool length; pass a tool table with --tools";
 
 }  // namespace
 

@@ -57,8 +57,7 @@ std::string corner_refusal(std::string_view line) {
   if (comma == std::string_view::npos) return {};
   const bool is_round = upper(line[comma + 1]) == 'R';
   return fmt::format(
-      "',{}' {} the corner to the next move (Fanuc, Haas), which is not read; "
-      "write the {}",
+      "',{}' {} the corner to the next move (Fanuc, Haas), which is not supported; program the {}",
       is_round ? 'R' : 'C', is_round ? "rounds" : "chamfers", is_round ? "arc" : "line");
 }
 
@@ -85,13 +84,13 @@ std::string text_refusal(std::string_view line) {
     if (text == std::string_view::npos || !is_letter(line[text])) continue;
     if (text + 1 < line.size() && !is_letter(line[text + 1]) && line[text + 1] != ' ') continue;
     return fmt::format(
-        "{} shows a text (Marlin, Duet, Carvera), which is not read without brackets; take the "
-        "line out, or write (MSG, ...)",
+        "{} displays a text (Marlin, Duet, Carvera), which needs brackets here; remove the line, "
+        "or use (MSG, ...)",
         code);
   }
   if (line.find('"') == std::string_view::npos) return {};
-  return "a text in quotes is of RepRapFirmware or Siemens; programs in G-code are read here: take "
-         "the line out if it moves nothing";
+  return "a string in quotes is RepRapFirmware or Siemens syntax; only G-code is supported: remove "
+         "the line if it causes no motion";
 }
 
 // G47 P0 (TEXT) X1. Y1. ... E10.
@@ -168,30 +167,27 @@ std::string siemens_program(ProgramText& text) {
     text.rewind();
   }
   if (!is_named) return {};
-  return "this is a Siemens program; programs in G-code are read here: let the post-processor "
-         "write "
-         "for Fanuc or LinuxCNC, or, where the program has no word of Siemens' own, name the "
-         "control "
-         "whose rules it follows with --reader";
+  return "this is a Siemens program, and only G-code is supported: post-process for Fanuc or "
+         "LinuxCNC, or, if the program has no Siemens-specific words, choose the control with "
+         "--reader";
 }
 
 std::string other_language(std::string_view line, int column) {
   if (line.starts_with("//")) return {};  // a comment, or a block that may be skipped
   if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
   if (line.starts_with('$') && !is_report_request(line)) {
-    return fmt::format(
-        "'{}' is a command of a sender to grbl or TinyG, no block; take the line out",
-        line.front());
+    return fmt::format("'{}' is a sender command for grbl or TinyG, not a block; remove the line",
+                       line.front());
   }
   for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
     if (contains_word(line, word)) {
-      return fmt::format("'{}' is Heidenhain conversational; --reader heidenhain reads it", word);
+      return fmt::format("'{}' is Heidenhain conversational; use --reader heidenhain", word);
     }
   }
   // %x0=posx assigns, [x0] reads: cncjs, release notes of v1.9.4, "New macro variables"
   if (const std::string_view name = assigned_name(line); line.starts_with('%') && !name.empty()) {
     return fmt::format(
-        "'%{}=' is a variable of the sender cncjs, which replaces it while it streams; write its "
+        "'%{}=' is a variable of the sender cncjs, which substitutes it while streaming; write its "
         "value",
         name);
   }
@@ -202,23 +198,18 @@ std::string other_language(std::string_view line, int column) {
         assigned_name(line));
   }
   if (const std::string word = siemens_word(line); !word.empty()) {
-    return fmt::format("'{}' is a word of Siemens' language; programs in G-code are read here",
-                       word);
+    return fmt::format("'{}' is a Siemens word; only G-code is supported", word);
   }
   for (const std::string_view word : {"GOTO", "IF", "WHILE", "END", "THEN"}) {
     const std::size_t first = line.find_first_not_of("/N0123456789 \t");
     if (first == std::string_view::npos || line.find(word) != first) continue;
     if (is_letter(line[std::min(first + word.size(), line.size() - 1)])) continue;
-    return fmt::format(
-        "'{}' is a statement of Fanuc's macro language; LinuxCNC's O-words are read "
-        "here",
-        word);
+    return fmt::format("'{}' is a Fanuc macro statement; only LinuxCNC O-words are supported here",
+                       word);
   }
   if (const std::string_view name = called_name(line); !name.empty()) {
     return fmt::format(
-        "'{}(...)' is a word of Siemens' language or of a machine's builder; programs in G-code "
-        "are read here",
-        name);
+        "'{}(...)' is a word of Siemens or of the machine builder; only G-code is supported", name);
   }
   if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;
   if (std::string text = text_refusal(line); !text.empty()) return text;
@@ -227,8 +218,8 @@ std::string other_language(std::string_view line, int column) {
   if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
       (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
     if (is_engraving(line)) {
-      return "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
-             "write their moves";
+      return "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
+             "output the moves";
     }
     return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
            "work offset (Fadal); programs for milling are read here, with G54 ... G59";

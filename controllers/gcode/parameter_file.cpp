@@ -43,8 +43,8 @@ class ParameterLines {
     std::size_t at = start;
     int number = 0;
     if (!read(line, at, number) || (at < line.size() && kBlanks.find(line[at]) == kBlanks.npos)) {
-      return fault(start,
-                   fmt::format("must begin with a parameter number in 1 ... {}", parameter::kLast));
+      return fault(
+          start, fmt::format("must start with a parameter number from 1 to {}", parameter::kLast));
     }
     if (number < 1 || number > parameter::kLast) {
       return fault(
@@ -52,7 +52,7 @@ class ParameterLines {
     }
     if (number <= last_) {
       return fault(start,
-                   fmt::format("parameter {} behind {}; the numbers must increase", number, last_));
+                   fmt::format("parameter {} after {}; the numbers must increase", number, last_));
     }
     last_ = number;
     read_value(line, skip_blanks(line, at), number);
@@ -75,14 +75,15 @@ class ParameterLines {
     }
     const std::size_t rest = skip_blanks(line, at);
     if (rest < line.size() && kRemarks.find(line[rest]) == kRemarks.npos) {
-      return fault(rest,
-                   fmt::format("'{}' behind the value of parameter {}", line.substr(rest), number));
+      return fault(rest, fmt::format("unexpected '{}' after the value of parameter {}",
+                                     line.substr(rest), number));
     }
     if (number == parameter::kWorkSystem &&
         (value != std::floor(value) || value < 1.0 || value > kWorkSystems)) {
-      return fault(start, fmt::format("parameter {} = {}, the work system in force; must be an "
-                                      "integer in 1 ... {}",
-                                      number, value, kWorkSystems));
+      return fault(
+          start,
+          fmt::format("parameter {} = {}, the active work offset; must be an integer from 1 to {}",
+                      number, value, kWorkSystems));
     }
     stored_[number] = value;
   }
@@ -109,7 +110,7 @@ std::map<int, double> parse_parameter_file(std::string_view text, const std::str
   }
   std::map<int, double> stored = lines.result();
   if (stored.empty() && !is_empty) {
-    throw InputError({file}, "holds no parameter, a number and its value in a line");
+    throw InputError({file}, "contains no parameter; expected a number and its value per line");
   }
   return stored;
 }

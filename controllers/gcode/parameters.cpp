@@ -36,8 +36,7 @@ double modulo(double a, double b) {
 
 double power(double a, double b, const Place& place) {
   if (a < 0.0 && b != std::floor(b)) {
-    fail(place,
-         fmt::format("{} ** {}: a negative number has no power that is not an integer", a, b));
+    fail(place, fmt::format("{} ** {}: a negative number needs an integer exponent", a, b));
   }
   return std::pow(a, b);
 }
@@ -106,9 +105,8 @@ void refuse_other_logic(OpCode code, double a, double b, double logical, const P
   const std::string_view name = code == OpCode::logical_and  ? "AND"
                                 : code == OpCode::logical_or ? "OR"
                                                              : "XOR";
-  const std::string other =
-      bits ? fmt::format("{:g} of their bits", *bits)
-           : std::string("nothing, since only whole numbers from 0 on have bits");
+  const std::string other = bits ? fmt::format("{:g} of their bits", *bits)
+                                 : std::string("nothing, since only integers >= 0 have bits");
   fail(place,
        fmt::format("{:g} {} {:g}: {:g} as conditions (LinuxCNC), or {} (Fanuc, Haas); choose "
                    "with --reader",

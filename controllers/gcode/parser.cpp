@@ -72,7 +72,7 @@ void Parser::parse(std::string_view line, const std::string& file, int number, B
   const std::size_t start = cursor_.at();
   if (accept("%")) {
     if (!cursor_.at_end()) {
-      fail(start, "'%' must stand alone on its line, first and last in the program");
+      fail(start, "'%' must be alone on its line, first and last in the program");
     }
     block.percent = true;
     return add_piece(PieceKind::percent, start);
@@ -90,7 +90,7 @@ void Parser::line_number() {
   if (!is_digit(peek())) fail(start, "N must be followed by an unsigned number");
   skip_digits();
   if (accept(".")) {
-    if (!is_digit(peek())) fail_here("a digit is expected behind the point of N");
+    if (!is_digit(peek())) fail_here("expected a digit after the decimal point of N");
     skip_digits();
   }
   add_piece(PieceKind::line_number, start);
@@ -107,7 +107,7 @@ void Parser::item() {
   if (c == '#') return assignment();
   if (c == 'N') fail_here("N is only allowed at the start of a block");
   if (c == 'O') fail_here("an O-word must be the first word of its block");
-  if (c == '%') fail_here("'%' must stand alone on its line, first and last in the program");
+  if (c == '%') fail_here("'%' must be alone on its line, first and last in the program");
   fail_here(fmt::format("unexpected {}; a word starts with one of {}", shown(c), kLetters));
 }
 
@@ -158,7 +158,8 @@ void Parser::assignment() {
   } else {
     assignment.index = value("#");
   }
-  if (!accept("=")) fail_here(fmt::format("'=' expected after a parameter, not {}", shown(peek())));
+  if (!accept("="))
+    fail_here(fmt::format("expected '=' after a parameter, found {}", shown(peek())));
   assignment.value = value("=");
   block_->assignments.push_back(assignment);
   add_piece(PieceKind::assignment, start);

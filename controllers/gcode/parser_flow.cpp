@@ -101,7 +101,7 @@ void Parser::value_of_flow(OWord& o, std::string_view keyword) {
   const bool may_have_value = needs_value || o.flow == Flow::return_ || o.flow == Flow::endsub;
   o.value_column = column();
   if (needs_value && peek() != '[') {
-    fail_here(fmt::format("'[' expected after {}, not {}", keyword, shown(peek())));
+    fail_here(fmt::format("expected '[' after {}, found {}", keyword, shown(peek())));
   }
   if (!may_have_value || peek() != '[') return;
   o.has_value = true;
@@ -125,7 +125,7 @@ void Parser::arguments(OWord& o, std::size_t start) {
 void Parser::only_comments(std::string_view keyword) {
   while (!cursor_.at_end()) {
     if (peek() != '(' && peek() != ';') {
-      fail_here(fmt::format("unexpected {} after {}; an O-word stands alone in its block",
+      fail_here(fmt::format("unexpected {} after {}; an O-word needs a separate block",
                             shown(peek()), keyword));
     }
     comment();
@@ -159,7 +159,7 @@ void Parser::subprogram_call(OWord& o) {
     has_P = has_P || word.letter == 'P';
     o.has_value = o.has_value || word.letter == 'L';
   }
-  if (!has_P) fail(start, "M98 needs a P word, the number of a subprogram");
+  if (!has_P) fail(start, "M98 needs a P word (subprogram number)");
 }
 
 }  // namespace servomill::controllers

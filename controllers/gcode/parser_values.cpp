@@ -134,7 +134,7 @@ double Parser::number(std::string_view what) {
     count += decimals;
   }
   if (count == 0) {
-    fail(start, fmt::format("a value is expected after {}, not {}", what, shown(peek())));
+    fail(start, fmt::format("expected a value after {}, found {}", what, shown(peek())));
   }
   if (peek() == '.') fail_here("a second decimal point in one number");
   if (count <= kMostDigits) {
@@ -183,23 +183,23 @@ void Parser::function(std::string_view what) {
     if (f.name == name) found = &f;
   }
   if (found == nullptr && name.size() == 1) {  // the letter of the next word
-    fail(start, fmt::format("a value is expected after {}, not the word {}", what, name));
+    fail(start, fmt::format("expected a value after {}, found the word {}", what, name));
   }
   if (found == nullptr) {
     fail(start, fmt::format("unknown function '{}'{}", name, did_you_mean(name, kFunctionNames)));
   }
-  if (peek() != '[') fail_here(fmt::format("'[' expected after {}", name));
+  if (peek() != '[') fail_here(fmt::format("expected '[' after {}", name));
   if (found->code == OpCode::has_number) {
     cursor_.advance();
-    if (!accept("#")) fail_here("EXISTS takes a parameter, like EXISTS[#<name>]");
+    if (!accept("#")) fail_here("EXISTS needs a parameter, as in EXISTS[#<name>]");
     parameter(OpCode::has_number, OpCode::has_name);
-    if (!accept("]")) fail_here("']' expected after the parameter of EXISTS");
+    if (!accept("]")) fail_here("expected ']' after the parameter of EXISTS");
     return;
   }
   bracketed();
   if (found->code == OpCode::atan) {
-    if (!accept("/")) fail_here("'/' expected: ATAN takes two arguments, ATAN[y]/[x]");
-    if (peek() != '[') fail_here("'[' expected: ATAN takes two arguments, ATAN[y]/[x]");
+    if (!accept("/")) fail_here("expected '/': ATAN needs two arguments, ATAN[y]/[x]");
+    if (peek() != '[') fail_here("expected '[': ATAN needs two arguments, ATAN[y]/[x]");
     bracketed();
   }
   emit(found->code, here);
@@ -210,7 +210,7 @@ void Parser::bracketed() {
   cursor_.advance();
   expression(1);
   if (cursor_.at_end()) fail(start, "'[' is not closed; ']' is missing");
-  if (!accept("]")) fail_here(fmt::format("operator or ']' expected, not {}", shown(peek())));
+  if (!accept("]")) fail_here(fmt::format("expected an operator or ']', found {}", shown(peek())));
 }
 
 // Precedence climbing; `loosest` is the lowest level taken here.

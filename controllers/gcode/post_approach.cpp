@@ -26,7 +26,7 @@ void PostApproach::retract() {
 void PostApproach::depart(int line, const ToolPose& here) {
   if (is_retracted_) return;
   const auto clear = safe_.joints_clear_of(here, blocks_.Q(), blocks_.p_ST());
-  if (!clear.fault.empty()) return report_.fault(line, "on the way back from here, " + clear.fault);
+  if (!clear.fault.empty()) return report_.fault(line, "on retract, " + clear.fault);
   blocks_.motion(MoveKind::rapid, line, safe_.clear_of(here), clear.Q, 0.0, 0.0);
   retract();
 }
@@ -57,7 +57,7 @@ void PostApproach::approach(const ClRecord& record, const ToolPose& here, const 
                             const Joints& Q) {
   depart(record.line, here);
   const auto clear = safe_.joints_clear_of(P, Q, blocks_.p_ST());
-  if (!clear.fault.empty()) return report_.fault(record.line, "on the way here, " + clear.fault);
+  if (!clear.fault.empty()) return report_.fault(record.line, "on approach, " + clear.fault);
   blocks_.program_line(safe_.rotary_line(Q));
   switch_on();
   blocks_.program_line(safe_.plane_line(clear.Q));

@@ -22,8 +22,7 @@ namespace {
 
 constexpr double kStandingTip = 1e-9;  // m; a shorter way of the tip is none
 constexpr std::string_view kRemedies =
-    "lead the tool axis past at a distance, retract there, or let the axes begin elsewhere "
-    "(--start)";
+    "keep the tool axis away from it, retract there, or start the axes elsewhere (--start)";
 
 using Eigen::Vector3d;
 
@@ -169,10 +168,9 @@ class Post {
     const double angle =
         (turn.back() - blocks_.Q()).tail<kJoints - kLinearJoints>().cwiseAbs().maxCoeff(&joint);
     report_.warn(
-        line,
-        fmt::format("{} turns by {:.6g} deg with the tip in place before the tool axis leaves "
-                    "a singular direction; a retract there would avoid it",
-                    inverse_.chain().layout.letter_of(kLinearJoints + joint), angle / deg));
+        line, fmt::format("{} rotates by {:.6g} deg at a fixed TCP before the tool axis leaves a "
+                          "singular direction; a retract there would avoid it",
+                          inverse_.chain().layout.letter_of(kLinearJoints + joint), angle / deg));
     for (const Joints& Q : turn) {
       blocks_.motion(MoveKind::feed, line, here_, Q, 0.0,
                      rotation_between(blocks_.Q(), Q) / options_.rotary_rate);
@@ -185,7 +183,7 @@ class Post {
   void feed_to(const ToolPose& P, int line, double feed) {
     if (angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
       return report_.fault(
-          line, "the tool axis is reversed (180 deg): no direction of rotation is the shorter one");
+          line, "the tool axis is reversed (180 deg): the direction of rotation is undetermined");
     }
     const plant::JointSolution end = inverse_.nearest(P, blocks_.p_ST(), blocks_.Q());
     if (!end.is_reached()) return report_.fault(line, reason(end, inverse_));
@@ -202,8 +200,8 @@ class Post {
       way = free_axis_.linearised(path, blocks_.Q());
     }
     if (!way.is_complete) {
-      report_.fault(
-          line, fmt::format("at {:.1f} % of the way here {}", 100.0 * way.t, why_not(way, path)));
+      report_.fault(line, fmt::format("at {:.1f} % of the move to this location {}", 100.0 * way.t,
+                                      why_not(way, path)));
       here_ = P;
       blocks_.set_Q(end.Q);
       return;
@@ -234,8 +232,8 @@ class Post {
     }
     const bool linear = *joint < kLinearJoints;
     return fmt::format(
-        "axis {} comes to the end of its travel at {:.6g} {}, and otherwise the axes "
-        "would have to jump; {}",
+        "axis {} reaches its travel limit at {:.6g} {}, and otherwise the axes would have to jump; "
+        "{}",
         inverse_.chain().layout.letter_of(*joint), Q[*joint] / (linear ? mm : deg),
         linear ? "mm" : "deg", kRemedies);
   }
@@ -273,10 +271,13 @@ std::string reason(const plant::JointSolution& solution, const plant::InverseKin
     case plant::Reach::reached:
       return "it is reached";
     case plant::Reach::orientation:
+      if (inverse.chain().axes.size() == std::size_t(number_of_linear_axes(inverse.chain())))
+        return "the machine has no rotary axes";
       return fmt::format("the rotary axes miss this tool axis by {:.3g} deg", solution.miss / deg);
     case plant::Reach::position:
-      return fmt::format("the machine lacks a linear axis to get there; it misses by {:.3g} mm",
-                         solution.miss / mm);
+      return fmt::format(
+          "the machine lacks a linear axis to reach this location; it misses by {:.3g} mm",
+          solution.miss / mm);
     case plant::Reach::parallel_axes:
       return "two linear axes are parallel at the angles that this tool axis needs";
     case plant::Reach::travel:

@@ -51,8 +51,8 @@ void PostReport::sum_up() {
   if (bent_ > 0) {
     const std::string more =
         bent_ == 1 ? "" : fmt::format(", and by more than the tolerance on {} more", bent_ - 1);
-    warn(most_bent_, fmt::format("on the way here the axes lead the tip {:.4g} mm off the straight "
-                                 "way{}; only --classical inserts no points",
+    warn(most_bent_, fmt::format("between the previous location and this one the TCP leaves the "
+                                 "straight line by {:.4g} mm{}; only --classical inserts no points",
                                  bend_ / mm, more));
   }
   if (slowed_) {

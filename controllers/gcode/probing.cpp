@@ -25,14 +25,14 @@ void Interpreter::Machine::require_probing() const {
   const std::string name = code_name('G', chosen.code->tenths);
   const auto refuse = [&](std::string_view why) { fail(chosen.column, name + std::string(why)); };
   if (!has_any_axis() && !request().has_polar()) refuse(" without an axis word");
-  if (state_.compensation.is_on) refuse(" with cutter compensation on; G40 first");
+  if (state_.compensation.is_on) refuse(" with cutter compensation active; G40 first");
   if (state_.controls_tip())
     refuse(" while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
   if (state_.feed_mode == FeedMode::inverse_time) refuse(" with G93; G94 first");
   if (state_.feed_mode == FeedMode::units_per_revolution) refuse(" with G95; G94 first");
   require_feed();
   if (!setup_.probed)
-    refuse(": what a probe touches is not known here; [touch_probe] of a scenario says it");
+    refuse(": the probed surface is unknown here; simulate it with [touch_probe] of a scenario");
 }
 
 void Interpreter::Machine::probe() {
@@ -44,7 +44,7 @@ void Interpreter::Machine::probe() {
   move.end = programmed_end();
   const bool stays = (move.end.array() == move.begin.array()).all();
   if (stays && move.mode.must_switch()) {
-    fail(chosen.column, fmt::format("{} without a way to go: it begins where it ends",
+    fail(chosen.column, fmt::format("{} has no travel: start and end coincide",
                                     code_name('G', chosen.code->tenths)));
   }
   note_height();
@@ -81,13 +81,14 @@ void Interpreter::Machine::finish_probing(const ProbingMove& move,
   const Request::Chosen& chosen = request().motion;
   const std::string name = code_name('G', chosen.code->tenths);
   if (!contact && move.mode.must_switch()) {
-    fail(chosen.column, fmt::format("{}: the probe {} on the way to the end of the move", name,
+    fail(chosen.column, fmt::format("{}: the probe {} before the end of the move", name,
                                     move.mode.leaves() ? "still touches" : "touches nothing"));
   }
   if (is_assumed && noted_.insert("probe").second) {
-    warn(chosen.column, fmt::format("{}: taken to {} at the end of the move; what a probe measures "
-                                    "is not known here",
-                                    name, move.mode.leaves() ? "leave the surface" : "touch"));
+    warn(chosen.column,
+         fmt::format(
+             "{}: assumed to {} at the end of the move; the measured position is unknown here",
+             name, move.mode.leaves() ? "leave the surface" : "touch"));
   }
   const AxisWords latched = contact ? contact->latched : move.end;
   const AxisWords rest = contact ? contact->rest : move.end;

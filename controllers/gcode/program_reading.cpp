@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
 constexpr std::string_view kPercentInside =
-    "Fanuc ends the program at this '%', other controls go on behind it; choose with --reader";
+    "Fanuc ends the program at this '%', other controls continue after it; choose with --reader";
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
 }  // namespace
@@ -273,7 +273,7 @@ void Interpreter::Machine::fail_at_end() {
   } else if (flow_.skip_to) {
     const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
     message =
-        fmt::format("the program ends while it skips to O{} from line {}", label, flow_.skip_from);
+        fmt::format("the program ends while skipping to O{} from line {}", label, flow_.skip_from);
   }
   fail(0, message + call_stack());
 }
@@ -308,7 +308,7 @@ void Interpreter::Machine::run_flow_of_reader() {
   const bool is_of_all = flow == Flow::program || flow == Flow::m98 || flow == Flow::m99;
   const bool has_o_words = setup_.reader == Reader::any || setup_.reader == Reader::linuxcnc;
   if (!is_of_all && !has_o_words) {
-    fail(block_.o_word.column, fmt::format("O-words with keywords: {} does not have them",
+    fail(block_.o_word.column, fmt::format("O-words with keywords are not supported by {}",
                                            kReaders[static_cast<std::size_t>(setup_.reader)]));
   }
   try {

@@ -163,7 +163,7 @@ void ProgramText::skip_to_line_end() {
   }
   throw InputError(
       {file_, number_, 0},
-      fmt::format("line longer than {} characters; this is no program", kLongestSkipped));
+      fmt::format("line longer than {} characters; this is not a program", kLongestSkipped));
 }
 
 // LinuxCNC refuses such a program.

@@ -118,7 +118,7 @@ Request::Chosen choose_motion(const Context& context, const Request& request, in
   }
   if (programmed.code != nullptr || axis_column == 0) return programmed;
   if (modal_motion == kNoMotion) {
-    context.fail(axis_column, "axis words, but no G code is in force that uses them");
+    context.fail(axis_column, "axis words, but no active G code uses them");
   }
   return {find_code('G', modal_motion), axis_column};
 }

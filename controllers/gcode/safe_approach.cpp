@@ -37,8 +37,8 @@ SafeApproach::Clear SafeApproach::joints_clear_of(const ToolPose& P, const Joint
                            (*found)[j] / mm)};
   }
   if ((*found)[kZ] <= params_.retract_Z) return {*found, {}};
-  return {Q, fmt::format("{:g} mm away along the tool axis, Z is at {:.6g} mm, above the height of "
-                         "{:g} mm to retract to; name a higher one with --retract",
+  return {Q, fmt::format("{:g} mm away along the tool axis, Z is at {:.6g} mm, above the retract "
+                         "height of {:g} mm; raise --retract",
                          params_.clearance / mm, (*found)[kZ] / mm, params_.retract_Z / mm)};
 }
 

@@ -159,13 +159,13 @@ void Interpreter::Machine::saved_modes() {
 // take the place of this one.
 void Interpreter::Machine::restore_saved_level(int column) {
   if (!saved_level().is_valid) {
-    fail(column, "M72 without an M70 or M73 before it at this level of calls");
+    fail(column, "M72 without an M70 or M73 before it at this call level");
   }
   if (!restore_modal_state(saved_level().modes)) return;
   if (block_.words.size() > 1) {
     warnings_.push_back({{file(), line(), column},
-                         "M72 restores something: what stands beside it and is done later in a "
-                         "block is dropped, as LinuxCNC does"});
+                         "M72 restores modal state: words in the same block that act later are "
+                         "dropped, as in LinuxCNC"});
   }
   request_.clear();
 }

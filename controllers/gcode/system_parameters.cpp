@@ -53,7 +53,8 @@ double Interpreter::Machine::system_number(int number) const {
   }
   const int axis = number - kPosition;
   if (axis >= 0 && state_.compensation.is_on && !is_printing_) {
-    fail(0, fmt::format("#{} with cutter compensation on: it is not known yet; G40 first", number));
+    fail(0, fmt::format("#{} with cutter compensation active: it is not known yet; G40 first",
+                        number));
   }
   if (axis >= 0 && axis < kAxisWords) {
     require_height(axis_at(axis), fmt::format("{}", number));
@@ -65,8 +66,7 @@ double Interpreter::Machine::system_number(int number) const {
 // Z with a tool of unknown length.
 void Interpreter::Machine::require_height(Axis axis, std::string_view name) const {
   if (axis != Axis::Z || (!state_.is_height_unknown && !state_.is_length_unknown)) return;
-  fail(0, fmt::format("#{}: Z depends on the length of the tool, which is unknown; pass a tool "
-                      "table with --tools",
+  fail(0, fmt::format("#{}: Z depends on the unknown tool length; pass a tool table with --tools",
                       name));
 }
 

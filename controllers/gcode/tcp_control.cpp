@@ -26,8 +26,7 @@ ToolControl Interpreter::Machine::tool_control_of(int code) const {
   }
   if (code == 434) return ToolControl::rotary_axes;
   if (!setup_.machine && !setup_.accepts_unknown_positions) {
-    fail(column,
-         "G43.5: where the rotary axes go depends on the machine, and none is given (--machine)");
+    fail(column, "G43.5: the rotary axis positions depend on the machine; pass it with --machine");
   }
   return ToolControl::tool_axis;
 }
@@ -37,8 +36,7 @@ std::string Interpreter::Machine::rotary_not_at_zero(const AxisWords& machine) c
   for (int i = kLinearJoints; i < kAxisWords; ++i) {
     if (machine[i] == 0.0) continue;
     return fmt::format(
-        "{} stands at {:g} deg: where the tip is depends on the machine, and none "
-        "is given",
+        "{} is at {:g} deg: the TCP position depends on the machine; pass it with --machine",
         letter(axis_at(i)), machine[i] / deg);
   }
   return {};
@@ -62,7 +60,7 @@ AxisWords Interpreter::Machine::machine_now(int column) const {
   if (!state_.controls_tip()) return account;
   if (setup_.machine) {
     const auto machine = setup_.machine->machine_words(account, state_.p_ST());
-    if (!machine) fail(column, "the linear axes cannot bring the tip to where it is now");
+    if (!machine) fail(column, "the linear axes cannot reach the current TCP position");
     return *machine;
   }
   const std::string why = rotary_not_at_zero(account);
@@ -122,11 +120,11 @@ void Interpreter::Machine::orient_tool() {
   const int column = request().of(Group::g_non_modal).column;
   if (!state_.plane) fail(column, "G53.1 without a tilted work plane; G68.2 first");
   if (request().motion.code != nullptr) {
-    fail(request().motion.column, "G53.1 must stand without motion in its block");
+    fail(request().motion.column, "G53.1 must be in a block without motion");
   }
   if (!setup_.machine) {
     const std::string why =
-        "G53.1: where the rotary axes go depends on the machine, and none is given (--machine)";
+        "G53.1: the rotary axis positions depend on the machine; pass it with --machine";
     if (!setup_.accepts_unknown_positions) fail(column, why);
     return note_without_machine(column, why);
   }
@@ -178,9 +176,10 @@ void Interpreter::Machine::refuse_rotary_words() const {
       fail_at(name, fmt::format("{} word under G43.5; I J K give the tool axis", name));
     }
     if (state_.plane && state_.tool_control == ToolControl::none) {
-      fail_at(name, fmt::format("{} word in a tilted work plane; G53.1 turns the tool, G43.4 moves "
-                                "rotary axes",
-                                name));
+      fail_at(name,
+              fmt::format(
+                  "{} word in a tilted work plane; G53.1 orients the tool, G43.4 moves rotary axes",
+                  name));
     }
     if (request().code(Group::g_work_plane) == 682) {
       fail_at(name, fmt::format("{} word with G68.2; its angles are I J K", name));
@@ -240,8 +239,8 @@ void Interpreter::Machine::warn_of_leaning_tool() {
   if (angle < kLeaning) return;
   const bool can_turn = !setup_.machine || setup_.machine->number_of_rotary_axes() > 0;
   warnings_.push_back({{file(), line(), request().motion.column},
-                       fmt::format("the tool stands {:.4f} deg off Z of the tilted work plane{}",
-                                   angle / deg, can_turn ? "; G53.1 turns it there" : "")});
+                       fmt::format("the tool axis is {:.4f} deg off Z of the tilted work plane{}",
+                                   angle / deg, can_turn ? "; G53.1 aligns it" : "")});
 }
 
 }  // namespace servomill::controllers

@@ -54,7 +54,7 @@ class ToolLine {
     const char letter = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     if (kWords.find(letter) == std::string_view::npos) {
       fault(start,
-            fmt::format("unknown word '{}'; a tool has T P X Y Z A B C D I J Q", printable(c)));
+            fmt::format("unknown word '{}'; allowed are T P X Y Z A B C D I J Q", printable(c)));
       return skip_word();
     }
     if (seen_.find(letter) != std::string::npos) {
@@ -144,7 +144,7 @@ ToolTable ToolTable::parse(std::string_view text, const std::string& file) {
     const std::optional<ToolEntry> tool = tool_line.read();
     if (!tool) continue;
     if (table.find(tool->number) != nullptr) {
-      tool_line.fault(0, fmt::format("second tool with number T{}", tool->number));
+      tool_line.fault(0, fmt::format("tool T{} appears twice", tool->number));
     } else {
       table.add(*tool);
     }
@@ -155,7 +155,7 @@ ToolTable ToolTable::parse(std::string_view text, const std::string& file) {
 
 void ToolTable::add(const ToolEntry& tool) {
   if (!tools_.emplace(tool.number, tool).second) {
-    throw InputError({}, fmt::format("second tool with number T{}", tool.number));
+    throw InputError({}, fmt::format("tool T{} appears twice", tool.number));
   }
 }
 

@@ -69,7 +69,7 @@ std::string to_string(const FeedReduction& s, const JointLayout& layout) {
   constexpr double kWaits = 1e-3;  // of the programmed feed: next to nothing
   const bool is_near = s.singular_angle < kNearSingular;
   if (s.share() < kWaits) {
-    return fmt::format("{}the tip waits while {} {}",
+    return fmt::format("{}the TCP waits while {} {}",
                        is_near ? "in a singular direction of the tool axis " : "",
                        layout.letter_of(s.joint), s.joint < kLinearJoints ? "moves" : "turns");
   }

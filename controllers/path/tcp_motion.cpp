@@ -62,7 +62,7 @@ class Tracer {
     for (const RotaryKnot& knot : turn.knots) {
       if (!add_between(at, knot, move)) {
         follow(move);
-        return "the linear axes cannot bring the tip there";
+        return "the linear axes cannot reach this TCP position";
       }
       at = knot;
     }
@@ -101,7 +101,7 @@ class Tracer {
     if (out.fault.empty()) {
       const Joints& Q_last = out.knots.back().Q;
       if ((rotary(Q_last) - rotary(Q_end)).cwiseAbs().maxCoeff() > kSameAngle) {
-        throw std::logic_error("interpreter and planner turn the tool axis by different ways");
+        throw std::logic_error("interpreter and planner rotate the tool axis on different paths");
       }
     }
     return out;

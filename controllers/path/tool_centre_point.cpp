@@ -134,8 +134,8 @@ std::string ToolCentrePoint::jump_fault(const Joints& from, const Joints& to,
   }
   const std::string other = *ends == joint ? "" : fmt::format("{} ", letter);
   return fmt::format(
-      "{} comes to the end of its travel at {:.4f} deg, and otherwise {}would have "
-      "to jump from {:.4f} to {:.4f} deg",
+      "{} reaches its travel limit at {:.4f} deg, and otherwise {}would have to jump from {:.4f} "
+      "to {:.4f} deg",
       chain().layout.letter_of(*ends), from[*ends] / deg, other, from[joint] / deg,
       to[joint] / deg);
 }
@@ -166,7 +166,7 @@ AxisTurn ToolCentrePoint::trace(const RotaryKnot& start, const Vector3d& k_begin
     const Vector3d k = axis_between(k_begin, k_end, next.fraction);
     const Pointing found = point(k, at.Q);
     if (!found.fault.empty()) {
-      out.fault = last ? found.fault : fmt::format("on the way, {}", found.fault);
+      out.fault = last ? found.fault : fmt::format("during the move, {}", found.fault);
       return out;
     }
     next.Q = found.Q;
@@ -189,7 +189,7 @@ AxisTurn ToolCentrePoint::great_circle(const Joints& Q, const Vector3d& k_end) c
   AxisTurn out;
   out.angle = angle_between(k_begin, k_end);
   if (out.angle > std::numbers::pi - kOpposite) {
-    out.fault = "the tool axis turns by 180 deg, so that no great circle is given";
+    out.fault = "the tool axis rotates by 180 deg, so the great circle is undefined";
     return out;
   }
   const RotaryKnot start{0.0, Q};

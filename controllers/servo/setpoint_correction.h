@@ -9,7 +9,7 @@
 
 namespace servomill::controllers {
 
-/// Update period, dead time and response time of a set-point correction, advanced once per position
+/// Update period, dead time and response time of a setpoint correction, advanced once per position
 /// period Tp:
 ///   u_k = f(Q_ref,k) every n-th period, held between
 ///   y_k = y_{k-1} + (1 - exp(-Tp / T)) (u_{k-d} - y_{k-1})

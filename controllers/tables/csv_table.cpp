@@ -11,7 +11,7 @@ namespace {
 // Unit of an error, whose second letter is its direction.
 double unit_of(std::string_view unit, std::string_view error, const std::string& file, int line) {
   const auto direction = error.size() >= 3 ? axis_of(error[1]) : std::nullopt;
-  if (!direction) refuse(file, line, fmt::format("'{}' is no error", error));
+  if (!direction) refuse(file, line, fmt::format("'{}' is not a geometric error", error));
   const std::string_view expected = is_linear(*direction) ? "um" : "urad";
   if (unit != expected) {
     refuse(file, line, fmt::format("{} in '{}'; must be in {}", error, unit, expected));
@@ -26,7 +26,7 @@ void read_locations(const TableText& file, const std::vector<std::string_view>& 
     const auto cells = cells_of(lines[i]);
     if (cells.size() != 3) refuse(file.name, number, "must be error, value, unit");
     const std::string name(cells[0]);
-    if (out.locations.contains(name)) refuse(file.name, number, name + " is given twice");
+    if (out.locations.contains(name)) refuse(file.name, number, name + " appears twice");
     const double unit = unit_of(cells[2], name, file.name, number);
     out.locations[name] = {number_at(cells[1], file.name, number) * unit, number, file.name};
   }
@@ -55,7 +55,7 @@ void read_components(const TableText& file, const std::vector<std::string_view>&
   const std::string_view place = headers[0];
   const auto axis = place.empty() ? std::nullopt : axis_of(place.front());
   if (!axis || place.substr(1) != (is_linear(*axis) ? "_mm" : "_deg")) {
-    refuse(file.name, 1, fmt::format("'{}' is no axis with its unit", place));
+    refuse(file.name, 1, fmt::format("'{}' is not an axis with its unit", place));
   }
   for (std::size_t n = 1; n < headers.size(); ++n) {
     double unit = 1.0;

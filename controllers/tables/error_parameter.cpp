@@ -27,7 +27,7 @@ double coordinate_unit(Axis axis) { return is_linear(axis) ? mm : deg; }
 void add_component(ErrorColumns& errors, ErrorColumn column, int line) {
   for (const ErrorColumn& one : errors.components) {
     if (one.name == column.name) {
-      refuse(column.file, line, fmt::format("{} is given twice", column.name));
+      refuse(column.file, line, fmt::format("{} appears twice", column.name));
     }
   }
   if (column.points.size() < 2) {
@@ -37,7 +37,7 @@ void add_component(ErrorColumns& errors, ErrorColumn column, int line) {
   for (std::size_t i = 1; i < column.points.size(); ++i) {
     if (column.points[i].position > column.points[i - 1].position) continue;
     refuse(column.file, column.points[i].line,
-           fmt::format("{}: position does not exceed that of the point before", column.name));
+           fmt::format("{}: position does not exceed that of the previous point", column.name));
   }
   errors.components.push_back(std::move(column));
 }
@@ -46,7 +46,7 @@ void add_location(ErrorColumns& errors, const std::string& file, const ErrorPara
                   LocationValue value) {
   const std::string name = parameter.iso_name();
   if (errors.locations.contains(name)) {
-    refuse(file, value.line, fmt::format("{} is given twice", name));
+    refuse(file, value.line, fmt::format("{} appears twice", name));
   }
   value.value *= parameter.unit();
   value.file = file;

@@ -23,7 +23,7 @@ class Reader {
     if (in_grid_) refuse(file_.name, line_, "the file ends within Gridpoints");
     finish_block();
     if (out_.components.empty() && out_.locations.empty()) {
-      refuse(file_.name, 0, "holds no geometric error");
+      refuse(file_.name, 0, "contains no geometric error");
     }
     return std::move(out_);
   }
@@ -44,7 +44,7 @@ class Reader {
     if (line.back() != ']') refuse(file_.name, line_, "']' is missing");
     const std::string_view name = line.substr(1, line.size() - 2);
     parameter_ = error_parameter_of(name);
-    if (!parameter_) refuse(file_.name, line_, fmt::format("[{}] is no geometric error", name));
+    if (!parameter_) refuse(file_.name, line_, fmt::format("[{}] is not a geometric error", name));
     block_ = name;
     block_line_ = line_;
     is_filled_ = false;
@@ -58,12 +58,12 @@ class Reader {
   void read_key(std::string_view line) {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) {
-      refuse(file_.name, line_, fmt::format("'{}' is no assignment", line));
+      refuse(file_.name, line_, fmt::format("'{}' is not an assignment", line));
     }
     const std::string_view key = trimmed(line.substr(0, equals));
     const std::string_view value = trimmed(line.substr(equals + 1));
-    if (!parameter_) refuse(file_.name, line_, fmt::format("{} stands in no block", key));
-    if (is_filled_) refuse(file_.name, line_, "the block has a value already");
+    if (!parameter_) refuse(file_.name, line_, fmt::format("{} is outside any block", key));
+    if (is_filled_) refuse(file_.name, line_, "the block already has a value");
     is_filled_ = true;
     if (key == "VALUE" && parameter_->is_location) {
       add_location(out_, file_.name, *parameter_, {number_at(value, file_.name, line_), line_});
@@ -72,7 +72,7 @@ class Reader {
       column_ = {.file = file_.name, .name = parameter_->iso_name(), .base_axis = parameter_->axis};
     } else {
       refuse(file_.name, line_,
-             fmt::format("'{}' is not read in [{}]; it must be {}", key, block_,
+             fmt::format("'{}' is not supported in [{}]; must be {}", key, block_,
                          parameter_->is_location ? "VALUE = number" : "Gridpoints = {"));
     }
   }
@@ -85,7 +85,7 @@ class Reader {
     }
     const auto words = words_of(line);
     if (words.size() != 2) {
-      refuse(file_.name, line_, fmt::format("{} values; a grid point has two", words.size()));
+      refuse(file_.name, line_, fmt::format("{} values; a grid point needs two", words.size()));
     }
     const double value = number_at(words[1], file_.name, line_) * parameter_->unit();
     const double position =

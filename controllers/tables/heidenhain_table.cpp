@@ -17,7 +17,7 @@ Axis axis_at(std::string_view word, const std::string& file, int line) {
   if (word.size() == 1) {
     if (const auto axis = axis_of(word.front())) return *axis;
   }
-  refuse(file, line, fmt::format("'{}' is no axis", word));
+  refuse(file, line, fmt::format("'{}' is not an axis", word));
 }
 
 // The tables of one listing, one for each column.

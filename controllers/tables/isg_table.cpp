@@ -29,7 +29,7 @@ std::string_view without_comment(std::string_view line) {
 std::vector<std::string_view> words_in(std::string_view line, const TableText& file, int number) {
   if (line.find_first_of(",;") != std::string_view::npos) {
     refuse(file.name, number,
-           "holds a comma or a semicolon; the document separates columns by blanks and writes "
+           "contains a comma or a semicolon; the format separates columns by blanks and uses "
            "decimal points");
   }
   std::vector<std::string_view> words;
@@ -57,12 +57,12 @@ std::vector<Axis> arguments_of(const Block& block, const TableText& file) {
   for (const std::string& word : block.header) {
     if (word.size() != 1) continue;
     const auto axis = axis_of(word.front());
-    if (!axis) refuse(file.name, block.line, fmt::format("'{}' is no axis", word));
+    if (!axis) refuse(file.name, block.line, fmt::format("'{}' is not an axis", word));
     arguments.push_back(*axis);
   }
   if (arguments.size() > 1) {
     refuse(file.name, block.line,
-           fmt::format("a table over {} arguments; only tables over one axis are read",
+           fmt::format("a table over {} arguments; only tables over one axis are supported",
                        arguments.size()));
   }
   return arguments;
@@ -72,7 +72,7 @@ void check_not_repeated(const Block& block, const TableText& file) {
   for (std::size_t i = 0; i < block.header.size(); ++i) {
     const auto end = block.header.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::find(block.header.begin(), end, block.header[i]) == end) continue;
-    refuse(file.name, block.line, fmt::format("{} is given twice", block.header[i]));
+    refuse(file.name, block.line, fmt::format("{} appears twice", block.header[i]));
   }
 }
 
@@ -80,8 +80,8 @@ void read_location(const Block& block, const TableText& file, std::size_t column
                    const ErrorParameter& parameter, ErrorColumns& out) {
   if (block.records.size() != 1) {
     refuse(file.name, block.records.size() > 1 ? block.records[1].line : block.line,
-           fmt::format("{}: {} records of a position error; there must be one",
-                       block.header[column], block.records.size()));
+           fmt::format("{}: {} records of a position error; must be one", block.header[column],
+                       block.records.size()));
   }
   const Record& record = block.records.front();
   add_location(out, file.name, parameter, {record.values[column], record.line});
@@ -92,10 +92,11 @@ void read_component(const Block& block, const TableText& file, std::size_t colum
   const std::string argument(1, letter(parameter.axis));
   const auto place = std::find(block.header.begin(), block.header.end(), argument);
   if (place == block.header.end()) {
-    refuse(file.name, block.line,
-           fmt::format("{} is not a function of {}; only component errors over their own axis are "
-                       "read",
-                       block.header[column], argument));
+    refuse(
+        file.name, block.line,
+        fmt::format(
+            "{} is not a function of {}; only component errors over their own axis are supported",
+            block.header[column], argument));
   }
   ErrorColumn error{.file = file.name, .name = parameter.iso_name(), .base_axis = parameter.axis};
   const auto at = static_cast<std::size_t>(place - block.header.begin());
@@ -114,12 +115,12 @@ void read_other(const Block& block, const TableText& file, std::size_t column, E
     return;
   }
   if (!changes_the_model(name)) {
-    refuse(file.name, block.line, fmt::format("'{}' is no parameter of TF5280", name));
+    refuse(file.name, block.line, fmt::format("'{}' is not a parameter of TF5280", name));
   }
   for (const Record& record : block.records) {
     if (record.values[column] == 0.0) continue;
     refuse(file.name, record.line,
-           fmt::format("{} is not 0; {} are not read", name,
+           fmt::format("{} is not 0; {} are not supported", name,
                        name.starts_with("V") ? "axes of modified orientation"
                                              : "offsets of the programmed values"));
   }
@@ -141,7 +142,7 @@ void read_block(const Block& block, const TableText& file, ErrorColumns& out) {
       read_location(block, file, i, *parameter, out);
     } else {
       refuse(file.name, block.line,
-             fmt::format("{} is a function of {}; only constant position errors are read",
+             fmt::format("{} is a function of {}; only constant position errors are supported",
                          block.header[i], letter(arguments.front())));
     }
   }
@@ -185,7 +186,7 @@ ErrorColumns read_isg_table(const TableText& file) {
   }
   read_block(block, file, out);
   if (out.components.empty() && out.locations.empty()) {
-    refuse(file.name, 0, "holds no geometric error");
+    refuse(file.name, 0, "contains no geometric error");
   }
   return out;
 }

@@ -60,7 +60,7 @@ ControlTable table_of(const TableText& file, Axis axis, int type) {
     bool is_triplet = words.size() >= 3;
     for (std::size_t n = 0; n < 3 && is_triplet; ++n) is_triplet = number_in(words[n]).has_value();
     if (!is_triplet) {
-      refuse(file.name, number, "is not three numbers; LinuxCNC reads no further");
+      refuse(file.name, number, "is not three numbers; LinuxCNC stops reading here");
     }
     if (lines[i].size() + 1 >= kLineLength) refuse(file.name, number, "is too long");
     const double nominal = *number_in(words[0]);

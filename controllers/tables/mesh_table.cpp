@@ -36,7 +36,7 @@ MeshTable read_marlin(const TableText& file) {
     const bool is_point = words.size() == 4 && words[0] == "M421" && words[1].front() == 'I' &&
                           words[2].front() == 'J' && words[3].front() == 'Z';
     if (!is_point)
-      refuse(file.name, number, fmt::format("'{}' is not read; only M421 I J Z", line));
+      refuse(file.name, number, fmt::format("'{}' is not supported; only M421 I J Z", line));
     const int i = index_at(words[1].substr(1), file.name, number);
     const int j = index_at(words[2].substr(1), file.name, number);
     const double z = number_at(words[3].substr(1), file.name, number) * mm;
@@ -76,18 +76,18 @@ MeshTable read_klipper(const TableText& file) {
       has_section = true;
       continue;
     }
-    if (!has_section) refuse(file.name, number, fmt::format("'{}' is not read", text));
+    if (!has_section) refuse(file.name, number, fmt::format("'{}' is not supported", text));
     if (in_points && bare.front() == ' ') {
       add_row(text, file, number, mesh);
       continue;
     }
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos)
-      refuse(file.name, number, fmt::format("'{}' is not read", text));
+      refuse(file.name, number, fmt::format("'{}' is not supported", text));
     const std::string key(trimmed(text.substr(0, equals)));
     in_points = key == "points";
     if (!values.emplace(key, trimmed(text.substr(equals + 1))).second) {
-      refuse(file.name, number, fmt::format("{} is given twice", key));
+      refuse(file.name, number, fmt::format("{} appears twice", key));
     }
   }
   if (!has_section) refuse(file.name, 0, "holds no section [bed_mesh NAME]");

@@ -36,7 +36,7 @@ Assignment assignment_of(std::string_view line, const std::string& file, int num
   const std::size_t open = line.find('['), close = line.find(']'), equals = line.find('=');
   if (open == std::string_view::npos || close == std::string_view::npos || close < open ||
       equals != close + 1) {
-    refuse(file, number, fmt::format("'{}' is no assignment of a table", line));
+    refuse(file, number, fmt::format("'{}' is not a table assignment", line));
   }
   return {line.substr(0, open), cells_of(line.substr(open + 1, close - open - 1)),
           trimmed(line.substr(equals + 1))};
@@ -47,7 +47,7 @@ Axis machine_axis(std::string_view name, const std::string& file, int line) {
   if (name.size() == 2 && name[1] == '1') {
     if (const auto axis = axis_of(name[0])) return *axis;
   }
-  refuse(file, line, fmt::format("'{}' is no machine axis", name));
+  refuse(file, line, fmt::format("'{}' is not a machine axis", name));
 }
 
 class SiemensFile {
@@ -120,7 +120,7 @@ class SiemensFile {
   ControlTable cross_table(const Variables& table) const {
     const Value &input = named(table, "INPUT_AXIS"), &output = named(table, "OUTPUT_AXIS");
     if (number(table, "MULT_BY_TABLE") != 0.0) {
-      fault(named(table, "MULT_BY_TABLE").line, "products of tables are not read");
+      fault(named(table, "MULT_BY_TABLE").line, "products of tables are not supported");
     }
     const double direction = number(table, "DIRECTION");
     if (direction != 0.0 && std::abs(direction) != 1.0) {
@@ -141,7 +141,7 @@ class SiemensFile {
       fault(named(v, "STEP").line, fmt::format("more than {} points", max_points_));
     }
     if (std::abs(intervals - std::round(intervals)) > kSlack * intervals) {
-      fault(named(v, "MAX").line, "MAX - MIN is no multiple of STEP");
+      fault(named(v, "MAX").line, "MAX - MIN is not a multiple of STEP");
     }
     const double place_unit = is_linear(base) ? mm : deg;
     const double unit = sign * (is_linear(output) ? mm : deg);
@@ -162,7 +162,7 @@ class SiemensFile {
     check_points(table, max_points_);
     if (table.repeats && (table.points.front().up != table.points.back().up ||
                           table.points.front().down != table.points.back().down)) {
-      fault(table.points.back().line, "a table that repeats must end with its first value");
+      fault(table.points.back().line, "a periodic table must end with its first value");
     }
     return table;
   }

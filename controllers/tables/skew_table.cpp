@@ -15,15 +15,15 @@ std::map<char, double> words_of_command(std::string_view command, std::string_vi
                                         std::string_view text, const TableText& file, int line) {
   const auto words = words_of(text);
   if (words.empty() || words.front() != command) {
-    refuse(file.name, line, fmt::format("'{}' is not read; only {}", text, command));
+    refuse(file.name, line, fmt::format("'{}' is not supported; only {}", text, command));
   }
   std::map<char, double> values;
   for (std::size_t i = 1; i < words.size(); ++i) {
     const char letter = words[i].front();
     if (letters.find(letter) == std::string_view::npos) {
-      refuse(file.name, line, fmt::format("'{}' is not read in {}", words[i], command));
+      refuse(file.name, line, fmt::format("'{}' is not supported in {}", words[i], command));
     }
-    if (values.contains(letter)) refuse(file.name, line, fmt::format("{} is given twice", letter));
+    if (values.contains(letter)) refuse(file.name, line, fmt::format("{} appears twice", letter));
     values[letter] = number_at(words[i].substr(1), file.name, line);
   }
   for (const char letter : letters) {
@@ -70,8 +70,9 @@ std::vector<Line> lines_without(char comment, const TableText& file) {
 
 SkewSetting read_command(const TableText& file, SkewFirmware firmware) {
   const auto lines = lines_without(';', file);
-  if (lines.empty()) refuse(file.name, 0, "holds no skew setting");
-  if (lines.size() > 1) refuse(file.name, lines[1].number, "a second command; one is read");
+  if (lines.empty()) refuse(file.name, 0, "contains no skew setting");
+  if (lines.size() > 1)
+    refuse(file.name, lines[1].number, "a second command; only one is supported");
   const auto& [number, text] = lines.front();
   return firmware == SkewFirmware::marlin ? read_marlin(file, text, number)
                                           : read_reprapfirmware(file, text, number);
@@ -85,21 +86,21 @@ SkewSetting read_klipper(const TableText& file) {
     if (text == "[skew_correction]") {
       switched_on = number;
     } else if (text.starts_with("[skew_correction ") && text.back() == ']') {
-      if (profile != 0) refuse(file.name, number, "a second profile; one is read");
+      if (profile != 0) refuse(file.name, number, "a second profile; only one is supported");
       profile = number;
     } else if (equals != std::string_view::npos && profile != 0) {
       const std::string key(trimmed(text.substr(0, equals)));
-      if (values.contains(key)) refuse(file.name, number, fmt::format("{} is given twice", key));
+      if (values.contains(key)) refuse(file.name, number, fmt::format("{} appears twice", key));
       if (key != "xy_skew" && key != "xz_skew" && key != "yz_skew") {
-        refuse(file.name, number, fmt::format("'{}' is not read", key));
+        refuse(file.name, number, fmt::format("'{}' is not supported", key));
       }
       values[key] = number_at(trimmed(text.substr(equals + 1)), file.name, number);
     } else {
-      refuse(file.name, number, fmt::format("'{}' is not read", text));
+      refuse(file.name, number, fmt::format("'{}' is not supported", text));
     }
   }
   if (switched_on == 0) refuse(file.name, 0, "[skew_correction] is missing");
-  if (profile == 0) refuse(file.name, 0, "holds no profile [skew_correction NAME]");
+  if (profile == 0) refuse(file.name, 0, "contains no profile [skew_correction NAME]");
   for (const char* key : {"xy_skew", "xz_skew", "yz_skew"}) {
     if (!values.contains(key)) refuse(file.name, profile, fmt::format("{} is missing", key));
   }

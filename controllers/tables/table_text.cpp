@@ -72,7 +72,7 @@ const TableText& file_of(std::span<const TableText> files, std::string_view name
   for (const TableText& file : files) {
     if (file.name == name) return file;
   }
-  refuse(from, line, fmt::format("there is no file {}", name));
+  refuse(from, line, fmt::format("file {} does not exist", name));
 }
 
 void check_points(const ControlTable& table, std::size_t max_points) {
@@ -81,11 +81,11 @@ void check_points(const ControlTable& table, std::size_t max_points) {
   }
   if (table.points.size() > max_points) {
     refuse(table.file, table.points[max_points].line,
-           fmt::format("{} points; the control takes {}", table.points.size(), max_points));
+           fmt::format("{} points; the control accepts {}", table.points.size(), max_points));
   }
   for (std::size_t i = 1; i < table.points.size(); ++i) {
     if (table.points[i].position > table.points[i - 1].position) continue;
-    refuse(table.file, table.points[i].line, "position does not exceed that of the point before");
+    refuse(table.file, table.points[i].line, "position does not exceed that of the previous point");
   }
 }
 

@@ -1,4 +1,4 @@
-/// The raw part: a union of simple solids in work coordinates.
+/// The stock: a union of simple solids in work coordinates.
 #pragma once
 
 #include <Eigen/Core>

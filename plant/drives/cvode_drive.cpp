@@ -58,7 +58,7 @@ using Cvode = std::unique_ptr<void, FreedCvode>;
 Context make_context() {
   SUNContext context = nullptr;
   if (SUNContext_Create(nullptr, &context) != 0) {
-    throw std::runtime_error("SUNDIALS gives no context");
+    throw std::runtime_error("SUNDIALS cannot create a context");
   }
   return Context(context);
 }
@@ -122,7 +122,7 @@ CvodeDrive::Impl::Impl(const FeedDriveParams& params, const CvodeTolerances& tol
       jacobian(SUNDenseMatrix(kUnknowns, kUnknowns, context.get())),
       solver(SUNLinSol_Dense(y.get(), jacobian.get(), context.get())),
       cvode(CVodeCreate(CV_ADAMS, context.get())) {
-  if (!y || !jacobian || !solver || !cvode) throw std::runtime_error("SUNDIALS has no memory");
+  if (!y || !jacobian || !solver || !cvode) throw std::runtime_error("SUNDIALS is out of memory");
   const Vector absolute(N_VNew_Serial(kUnknowns, context.get()));
   double* atol = N_VGetArrayPointer(absolute.get());
   atol[kCurrent] = tolerances.i;

@@ -32,8 +32,8 @@ std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
   }
   if (f.kind == FrictionKind::lugre) {
     rates.push_back(
-        {std::sqrt(f.sigma0 / M), "the bristles' stiffness, sqrt(bristle_stiffness / mass),"});
-    rates.push_back({f.sigma1 / M, "the bristles' damping, bristle_damping / mass,"});
+        {std::sqrt(f.sigma0 / M), "the bristle stiffness, sqrt(bristle_stiffness / mass),"});
+    rates.push_back({f.sigma1 / M, "the bristle damping, bristle_damping / mass,"});
     rates.push_back({f.sigma0 * kStribeckEnd * f.vs / least_force(f), "6.5 vs sigma0 / Fc"});
   }
   return rates;
@@ -62,8 +62,8 @@ std::vector<std::string> unrepresentable(const FeedDriveParams& p, double base_p
   const auto demand = [&](double rate, const char* what) {
     if (rate <= limit) return;
     faults.push_back(
-        fmt::format("{} makes a rate of {:.3g} 1/s; the exact step resolves up to {:.3g} 1/s", what,
-                    rate, limit));
+        fmt::format("{} gives a rate of {:.3g} 1/s; the exact integrator resolves up to {:.3g} 1/s",
+                    what, rate, limit));
   };
   demand(fastest_rate_of(p), "the stiffness or damping of the drive");
   for (const FrictionRate& f : friction_rates(p)) demand(f.rate, f.formula);

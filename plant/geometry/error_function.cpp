@@ -115,14 +115,15 @@ std::optional<std::string> table_fault(const std::vector<double>& s,
                                        const std::vector<double>& error) {
   if (s.empty()) return "has no points; must have at least 1";
   if (s.size() != error.size()) {
-    return fmt::format("has {} positions and {} errors; must have as many", s.size(), error.size());
+    return fmt::format("has {} positions and {} errors; the numbers must be equal", s.size(),
+                       error.size());
   }
   for (std::size_t i = 0; i < s.size(); ++i) {
     if (!std::isfinite(s[i]) || !std::isfinite(error[i])) {
       return fmt::format("has ({}, {}) at point {}; must be finite", s[i], error[i], i + 1);
     }
     if (i > 0 && !(s[i] > s[i - 1])) {
-      return fmt::format("has {} after {} at point {}; positions must increase", s[i], s[i - 1],
+      return fmt::format("{} follows {} at point {}; positions must increase", s[i], s[i - 1],
                          i + 1);
     }
   }

@@ -52,7 +52,7 @@ std::optional<std::string> why_meaningless(const ErrorName& name, const JointLay
   }
   if (name.is_location && lies_on_itself(name)) {
     const bool is_zero_position = index_of(name.direction) == index_of(name.axis);
-    return fmt::format("leaves the motion of {} as it is{}", letter(name.axis),
+    return fmt::format("has no effect on the motion of {}{}", letter(name.axis),
                        is_zero_position
                            ? fmt::format("; a zero position is a constant {}",
                                          to_string(ErrorName{name.direction, name.axis, false}))
@@ -66,8 +66,10 @@ ErrorName parse_error_name(std::string_view text, const JointLayout& layout, con
   if (!name) {
     const std::vector<std::string> names = meaningful_names(layout);
     const std::vector<std::string_view> views(names.begin(), names.end());
-    throw InputError(place, fmt::format("'{}' is no error of ISO 230-1; must be like EYX or EC0Y{}",
-                                        text, did_you_mean(text, views)));
+    throw InputError(
+        place,
+        fmt::format("'{}' is not an error of ISO 230-1; expected a name such as EYX or EC0Y{}",
+                    text, did_you_mean(text, views)));
   }
   if (const auto why = why_meaningless(*name, layout)) {
     throw InputError(place, fmt::format("{} {}", text, *why));

@@ -51,7 +51,7 @@ class Parser {
     if (begin_ < end_ && text_[begin_] == '[') {
       ++begin_;
     } else {
-      fault(begin_, "must begin with '['");
+      fault(begin_, "must start with '['");
     }
     if (begin_ < end_ && text_[end_ - 1] == ']') {
       --end_;
@@ -81,7 +81,7 @@ class Parser {
       fault(i, "a prime must follow an axis");
       return 1;
     } else if (c != 'w' && c != 'b' && c != 't') {
-      fault(i, fmt::format("'{}' is no axis; must be one of X Y Z A B C", c));
+      fault(i, fmt::format("'{}' is not an axis; must be one of X Y Z A B C", c));
       return 1;
     }
     tokens_.push_back({text_.substr(i, length), i});
@@ -94,8 +94,8 @@ class Parser {
     check_once('t', "tool", end_);
     for (std::size_t n = 0; n < tokens_.size(); ++n) {
       const char c = tokens_[n].text.front();
-      if (c == 'w' && n != 0) fault(tokens_[n].at, "w (workpiece) must stand first");
-      if (c == 't' && n + 1 != tokens_.size()) fault(tokens_[n].at, "t (tool) must stand last");
+      if (c == 'w' && n != 0) fault(tokens_[n].at, "w (workpiece) must come first");
+      if (c == 't' && n + 1 != tokens_.size()) fault(tokens_[n].at, "t (tool) must come last");
     }
   }
 
@@ -103,7 +103,7 @@ class Parser {
     int count = 0;
     for (const Token& token : tokens_) {
       if (token.text.front() == symbol && ++count == 2) {
-        fault(token.at, fmt::format("{} ({}) stands twice", symbol, meaning));
+        fault(token.at, fmt::format("{} ({}) appears twice", symbol, meaning));
       }
     }
     if (count == 0) fault(at_if_missing, fmt::format("{} ({}) is missing", symbol, meaning));
@@ -115,7 +115,7 @@ class Parser {
       const bool before_tool = n + 1 < tokens_.size() && tokens_[n + 1].text == "t";
       if (!before_tool) {
         fault(tokens_[n].at,
-              fmt::format("spindle {} must stand directly before t", tokens_[n].text));
+              fmt::format("spindle {} must come directly before t", tokens_[n].text));
       }
     }
   }
@@ -130,11 +130,11 @@ class Parser {
       if (!token.is_axis()) continue;
       const Axis axis = token.axis();
       if (token.is_primed() && side == Side::tool) {
-        fault(token.at, fmt::format("{} has a prime but stands on the tool side of b", token.text));
+        fault(token.at, fmt::format("{} has a prime but is on the tool side of b", token.text));
       }
       const auto same = [axis](const StructureAxis& a) { return a.axis == axis; };
       if (std::any_of(structure.axes.begin(), structure.axes.end(), same)) {
-        fault(token.at, fmt::format("axis {} stands twice", letter(axis)));
+        fault(token.at, fmt::format("axis {} appears twice", letter(axis)));
         continue;
       }
       if (!is_linear(axis) && ++rotary == kRotaryJoints + 1) {

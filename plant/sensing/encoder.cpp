@@ -67,7 +67,8 @@ std::vector<std::string> implausible(const EncoderParams& p) {
   if (p.period > 0.0) {
     demand(p.step <= p.period, "step must be <= period");
     demand(disturbance(p) < 1.0,
-           "offsets, imbalance and quadrature_error must leave a signal all around the period");
+           "offsets, imbalance and quadrature_error must leave a non-zero signal over the whole "
+           "period");
     demand(harmonics(p) < p.period / 4.0, "harmonic must add up to less than period / 4");
   } else {
     const bool needs_signals =

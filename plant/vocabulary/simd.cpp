@@ -38,10 +38,11 @@ SimdLevel simd_level_named(std::string_view name) {
   }
   const Place place{"SERVOMILL_SIMD"};
   if (std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
-    throw InputError(place, fmt::format("{} is beyond this machine or binary; there are: {}", name,
-                                        fmt::join(names, ", ")));
+    throw InputError(
+        place, fmt::format("{} is not supported by this processor or binary; supported are: {}",
+                           name, fmt::join(names, ", ")));
   }
-  throw InputError(place, fmt::format("'{}' is no level; must be one of {}{}", name,
+  throw InputError(place, fmt::format("'{}' is not a SIMD level; must be one of {}{}", name,
                                       fmt::join(kNames, ", "), did_you_mean(name, kNames)));
 }
 

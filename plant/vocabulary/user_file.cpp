@@ -39,9 +39,9 @@ void remember(const struct stat& file) {
 std::string kind_of(mode_t mode) {
   if (S_ISREG(mode)) return {};
   if (S_ISDIR(mode)) return "is a folder";
-  if (S_ISFIFO(mode)) return "is a pipe, not a file of known size";
-  if (S_ISSOCK(mode)) return "is a socket, not a file of known size";
-  return "is a device, not a file of known size";
+  if (S_ISFIFO(mode)) return "is a pipe, not a regular file";
+  if (S_ISSOCK(mode)) return "is a socket, not a regular file";
+  return "is a device, not a regular file";
 }
 
 std::string size_text(std::uintmax_t bytes) {
@@ -55,9 +55,10 @@ std::string size_text(std::uintmax_t bytes) {
 OpenFile open_regular(const std::string& path, struct stat& about, std::string& why) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) {
-    why = path == "-" && errno == ENOENT
-              ? "standard input is no input, for files are read more than once; name a file"
-              : std::strerror(errno);
+    why =
+        path == "-" && errno == ENOENT
+            ? "standard input is not supported, because files are read more than once; name a file"
+            : std::strerror(errno);
     return nullptr;
   }
   why = ::fstat(descriptor, &about) != 0 ? std::strerror(errno) : kind_of(about.st_mode);
@@ -118,8 +119,7 @@ std::string read_input(const std::string& path, std::uintmax_t most, std::string
   remember(about);
   const auto size = static_cast<std::uintmax_t>(about.st_size);
   if (size > most) {
-    why = fmt::format("holds {}, more than the {} that may be read", size_text(size),
-                      size_text(most));
+    why = fmt::format("is {}, larger than the limit of {}", size_text(size), size_text(most));
     return {};
   }
   std::string text;
@@ -131,7 +131,7 @@ std::string read_input(const std::string& path, std::uintmax_t most, std::string
                                                kLeastPiece, kPiece));
     text.resize(kept + std::fread(text.data() + kept, 1, text.size() - kept, file.get()));
     if (text.size() <= most) continue;  // it may grow while it is read
-    why = fmt::format("holds more than the {} that may be read", size_text(most));
+    why = fmt::format("is larger than the limit of {}", size_text(most));
     return {};
   }
   if (std::ferror(file.get()) != 0) why = std::strerror(errno);

@@ -273,8 +273,8 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
   }
   if (!out.adjustment.converged) {
     throw InputError({out.readings.path},
-                     "the adjustment does not converge: readings stand in the wrong places or have "
-                     "errors of millimetres; leave groups out to find which");
+                     "the adjustment does not converge: readings are misplaced or have errors of "
+                     "millimetres; remove groups to find which");
   }
   out.adjustment.short_waves = short_waves(out.adjustment);
   out.outliers = outliers_of(out.adjustment);

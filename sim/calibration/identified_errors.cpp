@@ -250,11 +250,11 @@ void refuse_unreadable(const std::string& text, const std::string& path,
   const input::MachineDescription machine = input::described(read.document);
   const auto found = machine.errors.find(model);
   if (found == machine.errors.end() || !same_functions(calibration.adjustment, found->second)) {
-    throw std::logic_error(path + ": the error model is read other than it was written");
+    throw std::logic_error(path + ": the error model differs when read back");
   }
   if (read.identified && (read.identified->values != errors.values.values ||
                           read.identified->covariance != errors.values.covariance)) {
-    throw std::logic_error(path + ": the covariance is read other than it was written");
+    throw std::logic_error(path + ": the covariance differs when read back");
   }
 }
 
@@ -270,11 +270,11 @@ void write_identified_errors(const std::string& path, const Calibration& calibra
   if (input::read_machine_description(machine).errors.contains(model)) {
     throw InputError(
         {machine},
-        fmt::format("has an error model {} already; name another one with --model", model));
+        fmt::format("already has an error model {}; choose another name with --model", model));
   }
   const IdentifiedErrors errors = identified_errors(calibration, model);
   if (errors.values.keys.empty()) {
-    throw InputError({calibration.readings.path}, "determines no error at all");
+    throw InputError({calibration.readings.path}, "does not determine any error");
   }
   const std::string text = text_of(calibration, errors, relative_to(machine, path), model);
   refuse_unreadable(text, path, calibration, errors, model);

@@ -49,7 +49,7 @@ class LineObservations {
     const Vector3d whole = b_.tip(group().rows.back().Q) - b_.tip(group().rows.front().Q);
     if (whole.norm() > 0.0) return whole.normalized();
     throw InputError({group().file},
-                     "a diagonal must end elsewhere than it begins (its first and last rows)");
+                     "the start and end of a diagonal must differ (its first and last rows)");
   }
 
   void add_positioning() {

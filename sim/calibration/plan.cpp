@@ -183,10 +183,10 @@ std::string report(const Plan& plan, const PlanSettings& settings) {
                      fmt::format("{:.0f}", one.count * one.time / minute)});
   }
   std::string out = system::text_table(std::move(lines), 0, {1, 2});
-  out += fmt::format("\n{:.1f} h of {:.1f} h; {} set-ups were looked at\n\n", spent / 3600.0,
+  out += fmt::format("\n{:.1f} h of {:.1f} h; {} set-ups were considered\n\n", spent / 3600.0,
                      settings.time / 3600.0, plan.set_ups.size());
   out += fmt::format(
-      "worst uncertainty of the tip in the working volume (k = 2):\n"
+      "worst uncertainty of the TCP in the working volume (k = 2):\n"
       "  before                                     {:8.2f} um\n"
       "  lines through the middle, in the same time {:8.2f} um\n"
       "  this plan                                  {:8.2f} um\n"

@@ -33,7 +33,7 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-// The artefact laid on centres; of balls on a line the turn about it stays as it is.
+// Artefact aligned with centres; the rotation about a line of balls is kept.
 Eigen::Isometry3d laid_on(const std::vector<Vector3d>& own, const std::vector<Vector3d>& centres) {
   const auto fit = metrology::best_fit(own, centres);
   if (const auto* found = std::get_if<metrology::BestFit>(&fit)) return found->motion;
@@ -91,8 +91,8 @@ class PointObservations {
       const double nominal = bar.norm();
       if (std::abs(nominal - group().length) > readings::kLargestDeviation) {
         throw InputError({group().file, group().rows[row].line},
-                         fmt::format("the balls stand {:.3f} mm apart at these joints, the bar is "
-                                     "{:.3f} mm long: check ball_mm, point_mm and length_mm",
+                         fmt::format("the balls are {:.3f} mm apart at these axis positions, the "
+                                     "bar is {:.3f} mm long: check ball_mm, point_mm and length_mm",
                                      nominal / mm, group().length / mm));
       }
       Pose pose;
@@ -172,8 +172,8 @@ class PointObservations {
         if (off > readings::kLargestDeviation) {
           throw InputError(
               {b.group().file},
-              fmt::format("sphere {} lies {:.3g} mm from where \"{}\" has it; check "
-                          "names, joints, signs and {}",
+              fmt::format("sphere {} is {:.3g} mm from its position in \"{}\"; check names, axis "
+                          "positions, signs and {}",
                           b.group().spheres[k], off / mm, artefact.name, artefact.file));
         }
         centre_[k] = centre;
@@ -221,8 +221,8 @@ class PointObservations {
 
   [[noreturn]] void refuse_stray(const Reading& reading, double off) const {
     throw InputError({group().file, reading.line},
-                     fmt::format("sphere {} lies {:.3g} mm from where the others of its name "
-                                 "lie; check joints, signs and point_mm",
+                     fmt::format("sphere {} is {:.3g} mm from the other spheres of its name; check "
+                                 "axis positions, signs and point_mm",
                                  group().spheres[reading.sphere], off / mm));
   }
 

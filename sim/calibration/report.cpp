@@ -110,7 +110,7 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
 
 std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
-      "{}: its residuals are {:.1f} times as large as its uncertainty of {} lets expect; the "
+      "{}: its residuals are {:.1f} times what its uncertainty of {} implies; the "
       "uncertainty, the form of the errors (knots) or the set-up is not as stated",
       placed_name(group), std::sqrt(result.ratio()),
       in_unit(result.uncertainty, is_angular(group)));
@@ -127,10 +127,10 @@ void add_set_up_warnings(const Calibration& calibration, std::vector<std::string
                              adjustment.unknowns.name(int(u), calibration.readings);
     const std::string shown = fmt::format("{:.3g} {}", value / one.unit, one.unit_name);
     if (one.prior && std::abs(value) > kImplausible * *one.prior) {
-      out.push_back(fmt::format("{} comes out as {}, {:.0f} times its uncertainty: check it", name,
-                                shown, std::abs(value) / *one.prior));
+      out.push_back(fmt::format("{} is estimated at {}, {:.0f} times its uncertainty: check it",
+                                name, shown, std::abs(value) / *one.prior));
     } else if (!one.prior && one.is_size && std::abs(value) > kWrongSize) {
-      out.push_back(fmt::format("{} comes out {:.3f} mm {} than stated: check it", name,
+      out.push_back(fmt::format("{} is estimated {:.3f} mm {} than stated: check it", name,
                                 std::abs(value) / mm, value > 0.0 ? "larger" : "smaller"));
     }
   }
@@ -284,8 +284,8 @@ std::string report(const Calibration& calibration) {
     std::vector<std::string> one_way;
     for (const Axis axis : calibration.one_way) one_way.emplace_back(1, letter(axis));
     sentences.push_back(
-        fmt::format("lost motion of {}: positions are read in one direction, or the readings do "
-                    "not say in which",
+        fmt::format("lost motion of {}: positions are read in one direction only, or the readings "
+                    "do not give the direction",
                     fmt::join(one_way, ", ")));
   }
   if (!sentences.empty()) {

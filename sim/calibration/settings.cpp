@@ -49,10 +49,10 @@ FormSettings read_form(config::Reader& table, bool linear) {
   if (table.has(key("knots"))) {
     form.knots = table.reals(key("knots"), travel);
     if (form.number_of_knots || form.knots_by_data)
-      table.fault(key("knots"), "stands beside knots; only one can count");
+      table.fault(key("knots"), "excludes knots; give only one of them");
     if (form.knots->size() < 2 ||
         !std::is_sorted(form.knots->begin(), form.knots->end(), std::less_equal<>())) {
-      table.fault(key("knots"), "must be two places at least, in ascending order");
+      table.fault(key("knots"), "must be at least two positions, in ascending order");
     }
   }
   form.periods = table.reals_or(key("harmonics"), {}, travel, {config::above(0.0)});
@@ -76,8 +76,8 @@ std::array<Axis, 2> read_frame(config::Reader& table, const JointLayout& layout)
   };
   if (text.size() != 2 || text[0] == text[1] || !linear(text[0]) || !linear(text[1])) {
     table.fault("frame",
-                "must be two linear axes of the machine, such as \"XY\": the first one is "
-                "straight by convention, the second lies in their plane");
+                "must be two linear axes of the machine, such as \"XY\": the first one is straight "
+                "by convention, the second is in their plane");
     return out;
   }
   return {*axis_of(text[0]), *axis_of(text[1])};

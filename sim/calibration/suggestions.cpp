@@ -144,7 +144,7 @@ class Suggestions {
     if (!undetermined_.empty()) {
       out.push_back(
           fmt::format("{} by no single set-up of laser, level, square, ball bar or probe; "
-                      "servomill plan-calibration finds what to combine",
+                      "servomill plan-calibration finds a combination",
                       fmt::join(undetermined_, ", ")));
     }
     return out;

@@ -76,7 +76,7 @@ TouchedSpheres touched_spheres(const Group& group, const plant::MachineChain& ch
       throw InputError(
           {group.file, pose.line},
           fmt::format("sphere {} is touched {} at these angles of the rotary axes; "
-                      "at least three touches are needed",
+                      "at least three touches are required",
                       group.spheres[pose.sphere], rows.size() == 1 ? "once" : "twice"));
     }
     const Vector3d away = -metrology::R_WS(chain, pose.Q).col(2);

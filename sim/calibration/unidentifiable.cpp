@@ -110,7 +110,7 @@ class Sentences {
       if (hardly == 0) continue;
       (hardly == known.s.size() ? whole : part).push_back(plant::to_string(known.name));
     }
-    constexpr std::string_view kWhy = "the uncertainty is that of the size which is expected of it";
+    constexpr std::string_view kWhy = "its uncertainty is the prior one";
     if (!whole.empty()) out_.push_back(fmt::format("hardly determined: {}; {}", list(whole), kWhy));
     if (!part.empty()) {
       out_.push_back(fmt::format("hardly determined in places: {}; {} there", list(part), kWhy));
@@ -161,7 +161,7 @@ class Sentences {
       if (whole) {
         without_effect_.push_back(own);
       } else {
-        out_.push_back(fmt::format("{} is determined between some of its knots only", own));
+        out_.push_back(fmt::format("{} is determined only between some of its knots", own));
       }
       return;
     }

@@ -204,9 +204,9 @@ void write_readings(const std::string& folder, const readings::Readings& reading
     }
     const std::string path = (fs::path(folder) / name_of(group.file)).string();
     if (!names.insert(path).second) {
-      throw InputError(group.place, fmt::format("{} is named twice: every group that is made up "
-                                                "needs a file of its own",
-                                                name_of(group.file)));
+      throw InputError(group.place,
+                       fmt::format("{} appears twice: every made-up group needs its own file",
+                                   name_of(group.file)));
     }
     document.set(fmt::format("group[{}].readings={}", g, config::quoted_text(name_of(group.file))));
     texts.emplace_back(path, CsvWriter(group, chain.layout).text());

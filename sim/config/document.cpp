@@ -77,7 +77,7 @@ class PathParser {
     if (end == std::string_view::npos) fail("']' is missing in the key");
     const std::string_view bracket = take(end + 1);
     const std::string_view digits = bracket.substr(1, bracket.size() - 2);
-    if (!as_index(digits)) fail(fmt::format("'{}' is no place in a list; use a number", bracket));
+    if (!as_index(digits)) fail(fmt::format("'{}' is not a list index; use a number", bracket));
     return {std::string(digits), true};
   }
 
@@ -119,9 +119,9 @@ Value& named_item(Value& list, const Step& step, const std::string& path, const 
   const auto item = std::find_if(items.begin(), items.end(), is_called);
   if (item != items.end()) {
     if (std::find_if(item + 1, items.end(), is_called) == items.end()) return *item;
-    throw InputError(place, fmt::format("{} has several items called '{}'; name one by its place, "
-                                        "such as {}[{}]",
-                                        path, step.name, path, item - items.begin()));
+    throw InputError(
+        place, fmt::format("{} has several items called '{}'; use an index, such as {}[{}]", path,
+                           step.name, path, item - items.begin()));
   }
   if (items.size() == 1 && items[0].type == Value::Type::table) {
     return entry_of(items[0], step, place);
@@ -130,7 +130,7 @@ Value& named_item(Value& list, const Step& step, const std::string& path, const 
   for (const Value& one : items) {
     if (!name_of(one).empty()) names.push_back(name_of(one));
   }
-  throw InputError(place, fmt::format("{} is a list; '{}' is no place in it{}", path, step.name,
+  throw InputError(place, fmt::format("{} is a list without an item '{}'{}", path, step.name,
                                       did_you_mean(step.name, names)));
 }
 
@@ -138,7 +138,7 @@ Value& item_of(Value& list, const Step& step, const std::string& path, const Pla
   const std::optional<std::size_t> index = as_index(step.name);
   if (!index) return named_item(list, step, path, place);
   if (*index >= list.children.size()) {
-    throw InputError(place, fmt::format("{} is beyond the list, which has {} items counted from 0",
+    throw InputError(place, fmt::format("{} is out of range; the list has {} items, counted from 0",
                                         shown(path, step), list.children.size()));
   }
   return list.children[*index];
@@ -211,7 +211,7 @@ void Document::set(std::string_view assignment) {
   const Place place{fmt::format("--set {}", assignment)};
   PathParser parser(assignment, place);
   const std::vector<Step> steps = parser.parse();
-  if (parser.rest().empty()) throw InputError(place, "no value after '='; an empty text is \"\"");
+  if (parser.rest().empty()) throw InputError(place, "no value after '='; an empty string is \"\"");
   Value value = value_of(parser.rest(), place);
 
   // A fault leaves the document as it was: what is missing on the way is made after all that can

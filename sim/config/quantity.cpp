@@ -312,6 +312,9 @@ std::optional<NumberAndUnit> split_quantity(std::string_view text) {
   return NumberAndUnit{number, begin == std::string_view::npos ? "" : text.substr(begin)};
 }
 
+/// Name as in "unit of length": without its article.
+std::string without_article(const std::string& name) { return name.substr(name.find(' ') + 1); }
+
 }  // namespace
 
 ScaledText scale_text(std::string_view text, Quantity quantity) {
@@ -337,8 +340,8 @@ ScaledText scale_text(std::string_view text, Quantity quantity) {
   if (parsed.unit->quantity != quantity) {
     return {0.0,
             {},
-            fmt::format("'{}' is the unit of {}; {}", split->unit, name_of(parsed.unit->quantity),
-                        expected())};
+            fmt::format("'{}' is a unit of {}; {}", split->unit,
+                        without_article(name_of(parsed.unit->quantity)), expected())};
   }
   return {split->number * parsed.unit->factor, *parsed.unit, ""};
 }

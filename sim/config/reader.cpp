@@ -60,7 +60,7 @@ void Reader::check_type(const Value*& value, std::string_view key, Value::Type t
   const std::string name = joined_key(path_, key);
   std::string rule = fmt::format("must be {}", type_name(type));
   if (type == Value::Type::list && value->type == Value::Type::table) {
-    rule += fmt::format("; write [[{}]] for an item that is a table", name);
+    rule += fmt::format("; write [[{}]] for each table", name);
   }
   note(*value, name, rule);
   value = nullptr;
@@ -99,7 +99,7 @@ double Reader::number(const Value& value, std::string_view key, std::optional<st
   } else {
     const std::string example = example_unit(quantity);
     scaled.complaint = "must be a number";
-    if (!example.empty()) scaled.complaint += fmt::format(" or a text such as \"3 {}\"", example);
+    if (!example.empty()) scaled.complaint += fmt::format(" or a string such as \"3 {}\"", example);
   }
 
   if (scaled.complaint.empty() && !all_hold(rules, scaled.si)) {
@@ -215,7 +215,7 @@ std::vector<std::string> Reader::strings(const Value& list, std::string_view key
   std::vector<std::string> out;
   for (const Value& item : list.children) {
     if (item.type != Value::Type::text) {
-      note(item, name_of(key, out.size()), "must be a text");
+      note(item, name_of(key, out.size()), "must be a string");
     }
     out.push_back(item.text);
   }
@@ -229,8 +229,7 @@ std::vector<std::vector<double>> Reader::rows(std::string_view key) {
   if (list == nullptr) return out;
   for (std::size_t i = 0; i < list->children.size(); ++i) {
     const Value& row = list->children[i];
-    if (row.type != Value::Type::list)
-      note(row, name_of(key, i), "must be a list of numbers, one row");
+    if (row.type != Value::Type::list) note(row, name_of(key, i), "must be a list of numbers");
     std::vector<double>& numbers = out.emplace_back();
     for (const Value& item : row.children) {
       numbers.push_back(item.type == Value::Type::integer ? static_cast<double>(item.integer)

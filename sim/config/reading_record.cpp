@@ -34,7 +34,7 @@ std::string nearest_of(std::string_view word, const Value& table,
   const bool is_a_letter = near.size() == 1;  // of another axis
   return near.empty() || is_a_letter
              ? std::string()
-             : fmt::format("; did you mean '{}', which is given, too?", near);
+             : fmt::format("; did you mean '{}', which is also given?", near);
 }
 
 }  // namespace

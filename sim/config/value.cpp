@@ -118,13 +118,13 @@ bool same_value(const Value& a, const Value& b) {
 std::string_view type_name(Value::Type type) {
   switch (type) {
     case Value::Type::text:
-      return "a text";
+      return "a string";
     case Value::Type::integer:
-      return "a whole number";
+      return "an integer";
     case Value::Type::real:
       return "a number";
     case Value::Type::boolean:
-      return "a truth value";
+      return "a boolean";
     case Value::Type::date_time:
       return "a date or time";
     case Value::Type::list:

@@ -59,9 +59,8 @@ std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
   if (own.mark_fault) {
     const plant::MarkFault& mark = *own.mark_fault;
     if (mark.from == mark.to) {
-      return fmt::format(
-          "counted {} signal periods until the reference mark at {:.3f} {} came again",
-          mark.counted, mark.from / unit, unit_name);
+      return fmt::format("counted {} signal periods until the reference mark at {:.3f} {} recurred",
+                         mark.counted, mark.from / unit, unit_name);
     }
     return fmt::format(
         "counted {} signal periods instead of {} between the reference marks at {:.3f} and {:.3f} "
@@ -69,7 +68,7 @@ std::optional<std::string> ServoAxes::fault_of(std::size_t l) {
         mark.counted, mark.expected, mark.from / unit, mark.to / unit, unit_name);
   }
   if (plant::DriveBank::unresolved(state_, l) > 0) {
-    return "friction too stiff for the exact step; use integrator = \"cvode\"";
+    return "friction too stiff for the exact integrator; use integrator = \"cvode\"";
   }
   const plant::DriveBlock& state = state_.blocks[block(l)];
   const double v = state.v[place(l)];

@@ -27,7 +27,8 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
     const double most = kMostFactor * machine.nc.v_max[j];
     if (!layout.has(j) || std::abs(velocity[j]) <= most) continue;
     if (!std::isfinite(velocity[j])) {
-      return fmt::format("strategy {}: position_loop returned what is not finite", term.strategy);
+      return fmt::format("strategy {}: position_loop returned a value that is not finite",
+                         term.strategy);
     }
     return fmt::format(
         "strategy {}: position_loop adds {:.4g} {} to axis {}, beyond {:g} times its v_max",

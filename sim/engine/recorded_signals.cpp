@@ -82,22 +82,22 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
   per_axis("torque", "N m", "N m", "motor torque");
   if (parts.imposed) {
     all.push_back({"imposed_linear", "um",
-                   "displacement that the imposed errors ask for at the programmed position",
-                   linear, kLinear});
+                   "displacement required by the imposed errors at the programmed position", linear,
+                   kLinear});
   }
   all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
   if (parts.uncorrectable) {
-    all.push_back({"uncorrectable_tip", "um",
+    all.push_back({"uncorrectable_tcp", "um",
                    "TCP deviation that the axes cannot compensate, identified", "", ""});
     all.push_back({"uncorrectable_axis", "urad",
                    "tool axis deviation that the axes cannot compensate, identified", "", ""});
   }
   if (parts.cut) {
     all.push_back({"cutting_force", "N",
-                   "average force of the work on the cutter, in the workpiece", "XYZ", kXyz});
+                   "mean force of the workpiece on the cutter, in the workpiece", "XYZ", kXyz});
     all.push_back({"structural_deflection", "um",
-                   "by which the cut bends the structure behind the scales, part of "
-                   "tool_position_true",
+                   "deflection of the structure downstream of the scales by cutting forces, part "
+                   "of tool_position_true",
                    linear, kLinear});
   }
   if (parts.programmed && !linear.empty()) {

@@ -24,7 +24,7 @@ struct Snapshot {
   double s = 0.0;
   std::size_t piece = 0;           // of the programmed path
   Joints Q_ref = Joints::Zero();   // interpolated
-  Joints Q_cmd = Joints::Zero();   // after set-point corrections
+  Joints Q_cmd = Joints::Zero();   // after setpoint corrections
   Joints Q_fb = Joints::Zero();    // what the NC reads (virtual encoder)
   Joints Q_meas = Joints::Zero();  // what the scale says
   Joints Q_true = Joints::Zero();

@@ -76,14 +76,14 @@ constexpr QuantityEntry kQuantities[] = {
      .evaluate = of_both<&metrology::BidirectionalCircle::D>},
     {.name = "reversal_spike",
      .unit = "um",
-     .help = "larger one of the two excursions where the axis reverses on a circle; outward "
-             "positive",
+     .help =
+         "larger of the two excursions at the reversals of the axis on a circle; outward positive",
      .axes = "XYZ",
      .circles = 1,
      .evaluate = larger_at_reversal<&metrology::Reversal::spike>},
     {.name = "reversal_step",
      .unit = "um",
-     .help = "larger one of the two steps of the radius where the axis reverses on a circle",
+     .help = "larger of the two radius steps at the reversals of the axis on a circle",
      .axes = "XYZ",
      .circles = 1,
      .evaluate = larger_at_reversal<&metrology::Reversal::step>},

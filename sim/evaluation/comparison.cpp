@@ -24,7 +24,7 @@ namespace {
 std::string unlike(const CaseData& one, const CaseData& base) {
   if (!one.signal_delay || !base.signal_delay) return {};
   if (*one.signal_delay == *base.signal_delay) return {};
-  return fmt::format("feedback hardware delays readings by {:g} us, those of {} by {:g} us",
+  return fmt::format("the feedback hardware delays readings by {:g} us, those of {} by {:g} us",
                      *one.signal_delay / us, base.name, *base.signal_delay / us);
 }
 

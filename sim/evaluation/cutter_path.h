@@ -30,7 +30,7 @@ struct PartSource {
   const plant::MachineChain& chain;                 // the ideal machine
   AxisWords work_offset = AxisWords::Zero();        // m, rad, machine coordinates
   const plant::VolumetricModel* imposed = nullptr;  // or none
-  const plant::Stock* stock = nullptr;              // the raw part; none: it is everywhere
+  const plant::Stock* stock = nullptr;              // the stock; none: it is everywhere
 };
 
 const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPath::Piece& piece);

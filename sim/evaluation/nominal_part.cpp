@@ -65,8 +65,8 @@ std::vector<Fault> faults_of_plan(std::span<const metrology::ProbeSpec> plan,
       const Eigen::Vector3d& n = astray.nearest.normal;
       faults.push_back(
           {probe.place,
-           fmt::format("{} do not face as the part '{}' does, the first at {}, where it faces "
-                       "({:.3g}, {:.3g}, {:.3g}); normals must point out of it",
+           fmt::format("{} have normals that disagree with the part '{}', the first at {}, where "
+                       "its normal is ({:.3g}, {:.3g}, {:.3g}); normals must point out of the part",
                        begin(astray), part.file, model::program_words(astray.first->point),
                        n.x() + 0.0, n.y() + 0.0, n.z() + 0.0)});
     }

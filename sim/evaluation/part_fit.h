@@ -1,4 +1,4 @@
-/// A probed part laid on the nominal one.
+/// A probed part aligned with the nominal one by best fit.
 #pragma once
 
 #include <span>

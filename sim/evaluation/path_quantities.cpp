@@ -169,7 +169,7 @@ std::optional<double> statistic_of_samples(const model::QuantitySpec& spec, std:
   const auto between_rows = [&](const char* what) {
     return column_of(one, std::string(signal) + what, spec.axis);
   };
-  const AtRow least = between_rows("_least"), greatest = between_rows("_greatest");
+  const AtRow least = between_rows("_min"), greatest = between_rows("_max");
   const AtRow mean = between_rows("_mean"), rms = between_rows("_rms");
   const AtRow samples = column_of(one, records::kSamples, '\0');
   if (!least || !greatest || !mean || !rms || !samples) return std::nullopt;
@@ -196,7 +196,7 @@ double lag_time(const CaseData& one, const AtRow& residual, const AtRow& imposed
 }
 
 std::string note_on_rows(const CaseData& one) {
-  return is_thinned(one) ? "at the rows that are recorded (record.period_ms)" : "";
+  return is_thinned(one) ? "at the recorded rows (record.period_ms)" : "";
 }
 
 using Signal = AtRow (*)(const model::QuantitySpec&, const CaseData&, const CaseData*);
@@ -249,8 +249,8 @@ constexpr std::string_view kResidual = "imposed_error_residual";
 constexpr QuantityEntry kQuantities[] = {
     {.name = kResidual,
      .unit = "um",
-     .help = "trajectory (scale) minus that of the base case minus the imposed displacement, at "
-             "equal s",
+     .help =
+         "trajectory (scale) minus that of the baseline minus the imposed displacement, at equal s",
      .axes = "XYZ",
      .has_statistic = true,
      .needs_baseline = true,
@@ -267,8 +267,8 @@ constexpr QuantityEntry kQuantities[] = {
      .derived_from = kResidual},
     {.name = "lag_time",
      .unit = "ms",
-     .help = "delay that explains the imposed_error_residual best, by least squares over its "
-             "samples",
+     .help =
+         "delay that best explains the imposed_error_residual, by least squares over its samples",
      .axes = "XYZ",
      .needs_baseline = true,
      .needs_imposed = true,
@@ -276,7 +276,7 @@ constexpr QuantityEntry kQuantities[] = {
      .derived_from = kResidual},
     {.name = "trajectory_difference",
      .unit = "um",
-     .help = "trajectory (scale) minus that of the base case, at equal s",
+     .help = "trajectory (scale) minus that of the baseline, at equal s",
      .axes = "XYZ",
      .has_statistic = true,
      .needs_baseline = true,
@@ -314,7 +314,7 @@ constexpr QuantityEntry kQuantities[] = {
      .evaluate = along_path<contour_error>},
     {.name = "tool_difference",
      .unit = "um",
-     .help = "distance of the true tool centre point from that of the base case, at equal s",
+     .help = "distance of the true tool centre point from that of the baseline, at equal s",
      .has_statistic = true,
      .needs_baseline = true,
      .evaluate = along_path<tool_difference>},

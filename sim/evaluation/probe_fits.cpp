@@ -39,7 +39,7 @@ std::string missed_note(const CaseData& one, const Points& points, bool with_bas
   const std::string of = fmt::format("{} of {} points of '{}'{}", points.d.size(), all,
                                      points.feature->name, with_base ? " in both cases" : "");
   if (!points.d.empty()) return of;
-  return fmt::format("no point of '{}' met a cut surface{}: does the tool of case {} come there?",
+  return fmt::format("no point of '{}' met a cut surface{}: does the tool of case {} get there?",
                      points.feature->name, with_base ? " in both cases" : "", one.name);
 }
 
@@ -76,7 +76,8 @@ bool go_around(const Points& points) {
 constexpr const char* kTooFew = "too few points";
 constexpr double kAcross = 1e-6;  // component of a normal that counts as none
 constexpr const char* kGap =
-    "minimum zone needs points all around, no gap of half a turn; fit = \"least_squares\" does not";
+    "minimum zone needs points all around, without a gap of half a turn; use fit = "
+    "\"least_squares\"";
 
 template <class Shape>
 Fitted width_of(const std::optional<metrology::Zone<Shape>>& zone) {
@@ -221,7 +222,7 @@ Fitted position(const model::QuantitySpec& spec, const Points& points) {
   if (std::all_of(targets.begin(), targets.end(), [axis](const plant::ProbeTarget& target) {
         return std::abs(target.normal[axis]) < kAcross;
       })) {
-    return {{}, fmt::format("no normal of its points has a component along {}", letter)};
+    return {{}, fmt::format("none of its normals has a component along {}", letter)};
   }
   const double mean = mean_position(points, axis);
   if (std::isnan(mean)) return {{}, "needs points on both flanks"};
@@ -233,8 +234,7 @@ Fitted angle_between_features(const Points& one, const Points& other, bool must_
   if (!a || !b) return {{}, kTooFew};
   const double nominal = angle_between(a->nominal, b->nominal);
   if (must_be_square && std::abs(nominal - 90 * deg) > kSquare) {
-    return {{},
-            fmt::format("they should be at {:.6g} deg; angle tells the deviation", nominal / deg)};
+    return {{}, fmt::format("they are nominally at {:.6g} deg; use angle", nominal / deg)};
   }
   return {angle_between(a->actual, b->actual) - nominal};
 }

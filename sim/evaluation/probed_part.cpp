@@ -159,17 +159,17 @@ std::optional<Miss> miss_of(const Meeting& meeting, const plant::ProbeTarget& ta
 std::string why(Miss miss, const metrology::Cmm& cmm) {
   switch (miss) {
     case Miss::untouched:
-      return "no cutter came there";
+      return "no cutter reached this point";
     case Miss::no_stock:
-      return "the raw part ([[part.stock]]) does not reach there";
+      return "the stock ([[part.stock]]) does not extend to there";
     case Miss::blocked:
       return cmm.probe_radius > 0.0
                  ? fmt::format("the stylus ball does not fit {:g} mm (cmm.approach_mm) above it",
                                cmm.clearance / mm)
-                 : fmt::format("there is uncut material {:g} mm (cmm.approach_mm) above it",
+                 : fmt::format("there is uncut material within {:g} mm (cmm.approach_mm) above it",
                                cmm.clearance / mm);
     case Miss::through:
-      return fmt::format("the cutter took away all down to {:g} mm (cmm.search_mm) below it",
+      return fmt::format("the cutter removed everything down to {:g} mm (cmm.search_mm) below it",
                          cmm.depth / mm);
   }
   return "";

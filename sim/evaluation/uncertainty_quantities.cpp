@@ -97,7 +97,7 @@ Eigen::Vector3d tip_in_spindle(const plant::MachineChain& chain, const Joints& Q
 QuantityValue tool_deviation_uncertainty(const model::QuantitySpec& spec, CaseEvaluation& compared,
                                          const CaseData*) {
   const CaseData& one = compared.data;
-  if (!one.uncertain) return {.note = "no covariance of identified errors is known"};
+  if (!one.uncertain) return {.note = "the covariance of the identified errors is unknown"};
   TravelledJoints joints(one, *one.uncertain);
   const auto tip = one.servo->column("tool_position_true", 'X');
   if (!joints.is_complete() || !tip) return {.note = "positions were not recorded"};

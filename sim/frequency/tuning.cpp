@@ -139,8 +139,8 @@ double step_overshoot(const model::MachineSettings& linear, int joint, Tick read
                           const TuneSettings& wanted) {
   throw InputError(
       {"axis " + std::string(1, machine.chain.layout.letter_of(joint))},
-      fmt::format("no {} has a phase margin of {:.4g} deg together with a gain margin of {:.4g} "
-                  "dB; lower the margins or raise --reset-ratio",
+      fmt::format("no {} gives both a phase margin of {:.4g} deg and a gain margin of {:.4g} dB; "
+                  "lower the margins or raise --reset-ratio",
                   gain, wanted.phase_margin / deg, 20.0 * std::log10(wanted.gain_margin)));
 }
 

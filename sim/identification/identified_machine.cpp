@@ -26,10 +26,9 @@ std::string beside(const std::string& machine, const std::string& path) {
 input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,
                                          const std::string& path) {
   if (experiment.machine_path.empty()) {
-    throw InputError(
-        {experiment.path},
-        "describes the machine itself; name a machine file (machine = \"FILE\") so that "
-        "the identified values can be laid over it");
+    throw InputError({experiment.path},
+                     "describes the machine itself; name a machine file (machine = \"FILE\") so "
+                     "that the identified values can override it");
   }
   input::IdentifiedFile out;
   out.based_on = beside(experiment.machine_path, path);

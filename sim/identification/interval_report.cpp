@@ -43,8 +43,8 @@ std::string profile_table(const Identification& result) {
       table.add({names_of(estimate), "none", "none", "-", "-", estimate.unit,
                  fmt::format("{:.2g}", half)});
       notes += fmt::format(
-          "warning: the profile of {} meets a smaller misfit: the fit has ended in a local "
-          "minimum; no interval is given\n",
+          "warning: the profile of {} finds a smaller misfit: the fit ended in a local minimum; no "
+          "interval is given\n",
           estimate.keys.front());
       continue;
     }

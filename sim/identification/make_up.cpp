@@ -9,8 +9,7 @@ void make_up(const Experiment& experiment, const std::string& path, bool force) 
   const AxisRecord& motion = experiment.records.front();
   if (motion.record.command.empty()) {
     throw InputError(motion.place,
-                     "has no command; a recording is made up from the motion that "
-                     "was commanded");
+                     "has no command; a recording is synthesised from the commanded motion");
   }
   const ModelOfValues model =
       model_of(with_values(experiment.document, experiment.estimates), {}, {});

@@ -36,7 +36,7 @@ const config::Value* value_at(const config::Value& root, const std::string& key)
 model::WrittenNumber read_number(config::Reader& table, std::string_view key) {
   const config::Value* value = table.raw(key);
   const auto number = model::written_number(value->written);
-  if (!number) table.fault(key, "must be a number, or a text such as \"20 N\"");
+  if (!number) table.fault(key, "must be a number, or a string such as \"20 N\"");
   return number.value_or(model::WrittenNumber{});
 }
 
@@ -64,7 +64,7 @@ model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
   }
   const auto number = model::written_number(value->written);
   if (!number) {
-    table.fault(fmt::format("{} = {} is no number", estimate.keys.front(), value->written));
+    table.fault(fmt::format("{} = {} is not a number", estimate.keys.front(), value->written));
   }
   return number.value_or(model::WrittenNumber{});
 }
@@ -95,9 +95,10 @@ void check_nc_period(config::Reader& loop, const LoopSettings& settings,
   const double position = machine.nc.periods.seconds(machine.nc.periods.position);
   const double periods = settings.period / position;
   if (std::abs(periods - std::round(periods)) < 1e-6 && periods > 0.5) return;
-  loop.fault("period_ms", fmt::format("must be a whole multiple of the position period of the NC, "
-                                      "{:g} ms",
-                                      position / ms));
+  loop.fault("period_ms",
+             fmt::format("must be an integer multiple of the position period of the NC, "
+                         "{:g} ms",
+                         position / ms));
 }
 
 // @param own  numbers of those of which each recording has its own
@@ -119,7 +120,7 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
     one.upper = read_bound(table, "max", one.unit, one.upper);
     if (table.boolean_or("own", false)) own.push_back(estimates.size());
     if (!(one.lower <= one.start && one.start <= one.upper)) {
-      table.fault(fmt::format("start {:g} lies outside of min and max", one.start));
+      table.fault(fmt::format("start {:g} is outside min and max", one.start));
     }
     for (const Estimate& other : estimates) {
       for (const std::string& key : one.keys) {
@@ -189,8 +190,8 @@ Experiment read_experiment(const std::string& path, const RecordingFiles& record
   if (const config::Value* overrides = own.root().find("machine_override")) {
     throw InputError(
         overrides->key_place,
-        "machine_override has no place in an experiment: what is identified is laid over "
-        "a machine file; write one with based_on = \"FILE\" and these keys");
+        "machine_override is not allowed in an experiment, because identified values override a "
+        "machine file; put these keys in a machine file with based_on = \"FILE\"");
   }
   const input::ScenarioDocument whole = input::with_machine(own, {}, files);
   Experiment out{.name = {},

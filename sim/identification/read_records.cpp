@@ -46,7 +46,13 @@ config::Quantity quantity_of(Role role, bool linear) {
   }
 }
 
-// Factor of the unit: said in the experiment, or in the file, or SI.
+// Name as in "unit of length": without its article.
+std::string quantity_noun(config::Quantity quantity) {
+  const std::string name = config::name_of(quantity);
+  return name.substr(name.find(' ') + 1);
+}
+
+// Factor of the unit: from the experiment, or from the file, or SI.
 double unit_factor(config::Reader& table, const std::string& unit, config::Quantity quantity) {
   const config::ParsedUnit parsed = config::parse_unit(unit);
   if (!parsed.unit) {
@@ -54,7 +60,7 @@ double unit_factor(config::Reader& table, const std::string& unit, config::Quant
     return 1.0;
   }
   if (!(parsed.unit->quantity == quantity)) {
-    table.fault("unit", fmt::format("is not that of {}", config::name_of(quantity)));
+    table.fault("unit", fmt::format("must be a unit of {}", quantity_noun(quantity)));
   }
   return parsed.unit->factor;
 }
@@ -70,10 +76,10 @@ const recordings::Channel* find_channel(config::Reader& at, std::string_view key
   // the reader has skipped it for a reason
   for (const std::string& note : recording.notes) {
     if (!note.starts_with(fmt::format("'{}' ", name))) continue;
-    at.fault(key, fmt::format("is no channel of {}: {}", recording.file, note));
+    at.fault(key, fmt::format("is not a channel of {}: {}", recording.file, note));
     return nullptr;
   }
-  at.fault(key, fmt::format("is no channel of {}{}; it has {}", recording.file,
+  at.fault(key, fmt::format("is not a channel of {}{}; it has {}", recording.file,
                             did_you_mean(name, names), fmt::join(names, ", ")));
   return nullptr;
 }
@@ -140,7 +146,7 @@ class RecordReader {
     }
     if (out_.joint < 0) {
       axes.raw(letters.front());
-      axes.fault(letters.front(), "is no axis of the machine");
+      axes.fault(letters.front(), "is not an axis of the machine");
       return;
     }
     config::Reader axis = axes.table(letters.front());
@@ -177,9 +183,10 @@ class RecordReader {
       if (unit.unit && unit.unit->quantity == quantity) {
         one.factor = unit.unit->factor;
       } else {
-        axis.fault(key, fmt::format("has the unit '{}' in the file, which is not that of {}; say "
-                                    "{{ channel = \"{}\", unit = \"...\", factor = ... }}",
-                                    channel->unit, config::name_of(quantity), one.channel));
+        axis.fault(key,
+                   fmt::format("has the unit '{}' in the file, which is not a unit of {}; write "
+                               "{{ channel = \"{}\", unit = \"...\", factor = ... }}",
+                               channel->unit, quantity_noun(quantity), one.channel));
       }
       return;
     }
@@ -210,7 +217,7 @@ class RecordReader {
     const recordings::Base& base = recording_.bases[feedback.base];
     const bool counted = base.unit == "1";  // sample numbers: one a period
     if (base.values.size() < 16) {
-      table_.fault("file", "holds fewer than 16 samples of the feedback");
+      table_.fault("file", "has fewer than 16 samples of the feedback");
       return;
     }
     if (!counted && base.unit != "s") {
@@ -255,7 +262,7 @@ class RecordReader {
       if (channel == nullptr) continue;
       signals[role].emplace(*channel, recording_.bases[channel->base], uses_[role], stretch);
       if (signals[role]->empty()) {
-        table_.fault("file", fmt::format("holds no sample of {}", channel->name));
+        table_.fault("file", fmt::format("has no sample of {}", channel->name));
         return;
       }
       first = std::max(first, signals[role]->first());
@@ -263,9 +270,9 @@ class RecordReader {
     }
     const double T = loop_.period;
     if (!(last - first >= 16.0 * T)) {
-      table_.fault(
-          "file",
-          fmt::format("holds no common part of its channels between {:g} and {:g} s", first, last));
+      table_.fault("file",
+                   fmt::format("its channels have no common time range between {:g} and {:g} s",
+                               first, last));
       return;
     }
     const auto count = static_cast<std::size_t>((last - first) / T + 1e-6) + 1;
@@ -295,11 +302,11 @@ class RecordReader {
       if (channel == nullptr) continue;
       const recordings::Base& base = recording_.bases[channel->base];
       for (const recordings::Clipping& one : recordings::clipping(*channel)) {
-        out_.notes.push_back(fmt::format(
-            "{}: {} is clipped at {:g} in {} samples, first at {}; if the drive limits it, say "
-            "loop.force_limit, else what it held there is not known",
-            out_.record.name, channel->name, one.level, one.samples,
-            recordings::at_text(base, one.first)));
+        out_.notes.push_back(
+            fmt::format("{}: {} is clipped at {:g} in {} samples, first at {}; if the drive limits "
+                        "it, set loop.force_limit; otherwise its value there is unknown",
+                        out_.record.name, channel->name, one.level, one.samples,
+                        recordings::at_text(base, one.first)));
       }
     }
   }
@@ -315,7 +322,7 @@ class RecordReader {
       if (feedback.gap(first + r.period * static_cast<double>(k)) <= longest_gap_) continue;
       if (r.omitted.empty() || r.omitted.back().end != k) {
         r.omitted.push_back({k, k});
-        out_.notes.push_back(fmt::format("{}: gap at {:.4g} s, left out", r.name, r.time(k)));
+        out_.notes.push_back(fmt::format("{}: gap at {:.4g} s, excluded", r.name, r.time(k)));
       }
       r.omitted.back().end = k + 1;
     }
@@ -357,7 +364,7 @@ std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineS
   const bool any =
       std::any_of(out.begin(), out.end(), [](const AxisRecord& r) { return !r.record.validation; });
   if (root.faults() == 0 && !any)
-    root.fault("every recording is for validation; none to estimate from");
+    root.fault("all recordings are for validation; none is left for estimation");
   return out;
 }
 

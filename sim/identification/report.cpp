@@ -159,10 +159,8 @@ std::vector<std::string> unidentifiable_sentences(const Identification& result) 
   std::vector<std::string> out;
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     if (!std::isfinite(result.fit.scales[k])) {
-      out.push_back(
-          fmt::format("{}: the recordings do not depend on it; its value is the one that "
-                      "was started from",
-                      parameter_name(result, k)));
+      out.push_back(fmt::format("{}: the recordings do not depend on it; it keeps its start value",
+                                parameter_name(result, k)));
     }
   }
   for (const UnidentifiableDirection& one : result.uncertainty.unidentifiable) {

@@ -71,7 +71,7 @@ void store_parameters(records::Hdf5Group group, const Identification& result) {
   group.list("value", value, {"as unit_NN", "identified value"}, "parameter");
   group.list("half_width", half, {"as unit_NN", "expanded uncertainty, k = 2"}, "parameter");
   group.list("half_width_counted", counted,
-             {"as unit_NN", "the same, if each sample were independent"}, "parameter");
+             {"as unit_NN", "the same, if all samples were independent"}, "parameter");
   group.table("covariance", count, covariance, {"products of the units", "covariance"}, "parameter",
               "other");
 }
@@ -90,9 +90,9 @@ void store_laws(records::Hdf5Group group, const std::vector<LawResult>& laws) {
   group.list("law", number, {"1", "number of the law: law_NN"});
   group.list("parameters", parameters, {"1", "estimated parameters"}, "law");
   group.list("rms", rms, {"m", "of the residual"}, "law");
-  group.list("held_out_rms", held_out, {"m", "of parts that the fit did not see"}, "law");
+  group.list("held_out_rms", held_out, {"m", "of segments excluded from the fit"}, "law");
   group.list("held_out_error", error, {"m", "standard error of held_out_rms"}, "law");
-  group.list("bic", bic, {"1", "information criterion of Bayes, relative to the least"}, "law");
+  group.list("bic", bic, {"1", "information criterion of Bayes, relative to the smallest"}, "law");
 }
 
 }  // namespace

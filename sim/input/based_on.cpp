@@ -16,9 +16,10 @@ std::optional<std::string> take_base(config::Value& root, const DocumentKind& ki
     throw InputError(base->place, fmt::format("based_on must be the name of {}", kind.one));
   }
   if (bases_left == 0) {
-    throw InputError(base->place, fmt::format("based_on: more than {} {} stand on each other; "
-                                              "is one of them based on itself?",
-                                              kMostBases, kind.several));
+    throw InputError(
+        base->place,
+        fmt::format("based_on nested deeper than {}; is one of the {} based on itself?", kMostBases,
+                    kind.several));
   }
   std::string path = beside(base->place, base->text);
   if (!std::filesystem::exists(path)) {

@@ -1,4 +1,4 @@
-/// Documents that are laid over others: their key `based_on`.
+/// Documents that are based on others: their key `based_on`.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,7 @@ Eigen::MatrixXd read_covariance(config::Reader& table, std::size_t size) {
       rows.size() == size &&
       std::all_of(rows.begin(), rows.end(), [&](const auto& row) { return row.size() == size; });
   if (!square) {
-    table.fault("covariance", fmt::format("must be {0} rows of {0} numbers, one a key", size));
+    table.fault("covariance", fmt::format("must be {0} rows of {0} numbers, one per key", size));
     return out;
   }
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -48,21 +48,23 @@ Eigen::MatrixXd read_covariance(config::Reader& table, std::size_t size) {
 void refuse_length(config::Reader& table, std::string_view name, std::size_t length,
                    std::size_t keys) {
   if (length == keys) return;
-  table.fault(name, fmt::format("has {} items; must have {}, one a key", length, keys));
+  table.fault(name, fmt::format("has {} items; must have {}, one per key", length, keys));
 }
 
 void refuse_repeated_keys(config::Reader& table, const IdentifiedValues& values) {
   for (std::size_t k = 0; k < values.keys.size(); ++k) {
     const auto before = values.keys.begin() + static_cast<std::ptrdiff_t>(k);
     if (std::find(values.keys.begin(), before, values.keys[k]) != before) {
-      table.fault("keys", fmt::format("names {} twice", values.keys[k]));
+      table.fault("keys", fmt::format("lists {} twice", values.keys[k]));
     }
   }
   for (const std::string& key : values.unidentifiable) {
     if (std::find(values.keys.begin(), values.keys.end(), key) == values.keys.end()) continue;
-    table.fault("unidentifiable", fmt::format("names {}, which is one of keys: its value is either "
-                                              "identified or the one that was started from",
-                                              key));
+    table.fault(
+        "unidentifiable",
+        fmt::format(
+            "lists {}, which is also one of keys; a key is either identified or unidentifiable",
+            key));
   }
 }
 
@@ -111,7 +113,7 @@ void refuse_other_values(config::Reader& table, const IdentifiedValues& identifi
     const std::string& key = identified.keys[k];
     const config::Value* set = value_at(file, key);
     if (set == nullptr || key.starts_with("identified.")) {
-      table.fault("keys", fmt::format("names {}, which this file does not set", key));
+      table.fault("keys", fmt::format("lists {}, which this file does not set", key));
       continue;
     }
     const double value = identified.values[k];
@@ -139,7 +141,7 @@ IdentifiedValues read_identified_table(config::Reader& table) {
   out.values = table.reals("values", config::kNumber);
   out.unidentifiable = table.texts_or("unidentifiable", {});
   if (table.faults() == before && out.keys.empty())
-    table.fault("keys", "must name at least one key");
+    table.fault("keys", "must list at least one key");
   if (table.faults() > before) {
     table.raw("covariance");
     return {};
@@ -151,7 +153,7 @@ IdentifiedValues read_identified_table(config::Reader& table) {
     if (unit == kPlainNumber) continue;
     const config::ParsedUnit parsed = config::parse_unit(unit);
     if (!parsed.unit) {
-      table.fault("units", parsed.complaint + "; a number without unit has \"1\"");
+      table.fault("units", parsed.complaint + "; use \"1\" for a dimensionless number");
     }
   }
   refuse_repeated_keys(table, out);

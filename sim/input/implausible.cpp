@@ -156,11 +156,11 @@ std::vector<std::string> implausible_values(const model::MachineSettings& machin
     const std::string key = fmt::format("axis.{}.{}", machine.chain.layout.letter_of(joint), p.key);
     const bool has_unit = *p.unit != '\0';
     out.push_back(has_unit
-                      ? fmt::format("{} = {:g} {}, which no machine tool has; bare numbers are in "
-                                    "{}, others need their unit, such as \"{}\"",
+                      ? fmt::format("{} = {:g} {} is implausible for a machine tool; bare numbers "
+                                    "are in {}; for other units write, for example, \"{}\"",
                                     key, p.value, p.unit, p.unit, p.meant)
-                      : fmt::format("{} = {:g}, which no machine tool has; it is the motion of the "
-                                    "axis over that of the motor",
+                      : fmt::format("{} = {:g}, which is implausible for a machine tool; it is the "
+                                    "axis motion per motor motion",
                                     key, p.value));
   }
   return out;

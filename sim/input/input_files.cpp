@@ -25,7 +25,7 @@ std::shared_ptr<const std::string> InputFiles::text(const std::string& path, con
     const std::uint64_t now = crc64(text);
     const std::scoped_lock lock(mutex_);
     if (checksums_.emplace(path, now).first->second != now) {
-      throw InputError({path}, "has changed since it was read first");
+      throw InputError({path}, "has changed since it was first read");
     }
     return text;
   });

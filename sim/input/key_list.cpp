@@ -127,14 +127,14 @@ std::string type_of(const config::KeyUse& use) {
     case config::KeyType::boolean:
       return "true | false";
     case config::KeyType::text:
-      return "text";
+      return "string";
     case config::KeyType::choice:
       return use.words.size() > kMostWords ? fmt::format("one of {} names", use.words.size())
                                            : quoted_words(use.words);
     case config::KeyType::numbers:
       return "list of numbers" + unit;
     case config::KeyType::texts:
-      return "list of texts";
+      return "list of strings";
     case config::KeyType::rows:
       return "list of lists of numbers";
     case config::KeyType::table:
@@ -171,7 +171,7 @@ std::string presence_of(const std::vector<config::KeyUse>& uses) {
   if (required && optional) return "required in some cases";
   if (required) return "required";
   if (defaults.size() == 1) return "default " + defaults.front();
-  return defaults.empty() ? "optional" : "default follows from other keys";
+  return defaults.empty() ? "optional" : "default depends on other keys";
 }
 
 KeyEntry entry_of(const Requests& requests) {
@@ -185,7 +185,7 @@ KeyEntry entry_of(const Requests& requests) {
     append_new(out.type, type_of(use), " | ");
     append_new(out.unit, use.unit, " | ");
     if (!use.range.empty() && !out.range.empty() && use.range != out.range) {
-      out.range = "bounds follow from other keys";
+      out.range = "bounds depend on other keys";
     } else if (!use.range.empty()) {
       out.range = use.range;
     }

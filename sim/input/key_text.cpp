@@ -8,7 +8,7 @@ namespace servomill::sim::input {
 namespace {
 
 constexpr std::string_view kDefault = "default ";
-constexpr std::string_view kDefaultFollows = "default follows";
+constexpr std::string_view kDefaultFollows = "default depends";
 
 std::string_view section_name(const KeyEntry& key) {
   return key.section.empty() ? kTopSection : std::string_view(key.section);

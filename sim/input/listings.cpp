@@ -59,7 +59,9 @@ std::string describe_reader_rules() {
         "  source: {}\n",
         reading.found, reading.reading, reading.controls, reading.source);
   }
-  out += "\nread differently, and refused unless --reader or another option chooses:\n";
+  out +=
+      "\nread differently by different controls, and refused unless --reader or another option "
+      "selects one:\n";
   for (const controllers::WordDifferenceEntry& one : controllers::word_differences()) {
     out +=
         fmt::format("{}\n  source: {}\n", controllers::both_readings(one.difference), one.source);

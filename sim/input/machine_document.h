@@ -11,7 +11,7 @@
 
 namespace servomill::sim::input {
 
-/// A machine file, laid over those that it is based on.
+/// A machine file merged with those that it is based on.
 struct MachineDocument {
   config::Document document;                   // without `based_on` and [identified]
   std::optional<IdentifiedValues> identified;  // of the file itself, not of those below it

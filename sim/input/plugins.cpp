@@ -24,8 +24,7 @@ constexpr std::string_view kLoaded = "loaded:";
 void check_units(const strategies::Entry& entry, const std::string& file) {
   for (const ParameterSpec& one : entry.parameters) {
     if (one.unit.empty() || config::parse_unit(one.unit).unit) continue;
-    throw InputError({file}, fmt::format("strategy {}: parameter {} has the unit '{}', which is "
-                                         "not known",
+    throw InputError({file}, fmt::format("strategy {}: parameter {} has the unknown unit '{}'",
                                          entry.name, one.name, one.unit));
   }
 }

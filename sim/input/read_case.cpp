@@ -65,11 +65,11 @@ void CaseReader::read(config::Reader& table) {
 // The name becomes a group of the result file.
 void CaseReader::check_name(config::Reader& table, const std::string& name) const {
   if (name.empty() || name == "." || name == "..") {
-    table.fault("name", "must name the case");
+    table.fault("name", "must not be empty");
   } else if (name.find('/') != std::string::npos) {
     table.fault("name", "must not contain '/'");
   } else if (out_.find_case(name) != nullptr) {
-    table.fault("name", "is the name of an earlier case");
+    table.fault("name", "is already used by an earlier case");
   }
 }
 
@@ -78,8 +78,8 @@ void CaseReader::check_recording(config::Reader& table, const model::CaseSpec& s
       out_.record_period % out_.machine.nc.periods.position != 0) {
     table.fault(
         "servo",
-        fmt::format("is recorded at its position periods: record.period_ms must "
-                    "be a whole multiple of {:g} ms",
+        fmt::format("is recorded at the position-loop period: record.period_ms must be an integer "
+                    "multiple of {:g} ms",
                     out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / ms));
   }
 }
@@ -88,7 +88,7 @@ void CaseReader::give_hardware(config::Reader& table, bool says_hardware, model:
   if (const strategies::Entry* user = user_of_hardware(spec)) {
     if (says_hardware && !spec.feedback_hardware) {
       table.fault("feedback_hardware",
-                  fmt::format("a case with the strategy {} needs its hardware", user->name));
+                  fmt::format("must not be false: the case has the strategy {}", user->name));
     }
     spec.feedback_hardware = true;
   } else if (!says_hardware && !hardware_is_chosen_) {
@@ -110,10 +110,10 @@ void CaseReader::note_machine_override(config::Reader& table) {
     return;
   }
   if (override->find("structure") != nullptr) {
-    table.fault("machine_override", "has the key structure, which is common to all cases");
+    table.fault("machine_override", "must not change the structure, which is common to all cases");
   }
   if (override->find("errors") != nullptr) {
-    table.fault("machine_override", "has the key errors; error models are common to all cases");
+    table.fault("machine_override", "must not change errors; error models are common to all cases");
   }
   overrides_.emplace(out_.cases.size(), *override);
 }

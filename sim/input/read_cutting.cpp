@@ -60,7 +60,7 @@ plant::Stock read_stock(config::Reader& part) {
     if (is_cylinder) solids.emplace_back(read_cylinder(solid.table("cylinder")));
     if (is_box != is_cylinder) continue;
     if (solid.has("stl")) {
-      solid.fault("stl", "a raw part is made of boxes and cylinders; the nominal part is part.stl");
+      solid.fault("stl", "stock consists of boxes and cylinders; the nominal part is part.stl");
       solid.skip_rest();
     } else {
       solid.fault("must have a table 'box' or a table 'cylinder'");
@@ -91,7 +91,7 @@ void read_case_cutting(config::Reader& table, const std::optional<model::Cutting
   spec.wear.initial =
       table.real_or("wear", spec.wear.initial, config::kNumber, {config::at_least(0.0)});
   if (spec.cutting && !common) {
-    table.fault("cutting", "needs a table [cutting] of the scenario");
+    table.fault("cutting", "needs the table [cutting]");
     spec.cutting = false;
   } else if (table.has("wear") && !spec.cutting) {
     table.fault("wear", "has no effect: the case runs in air");

@@ -1,4 +1,4 @@
-/// Reads the raw part and what cutting it costs.
+/// Reads the stock and what cutting it costs.
 #pragma once
 
 #include <optional>

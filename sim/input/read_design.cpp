@@ -62,7 +62,7 @@ class DesignReader {
     for (config::Reader one : together) read_together(one);
     if (design_.sampled_dimensions > 0 && !has_samples_ && table.faults() == 0) {
       table.fault(
-          "samples is missing: keys with a distribution need one such as samples = "
+          "samples is missing: keys with a distribution need, for example, samples = "
           "{ design = \"latin_hypercube\", count = 100 }");
     }
     if (design_.sampled_dimensions == 0 && has_samples_ && table.faults() == 0) {
@@ -97,7 +97,7 @@ class DesignReader {
       names = table.texts("from");
     } else {
       table.raw("from");
-      table.fault("from", "must be the name of a file, or a list of names");
+      table.fault("from", "must be a file name, or a list of file names");
     }
     for (std::string& name : names) {
       design_.sample_files.push_back({std::move(name), table.place("from")});
@@ -119,9 +119,10 @@ class DesignReader {
       if (machine.identified) {
         identified_.push_back(std::move(*machine.identified));
       } else {
-        table.fault("from", fmt::format("has no table [identified]: there are no values to draw "
-                                        "samples of{}",
-                                        design_.sample_files.size() > 1 ? " in " + file.name : ""));
+        table.fault(
+            "from",
+            fmt::format("has no table [identified]: there are no identified values to sample{}",
+                        design_.sample_files.size() > 1 ? " in " + file.name : ""));
       }
     }
   }
@@ -137,13 +138,15 @@ class DesignReader {
     }
     if (table.faults() > before) return false;
     if (models.size() != 1) {
-      table.fault("into", models.empty() ? "has nothing to hold: no identified key is of an error"
-                                         : "is one error model; errors of several are identified");
+      table.fault("into", models.empty()
+                              ? "has no effect: no identified key belongs to an error model"
+                              : "is one error model; errors of several models are identified");
     } else if (into.empty() || into == models.front() ||
                into.find_first_of(".\"' []=") != std::string::npos) {
-      table.fault("into", fmt::format("must be a new name of letters, digits, '_': {} is what is "
-                                      "identified",
-                                      models.front()));
+      table.fault(
+          "into",
+          fmt::format("must be a new name of letters, digits and '_'; {} is the identified model",
+                      models.front()));
     }
     if (table.faults() > before) return false;
     drawn_into_ = into;
@@ -206,7 +209,7 @@ class DesignReader {
                                    [&](const model::SweepKey& one) { return one.key == path; });
     if (!fixed && !again) return false;
     table.raw(key);
-    table.fault(key, fixed ? fmt::format("is the same at all points; {} cannot be swept", first)
+    table.fault(key, fixed ? fmt::format("is common to all points; {} cannot be swept", first)
                      : path.ends_with(key) ? "is varied twice"
                                            : fmt::format("varies {} a second time", path));
     return true;
@@ -235,7 +238,7 @@ class DesignReader {
     const std::size_t before = design_.keys.size();
     for (const std::string& key : table.keys()) read_member(table, key, key);
     if (design_.keys.size() == before) {
-      if (table.faults() == 0) table.fault("names no key");
+      if (table.faults() == 0) table.fault("does not name a key");
       return;
     }
     new_dimension();
@@ -260,8 +263,7 @@ class DesignReader {
                                    ? value->children.size()
                                    : std::get<model::ValueTexts>(design_.keys.back().values).size();
     if (value->children.size() != wanted) {
-      table.fault(key, fmt::format("has {} values, {} has {}: lists that go together must be as "
-                                   "long as each other",
+      table.fault(key, fmt::format("has {} values, {} has {}: zipped lists must have equal length",
                                    value->children.size(), design_.keys.back().key, wanted));
       return;
     }
@@ -294,11 +296,11 @@ class DesignReader {
                   const std::string& path) {
     const bool log = form.has("log");
     const std::string_view word = log ? "log" : "linear";
-    if (log && form.has("linear")) form.fault("log", "stands beside linear; choose one");
+    if (log && form.has("linear")) form.fault("log", "excludes linear; choose one");
     const auto pair = read_pair(form, word, "the first and the last");
     const std::int64_t count = form.integer("count", {config::at_least(2)});
     if (!pair || refuse_log(form, word, log, *pair) || count < 2) return;
-    if (pair->a == pair->b) return form.fault(word, "must have two numbers that differ");
+    if (pair->a == pair->b) return form.fault(word, "must be two different numbers");
     add(table, key, path,
         model::SweepRange{pair->a, pair->b, static_cast<std::uint64_t>(count), log, pair->unit},
         false, design_.grid.size());
@@ -314,8 +316,8 @@ class DesignReader {
     const std::size_t dimension = design_.sampled_dimensions;
     if (dimension == model::kMostDimensions) {
       form.raw(word);
-      return table.fault(key, fmt::format("is one key too many to sample; there may be {}",
-                                          model::kMostDimensions));
+      return table.fault(
+          key, fmt::format("exceeds the limit of {} sampled keys", model::kMostDimensions));
     }
     if (word == "choice") {
       const config::Value* value = form.raw(word);
@@ -336,9 +338,9 @@ class DesignReader {
         refuse_log(form, word, kind == model::NumberDistribution::Kind::log_uniform, *pair)) {
       return;
     }
-    if (normal && !(pair->b > 0.0)) return form.fault(word, "must have a deviation > 0");
+    if (normal && !(pair->b > 0.0)) return form.fault(word, "must have a standard deviation > 0");
     if (!normal && !(pair->a < pair->b)) {
-      return form.fault(word, "must have a first number below the second");
+      return form.fault(word, "must be [lower, upper] with lower < upper");
     }
     add(table, key, path, model::NumberDistribution{kind, pair->a, pair->b, pair->unit}, true,
         dimension);

@@ -40,8 +40,7 @@ void read_friction(config::Reader& axis, const AxisQuantities& q, plant::Frictio
   if (!axis.has("friction")) {
     if (f.kind == Kind::none) return;
     axis.fault(
-        fmt::format("has no table 'friction'; friction_model = \"{}\" of the machine needs "
-                    "one for every axis",
+        fmt::format("has no table 'friction'; friction_model = \"{}\" requires one for every axis",
                     kFrictionModels[static_cast<std::size_t>(f.kind)]));
     return;
   }

@@ -19,7 +19,7 @@ double read_period(config::Reader& table, config::Quantity position) {
   if (position == config::kAngle && table.has("periods_per_revolution")) {
     const double periods =
         table.real("periods_per_revolution", config::kNumber, {config::at_least(1.0)});
-    if (table.has("period")) table.fault("period", "is given by periods_per_revolution already");
+    if (table.has("period")) table.fault("period", "is already given by periods_per_revolution");
     return 2.0 * std::numbers::pi / periods;
   }
   return table.real("period", position, {config::above(0.0)});
@@ -82,11 +82,11 @@ void read_marks(config::Reader& axis, int joint, const plant::EncoderParams& sca
   const double upper = linear ? table.real_or("to", machine.nc.upper[joint], position) : 0.0;
   if (axis.faults() > before) return;
   if (scale.period == 0.0) {
-    axis.fault("marks", "need the signal period of a table 'scale'");
+    axis.fault("marks", "needs the signal period of a table 'scale'");
     return;
   }
   if (linear && !(std::isfinite(lower) && std::isfinite(upper) && lower < upper)) {
-    table.fault("must have 'from' and 'to', from < to, on an axis without travel");
+    table.fault("needs 'from' and 'to', from < to, on an axis without travel");
     return;
   }
   const plant::MarkParams marks =

@@ -17,7 +17,7 @@ namespace {
 using plant::ErrorFunction;
 using plant::ErrorName;
 
-constexpr std::string_view kDiffersFrom = "relative_to";
+constexpr std::string_view kRelativeTo = "relative_to";
 constexpr double kLargestShift = 0.1;  // m, of a location error
 constexpr double kLargestAngle = 0.1;  // rad
 
@@ -132,12 +132,11 @@ double read_bare_location(config::Reader& model, std::string_view key, const Uni
     value = model.real(key, units.value_quantity());
   }
   if (std::abs(value) <= (units.value_is_length ? kLargestShift : kLargestAngle)) return value;
-  model.fault(key,
-              units.value_is_length
-                  ? "is beyond 0.1 m, more than any machine has; a number without a unit is in "
-                    "m: write \"8 um\" or { constant_um = 8.0 }"
-                  : "is beyond 0.1 rad, more than any machine has; a number without a unit is "
-                    "in rad: write \"50 urad\" or { um_per_m = 50.0 }");
+  model.fault(key, units.value_is_length
+                       ? "exceeds 0.1 m, which is implausible; a number without a unit is in m: "
+                         "write \"8 um\" or { constant_um = 8.0 }"
+                       : "exceeds 0.1 rad, which is implausible; a number without a unit is in "
+                         "rad: write \"50 urad\" or { um_per_m = 50.0 }");
   return 0.0;
 }
 
@@ -153,18 +152,18 @@ double read_location(config::Reader& model, std::string_view key, const ErrorNam
 
 // Name of the model that this one differs from; empty: from none.
 std::string read_base(config::Reader& model, const std::string& name, config::Reader& models) {
-  if (!model.has(kDiffersFrom)) return "";
-  const std::string base = model.text(kDiffersFrom);
-  if (!model.is(kDiffersFrom, config::Value::Type::text)) return "";
+  if (!model.has(kRelativeTo)) return "";
+  const std::string base = model.text(kRelativeTo);
+  if (!model.is(kRelativeTo, config::Value::Type::text)) return "";
   const std::vector<std::string> names = models.keys();
   if (base == name || std::find(names.begin(), names.end(), base) == names.end()) {
     const std::vector<std::string_view> others(names.begin(), names.end());
-    model.fault(kDiffersFrom, "must be the name of another error model" +
-                                  (base == name ? "" : did_you_mean(base, others)));
+    model.fault(kRelativeTo, "must be the name of another error model" +
+                                 (base == name ? "" : did_you_mean(base, others)));
     return "";
   }
-  if (models.table(base).has(kDiffersFrom)) {
-    model.fault(kDiffersFrom, "must name a model that differs from no other itself");
+  if (models.table(base).has(kRelativeTo)) {
+    model.fault(kRelativeTo, "must name a model that is not itself relative to another");
     return "";
   }
   return base;
@@ -181,7 +180,7 @@ plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) 
   std::map<std::string, std::string> aliases;
   std::set<std::string> known;
   for (const std::string& key : model.keys()) {
-    if (key == kDiffersFrom) continue;
+    if (key == kRelativeTo) continue;
     std::optional<ErrorName> name;
     try {
       name = plant::parse_error_name(key, layout, {});
@@ -208,7 +207,7 @@ plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) 
   for (const auto& [key, other] : aliases) {
     const auto target = plant::error_name_of(other);
     if (!target || !known.contains(other) || aliases.contains(other) || target->is_location) {
-      model.fault(key, "must be the name of an error of this model that has a function of its own");
+      model.fault(key, "must be the name of another error of this model that has its own function");
       continue;
     }
     const auto name = *plant::error_name_of(key);
@@ -242,7 +241,7 @@ std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path
   if (is_machine_file(path)) {  // with its own errors
     MachineDescription described = read_machine_description(path);
     if (described.machine.chain.layout == layout) return std::move(described.errors);
-    throw InputError({path}, "holds the errors of a machine with other axes");
+    throw InputError({path}, "contains the errors of a machine with other axes");
   }
   const config::Document document = config::Document::from_file(path);
   config::Reader root(document);

@@ -49,7 +49,7 @@ Tick period(config::Reader& nc, std::string_view key, double fallback, double ba
   const auto ticks = whole_ticks(seconds, base);
   if (ticks && *ticks > 0) return *ticks;
   if (nc.has(key)) {
-    nc.fault(key, fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+    nc.fault(key, fmt::format("must be an integer multiple of base_period_us = {:g}", base / us));
   } else {
     nc.fault("base_period_us",
              fmt::format("must divide the preset's {} of {:g} us", key, seconds / us));
@@ -69,8 +69,8 @@ model::LoopPeriods read_periods(config::Reader& nc) {
   periods.current = period(nc, "current_period_us", preset.current, periods.base);
   if (!model::can_be_scheduled({periods.position, periods.velocity, periods.current})) {
     nc.fault(
-        "the periods of position, velocity and current loop meet too seldom; let them be "
-        "multiples of one another");
+        "the common period of position, velocity and current loop is too long; make the periods "
+        "multiples of each other");
     return {};
   }
   return periods;
@@ -84,7 +84,8 @@ model::NominalFilter read_filter(config::Reader& nc, const model::LoopPeriods& p
   if (kind == 0) return filter;
   filter.triangle = kind == 2;
   filter.length = static_cast<Tick>(std::lround(length / periods.seconds(periods.position)));
-  if (filter.length < 1) nc.fault("nominal_filter", "needs nominal_filter_ms of a position period");
+  if (filter.length < 1)
+    nc.fault("nominal_filter", "needs nominal_filter_ms of at least one position period");
   if (filter.triangle && filter.length % 2 != 0) {
     nc.fault("nominal_filter_ms", "must be an even number of position periods for the triangle");
   }
@@ -141,7 +142,7 @@ void refuse_unbearable_load(config::Reader& axis, const plant::FeedDriveParams& 
                             const controllers::CascadeParams& cascade, bool linear) {
   const double most = std::min(cascade.i_max * drive.Kt, cascade.tau_max) / drive.r;
   if (!(std::abs(drive.F_load) > most)) return;
-  axis.fault("gravity_load", fmt::format("must be <= {:g} {}, which the current limit can hold",
+  axis.fault("gravity_load", fmt::format("must be <= {:g} {}, the maximum at the current limit",
                                          most, linear ? "N" : "Nm"));
 }
 
@@ -159,7 +160,7 @@ void read_direction(config::Reader& axis, plant::ChainAxis& chain_axis) {
   if (d.norm() >= kLeastDirection && d.norm() <= kMostDirection) {
     plant::incline(chain_axis, d);
   } else {
-    axis.fault("direction", "must be [x, y, z], not all 0; any length means the same");
+    axis.fault("direction", "must be [x, y, z], not all 0; the length is irrelevant");
   }
 }
 
@@ -196,7 +197,7 @@ void read_axis(config::Reader& axis, const Common& common, int j, model::Machine
   if (axis.faults() == before_drive && in_sub_steps) {
     const double base = machine.nc.periods.base;
     for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
-      axis.fault(why + "; make it softer, shorten base_period_us or use integrator = \"cvode\"");
+      axis.fault(why + "; reduce it, shorten base_period_us or use integrator = \"cvode\"");
     }
   }
   if (linear && axis.has("structural_stiffness")) {
@@ -363,7 +364,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   const auto delay_ticks = whole_ticks(delay, base);
   if (!delay_ticks) {
     nc.fault("scale_delay_us",
-             fmt::format("must be a whole multiple of base_period_us = {:g}", base / us));
+             fmt::format("must be an integer multiple of base_period_us = {:g}", base / us));
   }
   machine.scale_delay = delay_ticks.value_or(0);
 

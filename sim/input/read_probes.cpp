@@ -50,9 +50,10 @@ std::array<int, 2> read_grid(config::Reader& table, std::array<int, 2> least) {
       n[0] * n[1] <= kMostPoints) {
     return {static_cast<int>(n[0]), static_cast<int>(n[1])};
   }
-  table.fault("points", fmt::format("must be two whole numbers, at least [{}, {}], at most {:g} "
-                                    "points in all",
-                                    least[0], least[1], kMostPoints));
+  table.fault(
+      "points",
+      fmt::format("must be two integers, at least [{}, {}], and at most {:g} points in total",
+                  least[0], least[1], kMostPoints));
   return least;
 }
 
@@ -85,7 +86,7 @@ std::optional<metrology::Feature> read_plane(config::Reader& table) {
   const auto points = read_grid(table, {2, 2});
   if (table.faults() > before) return std::nullopt;
   if (!(u.cross(v).norm() > kAcross * u.norm() * v.norm())) {
-    table.fault("v_mm", "must lie across u_mm, both of them longer than 0");
+    table.fault("v_mm", "must not be parallel to u_mm; both must be non-zero");
   } else if (!is_across(normal, u) || !is_across(normal, v)) {
     table.fault("normal", "must be at right angles to u_mm and v_mm");
   }
@@ -109,7 +110,7 @@ Round read_round(config::Reader& table) {
   out.arc.to = table.real_or("to_deg", out.arc.from + kTurn, config::kAngle);
   const double sweep = out.arc.to - out.arc.from;
   if (table.has("to_deg") && !(sweep > 0.0 && sweep <= kTurn * (1.0 + 1e-12))) {
-    table.fault("to_deg", "must be above from_deg, by at most 360");
+    table.fault("to_deg", "must exceed from_deg, by at most 360");
   }
   return out;
 }
@@ -184,9 +185,9 @@ std::optional<metrology::Feature> read_explicit(config::Reader& probe) {
   for (const config::Value& item : list->children) {
     const auto found = target(item);
     if (!found) {
-      probe.fault(kKey, fmt::format("has the item {}; must be [x, y, z, nx, ny, nz] with a "
-                                    "normal that is not zero",
-                                    config::inline_toml(item)));
+      probe.fault(
+          kKey, fmt::format("has the item {}; must be [x, y, z, nx, ny, nz] with a non-zero normal",
+                            config::inline_toml(item)));
       return std::nullopt;
     }
     out.targets.push_back(*found);
@@ -210,16 +211,15 @@ std::optional<std::string_view> kind_of(config::Reader& probe) {
   for (const std::string_view kind : kKinds) {
     if (!probe.has(kind)) continue;
     if (found) {
-      probe.fault(
-          fmt::format("has {} and {}; must have one of {}", *found, kind, fmt::join(kKinds, ", ")));
+      probe.fault(fmt::format("has {} and {}; must have exactly one of {}", *found, kind,
+                              fmt::join(kKinds, ", ")));
       probe.skip_rest();
       return std::nullopt;
     }
     found = kind;
   }
   if (!found) {
-    probe.fault(fmt::format("says nothing of where to probe; must have one of {}",
-                            fmt::join(kKinds, ", ")));
+    probe.fault(fmt::format("has no geometry; must have one of {}", fmt::join(kKinds, ", ")));
     probe.skip_rest();
   }
   return found;
@@ -229,12 +229,12 @@ std::optional<std::string_view> kind_of(config::Reader& probe) {
 void check_name(config::Reader& probe, const std::string& name,
                 const std::vector<metrology::ProbeSpec>& earlier) {
   if (name.empty() || name == "." || name == "..") {
-    probe.fault("name", "must name the feature");
+    probe.fault("name", "must not be empty");
   } else if (name.find('/') != std::string::npos) {
     probe.fault("name", "must not contain '/'");
   } else if (std::any_of(earlier.begin(), earlier.end(),
                          [&](const metrology::ProbeSpec& one) { return one.name == name; })) {
-    probe.fault("name", "is the name of an earlier probe");
+    probe.fault("name", "is already used by an earlier probe");
   }
 }
 
@@ -269,7 +269,8 @@ std::vector<metrology::ProbeSpec> read_probes(config::Reader& root, bool has_cut
       if (auto feature = read_kind(probe, *kind)) spec.feature = std::move(*feature);
     }
     if (!has_cutter && out.empty()) {
-      probe.fault("has nothing to probe: no [[program.tool]] has a diameter_mm, so nothing is cut");
+      probe.fault(
+          "has nothing to probe: nothing is cut, because no [[program.tool]] has a diameter_mm");
     }
     out.push_back(std::move(spec));
   }

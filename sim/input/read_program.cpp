@@ -30,7 +30,7 @@ void refuse_unwritable(const std::string& file, std::string_view text) {
       throw InputError({file, line, column},
                        fmt::format("byte 0x{:02x} is not UTF-8; save the program as UTF-8", byte));
     }
-    if (byte == 0) throw InputError({file, line, column}, "byte 0x00 in a program");
+    if (byte == 0) throw InputError({file, line, column}, "byte 0x00 is not allowed in a program");
     i += length;
     column = byte == '\n' ? 1 : column + 1;
     if (byte == '\n') ++line;
@@ -68,7 +68,7 @@ void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& pro
     read_subroutines(program.shared_text, at, files, program);
   }
   if (table.is("file", config::Value::Type::text) && table.text("file").empty()) {
-    table.fault("file", "must name the program");
+    table.fault("file", "must not be empty");
   }
   refuse_unwritable(program.file, program.text());
 }
@@ -102,7 +102,7 @@ void read_tool(config::Reader& table, model::ProgramSpec& program) {
   tool.diameter = table.real_or("diameter_mm", 0.0, config::kLength, {config::at_least(0.0)});
   const auto cutter = read_cutter(table, tool.diameter);
   if (program.tools.find(tool.number) != nullptr) {
-    table.fault("number", "is the number of an earlier tool");
+    table.fault("number", "is already used by an earlier tool");
     return;
   }
   program.tools.add(tool);

@@ -40,7 +40,7 @@ std::optional<model::Tolerance> read_tolerance(config::Reader& table) {
   const std::vector<double> limits = table.reals("tolerance", config::kNumber);
   if (table.faults() > before) return std::nullopt;
   if (limits.size() == 2 && limits[0] < limits[1]) return model::Tolerance{limits[0], limits[1]};
-  table.fault("tolerance", "must be one number > 0, or a lower limit and a larger upper one");
+  table.fault("tolerance", "must be a number > 0, or [lower, upper] with lower < upper");
   return std::nullopt;
 }
 
@@ -69,8 +69,8 @@ class QuantityReader {
     }
     if (info.needs_covariance && out_.uncertain == nullptr) {
       table.fault("name",
-                  "needs a machine with identified errors and their covariance: servomill "
-                  "calibrate -o writes one");
+                  "needs a machine with identified errors and their covariance, as written by "
+                  "servomill calibrate -o");
     }
     if (info.probes > 0) {
       read_part(table, info, spec);
@@ -158,7 +158,7 @@ class QuantityReader {
     if (std::count(info.kinds.begin(), info.kinds.end(), kind) > 0) return;
     std::vector<std::string_view> wanted;
     for (const metrology::FeatureKind one : info.kinds) wanted.push_back(metrology::name_of(one));
-    table.fault(key, fmt::format("is a {}; {} is of: {}", metrology::name_of(kind), info.name,
+    table.fault(key, fmt::format("is a {}; {} applies to: {}", metrology::name_of(kind), info.name,
                                  fmt::join(wanted, ", ")));
   }
 
@@ -211,8 +211,8 @@ class QuantityReader {
   void add_circles(config::Reader& table, const model::QuantitySpec& all, std::size_t together) {
     if (table.has("sections") && (all.sections.empty() || all.sections.size() % together != 0)) {
       table.fault("sections", together == 1
-                                  ? "must name at least one turn of a circle"
-                                  : "must name pairs of turns of a circle, one in each direction");
+                                  ? "must name at least one full circle"
+                                  : "must name pairs of full circles, one in each direction");
     }
     for (std::size_t i = 0; i + together <= all.sections.size(); i += together) {
       model::QuantitySpec one = all;

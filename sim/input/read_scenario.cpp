@@ -44,7 +44,7 @@ class ScenarioReader {
     config::Reader root(document_);
     root.raw("based_on");  // still there in result files of earlier versions
     if (root.place("based_on").file.starts_with("--set")) {
-      root.fault("based_on", "is none of the keys that --set changes: name the other scenario");
+      root.fault("based_on", "cannot be changed by --set: name the other scenario");
     }
     root.raw("machine_override");  // is in the machine by now
     out_.title = root.text_or("title", out_.name);
@@ -200,10 +200,10 @@ class ScenarioReader {
                             {model::kRecord, out_.record_period}}) > 0) {
       return;
     }
-    root.table_or_empty("record").fault(fmt::format(
-        "the periods of the loops, of the error model and of the recorder meet again only "
-        "after more than {:g} s; make them multiples of each other",
-        p.seconds(model::kMaxHyperperiod)));
+    root.table_or_empty("record").fault(
+        fmt::format("the common period of the loops, the error model and the recorder exceeds {:g} "
+                    "s; make the periods multiples of each other",
+                    p.seconds(model::kMaxHyperperiod)));
   }
 
   void read_cut(config::Reader& root) {
@@ -217,17 +217,18 @@ class ScenarioReader {
     out_.cutting = read_cutting(cutting);
     out_.cutting->place = root.place("cutting");
     if (out_.stock.empty() && cutting.faults() == 0) {
-      cutting.fault("needs the raw part: [[part.stock]] with a box or a cylinder");
+      cutting.fault("needs stock: [[part.stock]] with a box or a cylinder");
     }
   }
 
   // Refuses keys that nothing would look at, though the user counts on them.
   void refuse_unused(config::Reader& root) {
     if (root.faults() > 0 || root.has("probe")) return;
-    if (root.has("cmm")) root.table("cmm").fault("measures nothing: there is no [[probe]]");
+    if (root.has("cmm")) root.table("cmm").fault("has no effect: there is no [[probe]]");
     if (out_.touch_probe) return;
     if (out_.part) {
-      root.table("part").fault("stl", "is what probed points are laid on: it needs a [[probe]]");
+      root.table("part").fault(
+          "stl", "is the reference for the alignment of probed points: it needs a [[probe]]");
     }
     if (!out_.stock.empty() && !out_.cutting) {
       root.table("part").fault(

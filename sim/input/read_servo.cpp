@@ -142,7 +142,7 @@ controllers::FrictionCompensationParams read_friction_compensation(
   if (c.tau_pulse != 0.0 && !table.has("reversal_pulse_time_ms") &&
       !table.has("reversal_pulse_distance")) {
     table.fault("reversal_pulse",
-                "needs reversal_pulse_time_ms or reversal_pulse_distance, over which it fades");
+                "needs reversal_pulse_time_ms or reversal_pulse_distance, over which it decays");
   }
   return c;
 }

@@ -142,13 +142,14 @@ void read_strategy(config::Reader& table, std::span<const std::string> error_mod
     read_parameter(table, parameter, strategy.parameters);
   }
   if (strategy.entry->uses_feedback_hardware && spec.needs_feedback_hardware()) {
-    table.fault("type", "a case has one feedback hardware: this is the second");
+    table.fault("type",
+                "a case has only one feedback hardware: this is the second strategy that uses it");
   }
   if (repeats_start(strategy, spec.strategies)) {
     table.fault(
         "type",
-        fmt::format("a second {} strategy for this model adds the value at the start once "
-                    "more; use base_axis = \"all\", or zero_at_reference = true for all but one",
+        fmt::format("a second {} strategy for this model applies the value at the start twice; use "
+                    "base_axis = \"all\", or zero_at_reference = true for all but one",
                     strategy.entry->name));
   }
   spec.strategies.push_back(std::move(strategy));

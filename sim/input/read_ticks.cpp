@@ -29,7 +29,7 @@ Tick read_ticks(config::Reader& table, std::string_view key, double fallback, do
   const auto whole = whole_ticks(seconds, base_period);
   if (whole && *whole >= least) return *whole;
   const std::string rule = fmt::format(
-      "must be a whole multiple of base_period_us = {:g} of the machine", base_period / us);
+      "must be an integer multiple of base_period_us = {:g} of the machine", base_period / us);
   if (table.has(key)) {
     table.fault(key, rule);
   } else {

@@ -38,8 +38,8 @@ config::Value merged_cases(config::Value cases, const config::Value& above) {
   return cases;
 }
 
-// A document laid over the one that it is based on: what it says wins, lists as a whole, but for
-// the cases.
+// A document merged with the one that it is based on: its own keys override, lists as a whole, but
+// for the cases.
 config::Document with_base(const std::string& path, InputFiles& files, int bases_left) {
   config::Document document = *files.document(path);
   config::Value above = document.root();
@@ -64,7 +64,7 @@ void refuse_machine(const config::Document& document) {
   const config::Value* machine = root.find("machine");
   if (machine == nullptr && root.find("structure") != nullptr) {
     throw InputError({document.name()},
-                     "is a machine, not a scenario; name it in a scenario: machine = \"FILE\"");
+                     "is a machine, not a scenario; use it in a scenario as machine = \"FILE\"");
   }
   if (machine == nullptr || machine->type == config::Value::Type::text ||
       machine->type == config::Value::Type::table) {

@@ -17,12 +17,12 @@ struct ScenarioDocument {
   std::string machine_text;  // as read; empty if the scenario itself describes the machine
 };
 
-/// Reads a scenario, laid over those that it is based on.
+/// Reads a scenario, merged with those that it is based on.
 /// @throws InputError
 config::Document scenario_document(const std::string& path, InputFiles& files);
 
 /// Puts the machine in, and the changes that --set asks for. `machine = "file"` is replaced by its
-/// contents, `machine_override` laid over them. Changes of the file's name and of the overrides
+/// contents, overridden by `machine_override`. Changes of the file's name and of the overrides
 /// come before, all others after, so that `machine.nc.Kv` means the value that counts.
 /// @throws InputError
 ScenarioDocument with_machine(config::Document scenario, std::span<const std::string> changes,
@@ -39,7 +39,7 @@ std::string beside(const Place& place, const std::string& path);
 /// name in a document that is complete by itself.
 bool is_outdated_copy(config::Reader& table, std::string_view name, std::string_view contents);
 
-/// { machine = table }, to be laid over a document.
+/// { machine = table }, to override a document.
 config::Value as_machine(config::Value table);
 
 }  // namespace servomill::sim::input

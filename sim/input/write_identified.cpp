@@ -76,7 +76,7 @@ void refuse_unreadable(const std::string& text, const std::string& path,
   InputFiles files;
   const MachineDocument read = machine_document_of_text(text, path, files);
   if (!read.identified || !same(*read.identified, identified)) {
-    throw std::logic_error(path + ": identified values are read other than they were written");
+    throw std::logic_error(path + ": the identified values differ when read back");
   }
   described(read.document);
 }

@@ -92,7 +92,7 @@ std::string free_motions(const Columns6& motions, const Vector3d& centre, double
 }
 
 NoFit undetermined(const Columns6& motions, const Vector3d& centre, double size) {
-  return {"the points do not determine where the part lies: nothing would notice " +
+  return {"the points do not determine the position of the part: it is insensitive to " +
           free_motions(motions, centre, size)};
 }
 
@@ -214,10 +214,9 @@ std::variant<BestFit, NoFit> fit_to(Points3 measured, const Find& find, const Is
     if (step.free.cols() > 0) return undetermined(step.free, linear.centre, linear.size);
     return fit_of(motion, targets, steps);
   }
-  return NoFit{
-      fmt::format("distances still fall after {} steps; the points may lie too far from "
-                  "the part",
-                  kMostSteps)};
+  return NoFit{fmt::format(
+      "distances still decrease after {} steps; the points may be too far from the part",
+      kMostSteps)};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Measured points laid on a nominal part by a rigid motion.
+/// Measured points aligned with a nominal part by a rigid motion.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -135,7 +135,7 @@ std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal, do
                        spacing / deg);
   }
   if (std::abs(std::abs(travel.turned) - kTurn) > spacing) {
-    return fmt::format("covers {:.4g} deg of the circle; must be one turn, 360 deg",
+    return fmt::format("covers {:.4g} deg of the circle; must be a full circle, 360 deg",
                        std::abs(travel.turned) / deg);
   }
   return std::nullopt;

@@ -65,8 +65,9 @@ std::string why_no_bar(const TipPath& path, const Vector3d& centre) {
     low = std::min(low, (p - centre).norm());
     high = std::max(high, (p - centre).norm());
   }
-  if (low < kLeastArm) return "the tip comes to the centre of the bar";
-  return high - low < kStands ? "" : "the tip does not keep its distance to the centre of the bar";
+  if (low < kLeastArm) return "the TCP passes through the centre of the bar";
+  return high - low < kStands ? ""
+                              : "the TCP does not keep its distance from the centre of the bar";
 }
 
 // As many samples of a path as are enough, evenly.
@@ -77,12 +78,12 @@ std::size_t stride(std::size_t count) { return count / kMostSamples + 1; }
 BallDeviation nest_deviation(const plant::MachineChain& chain, const TipPath& path,
                              NestDirection direction) {
   const auto which = turning_axis(chain, path.Q);
-  if (!which) return {{}, "not one rotary axis turns alone"};
+  if (!which) return {{}, "not exactly one rotary axis moves"};
   BallDeviation out;
   for (std::size_t n = 0; n < path.Q.size(); ++n) {
     const Line line = axis_in_workpiece(chain, *which, path.Q[n]);
     const Vector3d tangent = line.direction.cross(path.nominal[n] - line.point);
-    if (tangent.norm() < kLeastArm) return {{}, "the ball lies on the rotary axis that turns"};
+    if (tangent.norm() < kLeastArm) return {{}, "the ball is on the moving rotary axis"};
     const Vector3d along = direction == NestDirection::axial ? line.direction
                            : direction == NestDirection::tangential
                                ? Vector3d(tangent.normalized())
@@ -112,7 +113,7 @@ BallReadings nest_readings(const plant::MachineChain& chain, const TipPath& path
                                     [&](const Vector3d& q) { return (p - q).norm() < kStands; });
     const auto set_up = static_cast<int>(place - places.begin());
     if (place == places.end()) places.push_back(p);
-    if (places.size() > most_places) return {{}, "the tip does not stand in its sections"};
+    if (places.size() > most_places) return {{}, "the TCP does not stay at rest in its sections"};
     const Vector3d d = path.actual[n] - p, p_ST = tip_of(chain, path.Q[n], p);
     for (int i = 0; i < 3; ++i) {
       out.readings.push_back({path.Q[n], p_ST, Vector3d::Unit(i), d[i], set_up});

@@ -53,9 +53,9 @@ Triangles read_binary(std::string_view bytes, const std::string& file) {
         {file}, fmt::format("binary STL with {} triangles has {} bytes, but the file has {}: it {}",
                             count, kBefore + count * kTriangle, bytes.size(),
                             bytes.size() < kBefore + count * kTriangle
-                                ? fmt::format("breaks off in triangle {}",
+                                ? fmt::format("is truncated in triangle {}",
                                               (bytes.size() - kBefore) / kTriangle + 1)
-                                : "goes on behind them"));
+                                : "continues after them"));
   }
   Welder welder;
   for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +110,7 @@ class Words {
 
   void expect(std::string_view word) {
     const std::string_view found = next();
-    if (!is(found, word)) fail(fmt::format("'{}' expected", word), found);
+    if (!is(found, word)) fail(fmt::format("expected '{}'", word), found);
   }
   double number() {
     const std::string_view word = next();
@@ -118,9 +118,9 @@ class Words {
     const char* const end = word.data() + word.size();
     const auto result = std::from_chars(word.data() + (word.starts_with('+') ? 1 : 0), end, value);
     if (word.empty() || result.ec != std::errc() || result.ptr != end) {
-      fail("a number expected", word);
+      fail("expected a number", word);
     }
-    if (!std::isfinite(value)) fail("a finite number expected", word);
+    if (!std::isfinite(value)) fail("expected a finite number", word);
     return value;
   }
   [[noreturn]] void fail(const std::string& expected, std::string_view found) const {
@@ -167,10 +167,10 @@ Triangles read_ascii(std::string_view text, const std::string& file) {
   Words words(text, file);
   Welder welder;
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    if (!is(word, "solid")) words.fail("'solid' expected", word);
+    if (!is(word, "solid")) words.fail("expected 'solid'", word);
     words.skip_line();  // its name
     for (word = words.next(); !is(word, "endsolid"); word = words.next()) {
-      if (!is(word, "facet")) words.fail("'facet' or 'endsolid' expected", word);
+      if (!is(word, "facet")) words.fail("expected 'facet' or 'endsolid'", word);
       read_loop(words, welder);
     }
     words.skip_line();

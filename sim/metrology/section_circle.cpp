@@ -34,7 +34,7 @@ std::variant<SectionCircle, NoCircle> circle_of_section(std::span<const Vector3d
     high = high.cwiseMax(p);
   }
   int normal = 2;
-  if ((high - low).minCoeff(&normal) > kRound) return NoCircle{"lies in none of XY, YZ, ZX"};
+  if ((high - low).minCoeff(&normal) > kRound) return NoCircle{"is in none of XY, YZ, ZX"};
 
   SectionCircle circle;
   circle.first = (normal + 1) % 3;
@@ -42,7 +42,7 @@ std::variant<SectionCircle, NoCircle> circle_of_section(std::span<const Vector3d
   const std::vector<Vector2d> points = circle.in_plane(nominal);
   circle.nominal = least_squares_circle(points);
   const RingZone zone = zone_about(points, circle.nominal.centre);
-  if (!(zone.width() <= 2.0 * kRound)) return NoCircle{"is no circle"};  // a line: not a number
+  if (!(zone.width() <= 2.0 * kRound)) return NoCircle{"is not a circle"};  // a line: not a number
   if (const auto why = why_no_turn(points, circle.nominal)) return NoCircle{*why};
   return circle;
 }

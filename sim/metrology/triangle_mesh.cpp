@@ -89,10 +89,9 @@ void check_closed(const Triangles& t, const std::string& file) {
                                          count == 1 ? "" : "s", where(*open)));
   }
   if (flipped) {
-    throw InputError({file},
-                     fmt::format("neighbours at an edge {} face different ways: the order of "
-                                 "corners of one of them is reversed",
-                                 where(*flipped)));
+    throw InputError({file}, fmt::format("neighbours at an edge {} have inconsistent orientation: "
+                                         "the vertex order of one of them is reversed",
+                                         where(*flipped)));
   }
 }
 
@@ -247,9 +246,9 @@ TriangleMesh::TriangleMesh(Triangles triangles, const std::string& file)
   check_closed(triangles, file);
   parts_->body = std::move(triangles);
   if (!(volume() > 0.0)) {
-    throw InputError({file},
-                     "the mesh is inside out: the corners of its triangles go clockwise seen "
-                     "from outside");
+    throw InputError(
+        {file},
+        "the mesh is inside out: the vertices of its triangles are clockwise seen from outside");
   }
   parts_->find_normals();
   parts_->find_samples();

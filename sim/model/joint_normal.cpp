@@ -39,8 +39,8 @@ std::string fault_of_pair(const Eigen::MatrixXd& c, Eigen::Index i, Eigen::Index
   }
   if (std::abs(c(i, j)) > scale * (1.0 + kDefiniteTolerance)) {
     return fmt::format(
-        "must be positive semi-definite; [{0}][{1}] = {2} is larger than the product {3:.6g} of "
-        "the standard deviations of both",
+        "must be positive semi-definite; [{0}][{1}] = {2} exceeds the product {3:.6g} of both "
+        "standard deviations",
         i, j, c(i, j), scale);
   }
   return {};
@@ -64,7 +64,8 @@ std::string covariance_fault(const Eigen::MatrixXd& covariance) {
   const double least = numerics::least_eigenvalue(correlations(covariance));
   if (least >= -kDefiniteTolerance) return {};
   return fmt::format(
-      "must be positive semi-definite; the least eigenvalue of the correlations is {:.3g}", least);
+      "must be positive semi-definite; the smallest eigenvalue of the correlation matrix is {:.3g}",
+      least);
 }
 
 Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {

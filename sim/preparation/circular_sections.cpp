@@ -26,7 +26,7 @@ std::string wrong_together(const CircularSection& one, const CircularSection& ot
     return both + " are not the same circle";
   }
   if (one.sense != other.sense) return "";
-  return both + " turn in one direction; must be one clockwise, one counter-clockwise";
+  return both + " have the same direction; must be one clockwise and one counter-clockwise";
 }
 
 }  // namespace

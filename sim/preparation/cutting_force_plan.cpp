@@ -197,8 +197,8 @@ class Planner {
       if (shank.depth <= 0.0) continue;
       plan_.warnings.push_back(
           {{in_.file, shank.line},
-           fmt::format("tool {} cuts {:.4g} mm deep with flutes of {:.4g} mm, here the most: its "
-                       "shank rubs, and no force of that is computed",
+           fmt::format("tool {} cuts {:.4g} mm deep, at most here, with flutes of {:.4g} mm: its "
+                       "shank rubs, and that force is not computed",
                        tool, shank.depth / mm, shank.flutes / mm)});
     }
   }
@@ -233,7 +233,7 @@ class Planner {
 
   [[noreturn]] void refuse_standing(const Stage& stage) const {
     throw InputError({in_.file, path_.line(stage.piece)},
-                     "cuts while the spindle stands still; start it (M3 S...)");
+                     "cuts with the spindle stopped; start it (M3 S...)");
   }
   [[noreturn]] void refuse_unknown(const Stage& stage) const {
     const int line = path_.line(stage.piece);
@@ -254,12 +254,11 @@ class Planner {
       return fmt::format("X{:.4g} Y{:.4g} Z{:.4g} to X{:.4g} Y{:.4g} Z{:.4g}", low.x(), low.y(),
                          low.z(), high.x(), high.y(), high.z());
     };
-    const std::string where = tips.isEmpty()
-                                  ? "no tool with a diameter_mm is fed"
-                                  : fmt::format(
-                                        "tips are fed within {}, the stock is within {} (mm, work "
-                                        "coordinates)",
-                                        box(tips), box(in_.stock.bounds()));
+    const std::string where =
+        tips.isEmpty()
+            ? "no tool with a diameter_mm feeds"
+            : fmt::format("the tools feed within {}, the stock is within {} (mm, work coordinates)",
+                          box(tips), box(in_.stock.bounds()));
     throw InputError(in_.place, fmt::format("{} never touches the stock: {}", in_.file, where));
   }
 

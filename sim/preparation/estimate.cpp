@@ -127,10 +127,10 @@ std::string to_string(const RunEstimate& estimate) {
 
 std::string thinning_message(const RunEstimate& estimate) {
   return fmt::format(
-      "record.period_ms is not given: of {:.2g} rows so many are recorded that the file takes at "
-      "most {} (a quarter of record.max_size_GB = {:g}), most of them where blocks end, axes "
-      "reverse and the contour error changes, with least and greatest values in between; "
-      "record.period_ms = {:g} records all",
+      "record.period_ms is not given: the {:.2g} rows are thinned so that the file takes at most "
+      "{} (a quarter of record.max_size_GB = {:g}), densest where blocks end, axes reverse and the "
+      "contour error changes, with minimum and maximum values in between; record.period_ms = {:g} "
+      "records all",
       estimate.rows, in_gigabytes(estimate.file), estimate.file * kLeastCompression / kGigabyte,
       estimate.motion / estimate.rows / ms);
 }
@@ -169,7 +169,7 @@ void refuse_too_large(const model::Scenario& scenario, const RunEstimate& estima
                        in_gigabytes(estimate.size), max_size / kGigabyte));
   }
   if (estimate.memory > kMemoryShare * memory) {
-    refuse(fmt::format("{} of memory; must be <= the {} that there are; run fewer cases",
+    refuse(fmt::format("{} of memory; must be <= the {} available; run fewer cases",
                        in_gigabytes(estimate.memory), in_gigabytes(kMemoryShare * memory)));
   }
 }
@@ -193,8 +193,8 @@ void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estima
   const double needed = copies * estimate.file;
   if (!available || needed <= *available) return;
   throw InputError({scenario.program.file},
-                   fmt::format("takes {} of the disk while it runs; {} has {}: lower "
-                               "record.max_size_GB = {:g} or name another file (--output)",
+                   fmt::format("takes {} of disk space while running; {} has {} free: lower "
+                               "record.max_size_GB = {:g} or choose another file (--output)",
                                in_gigabytes(needed), where, in_gigabytes(*available),
                                scenario.record.max_size / kGigabyte));
 }

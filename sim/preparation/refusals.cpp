@@ -48,8 +48,8 @@ void refuse_standing_spindle(const InterpretedProgram& program, const model::Sce
     const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
     if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
     throw InputError({scenario.program.file, move.line},
-                     "feed per revolution (G95) while the spindle stands still; it would never "
-                     "end: start the spindle (M3 S...) or use G94");
+                     "feed per revolution (G95) with the spindle stopped would never end: start "
+                     "the spindle (M3 S...) or use G94");
   }
 }
 
@@ -60,9 +60,9 @@ void refuse_turned_tip(const InterpretedProgram& program, const model::Scenario&
   const bool is_probed = !scenario.probes.empty();
   if (tip == nullptr || offset.tail<3>().isZero(0.0) || !(is_probed || spec.cutting)) return;
   throw InputError(is_probed ? scenario.probes.front().place : scenario.cutting->place,
-                   fmt::format("case {}: a part is {} in the coordinates of its program; with "
-                               "tool-centre-point control ({}:{}) these do not turn with the "
-                               "work_offset of a rotary axis: leave that at 0",
+                   fmt::format("case {}: a part is {} in the coordinates of its program; under "
+                               "tool-centre-point control ({}:{}) these do not rotate with the "
+                               "work_offset of a rotary axis: set that to 0",
                                spec.name, is_probed ? "probed" : "cut from [[part.stock]]",
                                scenario.program.file, tip->line));
 }
@@ -92,10 +92,11 @@ void refuse_unread_scale(const model::StrategySpec& spec, const strategies::Stra
     const auto& feedback = machine.nc.functions[static_cast<std::size_t>(j)].position_feedback;
     if (j >= kLinearJoints && !strategy.displaces_rotary()) continue;
     if (feedback.kind != controllers::PositionFeedback::motor) continue;
-    throw InputError(spec.place,
-                     fmt::format("case {}: strategy {}: displaces the scale of axis {}, whose "
-                                 "position loop reads the motor (position_feedback = \"motor\")",
-                                 case_name, spec.entry->name, machine.chain.layout.letter_of(j)));
+    throw InputError(
+        spec.place,
+        fmt::format("case {}: strategy {}: displaces the scale of axis {}, whose position loop is "
+                    "closed on the motor encoder (position_feedback = \"motor\")",
+                    case_name, spec.entry->name, machine.chain.layout.letter_of(j)));
   }
 }
 
@@ -125,7 +126,7 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
     throw InputError(
         spec.place,
         fmt::format("case {}: strategy {}: rewrites moves under tool-centre-point control for one "
-                    "tool, the first that the program works with; here is another ({}:{})",
+                    "tool, the first of the program; here another one is used ({}:{})",
                     case_name, spec.entry->name, file, other.line));
   }
 }
@@ -133,12 +134,12 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
 void refuse_endless(const model::Scenario& scenario, double duration) {
   constexpr double kHour = 3600.0;
   if (duration > scenario.record.max_duration) {
-    throw InputError(
-        {scenario.program.file},
-        fmt::format("takes {:.3g} h at program.feed_override = {:g}; must be <= "
-                    "record.max_duration_h = {:g}: check feeds and feed_override, or raise it",
-                    duration / kHour, scenario.program.feed_override,
-                    scenario.record.max_duration / kHour));
+    throw InputError({scenario.program.file},
+                     fmt::format("takes {:.3g} h at program.feed_override = {:g}; must be <= "
+                                 "record.max_duration_h = {:g}: check feeds and feed_override, or "
+                                 "raise record.max_duration_h",
+                                 duration / kHour, scenario.program.feed_override,
+                                 scenario.record.max_duration / kHour));
   }
   constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
@@ -165,8 +166,8 @@ void refuse_absent_sections(const model::Scenario& scenario,
                         fmt::format("{} has no section '{}'{}", scenario.program.file, name,
                                     !near.empty() ? near
                                     : known.empty()
-                                        ? "; a comment (MSG, NAME) begins one"
-                                        : fmt::format("; there are: {}", fmt::join(known, ", ")))});
+                                        ? "; a comment (MSG, NAME) starts one"
+                                        : fmt::format("; known are: {}", fmt::join(known, ", ")))});
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));
@@ -203,7 +204,7 @@ void refuse_rewritten_probing(const model::StrategySpec& spec, const Interpreted
   if (!program.probes()) return;
   throw InputError(spec.place,
                    fmt::format("case {}: strategy {} rewrites the program, which has probing moves "
-                               "(line {}); measure with another strategy",
+                               "(line {}); use another strategy for measuring",
                                case_name, spec.entry->name, program.touches.front().line));
 }
 

@@ -146,14 +146,14 @@ class ReadBack {
     const auto wanted = wanted_.next();
     if (!wanted) {
       if (move.kind == MoveKind::end) return move;
-      refuse(rewritten_.back(), "the text of the rewritten program goes on behind its end");
+      refuse(rewritten_.back(), "the text of the rewritten program continues after its end");
     }
     if (const auto why = difference(*wanted, *read)) refuse_text(*wanted->move, *why);
     if (!is_motion(move.kind)) return move;
     if ((move.end_machine - wanted->move->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
       refuse(*wanted->move,
-             "cannot be rewritten in work coordinates that are tilted, turned or shifted by the "
-             "program (G52, G92, G10)");
+             "cannot be rewritten in work coordinates that the program tilts, rotates or shifts "
+             "(G52, G92, G10)");
     }
     move.line = wanted->move->line;
     move.s_begin = wanted->move->s_begin;
@@ -171,9 +171,9 @@ class ReadBack {
                      fmt::format("case {}: {}", request_.case_name, why));
   }
   [[noreturn]] void refuse_text(const Move& move, std::string_view why) const {
-    refuse(move, fmt::format("the text of the rewritten program does something else than the "
-                             "rewritten program: {}",
-                             why));
+    refuse(move,
+           fmt::format("the text of the rewritten program differs from the rewritten program: {}",
+                       why));
   }
 
   const RewrittenTextRequest& request_;

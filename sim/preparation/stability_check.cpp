@@ -20,7 +20,7 @@ Fault instability(const model::MachineSettings& machine, int joint, double radiu
   const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
   const plant::FeedDriveParams& drive = machine.drives[j];
   const char axis = machine.chain.layout.letter_of(joint);
-  const std::string_view watch = "or set nc.check_stability = false to simulate it regardless";
+  const std::string_view watch = "or set nc.check_stability = false to simulate it anyway";
   if (drive.has_winding() && !(current.Kp * current.Ti < 2.0 * drive.L)) {
     return {places.winding_bandwidth,
             fmt::format("axis {}: the current loop is unstable with winding.bandwidth = {:.4g} "
@@ -34,11 +34,12 @@ Fault instability(const model::MachineSettings& machine, int joint, double radiu
                         "{}",
                         axis, cascade.Kp / cascade.J, watch)};
   }
-  return {places.Kv,
-          fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s over a stable "
-                      "velocity loop of {:.4g} rad/s (grows by a factor {:.6g} each period); lower "
-                      "Kv or make the velocity loop faster, {}",
-                      axis, cascade.Kv, cascade.Kp / cascade.J, radius, watch)};
+  return {
+      places.Kv,
+      fmt::format("axis {}: the servo loop is unstable with Kv = {:.4g} 1/s over a stable "
+                  "velocity loop of {:.4g} rad/s (grows by a factor of {:.6g} per period); lower "
+                  "Kv or make the velocity loop faster, {}",
+                  axis, cascade.Kv, cascade.Kp / cascade.J, radius, watch)};
 }
 
 }  // namespace

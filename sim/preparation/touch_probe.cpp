@@ -107,7 +107,7 @@ std::optional<double> TouchedBodies::switching_share(const Way& way) {
     if (share >= 1.0) return std::nullopt;
     share = std::min(share + left / way.speed, 1.0);
   }
-  throw InputError({}, "the stylus slides along a surface for too long; probe across it");
+  throw InputError({}, "the stylus slides along a surface for too long; probe normal to it");
 }
 
 double TouchedBodies::stopping_share(const Way& way) const {
@@ -143,8 +143,8 @@ std::optional<controllers::ProbeContact> TouchedBodies::contact(
   if (way.length == 0.0 || way.speed == 0.0) return std::nullopt;
   const bool touches_now = gap(way, 0.0) <= kContact;
   if (touches_now != move.mode.leaves()) {
-    throw InputError({}, touches_now ? "the probe touches before the move begins"
-                                     : "the probe touches nothing where the move begins");
+    throw InputError({}, touches_now ? "the probe is in contact before the move starts"
+                                     : "the probe is not in contact where the move starts");
   }
   const std::optional<double> share = switching_share(way);
   const auto at = [&](double s) { return AxisWords(move.begin + std::min(s, 1.0) * change); };

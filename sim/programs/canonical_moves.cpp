@@ -156,7 +156,7 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
   setup.most_jumps = inputs.most_jumps;
   for (const std::string& folder : inputs.subroutine_folders) {
     if (!std::filesystem::is_directory(folder))
-      throw InputError({"--subs " + folder}, "is no folder");
+      throw InputError({"--subs " + folder}, "is not a folder");
   }
   setup.subroutine_file = input::subroutine_files(program_file, inputs.subroutine_folders);
   return setup;

@@ -66,8 +66,8 @@ std::set<int> tools_loaded(const controllers::ClData& data, int without) {
 
 std::string no_length_of(int tool) {
   return fmt::format(
-      "the length of tool {} is not given; add --tool-length \"110 mm\" or --tools "
-      "TABLE (0 is a length, too)",
+      "the length of tool {} is unknown; add --tool-length \"110 mm\" or --tools TABLE (0 is "
+      "allowed)",
       tool);
 }
 
@@ -106,14 +106,14 @@ void refuse_unknown_tools(const PostRequest& request, const controllers::ClData&
     const bool is_known =
         wanted > 0 || (request.tool_length && (request.has_no_tool || !loads_later));
     if (!is_known) {
-      throw InputError({request.cl_file, first->line, 0},
-                       "no tool is loaded before this location, and neither its number nor its "
-                       "length is assumed; add LOADTL/N before it or --tool N, and --tool-length "
-                       "or --tools (a spindle without tool: --tool 0 --tool-length 0)");
+      throw InputError(
+          {request.cl_file, first->line, 0},
+          "no tool is loaded before this location; add LOADTL/N before it or --tool N, and "
+          "--tool-length or --tools (an empty spindle: --tool 0 --tool-length 0)");
     }
     if (request.has_no_tool && *request.tool_length > 0.0) {
       throw InputError({"--tool 0"},
-                       "without a tool there is no length; add --tool N, or --tool-length 0");
+                       "an empty spindle has no tool length; use --tool N, or --tool-length 0");
     }
     if (!has_length(request, wanted)) {
       throw InputError({request.cl_file, first->line, 0}, no_length_of(wanted));
@@ -136,11 +136,11 @@ void refuse_unknown_place(const PostRequest& request, const plant::MachineChain&
         return !is_linear(a.axis) && (!is_tip || a.side == plant::Side::workpiece);
       });
   if (!turns) return;
-  throw InputError({request.cl_file},
-                   fmt::format("the place of the part is not given, and the rotary axes of this "
-                               "machine turn about points of their own; add --work-offset X,Y,Z "
-                               "(0,0,0 is a place, too){}",
-                               is_tip ? " or --approach direct" : ""));
+  throw InputError(
+      {request.cl_file},
+      fmt::format("the work offset is unknown, and the rotary axes of this machine rotate about "
+                  "fixed points; add --work-offset X,Y,Z (0,0,0 is allowed){}",
+                  is_tip ? " or --approach direct" : ""));
 }
 
 // Z of the machine from which every way down is free.
@@ -154,12 +154,12 @@ double retract_height(const PostRequest& request, const input::MachineDescriptio
   const double Z = request.retract_Z.value_or(machine.retract_Z.value_or(upper));
   if (!std::isfinite(Z)) {
     throw InputError({request.machine_file},
-                     "Z has no travel, so that the height to retract to is not known; add "
-                     "axis.Z.retract_mm or --retract Z=...");
+                     "Z has no travel, so the retract height is unknown; add axis.Z.retract_mm or "
+                     "--retract Z=...");
   }
   if (Z >= lower && Z <= upper) return Z;
   throw InputError({request.retract_Z ? std::string("--retract") : request.machine_file},
-                   fmt::format("Z = {:g} mm; beyond the travel of {:g} to {:g} mm", Z / mm,
+                   fmt::format("Z = {:g} mm; outside the travel of {:g} to {:g} mm", Z / mm,
                                lower / mm, upper / mm));
 }
 
@@ -171,24 +171,24 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
   const double tip = options.tolerance.tip / um, axis = options.tolerance.axis / urad;
   switch (options.mode) {
     case controllers::PostMode::joints:
-      text += fmt::format("\ntip within {:g} um, tool axis within {:g} urad of the straight way",
+      text += fmt::format("\nTCP within {:g} um, tool axis within {:g} urad of the straight path",
                           tip, axis);
       break;
     case controllers::PostMode::locations:
-      text += "\none block a location: between them tip and tool axis go where the axes take them";
+      text +=
+          "\none block per location: between them TCP and tool axis follow from the axis motion";
       break;
     case controllers::PostMode::tip:
-      text += fmt::format("\nG43.4: X Y Z are the tip; tool axis within {:g} urad", axis);
+      text += fmt::format("\nG43.4: X Y Z are the TCP; tool axis within {:g} urad", axis);
       break;
   }
   const Eigen::Vector3d& zero = options.work_offset;
-  text += fmt::format("\npart zero (G{}): X{:g} Y{:g} Z{:g} in the machine, rotary axes at zero",
+  text += fmt::format("\nwork offset (G{}): X{:g} Y{:g} Z{:g} in the machine, rotary axes at zero",
                       53 + options.work_system, zero[0] / mm, zero[1] / mm, zero[2] / mm);
   if (options.approach == controllers::Approach::safe) {
-    text += fmt::format(
-        "\nretracts to Z{:g} of the machine; {:g} mm along the tool axis to and from "
-        "the part",
-        options.safe.retract_Z / mm, options.safe.clearance / mm);
+    text +=
+        fmt::format("\nretracts to machine Z{:g}; {:g} mm along the tool axis to and from the part",
+                    options.safe.retract_Z / mm, options.safe.clearance / mm);
   }
   for (const int number : tools_loaded(data, options.tool)) {
     const auto* tool = options.tools.find(number);

@@ -20,7 +20,7 @@ struct PostRequest {
   std::optional<Eigen::Vector3d> work_offset;  // m: options.work_offset
   std::optional<double> retract_Z;             // m, machine coordinate: options.safe.retract_Z
   std::string start;  // "A=10,C=90" in mm and deg: options.start; empty: all axes at zero
-  controllers::PostOptions options;  // tools, part zero, retract height and start are filled in
+  controllers::PostOptions options;  // tools, work offset, retract height and start are filled in
 };
 
 struct PostProcessedFile {

@@ -55,15 +55,14 @@ std::string PostFunctions::act(const Move& move, PostState& now, bool off_place)
 
 std::string PostFunctions::change_tool(const Move& move, PostState& now) {
   if (tools_.empty() || tools_.front() != move.number) {
-    return fmt::format("tool {} is loaded, which the cutter locations do not call for",
-                       move.number);
+    return fmt::format("tool {} is loaded, which the cutter locations do not call", move.number);
   }
   wanted_.tool = now.tool = tools_.front();
   tools_.pop_front();
   if (!is_safe()) return {};
-  if (!is_retracted(now.Q, options_)) return "a tool is changed below the height to retract to";
+  if (!is_retracted(now.Q, options_)) return "the tool is changed below the retract height";
   if (now.direction != 0 || now.coolant != 0 || stopped_in_ == move.line) {
-    return "a tool is changed while the spindle or the coolant is on";
+    return "the tool is changed while the spindle or the coolant is on";
   }
   return {};
 }

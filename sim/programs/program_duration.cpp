@@ -41,7 +41,7 @@ bool ProgramDuration::refuses(const Move& move) {
   for (const Axis axis : kAllAxes) {
     if (layout.joint_of(axis) || move.end_machine[index_of(axis)] == 0.0) continue;
     why_unknown_ =
-        fmt::format("line {} moves {}, which the machine does not have", move.line, letter(axis));
+        fmt::format("line {} moves {}, but the machine has no such axis", move.line, letter(axis));
   }
   if (move.tool_control != ToolControl::none) {
     why_unknown_ = fmt::format(
@@ -49,7 +49,7 @@ bool ProgramDuration::refuses(const Move& move) {
         move.line);
   }
   if (move.kind != MoveKind::rapid && !(move.feed > 0.0)) {
-    why_unknown_ = fmt::format("line {} feeds per revolution of a spindle that is off", move.line);
+    why_unknown_ = fmt::format("line {} feeds per revolution with the spindle off", move.line);
   }
   if (!why_unknown_.empty()) moves_ = {};
   return !why_unknown_.empty();

@@ -117,7 +117,7 @@ class Surveyor {
     if (!block.frame->is_translation_known) {
       out_.unknown_systems.insert(block.frame->additional_system);
     }
-    if (block.state->controls_tip() && out_.tip_controlled == 0) out_.tip_controlled = move.line;
+    if (block.state->controls_tip() && out_.tcp_controlled == 0) out_.tcp_controlled = move.line;
   }
 
   void note_words(const ExecutedBlock& block) {

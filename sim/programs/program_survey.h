@@ -63,7 +63,7 @@ struct ProgramSurvey {
   ProgramExtent extent;
   std::set<int> unknown_systems;        // P of G54.1 whose offset is not given
   int unknown_retract = 0;              // first line of M140 MB MAX without a machine; 0: none
-  int tip_controlled = 0;               // first move under G43.4, G43.5 or G68.2; 0: none
+  int tcp_controlled = 0;               // first move under G43.4, G43.5 or G68.2; 0: none
   std::optional<CycleTime> cycle_time;  // with a machine file
   int tool_changes = 0, stops = 0;      // M6; M0, M1, M60
   std::vector<ReaderVerdict> readers;

@@ -75,10 +75,10 @@ std::string unit_sentence(const FirstUse& use) {
 
 void add_units(const ProgramSurvey& survey, Text& text) {
   if (survey.units.empty()) {
-    text.add("units", "no G20 or G21: those of the control; read as mm");
+    text.add("units", "no G20 or G21: unit of the control; taken as mm");
   }
   for (const FirstUse& use : survey.units) text.add("units", unit_sentence(use));
-  if (survey.units.size() > 1) text.add("units", "the program changes its unit");
+  if (survey.units.size() > 1) text.add("units", "the program changes units");
 }
 
 void add_work_offsets(const ProgramSurvey& survey, Text& text) {
@@ -130,8 +130,8 @@ void add_work_extent(const ProgramSurvey& survey, Text& text) {
   for (const Axis axis : kAllAxes) {
     const auto i = static_cast<std::size_t>(index_of(axis));
     if (extent.unknown_work(i) == 0) continue;
-    text.add("not in it", fmt::format("{} moves to a position that is not known (line {})",
-                                      letter(axis), extent.unknown_work(i)));
+    text.add("not in it", fmt::format("{} moves to an unknown position (line {})", letter(axis),
+                                      extent.unknown_work(i)));
   }
   if (extent.tilted() > 0) {
     text.add("not in it", fmt::format("moves in a tilted work plane (line {})", extent.tilted()));
@@ -174,10 +174,10 @@ void add_machine_extent(const ProgramSurvey& survey, Text& text) {
     text.add("machine", fmt::format("{} {}{}", letter(axis),
                                     range.is_known() ? in_units(range, axis) : "", unknown));
   }
-  if (survey.tip_controlled == 0) return;
+  if (survey.tcp_controlled == 0) return;
   text.add("machine", fmt::format("X, Y and Z unknown under tool-centre-point control and in a "
                                   "tilted plane (line {}): a scenario simulates them",
-                                  survey.tip_controlled));
+                                  survey.tcp_controlled));
 }
 
 void add_cycle_time(const ProgramSurvey& survey, Text& text) {
@@ -328,7 +328,7 @@ std::string extent_json(const ProgramSurvey& survey) {
       .raw("unknown_from_line", unknown.line())
       .raw("unknown_additional_offsets",
            fmt::format("[{}]", fmt::join(survey.unknown_systems, ", ")))
-      .raw("tip_controlled_from_line", line_or_null(survey.tip_controlled))
+      .raw("tcp_controlled_from_line", line_or_null(survey.tcp_controlled))
       .line();
 }
 

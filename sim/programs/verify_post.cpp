@@ -141,7 +141,7 @@ class PostReplay {
       check_rounding(*move);
       const PostBlock block = kinematics_.block_of(*move, now_);
       const double t_next = result_.only_locations ? 1.0 : share_at(path, P, block.to.P);
-      if (t_next < t - kTime) fail("the tool goes back on its path");
+      if (t_next < t - kTime) fail("the tool moves backwards on its path");
       check_path(block, path, t, t_next);
       // a free axis may turn with the tool in place, before it leaves
       const bool goes = t_next - t > kTime || same_pose(block.to.P, P);
@@ -189,7 +189,7 @@ class PostReplay {
                      wanted = path.at(t + share * (t_next - t));
       const double tip = (is.p_WT - wanted.p_WT).norm(), axis = angle_between(is.k_W, wanted.k_W);
       if (!(tip <= options_.tolerance.tip + kPostTip)) {
-        fail(fmt::format("the tip is {:.4g} um off the straight path", tip / um));
+        fail(fmt::format("the TCP is {:.4g} um off the straight path", tip / um));
       }
       if (!(axis <= options_.tolerance.axis + kPostAxis)) {
         fail(fmt::format("the tool axis is {:.4g} urad off its great circle", axis / urad));
@@ -227,11 +227,11 @@ class PostReplay {
       fail("a dwell, stop, message or tool after the last location is missing");
     }
     if (!is_safe()) return;
-    if (!is_retracted(now_.Q, options_)) fail("the program ends below the height to retract to");
+    if (!is_retracted(now_.Q, options_)) fail("the program ends below the retract height");
     for (int j = kLinearJoints; j < kJoints; ++j) {
       constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
       const double off = std::remainder(now_.Q[j] - options_.start[j], kTurn);
-      if (std::abs(off) > kPostAxis) fail("the rotary axes do not come back to their start");
+      if (std::abs(off) > kPostAxis) fail("the rotary axes do not return to their start");
     }
     if (now_.direction != 0 || now_.coolant != 0)
       fail("the program ends with spindle or coolant on");
@@ -244,12 +244,12 @@ class PostReplay {
     if (!block.from.knows_P) {
       const Joints d = block.to.Q - block.from.Q;
       const bool only_Z = (d - Joints::Unit(kZ) * d[kZ]).cwiseAbs().maxCoeff() <= kPostJoint;
-      if (!ends_up || !only_Z) fail("the program does not begin with a retract of Z");
+      if (!ends_up || !only_Z) fail("the program does not start with a retract of Z");
       return;
     }
     const bool is_up = starts_up && ends_up && !block.to.controls_tip;
     if (is_up) return;
-    if (block.rotates()) fail("a rotary axis moves below the height to retract to");
+    if (block.rotates()) fail("a rotary axis moves below the retract height");
     if (P != nullptr && same_pose(block.from.P, last_) && same_pose(block.to.P, *P))
       return;  // plain rapid
     const Vector3d d = block.to.P.p_WT - block.from.P.p_WT, u = block.to.P.k_W;
@@ -262,7 +262,7 @@ class PostReplay {
     const bool goes_up = ends_up && has_location_ && same_pose(block.from.P, clear_of(last_));
     const bool comes_down = starts_up && P != nullptr && same_pose(block.to.P, clear_of(*P));
     if ((goes_up || comes_down) && kinematics_.moves_only_Z(block)) return;
-    fail("the tool moves below the height to retract to, but not along its axis");
+    fail("the tool moves below the retract height, but not along its axis");
   }
 
   std::string_view program_;
@@ -293,7 +293,7 @@ std::string to_string(const PostVerification& v) {
   const std::string head =
       fmt::format("verified: {} locations, {} blocks of motion", v.locations, v.blocks);
   if (v.only_locations) return head + "; between locations nothing was compared (--classical)";
-  return fmt::format("{}, tip within {:.3g} um and tool axis within {:.3g} urad of the path", head,
+  return fmt::format("{}, TCP within {:.3g} um and tool axis within {:.3g} urad of the path", head,
                      v.tip / um, v.axis / urad);
 }
 

@@ -161,7 +161,7 @@ Table read_table(const std::string& path) {
     } else {
       other_lengths.insert(row.fields.size());
       faults.push_back({{path, line.number, 0},
-                        fmt::format("has {} fields; the line of names has {}", row.fields.size(),
+                        fmt::format("has {} fields; the header has {}", row.fields.size(),
                                     table.columns.size())});
     }
   }
@@ -174,15 +174,14 @@ Table read_table(const std::string& path) {
     if (has_comma) table.decimal = ',';
   }
   if (faults.size() > 1 && table.rows.empty() && other_lengths.size() == 1) {
-    faults = {
-        {{path, faults.front().place.line, 0},
-         fmt::format("no row has the {} fields of the line of names \"{}\"; lines in front of "
-                     "the names begin with #",
-                     table.columns.size(), fmt::join(written_names(table), " "))}};
+    faults = {{{path, faults.front().place.line, 0},
+               fmt::format("no row has the {} fields of the header \"{}\"; lines before "
+                           "the header must start with #",
+                           table.columns.size(), fmt::join(written_names(table), " "))}};
   }
-  if (table.columns.empty()) faults.push_back({{path}, "is empty; a line of names is expected"});
+  if (table.columns.empty()) faults.push_back({{path}, "is empty; expected a header line"});
   if (table.rows.empty() && faults.empty()) {
-    faults.push_back({{path}, "has no readings under its line of names"});
+    faults.push_back({{path}, "has no readings after its header"});
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   return table;

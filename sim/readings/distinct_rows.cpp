@@ -32,11 +32,10 @@ void require_distinct_rows(const Group& group, std::vector<Fault>& faults) {
   for (const Reading& row : group.rows) {
     const auto [found, is_new] = lines.try_emplace(place_in_order(row), row.line);
     if (is_new) continue;
-    faults.push_back(
-        {{group.file, row.line},
-         fmt::format("stands at the target of line {} again, in run {} and the same direction; "
-                     "number the runs, or leave one of the two out",
-                     found->second, row.run + 1)});
+    faults.push_back({{group.file, row.line},
+                      fmt::format("repeats the target of line {}, run {} and direction; number the "
+                                  "runs, or remove one of the two",
+                                  found->second, row.run + 1)});
   }
 }
 

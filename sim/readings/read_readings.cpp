@@ -65,7 +65,7 @@ class GroupReader {
   std::optional<Axis> read_axis(std::string_view key) {
     const auto axis = static_cast<Axis>(table_.choice(key, kAxisNames));
     if (layout_.joint_of(axis)) return axis;
-    table_.fault(key, "is an axis that the machine lacks");
+    table_.fault(key, "is not an axis of the machine");
     return std::nullopt;
   }
 
@@ -108,7 +108,8 @@ class GroupReader {
     }
     group_.plane = {*axis_of(text[0]), *axis_of(text[1])};
     for (const Axis axis : group_.plane) {
-      if (!layout_.joint_of(axis)) table_.fault(key, "names an axis that the machine lacks");
+      if (!layout_.joint_of(axis))
+        table_.fault(key, "contains an axis that the machine does not have");
     }
   }
 
@@ -228,7 +229,7 @@ class GroupReader {
         table.real("length_mm", config::kLength),
         table.real("wavelength_uncertainty_um_per_m", config::kNumber, {config::above(0.0)})};
     if (group_.kind != Kind::positioning || (group_.axis && !is_linear(*group_.axis))) {
-      table_.fault("dead_path", "must be one of a laser that measures positions");
+      table_.fault("dead_path", "must be a group of a laser that measures positions");
     }
   }
 

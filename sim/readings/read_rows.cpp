@@ -253,8 +253,8 @@ class RowsReader {
     reading.run = run;
     if (column != nullptr && table_.text(row, *column).empty()) {
       fault(table_.place(row, *column),
-            fmt::format("run {} is missing at this target; a row for each reading (columns target, "
-                        "run, position) may leave readings out",
+            fmt::format("run {} is missing at this target; use one row per reading (columns "
+                        "target, run, position) to omit readings",
                         run + 1));
       return;
     }
@@ -286,7 +286,7 @@ class RowsReader {
     reading.temperature = value(row, column);
     if (reading.temperature > kHottest || reading.temperature < kColdest) {
       fault(table_.place(row, column),
-            fmt::format("{} = {:g}; must lie between {:g} and {:g} degC (is it in Fahrenheit?)",
+            fmt::format("{} = {:g}; must be between {:g} and {:g} degC (is it in Fahrenheit?)",
                         column.written, reading.temperature, kColdest, kHottest));
     }
   }
@@ -308,7 +308,8 @@ class RowsReader {
       return;
     }
     fault({table_.file, row.line},
-          fmt::format("nx, ny, nz have the length {:.3g}; a normal has 1", reading.normal.norm()));
+          fmt::format("nx, ny, nz have length {:.3g}; a normal must have length 1",
+                      reading.normal.norm()));
   }
 
   void read_values(const Row& row, const Column* run, Reading& reading) {

@@ -28,7 +28,7 @@ std::vector<double> base85_doubles(std::string_view text, std::string& why) {
     }
     const auto digit = kDigits.find(c);
     if (digit == std::string_view::npos) {
-      why = fmt::format("byte {} is no digit of base 85",
+      why = fmt::format("byte {} is not a base-85 digit",
                         static_cast<int>(static_cast<unsigned char>(c)));
       return {};
     }

@@ -93,11 +93,12 @@ class Monitor {
       ++variable(as_utf8(fields[0].text)).undefined;
       return;
     }
-    if (fields.size() < 4) throw InputError(place, "is no line of variable, date, time and value");
+    if (fields.size() < 4)
+      throw InputError(place, "is not a line of variable, date, time and value");
     const auto now = instant(fields[1].text, fields[2].text);
     if (!now) {
       throw InputError({out_.file, line.number, fields[1].column},
-                       fmt::format("'{} {}' is no date and time", as_utf8(fields[1].text),
+                       fmt::format("'{} {}' is not a date and time", as_utf8(fields[1].text),
                                    as_utf8(fields[2].text)));
     }
     if (!zero_) {
@@ -111,7 +112,7 @@ class Monitor {
     out_.format = "camonitor of EPICS";
     for (Variable& one : variables_) {
       if (one.undefined > 0) {
-        note(one, system::counted(one.undefined, "line") + " without a time: left out");
+        note(one, system::counted(one.undefined, "line") + " without a time: skipped");
       }
       if (!one.is_scalar) {
         note(one, "a text or an array: skipped");
@@ -156,9 +157,9 @@ class Monitor {
     if (!one.is_scalar) return;
     const double value = checked_number(fields[3], decimal, place);
     if (fields.size() > 4 && !has_alarm) {
-      throw InputError(
-          {place.file, place.line, fields[4].column},
-          fmt::format("'{}' behind the value is no status with severity", as_utf8(fields[4].text)));
+      throw InputError({place.file, place.line, fields[4].column},
+                       fmt::format("'{}' after the value is not a status with severity",
+                                   as_utf8(fields[4].text)));
     }
     if (!one.samples.empty() && seconds == one.base.values.back() && value == one.samples.back()) {
       ++one.repeated;
@@ -198,7 +199,7 @@ bool is_camonitor(std::string_view text) {
 Recording parse_camonitor(std::string_view text, const std::string& file) {
   const std::vector<TextLine> lines = text_lines(text);
   if (!lines.empty() && !text.ends_with('\n')) {
-    throw InputError({file, lines.back().number}, "the file ends within a line: it is cut off");
+    throw InputError({file, lines.back().number}, "the file ends within a line: it is truncated");
   }
   Monitor monitor(file);
   for (const TextLine& line : lines) monitor.read(line);

@@ -10,7 +10,7 @@ namespace servomill::sim::recordings {
 double checked_number(const Field& field, char decimal, const Place& line) {
   const auto value = parse_number(field.text, decimal);
   const Place place{line.file, line.line, field.column};
-  if (!value) throw InputError(place, fmt::format("'{}' is no number", as_utf8(field.text)));
+  if (!value) throw InputError(place, fmt::format("'{}' is not a number", as_utf8(field.text)));
   if (std::isinf(*value)) {
     throw InputError(place, fmt::format("'{}' is infinite", as_utf8(field.text)));
   }
@@ -28,7 +28,7 @@ void append_time(Base& base, double seconds, const Place& place) {
     if (seconds < last) {
       throw InputError(place, fmt::format("time runs backwards: {} s after {} s", seconds, last));
     }
-    if (seconds == last) throw InputError(place, fmt::format("time {} s comes twice", seconds));
+    if (seconds == last) throw InputError(place, fmt::format("time {} s appears twice", seconds));
   }
   base.values.push_back(seconds);
 }

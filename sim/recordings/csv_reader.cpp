@@ -187,7 +187,7 @@ class Table {
       number = number || (value && !std::isnan(*value));
     }
     if (word == nullptr || !number) return;
-    fail(line, word->column, fmt::format("'{}' is no number", as_utf8(word->text)));
+    fail(line, word->column, fmt::format("'{}' is not a number", as_utf8(word->text)));
   }
 
   void refuse_same_names() const {
@@ -210,13 +210,13 @@ class Table {
                       system::counted(layout_.columns, "column"));
       fail(line, 0,
            may_be_cut && fields.size() < layout_.columns
-               ? count + ", and the file ends here: it is cut off"
+               ? count + ", and the file ends here: it is truncated"
                : count);
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const auto value = parse_number(fields[i].text, layout_.decimal);
       if (!value) {
-        fail(line, fields[i].column, fmt::format("'{}' is no number", as_utf8(fields[i].text)));
+        fail(line, fields[i].column, fmt::format("'{}' is not a number", as_utf8(fields[i].text)));
       }
       if (std::isinf(*value)) {
         fail(line, fields[i].column, fmt::format("'{}' is infinite", as_utf8(fields[i].text)));
@@ -232,7 +232,7 @@ class Table {
     const auto seconds = seconds_of(unit);
     if (!unit.empty() && !seconds) {
       throw InputError({file_, heading_line_->number, name_columns_[column]},
-                       fmt::format("'{}' is no unit of time; known are {}", unit, kTimeUnits));
+                       fmt::format("'{}' is not a unit of time; known are {}", unit, kTimeUnits));
     }
     out.unit_known = !unit.empty();
     double last = -HUGE_VAL;
@@ -243,7 +243,7 @@ class Table {
       if (value < last) {
         throw InputError(place, fmt::format("time runs backwards: {} s after {} s", value, last));
       }
-      if (value == last) throw InputError(place, fmt::format("time {} s comes twice", value));
+      if (value == last) throw InputError(place, fmt::format("time {} s appears twice", value));
       last = value;
       out.values.push_back(value);
     }
@@ -287,7 +287,7 @@ bool is_csv(std::string_view text) { return recognised(text_lines(text)).has_val
 Recording parse_csv(std::string_view text, const std::string& file) {
   const std::vector<TextLine> lines = text_lines(text);
   const std::optional<Layout> layout = recognised(lines);
-  if (!layout) throw InputError({file}, "holds no row of numbers");
+  if (!layout) throw InputError({file}, "contains no row of numbers");
   const bool ends_with_line_end = text.ends_with('\n') || text.ends_with('\r');
   Recording out = Table(file, lines, *layout).read(ends_with_line_end);
   check(out);

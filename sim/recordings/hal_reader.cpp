@@ -22,15 +22,15 @@ constexpr std::size_t kExamined = 200;  // lines that the kind is recognised fro
 double period_ns(const TextLine& line, const std::string& file) {
   const auto fields = split_fields(line.text, ' ');
   const Place place{file, line.number};
-  if (fields.size() < 5) throw InputError(place, "the sampling period is cut off");
+  if (fields.size() < 5) throw InputError(place, "the sampling period is truncated");
   std::string unit(fields[4].text);
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto seconds = seconds_of(unit);
   if (!seconds) {
-    throw InputError(
-        {file, line.number, fields[4].column},
-        fmt::format("'{}' is no unit of time; known are {}", as_utf8(fields[4].text), kTimeUnits));
+    throw InputError({file, line.number, fields[4].column},
+                     fmt::format("'{}' is not a unit of time; known are {}",
+                                 as_utf8(fields[4].text), kTimeUnits));
   }
   const double period = checked_number(fields[3], '.', place) * *seconds / 1e-9;
   if (period > 0.0) return period;
@@ -42,7 +42,7 @@ void refuse_length(std::size_t fields, std::size_t wanted, bool is_last, const P
   const std::string message =
       fmt::format("{} in a line, the first one has {}", system::counted(fields, "field"), wanted);
   const bool is_cut = is_last && fields < wanted;
-  throw InputError(place, is_cut ? message + ", and the file ends here: it is cut off" : message);
+  throw InputError(place, is_cut ? message + ", and the file ends here: it is truncated" : message);
 }
 
 bool is_overrun(const TextLine& line) { return line.text.starts_with(kOverrun); }
@@ -153,7 +153,7 @@ Recording parse_halsampler(std::string_view text, const std::string& file) {
         numbered ? checked_number(fields[0], '.', place) : static_cast<double>(numbers.size());
     if (!numbers.empty() && !(number > numbers.back())) {
       throw InputError(
-          place, fmt::format("sample number {} after {}; must ascend", number, numbers.back()));
+          place, fmt::format("sample number {} after {}; must increase", number, numbers.back()));
     }
     numbers.push_back(number);
     for (std::size_t k = 0; k < out.channels.size(); ++k) {

@@ -28,7 +28,7 @@ class Hdf5Walk {
     visit("", 0);
     if (out_.bases.empty()) {
       throw InputError({file_.path()},
-                       "holds no group with a dataset 'time' or 'frequency': no signals");
+                       "contains no group with a dataset 'time' or 'frequency': no signals");
     }
     return std::move(out_);
   }

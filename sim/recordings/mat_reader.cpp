@@ -104,8 +104,8 @@ void refuse_cut_file(std::string_view bytes, const std::string& path) {
   for (std::size_t at = kHeader; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
     if (left < kTag || word_at(bytes, at + 4, is_little) > left - kTag) {
-      throw InputError({path},
-                       fmt::format("is cut off: the array at byte {} is longer than the file", at));
+      throw InputError(
+          {path}, fmt::format("is truncated: the array at byte {} is longer than the file", at));
     }
     at += kTag + word_at(bytes, at + 4, is_little);
   }
@@ -168,7 +168,7 @@ class MatFile {
                        name, rows, columns, bytes_));
     }
     if (Mat_VarReadDataAll(file_.get(), &variable) != 0 || variable.data == nullptr) {
-      fail(fmt::format("variable '{}' cannot be read: the file is cut off or damaged", name));
+      fail(fmt::format("variable '{}' cannot be read: the file is truncated or damaged", name));
     }
     const std::vector<double> all = numbers(variable, rows * columns);
     if (rows == 1) {

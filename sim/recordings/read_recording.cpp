@@ -129,7 +129,7 @@ Recording read_recording(const std::string& path, const std::string& time_unit) 
   const std::string bytes = system::read_file(path, {}, "recording");
   if (bytes.empty()) throw InputError({path}, "is empty");
   if (const std::string kind = refused_kind(bytes); !kind.empty()) {
-    throw InputError({path}, fmt::format("is no recording that can be read: it is {}", kind));
+    throw InputError({path}, fmt::format("cannot be read as a recording: it is {}", kind));
   }
   for (const Format& format : kFormats) {
     if (!format.is(bytes)) continue;
@@ -138,7 +138,8 @@ Recording read_recording(const std::string& path, const std::string& time_unit) 
     set_time_unit(out, time_unit);
     return out;
   }
-  throw InputError({path}, fmt::format("is no recording of a known kind ({})", format_names()));
+  throw InputError({path},
+                   fmt::format("is not a recording of a known format ({})", format_names()));
 }
 
 }  // namespace servomill::sim::recordings

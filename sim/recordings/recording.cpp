@@ -21,8 +21,8 @@ void check_base(const Recording& recording, const Base& base) {
     }
     if (i == 0 || base.values[i] > base.values[i - 1]) continue;
     throw InputError({recording.file},
-                     fmt::format("{}: value {} is {} {} after {} {}; must ascend", base.name, i + 1,
-                                 base.values[i], base.unit, base.values[i - 1], base.unit));
+                     fmt::format("{}: value {} is {} {} after {} {}; must increase", base.name,
+                                 i + 1, base.values[i], base.unit, base.values[i - 1], base.unit));
   }
 }
 
@@ -53,7 +53,7 @@ void set_time_unit(Recording& recording, const std::string& unit) {
   const auto seconds = seconds_of(unit);
   if (!unit.empty() && !seconds) {
     throw InputError({"--time-unit"},
-                     fmt::format("'{}' is no unit of time; known are {}", unit, kTimeUnits));
+                     fmt::format("'{}' is not a unit of time; known are {}", unit, kTimeUnits));
   }
   bool is_used = unit.empty();
   for (Base& base : recording.bases) {
@@ -61,13 +61,14 @@ void set_time_unit(Recording& recording, const std::string& unit) {
     for (double& value : base.values) value *= seconds.value_or(1.0);
     base.unit_known = is_used = true;
     recording.notes.push_back(
-        unit.empty() ? fmt::format("the file has no unit of its {}: taken for s; --time-unit "
-                                   "says otherwise",
-                                   base.name)
-                     : fmt::format("the {} is in {}, by --time-unit", base.name, unit));
+        unit.empty()
+            ? fmt::format(
+                  "the file has no unit of its {}: taken as s; set another with --time-unit",
+                  base.name)
+            : fmt::format("the {} is in {}, by --time-unit", base.name, unit));
   }
   if (is_used) return;
-  throw InputError({recording.file}, "has no time without a unit; --time-unit is not for it");
+  throw InputError({recording.file}, "has a unit for every time; --time-unit does not apply");
 }
 
 std::string at_text(const Base& base, std::size_t index) {
@@ -77,7 +78,7 @@ std::string at_text(const Base& base, std::size_t index) {
 }
 
 void check(const Recording& recording) {
-  if (recording.channels.empty()) throw InputError({recording.file}, "holds no channel");
+  if (recording.channels.empty()) throw InputError({recording.file}, "contains no channel");
   for (const Base& base : recording.bases) check_base(recording, base);
   std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < recording.channels.size(); ++i) {

@@ -66,7 +66,7 @@ class TraceFile {
   double number(pugi::xml_node record, pugi::xml_attribute attribute) const {
     const auto value = parse_number(attribute.value(), '.');
     if (value && std::isfinite(*value)) return *value;
-    document_.fail(record, fmt::format("'{}' is '{}', which is no number",
+    document_.fail(record, fmt::format("'{}' is '{}', which is not a number",
                                        as_utf8(attribute.name()), as_utf8(attribute.value())));
   }
 
@@ -78,7 +78,7 @@ class TraceFile {
       const double last = base.values.back();
       document_.fail(record, time < last
                                  ? fmt::format("time runs backwards: {} s after {} s", time, last)
-                                 : fmt::format("time {} s comes twice", time));
+                                 : fmt::format("time {} s appears twice", time));
     }
     base.values.push_back(time);
   }

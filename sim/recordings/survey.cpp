@@ -192,7 +192,7 @@ std::string survey(const Recording& recording) {
     const Base& base = recording.bases[b];
     out += fmt::format("  {}: {}\n{}", base.name, base_text(base), gaps_text(base));
     std::vector<std::vector<std::string>> lines = {
-        {"channel", "unit", "least", "greatest", "missing", "clipped"}};
+        {"channel", "unit", "min", "max", "missing", "clipped"}};
     for (const Channel& channel : recording.channels) {
       if (channel.base == b) lines.push_back(channel_cells(recording, channel));
     }

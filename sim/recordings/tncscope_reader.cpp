@@ -41,7 +41,7 @@ class ScopeFile {
     std::size_t i = 0;
     for (; i < lines_.size() && !is_section(lines_[i], "DATA"); ++i) read_head(lines_[i]);
     if (i == lines_.size()) {
-      throw InputError({out_.file}, "has no section %[DATA]: it is cut off or of another kind");
+      throw InputError({out_.file}, "has no section %[DATA]: it is truncated or of another kind");
     }
     for (++i; i < lines_.size(); ++i) {
       if (!lines_[i].text.starts_with('%')) read_row(lines_[i], i + 1 == lines_.size());
@@ -79,7 +79,7 @@ class ScopeFile {
                       system::counted(curves_.size(), "curve"));
       const bool is_cut = is_last && fields.size() < wanted;
       throw InputError(place,
-                       is_cut ? message + ", and the file ends here: it is cut off" : message);
+                       is_cut ? message + ", and the file ends here: it is truncated" : message);
     }
     for (const Field& field : fields) {
       if (decimal_ == '.') decimal_ = decimal_of(field.text);
@@ -96,7 +96,7 @@ class ScopeFile {
     const auto value = parse_number(text, decimal_of(text));
     if (value && !std::isinf(*value)) return *value;
     throw InputError({out_.file, curve.line},
-                     fmt::format("%{} is '{}', which is no number", key, text));
+                     fmt::format("%{} is '{}', which is not a number", key, text));
   }
 
   double shortest_cycle() const {
@@ -123,7 +123,7 @@ class ScopeFile {
       throw InputError({out_.file, curve.line},
                        fmt::format("channel '{}' has {}, its %COUNT is {}{}", name,
                                    system::counted(curve.samples.size(), "sample"), count,
-                                   samples < count ? ": the file is cut off" : ""));
+                                   samples < count ? ": the file is truncated" : ""));
     }
     const std::size_t index = shared_base(out_, std::move(base));
     out_.channels.push_back({name, curve.key("DIMENSION"), std::move(curve.samples), index});

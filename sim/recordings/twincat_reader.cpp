@@ -170,7 +170,7 @@ class ScopeExport {
     }
     if (!any) return;
     if (fields.size() < group.end) {
-      throw InputError(place, fmt::format("{} in a table of {}: the row is cut off",
+      throw InputError(place, fmt::format("{} in a table of {}: the row is truncated",
                                           system::counted(fields.size(), "field"),
                                           system::counted(head_.columns, "column")));
     }
@@ -241,7 +241,7 @@ bool is_twincat(std::string_view text) {
 Recording parse_twincat(std::string_view text, const std::string& file) {
   const std::vector<TextLine> lines = text_lines(text);
   std::optional<Head> head = head_of(lines);
-  if (!head) throw InputError({file}, "holds no row of numbers under a line 'Name'");
+  if (!head) throw InputError({file}, "contains no row of numbers under a line 'Name'");
   Recording out = ScopeExport(lines, std::move(*head), file).read();
   check(out);
   return out;

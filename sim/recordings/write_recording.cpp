@@ -54,7 +54,7 @@ void refuse_unknown_kind(const std::string& path) {
 std::string to_csv(const Recording& recording) {
   if (recording.bases.size() != 1) {
     throw InputError({recording.file},
-                     fmt::format("has {} bases of time or frequency, a table has one; write .h5",
+                     fmt::format("has {} time or frequency bases, a table has one; write .h5",
                                  recording.bases.size()));
   }
   const Base& base = recording.bases.front();

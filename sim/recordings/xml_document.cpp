@@ -19,7 +19,7 @@ XmlDocument::XmlDocument(std::string_view text, const std::string& file)
     : text_(text), file_(file) {
   const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
   if (result.status != pugi::status_ok) {
-    fail_at(result.offset, fmt::format("is no complete XML: {}", result.description()));
+    fail_at(result.offset, fmt::format("is not complete XML: {}", result.description()));
   }
 }
 
@@ -46,7 +46,7 @@ double XmlDocument::number(pugi::xml_node node, const std::string& what) const {
   if (!node) throw InputError({file_}, fmt::format("has no element '{}'", what));
   const auto value = parse_number(node.child_value(), '.');
   if (value && std::isfinite(*value)) return *value;
-  fail(node, fmt::format("'{}' is '{}', which is no number", what, as_utf8(node.child_value())));
+  fail(node, fmt::format("'{}' is '{}', which is not a number", what, as_utf8(node.child_value())));
 }
 
 }  // namespace servomill::sim::recordings

@@ -115,7 +115,7 @@ std::vector<double> InputFile::values(const std::string& dataset) const {
 std::vector<double> InputFile::values(const std::string& dataset, std::size_t first,
                                       std::size_t count) const {
   if (shape(dataset).size() != 1) {
-    fail(fmt::format("'{}' has not the length it should have", dataset));
+    fail(fmt::format("'{}' has the wrong length", dataset));
   }
   return column(dataset, 0, first, count);
 }
@@ -127,7 +127,7 @@ std::vector<double> InputFile::column(const std::string& dataset, std::size_t co
   const bool has_columns = size.size() == 2;
   if ((size.size() != 1 && !has_columns) || first + count > size[0] ||
       (has_columns && column >= size[1])) {
-    fail(fmt::format("'{}' has not the length it should have", dataset));
+    fail(fmt::format("'{}' has the wrong length", dataset));
   }
   const Hdf5Handle id = open(dataset);
   const std::array<hsize_t, 2> begin = {first, column}, block = {count, 1};
@@ -148,7 +148,7 @@ std::vector<std::string> InputFile::texts(const std::string& dataset, std::size_
   const Hdf5Lock lock;
   const auto size = shape(dataset);
   if (size.size() != 2 || first + count > size[0]) {
-    fail(fmt::format("'{}' has not the length it should have", dataset));
+    fail(fmt::format("'{}' has the wrong length", dataset));
   }
   const Hdf5Handle id = open(dataset);
   const std::array<hsize_t, 2> begin = {first, 0}, block = {count, size[1]};
@@ -185,7 +185,7 @@ std::string InputFile::text(const std::string& object, const std::string& name) 
   const Hdf5Handle attribute = open_attribute(object, name);
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
-    fail(fmt::format("attribute '{}' of '{}' is not a text", name, object));
+    fail(fmt::format("attribute '{}' of '{}' is not a string", name, object));
   }
   const Hdf5Handle memory(H5Tget_native_type(type.get(), H5T_DIR_DEFAULT));
   char* pointer = nullptr;

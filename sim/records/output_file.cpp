@@ -23,7 +23,7 @@ std::string system_reason() { return std::strerror(errno); }
 // The library would cut the file before it finds it locked.
 void refuse_to_cut_locked(const std::string& path) {
   if (system::writer_of(path) != system::Writer::alive) return;
-  throw system::SystemError(path, "cannot be made", "another process writes it");
+  throw system::SystemError(path, "cannot be created", "another process writes it");
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   if (force_) refuse_to_cut_locked(partial_path_);
   const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
-  if (file_.get() < 0) throw system::SystemError(partial_path_, "cannot be made", hdf5_reason());
+  if (file_.get() < 0) throw system::SystemError(partial_path_, "cannot be created", hdf5_reason());
 }
 
 OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
@@ -69,7 +69,7 @@ OutputFile OutputFile::reopened(std::string path) {
   // a link does not replace what another run has left or still writes
   if (::link(path.c_str(), partial.c_str()) != 0) {
     if (errno == EEXIST) {
-      throw InputError({partial}, "is there as well, of another run; use --force to overwrite");
+      throw InputError({partial}, "also exists, from another run; use --force to overwrite");
     }
     throw system::SystemError(path, "cannot be renamed", system_reason());
   }

@@ -43,9 +43,9 @@ RowThinning::RowThinning(const std::vector<Signal>& signals, ThinningLimits limi
     if (!signal.name.starts_with("ref_")) continue;
     for (std::size_t c = 0; c < signal.columns(); ++c) axes_.push_back(signal.offset + c);
   }
-  signals_.push_back({std::string(kSamples), "1",
-                      "instants that the row stands for: itself and those left out before it", "",
-                      ""});
+  signals_.push_back(
+      {std::string(kSamples), "1",
+       "number of instants that the row represents: itself and those omitted before it", "", ""});
   for (const Signal& signal : coming.signals()) {
     const std::string& name = signal.name;
     if (name == "following_error_linear" || name == "tool_deviation" || name == "contour_error") {
@@ -89,8 +89,8 @@ void RowThinning::watch(const Signal& signal, Watched watched) {
     one.storage = storage;
     signals_.push_back(std::move(one));
   };
-  add("_least", "least", signal.storage);
-  add("_greatest", "greatest", signal.storage);
+  add("_min", "minimum", signal.storage);
+  add("_max", "maximum", signal.storage);
   if (!watched.has_mean) return;
   add("_mean", "mean", Storage::float32);
   add("_rms", "root mean square", Storage::float32);

@@ -34,7 +34,7 @@ int open_without_name(const std::string& folder) {
 ScratchFile::ScratchFile(std::string folder)
     : folder_(std::move(folder)), descriptor_(open_without_name(folder_)) {
   if (descriptor_ < 0) {
-    throw system::SystemError(folder_, "recorded signals cannot be kept there",
+    throw system::SystemError(folder_, "recorded signals cannot be stored there",
                               std::strerror(errno));
   }
 }

@@ -68,7 +68,7 @@ MeasuredResponse control_response(const ControlSpectra& s, const std::string& na
                      "tells their noise");
   }
   const double greatest = s.input.empty() ? 0.0 : *std::max_element(s.input.begin(), s.input.end());
-  if (!(greatest > 0.0)) throw InputError({name}, "has an input without any excitation");
+  if (!(greatest > 0.0)) throw InputError({name}, "has an input without excitation");
   MeasuredResponse out;
   out.periods = s.averages;
   const double freedom = static_cast<double>(s.averages - 1);

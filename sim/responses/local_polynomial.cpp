@@ -107,7 +107,7 @@ MeasuredResponse local_polynomial(std::span<const double> input, std::span<const
   for (const double sample : input) size = std::max(size, std::abs(sample));
   constexpr double kRounding = 1e-12;
   if (!(greatest > kRounding * size * static_cast<double>(input.size()))) {
-    throw InputError({name}, "has an input without any excitation");
+    throw InputError({name}, "has an input without excitation");
   }
   constexpr double kEveryOther = 0.4;
   if (const double share = share_excited(U, level, s.excited * greatest); share < kEveryOther) {

@@ -94,15 +94,15 @@ MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<con
                                     const PeriodSettings& s, const std::string& name) {
   const std::size_t all = s.samples > 0 ? input.size() / s.samples : 0;
   if (all < s.skip + 2) {
-    throw InputError({name}, fmt::format("holds {} whole periods of {} samples; at least {} are "
-                                         "needed: two after the {} skipped for the transient",
+    throw InputError({name}, fmt::format("has {} full periods of {} samples; at least {} are "
+                                         "required: two after the {} skipped for the transient",
                                          all, s.samples, s.skip + 2, s.skip));
   }
   const std::size_t periods = all - s.skip;
   const auto u = transforms(input, s, periods), y = transforms(output, s, periods);
   const Spectrum U = mean_of(u), Y = mean_of(y);
   const std::vector<std::size_t> lines = excited_lines(u, U, s.excited);
-  if (lines.empty()) throw InputError({name}, "has an input without any excitation");
+  if (lines.empty()) throw InputError({name}, "has an input without excitation");
   MeasuredResponse out;
   out.periods = periods;
   out.unexcited = lines.back() - lines.front() + 1 - lines.size();

@@ -176,7 +176,7 @@ class BudgetRun {
 
   // The residual of a run without some causes, at the places of the budget.
   static std::optional<AtPlaces> at_places(Budget& budget, const Runs& runs) {
-    auto signal = residual(budget, runs, "stops where a cause is taken away");
+    auto signal = residual(budget, runs, "stops when a cause is removed");
     if (!signal) return std::nullopt;
     return AtPlaces(std::move(*signal), budget);
   }

@@ -13,19 +13,19 @@ namespace servomill::sim::run {
 namespace {
 
 constexpr std::array<CauseInfo, kCauses> kInfos = {{
-    {"lag", "servo loops and drives follow late"},
-    {"table", "points and form of compensation tables"},
+    {"lag", "lag of servo loops and drives"},
+    {"table", "points and layout of compensation tables"},
     {"delay", "response and update of tables, signal delay, model period"},
     {"saturation", "limits of virtual displacements"},
     {"single_evaluation", "errors evaluated at a displaced position"},
-    {"identification", "identified errors, or origin, are not the true ones"},
+    {"identification", "identified errors or origin differ from the actual ones"},
     {"friction", "dry friction, backlash, cogging, and their compensation"},
     {"measurement", "encoders and, where the motor is read, screws"},
-    {"cutting", "forces of the cut"},
+    {"cutting", "cutting forces"},
     {"interpolation", "chords, path tolerance and filter of the NC"},
-    {"uncorrected", "errors that no strategy of the case corrects, or brings out"},
+    {"uncorrected", "errors that no strategy of the case compensates or imposes"},
     {"uncorrectable", "not possible with the axes, or of no cause that the strategy declares"},
-    {"imposed", "what strategies bring out on purpose"},
+    {"imposed", "imposed on purpose by strategies"},
 }};
 
 constexpr double kFine = 0.01;        // share of tolerances that are taken away

@@ -34,7 +34,7 @@ enum class Cause : std::uint8_t {
   uncorrected,     // errors of the machine that no strategy of the case corrects: none
   uncorrectable,   // stays without all others: what the axes of the strategies cannot do, and
                    // the hundredth of tolerances
-  imposed,         // likewise: what strategies bring out on purpose
+  imposed,         // likewise: imposed on purpose by strategies
 };
 inline constexpr std::size_t kCauses = 13;
 struct CauseInfo {

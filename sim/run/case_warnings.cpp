@@ -69,7 +69,8 @@ std::optional<std::string> uneven_hardware(const preparation::PreparedParts& not
                  : "";
   return fmt::format(
       "warning: the feedback hardware is connected in {} but not in {}: readings of the latter "
-      "lack its delay of {:g} us{}; feedback_hardware.connected = true connects it in all cases",
+      "lack its delay of {:g} us{}; set feedback_hardware.connected = true to connect it in all "
+      "cases",
       quoted_cases(with), quoted_cases(without), delay / us, displaced);
 }
 
@@ -134,7 +135,7 @@ std::vector<std::string> notes_of_uncorrectable(const preparation::PreparedParts
     if (!found) continue;
     std::vector<std::string> left;
     if (found->left.tip > kUncorrected.tip) {
-      left.push_back(fmt::format("{:.2f} um of the tip", found->left.tip / um));
+      left.push_back(fmt::format("{:.2f} um at the TCP", found->left.tip / um));
     }
     if (found->left.axis > kUncorrected.axis) {
       left.push_back(fmt::format("{:.1f} urad of the tool axis", found->left.axis / urad));
@@ -158,8 +159,8 @@ std::vector<std::string> notes_of_left_tables(const preparation::PreparedParts& 
     for (const LeftTable& left : left_tables(one.program.path, *one.strategies[k], layout)) {
       const char axis = layout.letter_of(left.table.joint);
       out.push_back(fmt::format(
-          "{}:{}: warning: case {}: strategy {}: the table over {} ends at {:.4f} mm, the "
-          "program goes on to {:.4f} mm; from there on the last value is held",
+          "{}:{}: warning: case {}: strategy {}: the table over {} ends at {:.4f} mm, the program "
+          "continues to {:.4f} mm; beyond the end the last value is used",
           one.scenario.program.file, left.line, one.spec.name, one.spec.strategies[k].entry->name,
           axis, left.table.end / mm, left.farthest / mm));
     }
@@ -180,8 +181,8 @@ std::optional<evaluation::PartFit> lay_on_nominal(const std::string& case_name,
   }
   if (distance > kFacets) {
     notes.push_back(fmt::format(
-        "warning: case {}: nominal points of the probes are up to {:.3g} um off '{}' "
-        "(facets in place of curved faces, or another part); distances after best fit hold that",
+        "warning: case {}: nominal points of the probes are up to {:.3g} um off '{}' (facets in "
+        "place of curved faces, or another part); distances after best fit include this",
         case_name, distance / um, part.file));
   }
   return std::get<evaluation::PartFit>(std::move(found));

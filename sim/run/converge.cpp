@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<RefinementInfo, kRefinements> kInfos = {{
     {"recording", "recording period"},
     {"block", "length of blocks of rewritten programs, their chord tolerance a quarter"},
-    {"solver", "tolerance of the solver of drives that are not linear"},
+    {"solver", "solver tolerance of nonlinear drives"},
     {"tick", "base period"},
 }};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -54,7 +54,8 @@ std::string writable_name(const std::string& path, bool force) {
   if (!force) system::refuse_partial(partial);
   for (const std::string& name : {target, partial}) {
     if (!fs::exists(name, ignored) || fs::is_empty(name, ignored) || is_hdf5(name)) continue;
-    throw InputError({name}, "exists and is no result file; --force does not overwrite others");
+    throw InputError({name},
+                     "exists and is not a result file; --force does not overwrite other files");
   }
   return target;
 }

@@ -98,7 +98,7 @@ StoredSignals signals_of(const records::InputFile& file, const std::string& grou
     const auto shape = file.shape(path);
     if (shape.empty() || shape.size() > 2 || (!signals.empty() && shape[0] != rows)) {
       throw InputError({file.path()},
-                       fmt::format("'{}' is not as long as the signals before it", path));
+                       fmt::format("'{}' differs in length from the earlier signals", path));
     }
     std::string labels;
     if (shape.size() == 2) labels = file.text(path, "columns");
@@ -132,7 +132,8 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
   return series;
 }
 
-// Signals that a case has only if it feels the cut: another one of the same run may be in air.
+// Signals that a case has only if it is loaded by cutting forces: another one of the same run may
+// be in air.
 constexpr std::array<std::string_view, 2> kOfCutting = {"cutting_force", "structural_deflection"};
 
 // Checks that a group has the signals that every comparison needs, and those of the other cases.
@@ -172,7 +173,7 @@ void check_schema(const records::InputFile& file, const std::string& path,
     throw InputError({path}, "is not a result file of servomill");
   }
   if (file.has_attribute("/", "kind") && file.text("/", "kind") != kind) {
-    throw InputError({path}, fmt::format("holds a {}, not a {}", file.text("/", "kind"), kind));
+    throw InputError({path}, fmt::format("contains a {}, not a {}", file.text("/", "kind"), kind));
   }
   const auto version = static_cast<int>(file.number("/", "schema_version"));
   if (version != kSchemaVersion) {

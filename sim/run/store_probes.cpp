@@ -73,7 +73,7 @@ void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& f
              {"um", "standard deviation of the repetitions"}, "point");
   if (found.imposed.empty()) return;
   group.list("imposed", in_um(found.imposed),
-             {"um", "displacement along the normal that the imposed errors ask for"}, "point");
+             {"um", "displacement along the normal required by the imposed errors"}, "point");
 }
 
 evaluation::ProbedFeature read_feature(const records::InputFile& file, const std::string& group,

@@ -170,10 +170,9 @@ PositioningValues positioning_parameters(const Eigen::ArrayXXd& up, const Eigen:
 std::vector<std::string> departures(const PositioningTest& test) {
   std::vector<std::string> out;
   if (!test.bidirectional()) {
-    out.push_back(
-        fmt::format("readings are given {} only: bi-directional parameters (B, R, M, E, A) "
-                    "need the other direction",
-                    test.up.cols() > 0 ? "upwards" : "downwards"));
+    out.push_back(fmt::format(
+        "readings are {} only: bi-directional parameters (B, R, M, E, A) need both directions",
+        test.up.cols() > 0 ? "upwards" : "downwards"));
   }
   const bool long_axis = !test.angular && test.travel() > kLongAxis;
   for (const auto& [deviations, name] :
@@ -181,10 +180,10 @@ std::vector<std::string> departures(const PositioningTest& test) {
     const auto runs = deviations->cols();
     if (runs == 0) continue;
     if (runs == 1) {
-      out.push_back(fmt::format("one run {}: s, R and A need two at least{}", name,
-                                long_axis ? " (ISO 230-2 asks for one beyond 2 m)" : ""));
+      out.push_back(fmt::format("one run {}: s, R and A need at least two{}", name,
+                                long_axis ? " (ISO 230-2 requires one beyond 2 m)" : ""));
     } else if (runs < kRuns && !long_axis) {
-      out.push_back(fmt::format("{} runs {}; ISO 230-2 asks for {}{}", runs, name, kRuns,
+      out.push_back(fmt::format("{} runs {}; ISO 230-2 requires {}{}", runs, name, kRuns,
                                 test.angular ? "" : " up to 2 m"));
     }
   }
@@ -192,7 +191,7 @@ std::vector<std::string> departures(const PositioningTest& test) {
   if (test.targets.size() < needed) {
     const std::string travel = test.angular ? fmt::format("{:.4g} deg", test.travel() / deg)
                                             : fmt::format("{:.4g} mm", test.travel() / mm);
-    out.push_back(fmt::format("{} targets over {}; ISO 230-2 asks for {}", test.targets.size(),
+    out.push_back(fmt::format("{} targets over {}; ISO 230-2 requires {}", test.targets.size(),
                               travel, needed));
   }
   return out;
@@ -211,8 +210,8 @@ std::optional<std::string> why_no_period(const PositioningTest& test, double per
   const double widest = (test.targets.tail(count - 1) - test.targets.head(count - 1)).maxCoeff();
   if (widest > (1.0 + kSlack) * period / kPerPeriod) {
     return fmt::format(
-        "targets are up to {:.4g} {} apart; a period of {:.4g} {} needs ten in "
-        "each: at most {:.4g} {}",
+        "targets are up to {:.4g} {} apart; a period of {:.4g} {} needs ten targets per period: at "
+        "most {:.4g} {}",
         widest / unit, symbol, period / unit, symbol, period / kPerPeriod / unit, symbol);
   }
   return std::nullopt;

@@ -143,7 +143,7 @@ Report ball_report(const BallTest& test) {
   }
   if (test.paths.size() < 2) {
     out.remarks.emplace_back(
-        "one direction: ISO 10791-6 asks for both; name them in a column direction");
+        "one direction: ISO 10791-6 requires both; give them in a column direction");
   }
   return out;
 }

@@ -44,15 +44,14 @@ void check(const CircleTest& test, const std::string& file) {
   for (const CirclePath& turn : test.turns) {
     const std::string_view name = sense_name(turn.sense);
     if (const auto why = metrology::why_no_turn(turn.points, nominal, metrology::kWidestSpacing)) {
-      faults.push_back(
-          {{file},
-           fmt::format("the turn {} {}; leave out arcs on which feed is reached and lost, "
-                       "and check the radius and its unit",
-                       name, *why)});
+      faults.push_back({{file},
+                        fmt::format("the {} circle {}; remove the feed-in and feed-out arcs, and "
+                                    "check the radius and its unit",
+                                    name, *why)});
     } else if (metrology::sense_of(turn.points, nominal) != turn.sense) {
       faults.push_back({{file},
-                        fmt::format("the turn {} goes around the other way; put its rows "
-                                    "in the order of the motion, or correct the direction",
+                        fmt::format("the {} circle runs the other way; put its rows in the order "
+                                    "of the motion, or correct the direction",
                                     name)});
     }
   }
@@ -264,8 +263,8 @@ Report circle_report(const CircleTest& test) {
     D = circle.D;
   } else {
     out.remarks.push_back(
-        fmt::format("one turn, {}: G_b and D need one in the other direction, "
-                    "and squareness includes what follows the direction",
+        fmt::format("one circle, {}: G_b and D need one in the other direction, and squareness "
+                    "includes direction-dependent errors",
                     sense_name(test.turns[0].sense)));
   }
   out.values.push_back({"G_b", "bi-directional circular error, minimum zone", G_b});
@@ -279,7 +278,7 @@ Report circle_report(const CircleTest& test) {
       {"B_1", "reversal error of the first axis, upwards minus downwards", fit.B[0]});
   out.values.push_back({"B_2", "reversal error of the second axis, likewise", fit.B[1]});
   out.headline = fmt::format("radius {:.6g} mm, {}", test.radius / mm,
-                             both ? "one turn in each direction" : "one turn");
+                             both ? "one circle in each direction" : "one circle");
   out.tables.push_back(reversal_table(turns));
   for (const CirclePath& turn : test.turns) out.tables.push_back(curve_table(turn, test.radius));
   return out;

@@ -53,7 +53,7 @@ Report diagonal_report(const std::vector<PositioningFile>& diagonals) {
   out.tables.push_back(std::move(table));
   if (diagonals.size() != kOfBody && diagonals.size() != kOfFace) {
     out.remarks.push_back(
-        fmt::format("{} of the diagonals are given; ISO 230-6 asks for {} of the "
+        fmt::format("{} of the diagonals are given; ISO 230-6 requires {} of the "
                     "body or {} of a face",
                     diagonals.size(), kOfBody, kOfFace));
   }

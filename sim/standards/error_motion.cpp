@@ -104,7 +104,8 @@ Report rotation_report(const RotationTest& test) {
   }
   if (revolutions < 2) {
     out.remarks.emplace_back(
-        "one revolution: the asynchronous error motion needs several, and counts as synchronous");
+        "one revolution: asynchronous error motion needs several revolutions and is included in "
+        "the synchronous one");
   }
   return out;
 }

@@ -48,7 +48,7 @@ class Arrangement {
     fill(1, out.up, out.time_up);
     fill(-1, out.down, out.time_down);
     if (targets_.size() < 2) {
-      faults_.push_back({readings_.front().place, "has one target; a test needs two at least"});
+      faults_.push_back({readings_.front().place, "has one target; a test needs at least two"});
     }
     if (!faults_.empty()) throw InputError(std::move(faults_));
     set_times(out);
@@ -78,8 +78,8 @@ class Arrangement {
         if (before.sense == 0.0) before.sense = step;
         if (step * before.sense < 0.0 && lines.insert(one.place.line).second) {
           faults_.push_back(
-              {one.place, fmt::format("target {} after {} (line {}), {}: targets of a run must {} "
-                                      "throughout; put the rows in the order of the approaches",
+              {one.place, fmt::format("target {} after {} (line {}), {}: targets of a run must {}; "
+                                      "put the rows in the order of the approaches",
                                       target_text(one.target, angular_),
                                       target_text(before.reading->target, angular_),
                                       before.reading->place.line, direction_name(one.direction),
@@ -110,8 +110,8 @@ class Arrangement {
       const auto [before, is_new] = line_of.insert({{i, one.run}, one.place.line});
       if (!is_new && lines.insert(one.place.line).second) {
         faults_.push_back(
-            {one.place, fmt::format("target {}, {}, run {} is there twice, first in "
-                                    "line {}; number the runs, or remove one of them",
+            {one.place, fmt::format("target {}, {}, run {} appears twice, first on line {}; number "
+                                    "the runs, or remove one of them",
                                     target_text(one.target, angular_), direction_name(direction),
                                     one.run + 1, before->second)});
       }
@@ -286,8 +286,8 @@ std::vector<std::string> outliers(const std::vector<TargetReading>& readings, bo
     const double off = one.deviation - median(group);
     if (std::abs(off) <= kFar * s) continue;
     out.push_back(fmt::format(
-        "{}: target {}, {}, run {} is {:.4g} {} off the other runs, where the standard deviation "
-        "is usually {:.2g}; it counts like all others: check it at the machine",
+        "{}: target {}, {}, run {} is {:.4g} {} off the other runs, whose standard deviation is "
+        "typically {:.2g}; it is kept in the evaluation: check it at the machine",
         to_string(one.place), target_text(one.target, angular), direction_name(one.direction),
         one.run + 1, off / (angular ? urad : um), angular ? "urad" : "um",
         s / (angular ? urad : um)));

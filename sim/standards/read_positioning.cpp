@@ -48,8 +48,8 @@ std::string unit_hint(double position, double target) {
   for (const Ratio& ratio : kRatios) {
     if (target == 0.0 || std::abs(position / target / ratio.value - 1.0) > kNear) continue;
     return fmt::format(
-        "; it is {} the target: columns of different units name each in its name, "
-        "such as target_mm, position_um",
+        "; it is {} the target: if columns have different units, put each unit in its name, such "
+        "as target_mm, position_um",
         ratio.text);
   }
   return "; check units and signs of target and position";
@@ -98,7 +98,7 @@ class PositioningReader {
       fault({table_.file}, fmt::format("column direction is missing; it {}", kDirections));
     }
     if (target_ == nullptr) {
-      fault({table_.file}, "column target_mm (of a rotary axis target_deg) is missing");
+      fault({table_.file}, "column target_mm (target_deg for a rotary axis) is missing");
       return;
     }
     angular_ = target_->unit.quantity == config::kAngle;
@@ -111,10 +111,9 @@ class PositioningReader {
     deviation_ = table_.find("deviation");
     const int forms = int(position_ != nullptr) + int(deviation_ != nullptr) + int(!runs_.empty());
     if (forms != 1) {
-      fault({table_.file},
-            fmt::format("has {}; a positioning test has either position_mm, or deviation_um, or "
-                        "positions p1, p2, ... of the runs",
-                        forms == 0 ? "no readings" : "readings in several forms"));
+      fault({table_.file}, fmt::format("has {}; a positioning test needs position_mm, or "
+                                       "deviation_um, or positions p1, p2, ... of the runs",
+                                       forms == 0 ? "no readings" : "readings in several forms"));
       return;
     }
     if (position_ != nullptr) value_factor_ = factor(*position_);
@@ -124,9 +123,9 @@ class PositioningReader {
       const Column& first = *runs_.front().second;
       for (const auto& [run, column] : runs_) {
         if (column->unit.symbol == first.unit.symbol) continue;
-        fault({table_.file}, fmt::format("columns {} and {} have different units; give all runs "
-                                         "in one",
-                                         first.written, column->written));
+        fault({table_.file},
+              fmt::format("columns {} and {} have different units; use one unit for all runs",
+                          first.written, column->written));
       }
     }
   }
@@ -138,22 +137,22 @@ class PositioningReader {
     }
     if (column.unit.quantity != config::kNumber) {
       fault({table_.file},
-            fmt::format("column {} is in {}, the targets are in {}; give both in units of "
-                        "one quantity",
+            fmt::format("column {} is in {}, the targets are in {}; use units of the same quantity",
                         column.written, column.unit.symbol, target_->unit.symbol));
       return 1.0;
     }
     if (&column == target_) {
       remarks_.push_back(
-          fmt::format("{}: column {} names no unit: taken as mm; call it target_mm, "
-                      "of a rotary axis target_deg",
+          fmt::format("{}: column {} has no unit: taken as mm; name it target_mm, or target_deg "
+                      "for a rotary axis",
                       table_.file, column.written));
       return mm;
     }
     if (&column == deviation_) {
-      fault({table_.file}, fmt::format("column {} names no unit; call it deviation_um, of a rotary "
-                                       "axis deviation_urad",
-                                       column.written));
+      fault({table_.file},
+            fmt::format(
+                "column {} has no unit; name it deviation_um, or deviation_urad for a rotary axis",
+                column.written));
     }
     return target_factor_;
   }
@@ -222,7 +221,7 @@ class PositioningReader {
     const auto run = number(row, *column);
     if (!run) return std::nullopt;
     if (*run >= 1.0 && *run <= kMost && *run == std::floor(*run)) return static_cast<int>(*run) - 1;
-    fault(table_.place(row, *column), fmt::format("run = {:g}; must be a whole number from 1 to "
+    fault(table_.place(row, *column), fmt::format("run = {:g}; must be an integer from 1 to "
                                                   "{:g}",
                                                   *run, kMost));
     return std::nullopt;

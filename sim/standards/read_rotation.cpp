@@ -57,12 +57,11 @@ class RotationReader {
     if (columns_.empty()) {
       fault({table_.file},
             "has no sensor: columns x_um, y_um (radial), z_um (axial), x2_um, y2_um (radial at a "
-            "second place)");
+            "second position)");
     }
     const bool second = table_.find("x2") != nullptr || table_.find("y2") != nullptr;
     if (second && distance_ <= 0.0) {
-      fault({"--distance"},
-            "must be given with x2_um and y2_um: how far they are from x_um and y_um");
+      fault({"--distance"}, "is required with x2_um and y2_um: their distance from x_um and y_um");
     }
   }
 
@@ -88,10 +87,11 @@ class RotationReader {
     Eigen::Index j = 0;
     for (const auto& [revolution, rows] : revolutions) {
       if (rows.size() != first.size()) {
-        fault({table_.file, rows.back()->line},
-              fmt::format("revolution {} has {} angles, the first {}: every revolution needs the "
-                          "same",
-                          revolution, rows.size(), first.size()));
+        fault(
+            {table_.file, rows.back()->line},
+            fmt::format(
+                "revolution {} has {} angles, the first {}: every revolution needs the same number",
+                revolution, rows.size(), first.size()));
         return;
       }
       for (Eigen::Index i = 0; i < theta_.size(); ++i) {
@@ -117,8 +117,8 @@ class RotationReader {
       theta_[static_cast<Eigen::Index>(i)] = number(*first[i], *angle_);
     }
     if (first.size() < kFewest) {
-      fault({table_.file},
-            fmt::format("has {} angles a revolution; must be at least {}", first.size(), kFewest));
+      fault({table_.file}, fmt::format("has {} angles per revolution; must be at least {}",
+                                       first.size(), kFewest));
       return;
     }
     // a gap of the first revolution, across its end
@@ -133,7 +133,7 @@ class RotationReader {
     constexpr double kWidest = 60.0 * deg;
     if (widest > kWidest) {
       fault({table_.file}, fmt::format("the angles of the first revolution leave a gap of {:.4g} "
-                                       "deg; they must go all around",
+                                       "deg; they must cover the full circle",
                                        widest / deg));
     }
   }

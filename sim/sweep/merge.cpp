@@ -41,20 +41,20 @@ void refuse_other(const Shard& one, const Shard& first) {
   if (one.build != first.build) {
     throw InputError({one.path},
                      fmt::format("was written by servomill {}, {} by {}: points of two builds may "
-                                 "differ; run these shards again by one build",
+                                 "differ; run these shards again with one build",
                                  one.build, first.path, first.build));
   }
   if (one.build != run::result_identity()) {
-    throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which would "
-                                             "say that it wrote all of it: merge with that build",
+    throw InputError({one.path}, fmt::format("was written by servomill {}; this is {}, which did "
+                                             "not write all of it: merge with that build",
                                              one.build, run::result_identity()));
   }
   if (const auto file = changed_file(first.swept_files, one.swept_files); !file.empty()) {
     refuse(fmt::format("was run with another file '{}' than", file));
   }
-  if (one.resolved != first.resolved) refuse("holds a sweep of another scenario than");
+  if (one.resolved != first.resolved) refuse("contains a sweep of another scenario than");
   if (one.selection.first != first.selection.first || one.selection.last != first.selection.last) {
-    refuse(fmt::format("is of points {} to {}, others than those of", one.selection.first + 1,
+    refuse(fmt::format("has points {} to {}, not those of", one.selection.first + 1,
                        one.selection.last));
   }
 }
@@ -142,8 +142,8 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
     merged.missing.push_back(missing);
   }
   if (!merged.missing.empty() && !partial) {
-    throw InputError(
-        {out}, fmt::format("{}; --partial merges what there is", fmt::join(merged.missing, "; ")));
+    throw InputError({out}, fmt::format("{}; use --partial to merge the existing ones",
+                                        fmt::join(merged.missing, "; ")));
   }
 
   std::optional<SweepTable> table;

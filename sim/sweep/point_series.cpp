@@ -41,7 +41,7 @@ void write_point_series(const std::string& folder, const Sweep& sweep, const Swe
   if (point.result.cases.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw system::SystemError(folder, "cannot be made", error.message());
+  if (error) throw system::SystemError(folder, "cannot be created", error.message());
   run::RunStore store(series_name(folder, point.index), true, sweep.at(point.index));
   for (const run::CaseOutput& one : point.result.cases) store.add(one);
   store.commit(point.result.rows);

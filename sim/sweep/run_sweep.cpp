@@ -134,7 +134,7 @@ void run_points(const Sweep& sweep, const std::vector<std::uint64_t>& points,
       if (!rows.empty() &&
           !std::equal(wanted.begin(), wanted.end(), rows.begin(), rows.end(), same_question)) {
         one.result = {run::PointStatus::refused,
-                      "asks for other quantities or cases than the scenario without its sweep",
+                      "has other quantities or cases than the scenario without its sweep",
                       {}};
       }
       ended.push_back(std::move(read.points[one.place]));

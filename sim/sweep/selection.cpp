@@ -66,7 +66,7 @@ Selection read_selection(std::uint64_t points, const std::string& range, const s
     const Place place{"--points " + range};
     const auto ends = two_numbers(range, '-');
     if (!ends || ends->first < 1 || ends->first > ends->second) {
-      throw InputError(place, "must be A-B, the first and the last point, counted from 1");
+      throw InputError(place, "must be A-B (first and last point), counted from 1");
     }
     if (ends->second > points) {
       throw InputError(place, fmt::format("the sweep has {} points", points));
@@ -82,8 +82,9 @@ Selection read_selection(std::uint64_t points, const std::string& range, const s
           place, fmt::format("must be I/N, shard I of N, with 1 <= I <= N <= {}", kMostShards));
     }
     if (of->second > selection.last - selection.first) {
-      throw InputError(place, fmt::format("there are {} points: too few for so many shards",
-                                          selection.last - selection.first));
+      throw InputError(place,
+                       fmt::format("the sweep has only {} points: too few for so many shards",
+                                   selection.last - selection.first));
     }
     std::tie(selection.shard, selection.shards) = *of;
   }

@@ -119,11 +119,12 @@ void refuse_other_machine(const model::Scenario& base) {
     if (value != nullptr && input::is_same_number(*value, key.key, mean, std::string(unit))) {
       continue;
     }
-    throw InputError(key.place,
-                     fmt::format("sweep.samples: the mean of {} is {}{}{}, the machine has {}; run "
-                                 "the identified machine: machine = \"FILE\"",
-                                 key.key, mean, member->unit.empty() ? "" : " ", member->unit,
-                                 value == nullptr ? "no such key" : config::inline_toml(*value)));
+    throw InputError(
+        key.place,
+        fmt::format("sweep.samples: the mean of {} is {}{}{}, but the machine has {}; run "
+                    "the identified machine: machine = \"FILE\"",
+                    key.key, mean, member->unit.empty() ? "" : " ", member->unit,
+                    value == nullptr ? "no such key" : config::inline_toml(*value)));
   }
 }
 

@@ -152,11 +152,11 @@ void make_flags(records::Hdf5Group& group, records::Hdf5Dataset& point, std::siz
 
 void make_reasons(records::Hdf5Group& group, records::Hdf5Dataset& point, std::size_t rows) {
   records::Hdf5Dataset reason =
-      group.fixed_texts("reason", rows, kReasonBytes, "why it is not done");
+      group.fixed_texts("reason", rows, kReasonBytes, "reason why it is not done");
   reason.attach_scale(point, 0);
   records::Hdf5Dataset character =
       group.fixed("character", kReasonBytes, records::Storage::int32, 0.0,
-                  {"1", "place of a character in a text, counted from 1"});
+                  {"1", "position of a character in a string, counted from 1"});
   // netCDF's name of a dimension without a variable: readers then join the characters to a text,
   // and a table of the points has one row a point, not one a character
   character.make_scale(
@@ -215,10 +215,11 @@ void SweepTable::take_over(const std::string& name, const model::Scenario& base)
   const records::InputFile file(name);
   if (const std::string build = run::build_of(file); build != run::result_identity()) {
     throw InputError(
-        {name}, fmt::format("was written by servomill {}, this is {}: points of two builds may "
-                            "differ; go on with that build, name another --output or use --force "
-                            "to run all of it again",
-                            build, run::result_identity()));
+        {name},
+        fmt::format(
+            "was written by servomill {}, this is {}: points of two builds may differ; continue "
+            "with that build, choose another --output or use --force to run all points again",
+            build, run::result_identity()));
   }
   const std::string why = why_other(*header, base, selection_);
   if (!why.empty()) throw InputError({name}, why + "; use --force to overwrite");

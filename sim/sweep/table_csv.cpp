@@ -56,7 +56,8 @@ class CsvFile {
       : path_(system::output_target(path, system::Existing::replaced)),
         partial_(path_),
         file_(std::fopen(partial_.name().c_str(), "wbx")) {
-    if (file_ == nullptr) throw system::SystemError(path_, "cannot be made", std::strerror(errno));
+    if (file_ == nullptr)
+      throw system::SystemError(path_, "cannot be created", std::strerror(errno));
   }
   void write(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
@@ -90,7 +91,8 @@ void refuse_foreign_csv(const std::string& path, bool force) {
   std::string begin(kCsvBegin.size(), '\0');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   if (file && begin == kCsvBegin) return;
-  throw InputError({path}, "exists and is no table of a sweep; --force does not overwrite others");
+  throw InputError({path},
+                   "exists and is not a table of a sweep; --force does not overwrite other files");
 }
 
 void write_csv(const std::string& table, const std::string& csv) {

@@ -16,18 +16,18 @@ std::string why_other(const SweepHeader& header, const model::Scenario& base,
   const std::string changed = changed_file(header.base.swept_files, base.swept_files);
   if (header.base.resolved != base.resolved && (changed.empty() || header.base.name != base.name)) {
     return header.base.name == base.name
-               ? "holds a sweep of this scenario as it was before it changed"
-               : fmt::format("holds a sweep of the scenario '{}'", header.base.name);
+               ? "contains a sweep of an earlier version of this scenario"
+               : fmt::format("contains a sweep of the scenario '{}'", header.base.name);
   }
   if (!changed.empty()) {
-    return fmt::format("holds a sweep of this scenario as it was before its file '{}' changed",
+    return fmt::format("contains a sweep of this scenario with an earlier version of its file '{}'",
                        changed);
   }
   if (!(header.selection == selection)) {
     const auto said = [](const Selection& s) {
       return fmt::format("points {} to {}, shard {} of {}", s.first + 1, s.last, s.shard, s.shards);
     };
-    return fmt::format("holds {} of the sweep; asked for are {}", said(header.selection),
+    return fmt::format("contains {} of the sweep; requested are {}", said(header.selection),
                        said(selection));
   }
   return {};
@@ -50,16 +50,17 @@ SweepHeader read_sweep_header(const records::InputFile& file) {
     throw InputError({path}, "is not a result file of servomill");
   }
   if (file.text("/", "kind") != "sweep") {
-    throw InputError({path}, fmt::format("holds a {}, not a sweep", file.text("/", "kind")));
+    throw InputError({path}, fmt::format("contains a {}, not a sweep", file.text("/", "kind")));
   }
   const auto version = static_cast<int>(file.number("/", "schema_version"));
   if (version != kSweepSchemaVersion) {
-    throw InputError({path}, fmt::format("holds a sweep of schema version {}; this program reads "
-                                         "version {}",
-                                         version, kSweepSchemaVersion));
+    throw InputError({path},
+                     fmt::format("contains a sweep of schema version {}; this program reads "
+                                 "version {}",
+                                 version, kSweepSchemaVersion));
   }
   if (!file.has(kSweepGroup) || !file.has_attribute(kSweepGroup, "points")) {
-    throw InputError({path}, "was left before its table was complete");
+    throw InputError({path}, "has an incomplete table");
   }
   SweepHeader header;
   const std::string resolved = file.text("/inputs", "resolved");

@@ -32,7 +32,7 @@ fs::path behind_links(const std::string& path) {
   fs::path target(path);
   for (int links = 0; fs::is_symlink(fs::symlink_status(target, ignored)); ++links) {
     if (links == kMostLinks) {
-      throw InputError({path}, "is a symbolic link that leads back to itself; name another file");
+      throw InputError({path}, "is a symbolic link loop; choose another file");
     }
     const fs::path next = fs::read_symlink(target, ignored);
     target = next.is_absolute() ? next : target.parent_path() / next;
@@ -45,23 +45,23 @@ void refuse_missing_folder(const std::string& path, const fs::path& target) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (error == std::errc::too_many_symbolic_link_levels) {
-    throw InputError({path}, fmt::format("the folder '{}' is a symbolic link that leads back to "
-                                         "itself",
-                                         folder.string()));
+    throw InputError({path},
+                     fmt::format("the folder '{}' is a symbolic link loop", folder.string()));
   }
   if (status.type() == fs::file_type::not_found) {
-    throw InputError({path}, fmt::format("there is no folder '{}'", folder.string()));
+    throw InputError({path}, fmt::format("folder '{}' does not exist", folder.string()));
   }
   if (fs::exists(status) && !fs::is_directory(status)) {
-    throw InputError({path}, fmt::format("'{}' is no folder", folder.string()));
+    throw InputError({path}, fmt::format("'{}' is not a folder", folder.string()));
   }
 }
 
 void refuse_input(const std::string& path, const std::string& file, const char* what = "") {
   if (!is_input(file)) return;
-  throw InputError({path}, fmt::format("{}is an input of this command, which is never overwritten; "
-                                       "name another file",
-                                       what));
+  throw InputError(
+      {path},
+      fmt::format("{}is an input of this command and is never overwritten; choose another file",
+                  what));
 }
 
 // Names of the temporary files that there are.
@@ -127,12 +127,12 @@ std::string output_target(const std::string& path, Existing existing) {
   const bool is_link = target != fs::path(path);
   std::error_code ignored;
   if (!target.has_filename() || fs::is_directory(target, ignored)) {
-    throw InputError({path}, "is a folder; name a file");
+    throw InputError({path}, "is a folder; specify a file");
   }
   refuse_missing_folder(path, target);
   if (const std::string kind = not_a_regular_file(target.string()); !kind.empty()) {
     throw InputError(
-        {path}, kind + "; results are files that get their name when they are complete: name one");
+        {path}, kind + "; a result file gets its name only when complete: specify a regular file");
   }
   refuse_input(path, target.string());
   refuse_input(path, target.string() + ".partial", "its partial file ");
@@ -141,9 +141,10 @@ std::string output_target(const std::string& path, Existing existing) {
     throw InputError({path}, "exists; use --force to overwrite");
   }
   if (existing != Existing::replaced && is_link && !is_there) {
-    throw InputError({path}, fmt::format("is a symbolic link to '{}', which is not there; use "
-                                         "--force to write it",
-                                         target.string()));
+    throw InputError(
+        {path},
+        fmt::format("is a symbolic link to '{}', which does not exist; use --force to write it",
+                    target.string()));
   }
   return target.string();
 }
@@ -157,7 +158,7 @@ void refuse_same_output(const std::string& path, const std::string& other, const
     return;
   }
   throw InputError({what + " " + path},
-                   fmt::format("is the same file as {} {}; name another one", other_what, other));
+                   fmt::format("is the same file as {} {}; choose another one", other_what, other));
 }
 
 void give_name(const std::string& complete, const std::string& target, Existing existing) {
@@ -173,7 +174,7 @@ void give_name(const std::string& complete, const std::string& target, Existing 
     refuse_existing();  // somebody was faster
   }
   if (std::rename(complete.c_str(), target.c_str()) == 0) return;
-  throw SystemError(target, "cannot be made", std::strerror(errno));
+  throw SystemError(target, "cannot be created", std::strerror(errno));
 }
 
 Writer writer_of(const std::string& partial) {
@@ -192,16 +193,16 @@ void refuse_partial(const std::string& partial) {
   if (!fs::exists(partial, ignored)) return;
   if (!may_be_result_file(partial)) {
     throw InputError(
-        {partial}, fmt::format("exists and is {}; a result has this name until it is complete: "
-                               "remove that, or name another result file",
-                               fs::is_directory(partial, ignored) ? "a folder" : "no result file"));
+        {partial},
+        fmt::format("exists and is {}; results have this name until complete: remove it, or choose "
+                    "another result file",
+                    fs::is_directory(partial, ignored) ? "a folder" : "not a result file"));
   }
   switch (writer_of(partial)) {
     case Writer::alive:
-      throw SystemError(partial, "cannot be made", "another process writes it");
+      throw SystemError(partial, "cannot be created", "another process writes it");
     case Writer::none:
-      throw InputError({partial},
-                       "exists, left by a run that did not end; use --force to overwrite");
+      throw InputError({partial}, "exists, left by an unfinished run; use --force to overwrite");
     case Writer::unknown:
       throw InputError({partial},
                        "exists; whether a run still writes it is unknown; use "

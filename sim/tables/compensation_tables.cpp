@@ -114,10 +114,11 @@ void refuse_jump(const TableSource& source, const CompensationTable& table) {
     if (values->empty() || values->front() == values->back()) continue;
     const char axis = source.chain.layout.letter_of(line.joint);
     throw InputError(
-        {}, fmt::format("the error of {0} after one turn differs by {1:.2f} urad from that at the "
-                        "start, and the table repeats; give --travel {0}=FROM:TO, or an error that "
-                        "repeats, too",
-                        axis, (values->back() - values->front()) / urad));
+        {},
+        fmt::format(
+            "the error of {0} after one revolution differs by {1:.2f} urad from that at the start, "
+            "but the table is periodic; set --travel {0}=FROM:TO, or use a periodic error",
+            axis, (values->back() - values->front()) / urad));
   }
 }
 
@@ -150,8 +151,7 @@ double TableLine::entry_of(double position) const {
 TableLine make_line(const LineRequest& r, const FormatRules& rules) {
   const bool linear = r.joint < kLinearJoints, endless = !r.lower || !r.upper;
   if (linear && endless) {
-    throw InputError({},
-                     fmt::format("axis {0} has no travel; give --travel {0}=FROM:TO", r.letter));
+    throw InputError({}, fmt::format("axis {0} has no travel; set --travel {0}=FROM:TO", r.letter));
   }
   TableLine line;
   line.joint = r.joint;
@@ -173,7 +173,7 @@ TableLine make_line(const LineRequest& r, const FormatRules& rules) {
   const double least = (last - first) / static_cast<double>(r.most_points - 1) / unit;
   throw InputError(
       {}, fmt::format("table over {}: {} points, {:g} {} apart, from {:g} to {:g} {}; at most {} "
-                      "points are taken; the smallest spacing that fits is {:g} {}",
+                      "points are allowed; the smallest spacing that fits is {:g} {}",
                       r.letter, line.points, line.spacing / unit, name, first / unit, last / unit,
                       name, r.most_points,
                       linear && rules.power_of_two && !r.spacing ? fits / unit

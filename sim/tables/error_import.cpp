@@ -32,7 +32,7 @@ double value_at(const ErrorColumn& column, double q) {
 
 void refuse_size(const std::string& name, bool is_length, double value, const Place& at) {
   if (std::abs(value) <= kLargest) return;
-  throw InputError(at, fmt::format("{} is {:g} {}, more than any machine has{}", name,
+  throw InputError(at, fmt::format("{} is {:g} {}, implausible for a machine{}", name,
                                    value / (is_length ? mm : 1.0), is_length ? "mm" : "rad",
                                    is_length ? "" : "; angles are in rad, not in deg"));
 }
@@ -44,8 +44,8 @@ std::vector<const ErrorColumn*> usable(const ImportedColumns& imported, const Jo
   for (const ErrorColumn& column : imported.columns.components) {
     const Place at{column.file, column.points.front().line};
     if (column.direction != 0) {
-      throw InputError(at, fmt::format("{} depends on the direction of travel; the length of a "
-                                       "reversal is in no table, so that only means are imported",
+      throw InputError(at, fmt::format("{} depends on the direction of travel; tables do not "
+                                       "contain reversal distances, so only means are imported",
                                        column.name));
     }
     const plant::ErrorName name = name_of(column);
@@ -57,7 +57,7 @@ std::vector<const ErrorColumn*> usable(const ImportedColumns& imported, const Jo
     const auto why = plant::why_meaningless(name, layout);
     if (why && !is_zero) throw InputError(at, fmt::format("{} {}", column.name, *why));
     if (is_zero) {
-      out.notes.push_back(fmt::format("not taken over: {}, which is 0 everywhere", column.name));
+      out.notes.push_back(fmt::format("not imported: {}, which is 0 everywhere", column.name));
     } else {
       columns.push_back(&column);
     }
@@ -167,14 +167,14 @@ std::string list_text(const std::vector<double>& values, double unit) {
 ImportedColumns read_columns(TableFormat format, std::span<const controllers::TableText> files) {
   if (!rules_of(format).components) {
     throw InputError({"--import"},
-                     fmt::format("{} holds displacements of axes, from which errors do not follow; "
-                                 "csv, isg and etalon hold errors",
+                     fmt::format("{} contains axis displacements, from which errors cannot be "
+                                 "derived; csv, isg and etalon contain errors",
                                  name_of(format)));
   }
   if (format == TableFormat::csv) return {controllers::read_csv_tables(files), format};
   if (files.size() != 1) {
-    throw InputError({"--import"},
-                     fmt::format("{} files; one of {} is read", files.size(), name_of(format)));
+    throw InputError({"--import"}, fmt::format("{} files; {} is imported from one file",
+                                               files.size(), name_of(format)));
   }
   return {format == TableFormat::isg ? controllers::read_isg_table(files.front())
                                      : controllers::read_etalon_table(files.front()),
@@ -196,8 +196,8 @@ ErrorImport import_errors(const ImportedColumns& imported, const plant::MachineC
     out.notes.push_back(
         fmt::format("converted: the errors of {}, which {}", letter(axis.axis),
                     axis.side == plant::Side::workpiece
-                        ? "carries the workpiece and counts in the file as if it carried the tool"
-                        : "turn about its centre here and about the machine zero in the file"));
+                        ? "carries the workpiece, but is treated in the file as carrying the tool"
+                        : "rotate about its centre here and about the machine zero in the file"));
   }
   if (is_tool_side(imported)) {
     const std::string file = imported.columns.components.empty()
@@ -209,7 +209,7 @@ ErrorImport import_errors(const ImportedColumns& imported, const plant::MachineC
         "that the axis moves (ISO 230-1)");
   }
   if (!imported.columns.not_read.empty()) {
-    out.notes.push_back(fmt::format("not taken over: {}; the machine file holds the kinematics",
+    out.notes.push_back(fmt::format("not imported: {}; the machine file has the kinematics",
                                     fmt::join(imported.columns.not_read, ", ")));
   }
   return out;

@@ -63,7 +63,7 @@ TextFile notes_file(const TableExport& e, std::string_view name, std::string_vie
   std::vector<std::string> notes = report(e);
   notes.insert(
       notes.end(),
-      {"values: deviation of the tool as seen from the workpiece, in mm and rad; arguments in mm "
+      {"values: deviation of the tool relative to the workpiece, in mm and rad; arguments in mm "
        "and deg",
        fmt::format("compensation list: chain {}, workpiece_axes 0, alternative_model 0, file[0] "
                    "{}, file_format[0] {}; start-up list: vol_comp[0].max_records >= {}",
@@ -75,7 +75,7 @@ TextFile notes_file(const TableExport& e, std::string_view name, std::string_vie
        "axes about their centre; beyond the first and last point values are constant",
        "the centres of rotary axes (PXA ... PZC) and the zero position of the tool (P0X ... P0Z) "
        "are not in this file; TF5280 corrects the position of the tool, not its orientation",
-       "check the sign of one error of each axis before you rely on it"});
+       "check the sign of one error of each axis before relying on it"});
   std::string text;
   for (const std::string& note : notes) text += note + "\n";
   return {"notes.txt", text};

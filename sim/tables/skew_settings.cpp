@@ -156,9 +156,10 @@ std::optional<SkewSettings> skew_settings_of(const TableSource& source,
   s.b = rounded(x.dot(z - c * y) / x.dot(x));
   if (s.a == 0.0 && s.b == 0.0 && s.c == 0.0) {
     if (!is_required) return std::nullopt;
-    throw InputError({}, fmt::format("{} can hold nothing of this error model: X, Y and Z are at "
-                                     "right angles; it holds EC0Y, EB0Z, EA0Z and the like",
-                                     name_of(format)));
+    throw InputError({},
+                     fmt::format("{} cannot represent any part of this error model: X, Y and Z are "
+                                 "at right angles; it represents EC0Y, EB0Z, EA0Z and the like",
+                                 name_of(format)));
   }
   Matrix3d right = A * command_matrix(s);
   for (int i = 0; i < 3; ++i) {
@@ -183,14 +184,14 @@ std::vector<std::string> skew_report(const TableExport& e) {
   if (turn.cwiseAbs().maxCoeff() > e.rules().angle_step) {
     out.push_back(
         fmt::format("note: X keeps its direction; the frame is rotated by A {:.3f}, B "
-                    "{:.3f}, C {:.3f} urad, which a rotated work offset takes",
+                    "{:.3f}, C {:.3f} urad, which a rotated work offset corrects",
                     turn.x() / urad, turn.y() / urad, turn.z() / urad));
   }
   constexpr double kSmall = 1e-7;  // m/m
   if (s.lengths.cwiseAbs().maxCoeff() > kSmall) {
     out.push_back(
-        fmt::format("note: travels are longer by X {:+.3f}, Y {:+.3f}, Z {:+.3f} um/m, of "
-                    "second order, which steps per mm would take",
+        fmt::format("note: travels are longer by X {:+.3f}, Y {:+.3f}, Z {:+.3f} um/m, of second "
+                    "order, which steps per mm would correct",
                     s.lengths.x() / um, s.lengths.y() / um, s.lengths.z() / um));
   }
   const auto others = other_errors(e);
@@ -198,9 +199,8 @@ std::vector<std::string> skew_report(const TableExport& e) {
                     ? "not in this correction: nothing"
                     : fmt::format("not in this correction: {}", fmt::join(others, ", ")));
   out.push_back(
-      fmt::format("tip at poses all over the travel of X, Y and Z, beside that of the "
-                  "reference: off by up to {:.3f} um without this correction, {:.3f} um "
-                  "with",
+      fmt::format("TCP at poses all over the travel of X, Y and Z, relative to the reference: off "
+                  "by up to {:.3f} um without this correction, {:.3f} um with",
                   s.volume.before / um, s.volume.after / um));
   return out;
 }

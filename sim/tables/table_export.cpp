@@ -51,11 +51,11 @@ Joints reference_of(const TableRequest& request, const std::vector<TableLine>& l
     Q[line.joint] = given.value_or(usual);
     if (Q[line.joint] >= line.from && Q[line.joint] <= line.to) continue;
     const double unit = unit_of(line.joint);
-    throw InputError({}, fmt::format("the reference {} = {:g} {} lies outside the travel, {:g} to "
-                                     "{:g} {}",
-                                     layout.letter_of(line.joint), Q[line.joint] / unit,
-                                     unit_name_of(line.joint), line.from / unit, line.to / unit,
-                                     unit_name_of(line.joint)));
+    throw InputError(
+        {},
+        fmt::format("the reference {} = {:g} {} is outside the travel, {:g} to {:g} {}",
+                    layout.letter_of(line.joint), Q[line.joint] / unit, unit_name_of(line.joint),
+                    line.from / unit, line.to / unit, unit_name_of(line.joint)));
   }
   return Q;
 }
@@ -164,10 +164,11 @@ std::string joined(const std::vector<std::string>& reasons) {
 // that tables hold, of which the report tells.
 void refuse_harm(const TableExport& e) {
   if (!e.makes_worse() || e.coarse.empty()) return;
-  throw InputError({}, fmt::format("these tables would make the machine worse: tip off by up to {} "
-                                   "without them, {} with{}",
-                                   size_of(false, e.volume.before), size_of(false, e.volume.after),
-                                   joined(e.coarse)));
+  throw InputError(
+      {},
+      fmt::format(
+          "these tables would make the machine worse: TCP off by up to {} without them, {} with{}",
+          size_of(false, e.volume.before), size_of(false, e.volume.after), joined(e.coarse)));
 }
 
 }  // namespace
@@ -201,9 +202,11 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
   std::erase_if(e.tables, [](const CompensationTable& table) { return table.is_second_order; });
   if (e.tables.empty() && !(csv && !errors.is_zero())) {
     const std::string why = csv ? "" : joined(too_coarse(e));
-    throw InputError({}, fmt::format("{} tables over the chosen axes can hold nothing "
-                                     "of the error model '{}'{}",
-                                     name_of(request.format), request.model, why));
+    throw InputError(
+        {},
+        fmt::format(
+            "{} tables over the selected axes cannot represent any part of the error model '{}'{}",
+            name_of(request.format), request.model, why));
   }
   if (csv) return e;
   e.base = LineCorrection(e.source).base();

@@ -161,7 +161,7 @@ std::vector<TextFile> heidenhain_files(const TableExport& e) {
        "these are listings for the table editor of the control: the documents give the columns, "
        "not "
        "the text of the files",
-       "check the sign with one point before you rely on it"});
+       "check the sign at one point before relying on it"});
   files.push_back({"notes.txt", joined(notes, "")});
   return files;
 }
@@ -309,7 +309,7 @@ std::vector<TextFile> csv_files(const TableExport& e) {
   }
   std::vector<std::string> notes = report(e);
   notes.push_back(
-      "sign: deviation of the tool side as seen from the workpiece side, along X, Y, Z and about "
+      "sign: deviation of the tool side relative to the workpiece side, along X, Y, Z and about "
       "A, "
       "B, C right-handed; the columns are functions of the first one");
   files.push_back({"notes.txt", joined(notes, "")});

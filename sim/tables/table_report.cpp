@@ -40,8 +40,9 @@ std::string reference_line(const TableExport& e) {
     where += fmt::format("{}{} = {:g} {}", where.empty() ? "" : ", ", e.letter(j),
                          e.source.reference[j] / unit_of(j), unit_name_of(j));
   }
-  return fmt::format("reference: each table holds the line along its axis through {}, tool {:g} mm",
-                     where, e.request.tool_length / mm);
+  return fmt::format(
+      "reference: each table contains the errors along its axis through {}, tool {:g} mm", where,
+      e.request.tool_length / mm);
 }
 
 void add_base(const TableExport& e, std::vector<std::string>& out) {
@@ -54,7 +55,7 @@ void add_base(const TableExport& e, std::vector<std::string>& out) {
   }
   if (text.empty()) return;
   out.push_back(fmt::format(
-      "zero: the tables are 0 at the reference; the error there stays for the work offset: {}",
+      "zero: the tables are 0 at the reference; the error there is left to the work offset: {}",
       text));
 }
 
@@ -64,8 +65,8 @@ void add_table_residuals(const TableExport& e, std::vector<std::string>& out) {
     return;
   }
   out.push_back(
-      "not in these tables, or only on their lines (largest size; what it alone leaves within the "
-      "travel, beside that of the reference):");
+      "not in these tables, or only on their lines (largest value; its residual within the travel, "
+      "relative to the reference):");
   for (const TableResidual& one : e.left) {
     std::string leaves;
     if (one.tip > kNothing) leaves = fmt::format("tip {}", size_of(false, one.tip));
@@ -96,8 +97,8 @@ std::string directions_in(const TableExport& e, const TableLine& line) {
     std::string& list = table.depends_on_direction() ? both : mean;
     list += fmt::format("{}{}", list.empty() ? "" : ", ", title_of(e, table));
   }
-  if (both.empty()) return "the tables hold the mean";
-  return "both directions are held by " + both + (mean.empty() ? "" : "; the mean by " + mean);
+  if (both.empty()) return "the tables contain the mean";
+  return "both directions are contained in " + both + (mean.empty() ? "" : "; the mean by " + mean);
 }
 
 void add_omitted(const TableExport& e, std::vector<std::string>& out) {
@@ -127,9 +128,10 @@ void add_table_count(const TableExport& e, std::vector<std::string>& out) {
 void note_ends_of_turns(const TableExport& e, std::vector<std::string>& out) {
   for (const CompensationTable& table : e.tables) {
     if (!table.line.one_turn || table.line.wraps || table.component) continue;
-    out.push_back(fmt::format(
-        "note: {}: the control does not repeat the table: beyond 0 and 360 deg the end values hold",
-        title_of(e, table)));
+    out.push_back(
+        fmt::format("note: {}: the control does not repeat the table: beyond 0 and 360 deg the end "
+                    "values apply",
+                    title_of(e, table)));
   }
 }
 
@@ -174,8 +176,8 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
   for (const std::string& one : e.coarse) out.push_back("note: " + one);
   if (e.makes_worse()) {
     out.push_back(
-        fmt::format("note: worse at some poses off the lines that the tables hold: tip off by up "
-                    "to {} without them, {} with",
+        fmt::format("note: worse at some poses off the lines of the tables: TCP off by up to {} "
+                    "without them, {} with",
                     size_of(false, e.volume.before), size_of(false, e.volume.after)));
   }
   add_omitted(e, out);
@@ -237,9 +239,8 @@ std::vector<std::string> report(const TableExport& e) {
   }
   add_table_residuals(e, out);
   out.push_back(
-      fmt::format("tip at poses all over the travel, beside that of the reference: off by up to {} "
-                  "without these "
-                  "tables, {} with",
+      fmt::format("TCP at poses all over the travel, relative to the reference: off by up to {} "
+                  "without these tables, {} with",
                   size_of(false, e.volume.before), size_of(false, e.volume.after)));
   return out;
 }

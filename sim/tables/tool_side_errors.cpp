@@ -61,7 +61,7 @@ void refuse_undocumented_axes(const plant::MachineChain& chain, const plant::Err
     const bool is_table = axis.sense == plant::Sense::table;
     if (!is_table && !axis.is_inclined) continue;
     throw InputError(
-        at, fmt::format("{} holds no errors of the {} axis {}: {}", format,
+        at, fmt::format("{} cannot represent errors of the {} axis {}: {}", format,
                         is_table ? "rotary" : "inclined", letter(axis.axis),
                         is_table ? "it counts as its table turns, and no document found defines "
                                    "the signs of the errors of workpiece_axes"

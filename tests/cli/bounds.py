@@ -15,9 +15,9 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 GALLERY = os.path.join(HERE, "gallery")
 LIMIT = 20  # s; what is bounded ends in far less
 MEMORY = 4_000_000_000  # bytes, address space
-DEVICE = "is a device, not a file of known size"
-PIPE = "is a pipe, not a file of known size"
-LARGE = "holds 3 GB, more than the 2 GB that may be read"
+DEVICE = "is a device, not a regular file"
+PIPE = "is a pipe, not a regular file"
+LARGE = "is 3 GB, larger than the limit of 2 GB"
 
 
 def limit_memory():
@@ -77,7 +77,7 @@ class Bounds(unittest.TestCase):
         self.assertEqual(self.run_here("post", "large", "--machine", "machine.toml", "-o", "out.ngc"),
                          (2, f"large: error: cannot be read: {LARGE}\n"))
         self.assertEqual(self.run_here("run", "large"),
-                         (2, "large: error: cannot be read: holds 3 GB, more than the 100 MB that may be read\n"))
+                         (2, "large: error: cannot be read: is 3 GB, larger than the limit of 100 MB\n"))
 
     def test_a_line_is_refused_at_its_limit(self):
         for command in ("canon", "check"):
@@ -92,7 +92,7 @@ class Bounds(unittest.TestCase):
             for command in ("run", "check", "budget"):
                 self.assertEqual(self.run_here(command, "scenario.toml", "--set", f"program.feed_override={override}"),
                                  (2, f"part.ngc: error: takes {hours} h at program.feed_override = {override}; must be <= "
-                                     "record.max_duration_h = 24: check feeds and feed_override, or raise it\n"))
+                                     "record.max_duration_h = 24: check feeds and feed_override, or raise record.max_duration_h\n"))
 
     def test_signals_have_a_size(self):
         self.assertEqual(self.run_here("run", "scenario.toml", "--set", "program.feed_override=2e-4",
@@ -137,11 +137,11 @@ class Bounds(unittest.TestCase):
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
         status, said = self.run_here("run", "scenario.toml", "-o", "disk/out.h5", "--set", slow)
         self.assertEqual(status, 2, said)
-        self.assertRegex(said, r"^estimate: .*\npart\.ngc: error: takes 0\.9\d GB of the disk while it runs; \S+/disk has 0\.94 GB: "
-                         r"lower record\.max_size_GB = 8 or name another file \(--output\)\n$")
+        self.assertRegex(said, r"^estimate: .*\npart\.ngc: error: takes 0\.9\d GB of disk space while running; \S+/disk has 0\.94 GB free: "
+                         r"lower record\.max_size_GB = 8 or choose another file \(--output\)\n$")
         status, said = self.run_here("budget", "scenario.toml", "--quantity", "tool_deviation", "-o", "disk/out.h5", "--set", slow)
         self.assertEqual(status, 2, said)
-        self.assertRegex(said, r"^part\.ngc: error: takes 2\.\d GB of the disk while it runs; \S+/disk has 0\.94 GB: lower ")
+        self.assertRegex(said, r"^part\.ngc: error: takes 2\.\d GB of disk space while running; \S+/disk has 0\.94 GB free: lower ")
         self.assertEqual(os.listdir(disk), [])
         subprocess.run(["mount", "-o", "remount,size=1100m", disk], check=True)
         self.first_lines(1, slow, output="disk/out.h5")
@@ -151,8 +151,8 @@ class Bounds(unittest.TestCase):
         command = ["compensate", "cut.ngc", "--machine", "machine.toml", "--errors", "errors.toml", "--work-offset",
                    "X=0,Y=0,Z=0", "-o", "out.ngc"]
         self.assertEqual(self.run_here(*command, "--max-block", "1 nm"),
-                         (2, "--max-block: error: 0.001 um makes 1.1e+08 blocks of 0.106 m of feed; must be <= 1e+07 blocks: "
-                             "name a longer one\n"))
+                         (2, "--max-block: error: 0.001 um makes 1.1e+08 blocks of 0.106 m of feed; must be <= 1e+07 blocks; "
+                             "use a larger value\n"))
         self.assertEqual(self.run_here(*command, "--tolerance", "1e-9 um"),
                          (2, "--tolerance: error: '1e-9 um' must be >= 0.001 um\n"))
 

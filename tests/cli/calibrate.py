@@ -131,10 +131,10 @@ class Way(unittest.TestCase):
         refused = self.run_in("router", "calibrate", "plan/readings.toml", status=2).stderr
         self.assertRegex(refused, r"deviation_um is empty|deviation_urad is missing")
         os.mkdir(self.path("router", "taken"))
-        self.run_in("router", "calibrate", "plan/readings.toml", "--make-up", "taken", "--truth", "measured")
+        self.run_in("router", "calibrate", "plan/readings.toml", "--make-up", "taken", "--machine-errors", "measured")
         taken = self.run_in("router", "calibrate", "taken/readings.toml").stdout
         self.assertIn("EC0Y", taken)
-        self.assertIn("no instrument of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
+        self.assertIn("'lasr' is not one of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
 
     def test_a_plan_for_the_probe_writes_programs_for_four_controls(self):
         machine = "../../machines/generic_trunnion_ac.toml"
@@ -159,12 +159,12 @@ class Way(unittest.TestCase):
         for status, argument in ((0, "errors.csv"), (2, "errors.csv"), (2, "readings.toml")):
             done = subprocess.run(["/usr/bin/python3", "-B", tool, argument], cwd=self.path("router"), capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, status, done.stderr)
-        self.assertIn("is no table of errors", done.stderr)
+        self.assertIn("is not a table of errors", done.stderr)
         self.assertGreater(os.path.getsize(figure), 50_000)
 
     def test_readings_made_up_are_read_again(self):
         os.mkdir(self.path("router", "readings"))
-        made_up = ("calibrate", "readings.toml", "--make-up", "readings", "--truth", "measured", "--seed", "2")
+        made_up = ("calibrate", "readings.toml", "--make-up", "readings", "--machine-errors", "measured", "--seed", "2")
         self.run_in("router", *made_up)
         self.assertIn("exists", self.run_in("router", *made_up, status=2).stderr)
         printed = self.run_in("router", "calibrate", "readings/readings.toml").stdout

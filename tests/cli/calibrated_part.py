@@ -255,7 +255,7 @@ class CalibratedPart(unittest.TestCase):
 
     def test_a_machine_without_covariance_has_no_such_quantity(self):
         self.write("plain.toml", f'based_on = "{os.path.abspath(SCENARIOS)}/machines/router_3axis.toml"\n')
-        with self.assertRaisesRegex(AssertionError, "needs a machine with identified errors and their covariance: servomill calibrate -o writes one"):
+        with self.assertRaisesRegex(AssertionError, "needs a machine with identified errors and their covariance, as written by servomill calibrate -o"):
             self.uncertainties("plain.toml", PROGRAM, ["up"])
 
     def test_a_run_says_if_the_tolerance_is_met(self):

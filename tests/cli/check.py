@@ -94,7 +94,7 @@ M30
                  Z unknown from line 6 on: needs --work-offset and the tool lengths
   cycle time     unknown: needs --machine
   read by        linuxcnc, fanuc, haas, mach (with T1 in its tool table)
-  not read by    grbl: part.ngc:3:1: G43: grbl does not have it
+  not read by    grbl: part.ngc:3:1: G43 is not supported by grbl
 """)
 
     # F600: 0.01 m/s, reached with jerk 30 m/s^3 alone in 2 sqrt(0.01 / 30) s. G1 takes 50 mm / 0.01 m/s
@@ -117,17 +117,17 @@ M30
   cycle time     {2.0 + feed + 2.0 * rapid:.1f} s on router
                  without 2 moves from unknown positions (lines 3, 4), 1 tool change
   read by        linuxcnc, fanuc, haas, mach
-  not read by    grbl: part.ngc:2:7: G43: grbl does not have it
+  not read by    grbl: part.ngc:2:7: G43 is not supported by grbl
 """, *arguments)
         time = self.json(program, *arguments)["cycle_time"]
         self.assertAlmostEqual(time["s"], 2.0 + feed + 2.0 * rapid, delta=1e-3)
         self.assertEqual(time["left_out_lines"], [3, 4])
 
     def test_units(self):
-        self.assertEqual(self.lines("G0 X1\nM2\n", "units"), ["no G20 or G21: those of the control; read as mm"])
+        self.assertEqual(self.lines("G0 X1\nM2\n", "units"), ["no G20 or G21: unit of the control; taken as mm"])
         self.assertEqual(self.lines("G20 G0 X1\nM2\n", "units"), ["inch, G20 (line 1)"])
         self.assertEqual(self.lines("G20 G0 X1\nG21 X1\nG20\nM2\n", "units"),
-                         ["inch, G20 (line 1)", "mm, G21 (line 2)", "the program changes its unit"])
+                         ["inch, G20 (line 1)", "mm, G21 (line 2)", "the program changes units"])
         self.assertEqual(self.lines("G20 G0 X1\nM2\n", "extent G54"), ["X 25.400 mm"])
 
     def test_work_offsets(self):
@@ -163,9 +163,9 @@ M30
         self.assertEqual(turned, ["X -10.000 ... 0.000 mm", "Y 0.000 ... 20.000 mm"])
 
     def test_positions_that_nothing_names_are_unknown(self):
-        self.assertEqual(self.lines("G91 G0 X5\nM2\n", "not in it"), ["X moves to a position that is not known (line 1)"])
+        self.assertEqual(self.lines("G91 G0 X5\nM2\n", "not in it"), ["X moves to an unknown position (line 1)"])
         after = "G0 X5\nG28 X5\nG91 X1\nG90 X7\nM2\n"  # home is where the control has stored it
-        self.assertEqual(self.lines(after, "not in it"), ["X moves to a position that is not known (line 3)"])
+        self.assertEqual(self.lines(after, "not in it"), ["X moves to an unknown position (line 3)"])
         self.assertEqual(self.lines(after, "extent G54"), ["X 5.000 ... 7.000 mm"])
         work_offset = ["--work-offset", "X=10"]
         self.assertEqual(self.lines(after, "machine", *work_offset),
@@ -188,13 +188,13 @@ M30
     def test_the_height_before_a_cycle(self):
         program = "G98 G0 X1 Y2\nG81 Z-3 R1 F100\nG80\nM2\n"
         self.assertEqual(self.lines(program, "extent G54")[-1], "Z -3.000 ... 1.000 mm; feeds -3.000 ... 1.000 mm")
-        self.assertEqual(self.lines(program, "not in it"), ["Z moves to a position that is not known (line 2)"])
+        self.assertEqual(self.lines(program, "not in it"), ["Z moves to an unknown position (line 2)"])
 
     def test_cycle_time_is_unknown_where_it_cannot_be_planned(self):
         def time(program, *more):
             return self.lines(program, "cycle time", "--machine", "router.toml", *more)
-        self.assertEqual(time("G0 C90\nM2\n"), ["unknown: line 1 moves C, which the machine does not have"])
-        self.assertEqual(time("G0 X0\nG95 S100 G1 X1 F0.1\nM2\n"), ["unknown: line 2 feeds per revolution of a spindle that is off"])
+        self.assertEqual(time("G0 C90\nM2\n"), ["unknown: line 1 moves C, but the machine has no such axis"])
+        self.assertEqual(time("G0 X0\nG95 S100 G1 X1 F0.1\nM2\n"), ["unknown: line 2 feeds per revolution with the spindle off"])
         self.write("router.toml", ROUTER.replace('j_max = "30 m/s^3"\n[axis.Z]', "[axis.Z]"))
         self.assertEqual(time("G0 X0\nX1\nM2\n"), ["unknown: the machine file lacks v_max, a_max or j_max of Y"])
 
@@ -238,7 +238,7 @@ name = "cycle_time"
 
     def test_reads_up_to_the_first_fault(self):
         done = self.check("G0 X1\nX2\nG1 X3 Q\nX4\nM2\n", status=2)
-        self.assertEqual(done.stderr, "part.ngc:3:8: error: a value is expected after Q, not the end of the line\n")
+        self.assertEqual(done.stderr, "part.ngc:3:8: error: expected a value after Q, found the end of the line\n")
         self.assertIn("  read           up to line 3, which has the first fault\n", done.stdout)
         self.assertIn("  extent G54     X 1.000 ... 2.000 mm\n", done.stdout)
 
@@ -255,7 +255,7 @@ name = "cycle_time"
             "tools": [],
             "extent": {"work": {"G54": {"motion": {"X": [1, 4], "Z": [2, 2]}, "feed": {"X": [1, 4], "Z": [2, 2]}}},
                        "machine": {"X": [11, 14]}, "unknown_from_line": {"Z": {"work": None, "machine": 2}},
-                       "unknown_additional_offsets": [], "tip_controlled_from_line": None},
+                       "unknown_additional_offsets": [], "tcp_controlled_from_line": None},
             "cycle_time": None,
             "tool_changes": 0,
             "stops": 1,
@@ -277,7 +277,7 @@ name = "cycle_time"
         self.assertEqual(self.lines(program, "machine", *given, *fanuc), ["X 50.000 ... 199.000 mm", "Y 7.000 mm"])
         self.assertEqual(self.lines(program, "extent G54.1 P3", *given, *fanuc)[0], "X 0.000 ... 10.000 mm; feeds 0.000 ... 10.000 mm")
         self.assertEqual(self.lines(program, "read by", *fanuc), ["fanuc, haas"])
-        self.assertEqual(self.check(program, *fanuc).stderr.count("where this work system lies is unknown"), 1)
+        self.assertEqual(self.check(program, *fanuc).stderr.count("this work offset is unknown"), 1)
         self.assertEqual(self.json(program, *fanuc)["extent"]["unknown_additional_offsets"], [3])
 
     # The tip of tilted planes and tool-centre-point control stands in work coordinates.
@@ -286,11 +286,11 @@ name = "cycle_time"
                    "G1 Z-1. F100.\nG69\nG43.4 H1\nG0 X5. Y0. Z9. B10.\nG1 X8. B20. F500.\nG49\nG53 G0 Z0.\nG0 X7.\nM30\n")
         fanuc = ["--reader", "fanuc"]
         done = self.check(program, *fanuc)
-        self.assertIn("G53.1: where the rotary axes go depends on the machine, and none is given (--machine)", done.stderr)
+        self.assertIn("G53.1: the rotary axis positions depend on the machine; pass it with --machine", done.stderr)
         self.assertEqual(self.lines(program, "extent G54", *fanuc),
                          ["X 1.000 ... 8.000 mm; feeds 5.000 ... 8.000 mm", "Y 0.000 ... 2.000 mm; feeds 0.000 mm",
                           "Z 9.000 ... 50.000 mm; feeds 9.000 mm", "B 10.000 ... 20.000 deg; feeds 10.000 ... 20.000 deg"])
-        self.assertEqual(self.lines(program, "not in it", *fanuc), ["Z moves to a position that is not known (line 8)", "moves in a tilted work plane (line 8)"])
+        self.assertEqual(self.lines(program, "not in it", *fanuc), ["Z moves to an unknown position (line 8)", "moves in a tilted work plane (line 8)"])
         machine = self.lines(program, "machine", "--work-offset", "X=0,Y=0,Z=0,B=0", "--tool-length", "1=50", *fanuc)
         self.assertEqual(machine[0], "X 1.000 ... 7.000 mm; unknown from line 8 on: needs --work-offset")
         self.assertEqual(machine[-1], "X, Y and Z unknown under tool-centre-point control and in a tilted plane (line 8): "
@@ -329,8 +329,8 @@ name = "cycle_time"
         self.assertEqual(faults(""), refused[refused.index("part.ngc:2:1: error"):])
         self.assertNotIn("error", faults('ignore_codes = ["M82"]\n'))
         self.assertIn('scenario.toml:4:16: error: program.ignore_codes', faults('ignore_codes = ["M3"]\n'))
-        self.assertIn("M3: has a meaning of its own, which cannot be left out", faults('ignore_codes = ["M3"]\n'))
-        self.assertIn("82: must be an M code of the machine's builder, such as M82", faults('ignore_codes = ["82"]\n'))
+        self.assertIn("M3: has its own meaning, which cannot be ignored", faults('ignore_codes = ["M3"]\n'))
+        self.assertIn("82: must be an M code of the machine builder, such as M82", faults('ignore_codes = ["82"]\n'))
         self.assertNotIn("error", faults("", 'ignore_codes = ["M82"]\n'))
         self.assertIn("part.ngc:2:1: error", faults("ignore_codes = []\n", 'ignore_codes = ["M82"]\n'))
         done = self.check(program, "--machine", "machine.toml", status=0)

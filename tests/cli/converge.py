@@ -44,7 +44,7 @@ class Converge(unittest.TestCase):
 
     def test_knows_no_other_steps(self):
         self.assertEqual(converge(SCENARIO, "--halve", "record", status=2).stderr,
-                         "--halve: error: no step 'record'; there are: recording, block, solver, tick\n")
+                         "--halve: error: no step 'record'; known are: recording, block, solver, tick\n")
         self.assertEqual(converge(SCENARIO, "--halve", "solvr", status=2).stderr,
                          "--halve: error: no step 'solvr'; did you mean 'solver'?\n")
 

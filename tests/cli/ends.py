@@ -54,7 +54,7 @@ class Ends(unittest.TestCase):
     def test_interrupt_keeps_complete_cases_and_says_so(self):
         status, stdout, stderr = self.start_and_send(signal.SIGINT)
         self.assertEqual(status, 130)
-        self.assertEqual(stderr, f"interrupted; kept in {self.partial}: complete cases nominal; interrupted table\n")
+        self.assertEqual(stderr, f"interrupted; saved in {self.partial}: complete cases nominal; interrupted table\n")
         self.assertFalse(os.path.exists(self.out))
         again = servomill("compare", "--json", self.partial)
         self.assertEqual((again.returncode, again.stderr), (0, ""))
@@ -70,7 +70,7 @@ class Ends(unittest.TestCase):
         self.assertEqual((again.returncode, again.stderr), (0, ""))
         refused = servomill("run", SCENARIO, "-o", self.out)
         self.assertEqual(refused.returncode, 2)
-        self.assertEqual(refused.stderr, f"{self.partial}: error: exists, left by a run that did not end; "
+        self.assertEqual(refused.stderr, f"{self.partial}: error: exists, left by an unfinished run; "
                                          "use --force to overwrite\n")
         forced = servomill("run", SCENARIO, "-q", "-o", self.out, "--force")
         self.assertEqual((forced.returncode, forced.stderr), (0, ""))
@@ -86,7 +86,7 @@ class Ends(unittest.TestCase):
         _, stderr = process.communicate(timeout=PATIENCE)
         self.assertIn("program.feed_override = 1.0", first)
         self.assertEqual(process.returncode, 130)
-        self.assertEqual(stderr, f"interrupted; kept in {self.partial}: 1 complete points of 2\n")
+        self.assertEqual(stderr, f"interrupted; saved in {self.partial}: 1 complete points of 2\n")
         self.assertFalse(os.path.exists(self.out))
 
     def test_full_disk_is_a_failure_of_the_system(self):
@@ -98,7 +98,7 @@ class Ends(unittest.TestCase):
         for size in (0, 4096, 40000, 100000):
             result = servomill("run", SCENARIO, "-o", self.out, "--force", preexec_fn=only(size))
             self.assertEqual(result.returncode, 3, f"{size} bytes")
-            self.assertRegex(result.stderr, r"out\.h5\.partial: error: cannot be (written|made): File too large\n")
+            self.assertRegex(result.stderr, r"out\.h5\.partial: error: cannot be (written|created): File too large\n")
             self.assertFalse(os.path.exists(self.out))
 
     def test_full_disk_keeps_what_was_there(self):
@@ -129,7 +129,7 @@ class Ends(unittest.TestCase):
             result = os.path.join(folder, "out.h5")
             written = servomill("run", SCENARIO, "-o", result, **nobody)
             self.assertEqual(written.returncode, 3, written.stderr)
-            self.assertEqual(written.stderr, f"{result}.partial: error: cannot be made: Permission denied\n")
+            self.assertEqual(written.stderr, f"{result}.partial: error: cannot be created: Permission denied\n")
 
     def test_a_diverging_loop_stops_its_case_and_the_others_go_on(self):
         result = servomill("run", SCENARIO, "-q", "-o", self.out, "--set", "machine.nc.Kv=20000",
@@ -142,7 +142,7 @@ class Ends(unittest.TestCase):
     def test_friction_that_the_step_does_not_resolve_is_no_response(self):
         stiff = ('machine_override.axis.X.friction={model="set_valued", coulomb=0, breakaway=600, '
                  'stribeck_velocity=1e-9}')
-        why = 'friction too stiff for the exact step; use integrator = "cvode"'
+        why = 'friction too stiff for the exact integrator; use integrator = "cvode"'
         stepped = servomill("step", MACHINE, "--axis", "X", "--kind", "position", "--set", stiff)
         self.assertEqual((stepped.returncode, stepped.stderr), (1, f"axis X, position step: {why}\n"))
         measured = servomill("bode", MACHINE, "--axis", "X", "--points", "2", "--f-max", "20", "--velocity", "0 m/s",

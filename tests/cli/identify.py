@@ -118,7 +118,7 @@ class Way(unittest.TestCase):
 
     def test_wrong_requests_of_intervals_are_refused(self):
         done = self.run_in_folder("identify", "identify.toml", "--bootstrap", "99", status=2)
-        self.assertIn("--bootstrap: error: 99 are too few replicas for quantiles of 2.5 %; must be >= 100", done.stderr)
+        self.assertIn("--bootstrap: error: 99 replicas are too few for 2.5 % quantiles; must be >= 100", done.stderr)
         done = self.run_in_folder("identify", "identify.toml", "--profile", "axis.Y.moving_mas", status=2)
         self.assertIn("axis.Y.moving_mas is not estimated in identify.toml; did you mean 'axis.Y.moving_mass'?", done.stderr)
 

@@ -108,12 +108,12 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.outcome(*own, "--errors", "router.toml")[0], said)
         self.assertIn("X300.04", said)  # 0.2 mm/m of 200 mm
         status, _, faults = self.servomill(*own, "--errors", "trunnion.toml")
-        self.assertEqual((status, faults), (2, "trunnion.toml: error: holds the errors of a machine with other axes\n"))
+        self.assertEqual((status, faults), (2, "trunnion.toml: error: contains the errors of a machine with other axes\n"))
 
     def test_a_loop_that_its_own_gain_does_not_stabilise(self):
         bode = ["bode", SCENARIO, "--axis", "Y", "--method", "none", "--points", "2", "--set",
                 "machine_override.nc.check_stability=false", "--set"]
-        falls, helps = "  the gain must fall ", "  the velocity loop inside is unstable: no Kv helps, lower velocity_bandwidth\n"
+        falls, helps = "  the gain must fall ", "  the velocity loop inside is unstable: no Kv stabilises it, lower velocity_bandwidth\n"
         fast = 'machine_override.axis.Y.velocity_bandwidth="90000 rad/s"'
         for loop, change, says, not_says in (("position", "machine_override.axis.Y.Kv=5000", falls, helps),
                                              ("position", fast, helps, falls), ("velocity", fast, falls, helps)):

@@ -14,7 +14,7 @@ import unittest
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 GALLERY = os.path.join(HERE, "gallery")
-REFUSED = "is an input of this command, which is never overwritten; name another file"
+REFUSED = "is an input of this command and is never overwritten; choose another file"
 
 ERRORS = "[errors.imposed]\nEC0Y = { um_per_m = 120.0 }\n"
 FILES = {
@@ -163,7 +163,7 @@ class Inputs(Folder):
         for record in ("out.ngc", "./out.ngc"):
             result = self.run_here(*COMPENSATE, "-o", "out.ngc", "--record", record)
             self.assertEqual((result.returncode, result.stderr),
-                             (2, f"--record {record}: error: is the same file as the program out.ngc; name another one\n"))
+                             (2, f"--record {record}: error: is the same file as the program out.ngc; choose another one\n"))
         self.assertFalse(os.path.exists(self.path("out.ngc")))
 
 
@@ -187,7 +187,7 @@ class Links(Folder):
         os.symlink("store/real.h5", self.path("out.h5"))
         refused = self.run_here("run", "scenario.toml", "-o", "out.h5")
         self.assertEqual((refused.returncode, refused.stderr),
-                         (2, "out.h5: error: is a symbolic link to 'store/real.h5', which is not there; use --force to "
+                         (2, "out.h5: error: is a symbolic link to 'store/real.h5', which does not exist; use --force to "
                              "write it\n"))
         forced = self.run_here("run", "scenario.toml", "-o", "out.h5", "-f")
         self.assertEqual((forced.returncode, forced.stderr), (0, ""))
@@ -199,12 +199,12 @@ class Links(Folder):
         os.symlink("b.ngc", self.path("a.ngc"))
         os.symlink("a.ngc", self.path("b.ngc"))
         os.symlink("ring", self.path("ring"))
-        for name, why in (("a.ngc", "is a symbolic link that leads back to itself; name another file"),
-                          ("nowhere/out.ngc", "there is no folder 'nowhere'"),
-                          ("ring/out.ngc", "the folder 'ring' is a symbolic link that leads back to itself"),
-                          ("part.cls/out.ngc", "'part.cls' is no folder"),
-                          ("store/", "is a folder; name a file"),
-                          ("/dev/null", "is a device; results are files that get their name when they are complete: name one")):
+        for name, why in (("a.ngc", "is a symbolic link loop; choose another file"),
+                          ("nowhere/out.ngc", "folder 'nowhere' does not exist"),
+                          ("ring/out.ngc", "the folder 'ring' is a symbolic link loop"),
+                          ("part.cls/out.ngc", "'part.cls' is not a folder"),
+                          ("store/", "is a folder; specify a file"),
+                          ("/dev/null", "is a device; a result file gets its name only when complete: specify a regular file")):
             for command, option, _ in COMMANDS:
                 result = self.run_here(*command, option, name, "-f")
                 self.assertEqual((result.returncode, result.stderr), (2, f"{name}: error: {why}\n"), command[0])
@@ -226,23 +226,23 @@ class PartialFiles(Folder):
             for force in ([], ["-f"]):
                 running = self.run_here("run", "scenario.toml", "-o", "out.h5", *force)
                 self.assertEqual((running.returncode, running.stderr),
-                                 (3, "out.h5.partial: error: cannot be made: another process writes it\n"))
+                                 (3, "out.h5.partial: error: cannot be created: another process writes it\n"))
         ended = self.run_here("run", "scenario.toml", "-o", "out.h5")
         self.assertEqual((ended.returncode, ended.stderr),
-                         (2, "out.h5.partial: error: exists, left by a run that did not end; use --force to overwrite\n"))
+                         (2, "out.h5.partial: error: exists, left by an unfinished run; use --force to overwrite\n"))
 
     def test_what_is_no_result_is_not_called_the_rest_of_a_run(self):
         with open(self.path("out.h5.partial"), "w", encoding="utf-8") as file:
             file.write("hello\n")
         foreign = self.run_here("run", "scenario.toml", "-o", "out.h5")
         self.assertEqual((foreign.returncode, foreign.stderr),
-                         (2, "out.h5.partial: error: exists and is no result file; a result has this name until it is "
-                             "complete: remove that, or name another result file\n"))
+                         (2, "out.h5.partial: error: exists and is not a result file; results have this name until "
+                             "complete: remove it, or choose another result file\n"))
         os.mkdir(self.path("two.h5.partial"))
         folder = self.run_here("run", "scenario.toml", "-o", "two.h5")
         self.assertEqual((folder.returncode, folder.stderr),
-                         (2, "two.h5.partial: error: exists and is a folder; a result has this name until it is "
-                             "complete: remove that, or name another result file\n"))
+                         (2, "two.h5.partial: error: exists and is a folder; results have this name until "
+                             "complete: remove it, or choose another result file\n"))
 
     def test_nothing_stays_where_nothing_was_promised(self):
         before = set(contents(self.folder))

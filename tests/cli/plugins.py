@@ -190,12 +190,12 @@ class Plugins(unittest.TestCase):
 
     def test_refusals(self):
         for name, why in (
-                ("other_version", "was built for version 999 of the plug-in interface, this program has 1; build it "
-                                  "again with the headers of this program"),
-                ("no_function", "is no plug-in: it does not export the function servomill_plugin_c_entry"),
+                ("other_version", "was built for version 999 of the plug-in interface, this program has 1; rebuild it "
+                                  "with the headers of this program"),
+                ("no_function", "is not a plug-in: it does not export the function servomill_plugin_c_entry"),
                 ("taken_name", "its strategy 'feedback' has the name of another one"),
                 ("small_struct", "strategy 1: its struct has 8 bytes, expected 88 to 1024"),
-                ("later_part", "strategy 1: has functions that this program does not know: it was built for a later one"),
+                ("later_part", "strategy 1: has functions unknown to this program: it was built for a later version"),
                 ("default_outside", "strategy 1: parameter 0 has the default 5, outside of its range 0 to 1")):
             done = self.servomill("list", "strategies", "--plugin", library(name), status=2)
             self.assertEqual(done.stderr, f"{library(name)}: error: {why}\n")
@@ -225,12 +225,11 @@ class Plugins(unittest.TestCase):
 
     def test_one_that_goes_wrong_ends_its_case_alone(self):
         for name, why in (("refusing", "displacement: X is beyond 10 mm"),
-                          ("writing_nan", "displacement returned what is not finite"),
-                          ("offset_nan", "offset returned what is not finite"),
-                          ("low_pass", "offset returned what is not finite"),
-                          ("undeclared", "offset returned what is not finite"),
-                          ("turning", "displacement: displaces a rotary axis, and its declaration says that it does "
-                                      "not"),
+                          ("writing_nan", "displacement returned a value that is not finite"),
+                          ("offset_nan", "offset returned a value that is not finite"),
+                          ("low_pass", "offset returned a value that is not finite"),
+                          ("undeclared", "offset returned a value that is not finite"),
+                          ("turning", "displacement: displaces a rotary axis, contrary to its declaration"),
                           ("never_made", "settle: needs a licence")):
             self.write(scenario_text((name, "")).replace("X10", "X20"))
             self.write("G17 G21 G40 G49 G54 G90 G94\nG1 F1000 X5\nG1 X20\nM30\n", "part.ngc")
@@ -250,8 +249,8 @@ class Plugins(unittest.TestCase):
             done = self.servomill("run", "s.toml", "-j", "2", "-o", name + ".h5", "--plugin", library("faulty"), status=3)
             first, kept = done.stderr.splitlines()
             self.assertEqual(first, f"strategy {name} ({library('faulty')}): the plug-in {why}")
-            self.assertTrue(kept.startswith(f"kept in {name}.h5"), kept)
-            partial = kept.removeprefix("kept in ").split(":")[0]
+            self.assertTrue(kept.startswith(f"saved in {name}.h5"), kept)
+            partial = kept.removeprefix("saved in ").split(":")[0]
             with self.open(partial) as file:
                 complete = sorted(file["cases"])
             self.assertIn("nominal", complete)
@@ -290,7 +289,7 @@ class Plugins(unittest.TestCase):
                 function = name.removeprefix("wrong_")
                 if function in ("displacement", "position_loop") and where != "step":
                     function = "settle"
-                said = {"nan": " returned what is not finite", "absurd": " adds -1e+12 m/s to axis Y, beyond 10 times its v_max",
+                said = {"nan": " returned a value that is not finite", "absurd": " adds -1e+12 m/s to axis Y, beyond 10 times its v_max",
                         **{one: ": " + text for one, text in SAID.items()}}[how]
                 if function == "rewrite":
                     said = ": block 2 (line 8) ends at Y = nan, which is not finite" if how == "nan" else said
@@ -307,7 +306,7 @@ class Plugins(unittest.TestCase):
                 first, kept = done.stderr.splitlines()[-2:]
                 why = FAILED.get(how, FAILED["abort"])
                 self.assertEqual(first, f"strategy {name} ({library('wrong')}): the plug-in {why}", (where, how))
-                partial = kept.removeprefix("kept in ").split(":")[0]
+                partial = kept.removeprefix("saved in ").split(":")[0]
                 self.assertIn("complete cases nominal; interrupted", kept)
                 with self.open(partial) as file:
                     self.assertEqual(list(file["cases"]), ["nominal"])
@@ -345,7 +344,7 @@ class Plugins(unittest.TestCase):
             process.send_signal(signal.SIGINT)
             _, said = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 130, said)
-        self.assertRegex(said, r"interrupted; kept in out\.h5\.partial: complete cases nominal; interrupted loops\n$")
+        self.assertRegex(said, r"interrupted; saved in out\.h5\.partial: complete cases nominal; interrupted loops\n$")
         self.assertEqual(len(children), 1)
         for _ in range(50):
             if not is_running(children[0]):

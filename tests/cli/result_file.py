@@ -106,7 +106,7 @@ class ResultFile(unittest.TestCase):
                          (2, "changed.h5: error: is not a result file of servomill\n"))
         self.assertEqual(self.compare(self.changed(without_inputs)), (2, "changed.h5: error: has no '/inputs'\n"))
         self.assertEqual(self.compare(self.changed(with_a_short_signal)),
-                         (2, f"changed.h5: error: '/{SERVO}/line' is not as long as the signals before it\n"))
+                         (2, f"changed.h5: error: '/{SERVO}/line' differs in length from the earlier signals\n"))
         self.assertEqual(self.compare(self.changed(without_signal)),
                          (2, f"changed.h5: error: has no '/{SERVO}/meas_linear'\n"))
 

@@ -163,7 +163,7 @@ class Signals(unittest.TestCase):
                     if status == 130:
                         self.assertTrue(stderr.splitlines()[-1].startswith("interrupted"), said)
                     partial = os.path.exists(os.path.join(self.folder, "out.h5.partial"))
-                    self.assertEqual("kept in out.h5.partial" in stderr, partial, said)
+                    self.assertEqual("saved in out.h5.partial" in stderr, partial, said)
                 worst_of_all = max(worst_of_all, worst)
                 print(f"{name:<22} {duration:6.2f} s whole, {INSTANTS} signals, ended {ended}, latest {1e3 * worst:4.0f} ms",
                       flush=True)

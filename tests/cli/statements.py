@@ -77,7 +77,7 @@ class Statements(unittest.TestCase):
                                   r"displacement of Y saturated at 0\.3 mm/s, first here, [0-9.]+ s in all$")
         for line, end in zip(said[2:], ("-70.0000", "70.9024")):
             self.assertRegex(line, r"flank\.ngc:\d+: warning: case short_table: strategy table: the table over X ends at "
-                             + end + " mm, the program goes on to ")
+                             + end + " mm, the program continues to ")
 
     def test_delays_add_to_the_lag(self):
         done = self.servomill("sweep", "delay.toml", "--quiet")
@@ -112,7 +112,7 @@ class Statements(unittest.TestCase):
         return {key.split(" [")[0]: [float(row[key]) for row in rows] for key in rows[0] if key not in ("status", "reason")}
 
     def test_another_gain_or_feed_forward_shows_where_a_table_enters(self):
-        found = self.swept("discriminating/table_entry.toml")
+        found = self.swept("discriminating/injection_point.toml")
         gain, share = found["machine_nc_Kv"], found["machine_nc_velocity_feed_forward"]
         behind, fed = (found[case + "_imposed_error_residual_Y_max_flank"] for case in ("behind_tap", "fed_forward"))
 

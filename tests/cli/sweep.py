@@ -126,7 +126,7 @@ class Resume(Sweeps):
         self.assertGreater(done[0], 0)
         if os.path.exists(self.path("out.h5.partial")):
             again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=1)
-            self.assertRegex(again.stdout, r"out\.h5\.partial: \d+ of 40 points are there already")
+            self.assertRegex(again.stdout, r"out\.h5\.partial: \d+ of 40 points already exist")
         self.expect_same_table("out.h5", "whole.h5")
         self.assertFalse(os.path.exists(self.path("out.h5.partial")))
 
@@ -134,7 +134,7 @@ class Resume(Sweeps):
         status, stderr = self.end_after(signal.SIGTERM, "out.h5")
         self.assertEqual(status, 130)
         kept = self.finished("out.h5.partial")
-        self.assertIn(f"interrupted; kept in {self.path('out.h5.partial')}: {kept} complete points of 40\n", stderr)
+        self.assertIn(f"interrupted; saved in {self.path('out.h5.partial')}: {kept} complete points of 40\n", stderr)
         self.sweep("out.h5", "--set", SLOW)
         self.sweep("whole.h5", "--set", SLOW)
         self.expect_same_table("out.h5", "whole.h5")
@@ -143,15 +143,15 @@ class Resume(Sweeps):
         self.sweep("out.h5")
         before = os.stat(self.path("out.h5"))
         again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, status=1)
-        self.assertEqual(again.stdout.replace(self.folder + "/", ""), "out.h5 holds all 40 points already\n")
+        self.assertEqual(again.stdout.replace(self.folder + "/", ""), "out.h5 already contains all 40 points\n")
         self.assertEqual(os.stat(self.path("out.h5")).st_mtime_ns, before.st_mtime_ns)
 
     def test_refuses_another_sweep(self):
         self.sweep("out.h5")
         again = ["sweep", SCENARIO, "-o", self.path("out.h5")]
-        self.refused("out.h5: error: holds a sweep of this scenario as it was before it changed; use --force to overwrite",
+        self.refused("out.h5: error: contains a sweep of an earlier version of this scenario; use --force to overwrite",
                      *again, "--set", POINTS, "--set", SLOW)
-        self.refused("out.h5: error: holds points 1 to 40, shard 1 of 1 of the sweep; asked for are points 1 to 3, shard 1 "
+        self.refused("out.h5: error: contains points 1 to 40, shard 1 of 1 of the sweep; requested are points 1 to 3, shard 1 "
                      "of 1; use --force to overwrite", *again, "--set", POINTS, "--points", "1-3")
         servomill(*again, "-q", "--force", "--set", POINTS, "--points", "1-2")
 
@@ -164,7 +164,7 @@ class Resume(Sweeps):
         self.sweep("out.h5", status=0, points=points)   # is complete
         with open(self.path("two.ngc"), "a", encoding="utf-8") as file:
             file.write("; changed\n")
-        message = "holds a sweep of this scenario as it was before its file 'two.ngc' changed; use --force to overwrite"
+        message = "contains a sweep of this scenario with an earlier version of its file 'two.ngc'; use --force to overwrite"
         for out in ("out.h5", "out.h5.partial"):
             if out.endswith(".partial"):
                 os.rename(self.path("out.h5"), self.path(out))
@@ -200,8 +200,8 @@ class Resume(Sweeps):
         self.sweep("out.h5")
         for name, value, message in (
                 ("servomill_build", "0.1.0+0123456789ab",
-                 f"was written by servomill 0.1.0+0123456789ab, this is {BUILD}: points of two builds may differ; go on "
-                 "with that build, name another --output or use --force to run all of it again\n"),
+                 f"was written by servomill 0.1.0+0123456789ab, this is {BUILD}: points of two builds may differ; "
+                 "continue with that build, choose another --output or use --force to run all points again\n"),
                 ("schema_version", 1, "exists; use --force to overwrite")):
             with h5py.File(self.path("out.h5"), "r+") as file:
                 file.attrs[name] = value
@@ -218,9 +218,9 @@ class Resume(Sweeps):
         process.communicate()
         said = [one.stderr.replace(self.folder + "/", "") for one in (done, forced)]
         self.assertEqual(said, ["out.h5.partial: error: cannot be opened: another process writes it\n",
-                                "out.h5.partial: error: cannot be made: another process writes it\n"])
+                                "out.h5.partial: error: cannot be created: another process writes it\n"])
         again = servomill("sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--set", SLOW, status=1)
-        self.assertIn("of 40 points are there already", again.stdout)
+        self.assertIn("of 40 points already exist", again.stdout)
 
     def test_needs_no_force_behind_a_disk_that_was_full(self):
         for size in (0, 4096, 20000):
@@ -231,7 +231,7 @@ class Resume(Sweeps):
                 full = subprocess.run([SERVOMILL, "sweep", SCENARIO, "-q", "-o", self.path("out.h5"), "--set", POINTS],
                                       capture_output=True, text=True, timeout=PATIENCE, check=False, preexec_fn=limit)
                 self.assertEqual(full.returncode, 3, full.stderr)
-                self.assertRegex(full.stderr, r"out\.h5\.partial: error: cannot be (written|made): File too large\n")
+                self.assertRegex(full.stderr, r"out\.h5\.partial: error: cannot be (written|created): File too large\n")
                 self.sweep("out.h5")
                 os.remove(self.path("out.h5"))
                 os.remove(self.path("out.csv"))
@@ -241,10 +241,10 @@ class Resume(Sweeps):
         before = columns(self.path("out.h5"))
         again = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS, "--points", "1-3", "--keep-signals"]
         said = servomill(*again, status=1).stdout.replace(self.folder + "/", "")
-        self.assertTrue(said.startswith("out.h5: 3 of 3 points are there already\n2 of them lack signals, run again\n"), said)
+        self.assertTrue(said.startswith("out.h5: 3 of 3 points already exist\n2 of them lack signals, run again\n"), said)
         self.assertEqual(sorted(os.listdir(self.path("out.series"))), ["1.h5", "2.h5"])  # 3 was refused
         self.assertEqual(columns(self.path("out.h5")), before)
-        self.assertIn("holds all 3 points already", servomill(*again, status=1).stdout)
+        self.assertIn("already contains all 3 points", servomill(*again, status=1).stdout)
         # those of another sweep do not count
         servomill(*again, "-q", "--set", 'program.parameters."#101"=2000.0', "--force", status=1)
         self.sweep("out.h5", "--points", "1-3", "--force")
@@ -258,11 +258,11 @@ class Resume(Sweeps):
             file["sweep/reason"][4, :17] = np.frombuffer(b"not enough memory", dtype="S1")
             file["sweep/table_imposed_error_residual_Y_max_flank"][4] = np.nan
         same = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS]
-        self.assertIn("holds all 40 points already", servomill(*same, status=1).stdout)
+        self.assertIn("already contains all 40 points", servomill(*same, status=1).stdout)
         said = servomill(*same, "--retry-failed", status=1).stdout.replace(self.folder + "/", "")
-        self.assertTrue(said.startswith("out.h5.partial: 39 of 40 points are there already\n"), said)
+        self.assertTrue(said.startswith("out.h5.partial: 39 of 40 points already exist\n"), said)
         self.expect_same_table("out.h5", "whole.h5")
-        self.assertIn("holds all 40 points already", servomill(*same, "--retry-failed", status=1).stdout)
+        self.assertIn("already contains all 40 points", servomill(*same, "--retry-failed", status=1).stdout)
 
     def test_retries_nothing_beside_another_sweep_that_was_stopped(self):
         self.sweep("out.h5")
@@ -271,7 +271,7 @@ class Resume(Sweeps):
         pathlib.Path(self.path("out.h5.partial")).write_text("of another run")
         same = ["sweep", SCENARIO, "-o", self.path("out.h5"), "--set", POINTS]
         refused = servomill(*same, "--retry-failed", status=2)
-        self.assertIn("out.h5.partial: error: is there as well, of another run; use --force to overwrite", refused.stderr)
+        self.assertIn("out.h5.partial: error: also exists, from another run; use --force to overwrite", refused.stderr)
         self.assertEqual(pathlib.Path(self.path("out.h5.partial")).read_text(), "of another run")
         with h5py.File(self.path("out.h5")) as file:
             self.assertEqual(file["sweep/status"][4], 4)

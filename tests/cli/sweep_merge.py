@@ -36,7 +36,7 @@ class Merge(Sweeps):
             self.skipTest("this machine has but one level")
         self.assertEqual(done.stderr.replace(self.folder + "/", ""),
                          f"merged.h5: points were computed with different instructions ({', '.join(used)}; column "
-                         "simd_level): they are alike but for their last bits; SERVOMILL_SIMD=baseline gives the same "
+                         "simd_level): they differ only in their last bits; SERVOMILL_SIMD=baseline gives the same "
                          "bits everywhere\n")
         for one in (first, second):
             self.assertNotIn("instructions", one.stderr)
@@ -48,7 +48,7 @@ class Merge(Sweeps):
     def test_names_what_is_missing(self):
         shards = self.shards(4)
         out = ["-o", self.path("merged.h5")]
-        self.refused("merged.h5: error: shards 2, 4 of 4 are missing; --partial merges what there is",
+        self.refused("merged.h5: error: shards 2, 4 of 4 are missing; use --partial to merge the existing ones",
                      "merge", shards[0], shards[2], *out)
         done = servomill("merge", shards[0], shards[2], *out, "--partial")
         self.assertEqual(done.stderr.replace(self.folder + "/", ""), "merged.h5: shards 2, 4 of 4 are missing\n")
@@ -63,25 +63,25 @@ class Merge(Sweeps):
         self.refused("out.1-of-3.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], three[0], *out)
         self.refused("out.1-of-2.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], two[0], *out)
         self.sweep("other.h5", "--shard", "2/3", status=None, points=POINTS.replace("10.0", "11.0"))
-        self.refused("other.2-of-3.h5: error: holds a sweep of another scenario than out.1-of-3.h5",
+        self.refused("other.2-of-3.h5: error: contains a sweep of another scenario than out.1-of-3.h5",
                      "merge", three[0], self.path("other.2-of-3.h5"), *out)
         self.sweep("part.h5", "--shard", "2/3", "--points", "1-20", status=None)
-        self.refused("part.2-of-3.h5: error: is of points 1 to 20, others than those of out.1-of-3.h5",
+        self.refused("part.2-of-3.h5: error: has points 1 to 20, not those of out.1-of-3.h5",
                      "merge", three[0], self.path("part.2-of-3.h5"), *out)
         with h5py.File(three[1], "r+") as file:
             file.attrs["schema_version"] = 1
-        self.refused("out.2-of-3.h5: error: holds a sweep of schema version 1; this program reads version 3",
+        self.refused("out.2-of-3.h5: error: contains a sweep of schema version 1; this program reads version 3",
                      "merge", *three, *out)
         with h5py.File(three[1], "r+") as file:
             file.attrs["schema_version"] = 3
             file.attrs["servomill_build"] = "0.1.0+0123456789ab"
         self.refused(f"out.2-of-3.h5: error: was written by servomill 0.1.0+0123456789ab, out.1-of-3.h5 by {BUILD}: "
-                     "points of two builds may differ; run these shards again by one build", "merge", *three, *out)
+                     "points of two builds may differ; run these shards again with one build", "merge", *three, *out)
         for shard in three:
             with h5py.File(shard, "r+") as file:
                 file.attrs["servomill_build"] = "0.1.0+0123456789ab"
         self.refused(f"out.1-of-3.h5: error: was written by servomill 0.1.0+0123456789ab; this is {BUILD}, "
-                     "which would say that it wrote all of it: merge with that build", "merge", *three, *out)
+                     "which did not write all of it: merge with that build", "merge", *three, *out)
 
     def test_takes_shards_that_did_not_end(self):
         shards = self.shards(2)
@@ -89,7 +89,7 @@ class Merge(Sweeps):
             file["sweep/status"][3:] = 0
         os.rename(shards[1], shards[1] + ".partial")
         parts = ["merge", shards[0], shards[1] + ".partial", "-o", self.path("merged.h5")]
-        self.refused("merged.h5: error: out.2-of-2.h5.partial lacks 17 of its 20 points; --partial merges what there is", *parts)
+        self.refused("merged.h5: error: out.2-of-2.h5.partial lacks 17 of its 20 points; use --partial to merge the existing ones", *parts)
         done = servomill(*parts, "--partial")
         self.assertIn("17 points not run", done.stdout)
         with h5py.File(self.path("merged.h5")) as file:

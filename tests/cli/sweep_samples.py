@@ -80,9 +80,9 @@ class Samples(Sweeps):
         with open(self.path("out.csv"), newline="", encoding="utf-8") as file:
             refused = sum(row["status"] == "refused" for row in csv.DictReader(file))
         self.assertGreater(refused, 2)
-        self.assertIn(f"\n{refused} points refused: samples of identified.toml reach values that the machine does not take, and their "
-                      "quantities count without them; narrow the interval by recordings that excite these keys more, or take the keys "
-                      "out of [identified]\n", done.stderr)
+        self.assertIn(f"\n{refused} points refused: samples of identified.toml reach values that the machine does not accept and are "
+                      "excluded from its quantities; narrow the interval by recordings that excite these keys more, or remove the keys "
+                      "from [identified]\n", done.stderr)
         self.assertEqual(self.statistics_in(done.stdout)[0], 60 - refused)
 
     def test_is_not_gone_on_with_once_the_values_have_changed(self):
@@ -90,7 +90,7 @@ class Samples(Sweeps):
         self.run_sweep("-q", "-o", "part.h5", "--shard", "1/2")
         self.write_identified(26.0)
         done = self.run_sweep("-o", "out.h5", status=2)
-        self.assertEqual(done.stderr, "out.h5: error: holds a sweep of this scenario as it was before its file 'identified.toml' changed; "
+        self.assertEqual(done.stderr, "out.h5: error: contains a sweep of this scenario with an earlier version of its file 'identified.toml'; "
                                       "use --force to overwrite\n")
         self.run_sweep("-q", "-o", "part.h5", "--shard", "2/2")
         done = servomill("merge", "part.1-of-2.h5", "part.2-of-2.h5", "-o", "merged.h5", cwd=self.folder, status=2)
@@ -104,5 +104,5 @@ class Samples(Sweeps):
         with open(self.path("machine.toml"), "a", encoding="utf-8") as file:
             file.write("# another comment\n")
         done = self.run_sweep("-o", "out.h5", "--set", points, status=2)
-        self.assertEqual(done.stderr, "out.h5: error: holds a sweep of this scenario as it was before its file 'machine.toml' changed; "
+        self.assertEqual(done.stderr, "out.h5: error: contains a sweep of this scenario with an earlier version of its file 'machine.toml'; "
                                       "use --force to overwrite\n")

@@ -16,11 +16,11 @@ SAID = """\
 compensation tables of error model 'imposed' on Three-axis mill
 document: Siemens, SINUMERIK 840D sl/828D Function Manual Extended Functions (03/2013), 6FC5397-1BP40-3BA1, K3 Compensations, \
 pages 237 to 268
-reference: each table holds the line along its axis through X = 0 mm, Y = 0 mm, Z = 150 mm, tool 0 mm
+reference: each table contains the errors along its axis through X = 0 mm, Y = 0 mm, Z = 150 mm, tool 0 mm
 tables:
   Y over X: 161 points, 5 mm apart from -400 mm, up to 149.807 um; linear interpolation and rounding leave up to 4.788 um
 not in these tables: nothing
-tip at poses all over the travel, beside that of the reference: off by up to 150.000 um without these tables, 4.788 um with
+TCP at poses all over the travel, relative to the reference: off by up to 150.000 um without these tables, 4.788 um with
 verified: 18000 positions, largest difference to the error model 4.7745 um
 written: {folder}/NC_CEC.INI
 """
@@ -143,7 +143,7 @@ EC0Y = "0.2 mm/m"
     def test_a_folder_that_cannot_be_made_is_the_systems_fault(self):
         status, said, faults = servomill("table", SCENARIO, "--format", "csv", "-o", "/proc/none")
         self.assertEqual((status, said), (3, ""))
-        self.assertEqual(faults, "/proc/none: error: cannot be made: No such file or directory\n")
+        self.assertEqual(faults, "/proc/none: error: cannot be created: No such file or directory\n")
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ class Sharded(unittest.TestCase):
     def expect_going_on(self, shard, finished, there, said):
         """A run that printed SAID goes on with a shard of which so many points were finished when it was killed."""
         self.assertTrue(0 < finished < there, f"{finished} of {there} points when shard {shard} was killed")
-        self.assertIn(f"{finished} of {there} points are there already", said)
+        self.assertIn(f"{finished} of {there} points already exist", said)
 
     def expect_table_of_a_single_process(self):
         self.assertEqual(points(self.out), (POINTS, POINTS))

@@ -138,7 +138,7 @@ TEST(CProgram, DisplacesRotaryAxesIfDeclared) {
   const auto out = rewritten({turned, block(1, 1.0, {20 * mm, 0, 0, 0, 0})}, true);
   EXPECT_EQ(layout().joints(out[0].end_machine)[4], 1e-6);
   EXPECT_EQ(wrong_with({turned}),
-            "block 1 (line 3) displaces the rotary axis C, and the declaration says that none is");
+            "block 1 (line 3) displaces the rotary axis C, contrary to its declaration");
 }
 
 TEST(CProgram, RefusesBlocksThatAreNone) {
@@ -148,7 +148,8 @@ TEST(CProgram, RefusesBlocksThatAreNone) {
   far[2] = -1e4;
   const std::string first = "block 1 (line 3) ";
   EXPECT_EQ(wrong_with({block(0, 1.0, nan)}), first + "ends at Y = nan, which is not finite");
-  EXPECT_EQ(wrong_with({block(0, 1.0, far)}), first + "ends at Z = -10000 m, beyond all machines");
+  EXPECT_EQ(wrong_with({block(0, 1.0, far)}),
+            first + "ends at Z = -10000 m, implausible for any machine");
   EXPECT_EQ(wrong_with({block(0, 0.0, at)}), first + "ends at a share of 0, expected > 0 and <= 1");
   EXPECT_EQ(wrong_with({block(0, 1.5, at)}),
             first + "ends at a share of 1.5, expected > 0 and <= 1");
@@ -160,9 +161,9 @@ TEST(CProgram, RefusesBlocksThatAreNone) {
     EXPECT_TRUE(wrong_with({block(0, 1.0, at, factor)}).starts_with(first + "has the feed factor"));
   }
   EXPECT_EQ(wrong_with({block(3, 1.0, at)}),
-            "block 1 names motion 3 behind motion 0, or one that the program lacks");
+            "block 1 refers to motion 3 after motion 0, or to a missing motion");
   EXPECT_EQ(wrong_with({block(1, 1.0, {20 * mm, 0, 0, 0, 0}), block(0, 1.0, at)}),
-            "block 2 names motion 0 behind motion 1, or one that the program lacks");
+            "block 2 refers to motion 0 after motion 1, or to a missing motion");
   EXPECT_EQ(wrong_with({block(0, 1.0, {10 * mm, 1 * um, 0, 0, 0})}),
             "the arc of line 5 has no blocks, and the blocks before it end elsewhere");
 }

@@ -192,9 +192,9 @@ std::string fault_of(const Line& line, const char* strategy) {
 TEST(Linearisation, RefusesArcsOnWhichRotaryAxesTurn) {
   Line line;
   line.move.kind = MoveKind::arc;
-  EXPECT_EQ(fault_of(line, "exact"),
-            "<input>:7: error: an arc on which rotary axes turn cannot be made straight; write it "
-            "as lines");
+  EXPECT_EQ(
+      fault_of(line, "exact"),
+      "<input>:7: error: an arc with rotary axis motion cannot be linearised; write it as lines");
 }
 
 TEST(Linearisation, RefusesLinesWithoutAStraightWay) {
@@ -202,9 +202,8 @@ TEST(Linearisation, RefusesLinesWithoutAStraightWay) {
   line.Q_1[4] += 360.0 * deg;
   line.move.end_machine = line.identified.layout.words(line.Q_1);
   EXPECT_EQ(fault_of(line, "exact"),
-            "<input>:7: error: no straight way of the tool goes from these positions of the axes "
-            "to those; "
-            "it ends after 100.0 %");
+            "<input>:7: error: the TCP cannot follow a straight line between these axis positions; "
+            "it stops after 100.0 %");
 }
 
 }  // namespace

@@ -139,9 +139,9 @@ TEST(SingleRunFeedback, EndsItsOwnRunWhereItFails) {
     Q[0][1] = 1.0;
     part.advance(Q, lanes);
     EXPECT_EQ(part.failure(0), "");
-    EXPECT_EQ(part.failure(1), throws
-                                   ? "strategy failing: displacement: x beyond 1 m"
-                                   : "strategy failing: displacement returned what is not finite");
+    EXPECT_EQ(part.failure(1),
+              throws ? "strategy failing: displacement: x beyond 1 m"
+                     : "strategy failing: displacement returned a value that is not finite");
     const JointLanes& d = part.advance(Q, lanes);
     EXPECT_EQ(d[0][0], 2e-6);
     EXPECT_EQ(d[0][1], 2e-6);  // the last that was good

@@ -200,9 +200,9 @@ TEST(Table, RefusesWhatTheNcWouldRefuse) {
   EXPECT_EQ(fault_of(identified, {.layout = "axis_tables", .spacing = 1 * mm}),
             "table over X: 401 points; the NC accepts at most 256 (max_points); use a larger "
             "spacing_mm or from_mm and to_mm");
-  EXPECT_EQ(fault_of(identified, {.compensated_axis = "own"}),
-            "compensated_axis = \"own\" belongs to layout = \"axis_tables\"; a grid runs over "
-            "several axes");
+  EXPECT_EQ(
+      fault_of(identified, {.compensated_axis = "own"}),
+      "compensated_axis = \"own\" requires layout = \"axis_tables\"; a grid has several base axes");
   EXPECT_EQ(fault_of(identified, {.max_step_ratio = 20e-6}),
             "grid over X, Y, Z: slope 0.03 um/mm at X = -200.000 mm; the NC accepts at most "
             "0.02 um/mm (max_step_ratio)");

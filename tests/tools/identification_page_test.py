@@ -156,7 +156,7 @@ class Page(unittest.TestCase):
 
     def test_other_files_are_refused(self):
         write(self.file, kind="run")
-        self.assertIn("is no file of servomill identify --signals", self.run_tool(status=2).stderr)
+        self.assertIn("is not a file of servomill identify --signals", self.run_tool(status=2).stderr)
         pathlib.Path(self.file).write_text("text", encoding="utf-8")
         self.run_tool(status=2)
 

@@ -17,14 +17,14 @@ class Drawing(WithFiles):
     def test_all_that_a_run_holds_is_drawn_and_the_rest_counted(self):
         done = plot_names(self.side, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr),
-                         (0, "16 other figures would need what the file does not hold; see --why\n"))
+                         (0, "16 figures skipped: the file lacks their data (--why)\n"))
         self.assertEqual(len(self.drawn()), 7)
 
     def test_of_several_files_each_is_counted(self):
         done = plot_names(self.side, self.sweep, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
-            f"{self.side}: 16 other figures would need what the file does not hold; see --why",
-            f"{self.sweep}: 2 other figures would need what the file does not hold; see --why"]))
+            f"{self.side}: 16 figures skipped: the file lacks their data (--why)",
+            f"{self.sweep}: 2 figures skipped: the file lacks their data (--why)"]))
 
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained_where_one_asks(self):
         done = plot(self.side, "-o", self.out, "--why", dpi=style.DPI)
@@ -44,7 +44,7 @@ class Drawing(WithFiles):
             "ball_bar: not drawn, the scenario asks for no ball_bar_deviation",
             *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
               for n in ("3_2", "3_3", "4_1")),
-            "five_axis: not drawn, the tool axis does not turn"])
+            "five_axis: not drawn, the tool axis does not rotate"])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
@@ -178,8 +178,7 @@ class Drawing(WithFiles):
         self.assertEqual(self.drawn(), ["none-deviations.svg"])
         done = plot(self.none, "-o", self.out, "--figures", "figure9")
         self.assertEqual((done.returncode, done.stderr.splitlines()[-1]), (
-            2, f"{self.none}: error: figure9: case nominal, which the others are compared with, "
-            "stopped"))
+            2, f"{self.none}: error: figure9: case nominal, the baseline, stopped"))
 
     def test_nothing_is_overwritten_without_force(self):
         arguments = (self.sweep, "-o", self.out, "--figures", "lag")

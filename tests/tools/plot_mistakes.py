@@ -30,11 +30,11 @@ class OutputFiles(WithFiles):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{target}: error: {message}\n"))
 
     def test_what_cannot_be_one(self):
-        self.refuses("holds one figure, not 2 (side-figure6, side-figure9); name one with --figures, or a folder with -o",
+        self.refuses("takes one figure, not 2 (side-figure6, side-figure9); name one with --figures, or a folder with -o",
                      self.out / "a.png", self.side, "--figures", "figure6,figure9")
         self.refuses("ends in .png, but --format is svg", self.out / "a.png", self.side, "--format", "svg")
         self.refuses("figures are written as png, svg, pdf", self.out / "a.jpg", self.side)
-        self.refuses(".txt is no format of figures; they are written as png, svg, pdf; make a folder of that name first",
+        self.refuses(".txt is not a figure format; must be one of png, svg, pdf; make a folder of that name first",
                      self.out / "one.txt", self.side)
         self.refuses("is a file; figures go into a folder, or into a file that ends in .png, .svg, .pdf",
                      self.side, self.side, "--force")
@@ -42,22 +42,22 @@ class OutputFiles(WithFiles):
         before = self.side.read_bytes()
         alias = self.out / "alias.png"
         alias.symlink_to(self.side)
-        self.refuses("is one of the files that are read", alias, self.side, "--figures", "figure6", "--force")
+        self.refuses("is an input of this command", alias, self.side, "--figures", "figure6", "--force")
         self.assertEqual(self.side.read_bytes(), before)
 
 
 class Mistakes(WithFiles):
     def test_a_figure_that_is_asked_for_and_not_held(self):
-        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep", self.side, "--figures", "lag")
+        self.fails(f"{self.side}: error: lag: the file contains a run, not a sweep", self.side, "--figures", "lag")
         self.fails(f"{self.contour}: error: figure9: the imposed errors are functions of X, Y, Z, "
                    "not of X alone", self.contour, "--figures", "figure9")
-        self.fails(f"{self.side}: error: lag: the file holds a run, not a sweep\n"
+        self.fails(f"{self.side}: error: lag: the file contains a run, not a sweep\n"
                    f"{self.side}: error: nest: the scenario asks for no radial_ball_deviation", self.side, "--figures", "lag,nest")
 
     def test_of_several_figures_those_are_drawn_that_the_file_holds(self):
         done = plot_names(self.side, "-o", self.out, "--figures", "figure6,lag,nest")
         self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
-            "lag: not drawn, the file holds a run, not a sweep",
+            "lag: not drawn, the file contains a run, not a sweep",
             "nest: not drawn, the scenario asks for no radial_ball_deviation"]))
         self.assertEqual(self.drawn(), ["side-figure6.png"])
 
@@ -74,7 +74,7 @@ class Mistakes(WithFiles):
             done = plot_names(self.side, "-o", self.out / "all")
             self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is reported unasked
                 "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)",
-                "16 other figures would need what the file does not hold; see --why"]))
+                "16 figures skipped: the file lacks their data (--why)"]))
 
     def test_a_file_that_cannot_be_read_costs_no_other(self):
         missing = self.root / "missing.h5"
@@ -87,7 +87,7 @@ class Mistakes(WithFiles):
         self.assertEqual((done.returncode, done.stdout), (2, ""))
 
     def test_files_whose_figures_would_have_the_same_name(self):
-        self.fails("plot.py: error: two files are named side; draw them apart",
+        self.fails("plot.py: error: two files are named side; draw them separately",
                    self.side, self.root / "elsewhere" / "side.h5")
 
     def test_names_that_do_not_exist(self):
@@ -95,7 +95,7 @@ class Mistakes(WithFiles):
                    self.side, "--figures", "figur9")
         self.fails("plot.py: error: no format is named jpeg; there are png, svg, pdf",
                    self.side, "--format", "jpeg")
-        self.fails("plot.py: error: no result file is named; see plot.py --help")
+        self.fails("plot.py: error: expected at least one result file; see plot.py --help")
 
     def test_files_that_are_not_results(self):
         missing, text, foreign, newer = (self.root / name for name in
@@ -116,7 +116,7 @@ class Mistakes(WithFiles):
         os.mkfifo(pipe)
         done = subprocess.run([PLOT, pipe], capture_output=True, text=True, timeout=60)
         self.assertEqual((done.returncode, done.stdout, done.stderr),
-                         (2, "", f"{pipe}: error: is no regular file; a result file of servomill is read from a disk\n"))
+                         (2, "", f"{pipe}: error: is not a regular file\n"))
 
     def test_an_interrupt_ends_it_without_a_traceback(self):
         # an interrupt from a terminal goes to the whole group: the process that waits and the one that draws
@@ -136,7 +136,7 @@ class Mistakes(WithFiles):
         shutil.copy(self.side, hollow)
         with h5py.File(hollow, "a") as file:
             del file["cases/table/servo/s"]
-        self.fails(f"{hollow}: error: figure9: case table holds no s", hollow, "--figures", "figure9")
+        self.fails(f"{hollow}: error: figure9: case table has no s", hollow, "--figures", "figure9")
 
     def test_a_file_on_which_the_library_crashes(self):
         crash = ("import os, signal, sys; sys.path.insert(0, sys.argv.pop(1)); import plot; "

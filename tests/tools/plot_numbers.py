@@ -62,7 +62,7 @@ class Servo(WithFiles):
         path = self.root / "velocity_only.h5"
         servomill("bode", HERE / "side_and_contour.toml", "--axis", "Y", "--loop", "velocity", "--method", "none", "-q",
                   "-o", path)
-        self.fails(f"{path}: error: position: the file holds no position loop", path, "--figures", "position")
+        self.fails(f"{path}: error: position: the file has no position loop", path, "--figures", "position")
 
 
 class Agreement(WithFiles):

@@ -137,7 +137,7 @@ class Balls(WithFiles):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertGreater((self.out / f"{name}-{figure}.png").stat().st_size, SMALLEST_PNG)
             self.assertIn(f"{other}: not drawn, the scenario asks for no ", done.stderr)
-            self.assertIn("circular: not drawn, no section is one turn of a circle\n", done.stderr)
+            self.assertIn("circular: not drawn, no section is one full circle\n", done.stderr)
 
     def test_angle_goes_once_around_the_circle_from_zero(self):
         turn = np.radians(np.arange(0.0, 361.0))
@@ -207,7 +207,7 @@ class OwnNames(WithFiles):
                    side, "--section", "flnk=flank")
         self.fails("plot.py: error: --case table: must be NAME=YOURS, NAME one of nominal, generated, compensated, "
                    "compensated_lead, nominal_air, generated_air, compensated_air", side, "--case", "table")
-        self.fails("plot.py: error: --case names generated twice: table and gcode",
+        self.fails("plot.py: error: --case lists generated twice: table and gcode",
                    side, "--case", "generated=table", "--case", "generated=gcode")
 
 

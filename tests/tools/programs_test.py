@@ -44,13 +44,13 @@ class Mistakes(unittest.TestCase):
         for option, value in (("radius", "-1"), ("radius", "inf"), ("step", "0"), ("step", "-1"), ("feed", "0"), ("feed", "nan")):
             self.refuses(f"cone_frustum.py: error: --{option} is {value}; must be > 0", "cone_frustum.py", f"--{option}={value}")
         for step in ("0.7", "9"):    # the circle would not close; no run-in
-            self.refuses(f"cone_frustum.py: error: --step is {step}; 360 deg must be a whole number of steps of at most 8 deg",
+            self.refuses(f"cone_frustum.py: error: --step is {step}; 360 deg must be an integer number of steps of at most 8 deg",
                          "cone_frustum.py", "--step", step)
 
     def test_of_the_s_part(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "nodir" / "a.cls"
-            self.refuses(f"{path}: error: there is no folder {path.parent}", "s_part.py", path)
+            self.refuses(f"{path}: error: folder {path.parent} does not exist", "s_part.py", path)
             there = pathlib.Path(folder) / "a.cls"
             self.refuses("s_part.py: error: --height is 0; must be > 0", "s_part.py", there, "--height", "0")
             self.assertFalse(there.exists())

@@ -89,8 +89,8 @@ class Parts(unittest.TestCase):
             file["inputs"].attrs["resolved"] = file["inputs"].attrs["resolved"] + '\n[part]\nstl = "m1_part.stl"\n'
 
         for change, reason in (
-                (forget, "the part of case generated was laid on no nominal one: the scenario names none (part.stl)"),
-                (forget_with_stl, "the part of case generated could not be laid on m1_part.stl")):
+                (forget, "the part of case generated was not aligned: the scenario has no nominal part (part.stl)"),
+                (forget_with_stl, "the part of case generated could not be aligned with m1_part.stl")):
             run = self.changed(change)
             for draw in (lambda one: experiment2.best_fit(one, "generated"), experiment2.draw_quivers, experiment2.draw_superposed):
                 with self.assertRaises(files.NotInFile) as fault:
@@ -133,7 +133,7 @@ class Parts(unittest.TestCase):
             self.assertEqual(str(fault.exception), "the part of case generated was not probed at all of its points")
         with self.assertRaises(files.NotInFile) as fault:
             experiment2.best_fit(self.changed(lambda _, features: self.lose_all(features)), "generated")
-        self.assertEqual(str(fault.exception), "no point of the contours of case generated was met")
+        self.assertEqual(str(fault.exception), "no point of the contours of case generated met the surface")
 
     @staticmethod
     def lose_all(features):

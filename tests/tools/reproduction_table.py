@@ -159,13 +159,13 @@ class Faults(unittest.TestCase):
     def test_say_which_row(self):
         self.fails(self.GOOD.replace('"predicted"', '"guessed"'), "rows.toml: row a: error: basis = 'guessed'; must be one of fitted, "
                    "predicted, assumed, built_in, given")
-        self.fails(self.GOOD.replace("value = 1.0\n", ""), "rows.toml: row a: error: value is missing; where the paper gives none, "
-                   "lacks must say what it lacks")
+        self.fails(self.GOOD.replace("value = 1.0\n", ""), "rows.toml: row a: error: value is missing; if the paper gives none, "
+                   "lacks must name what is missing")
         self.fails(self.GOOD.replace("value = 1.0\n", 'meaning = "below"\nvalue = -1.0\n'),
                    "rows.toml: row a: error: value = -1; must be >= 0 where it limits a magnitude")
         self.fails(self.GOOD.replace('tolerance_reason = "t"\n', ""), "rows.toml: row a: error: tolerance_reason is missing")
         self.fails(self.GOOD.replace('why = "w"\n', ""), "rows.toml: row a: error: why is missing")
-        self.fails(self.GOOD + self.GOOD, "rows.toml: row a: error: stands there 2 times")
+        self.fails(self.GOOD + self.GOOD, "rows.toml: row a: error: appears 2 times")
 
     def test_the_program_is_not_there(self):
         done = subprocess.run([sys.executable, "-B", "-m", "reproduction", "nowhere/servomill", "-o", tempfile.gettempdir()],

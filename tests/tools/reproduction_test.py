@@ -221,7 +221,7 @@ class AScenarioSets(unittest.TestCase):
                 ("axis.Z.stiffness", {}, "axis.Z.stiffness of r is 20 N/um, not in the unit of the key"),
                 ("axis.Z.stiffness", {"unit": "N/m"}, "axis.Z.stiffness of r is 20 N/um, not in N/m"),
                 ("axis.Z.teeth", {"unit": "mm"}, "axis.Z.teeth of r is 4, not in mm"),
-                ("axis.Z.name", {}, "axis.Z.name of r is no number"),
+                ("axis.Z.name", {}, "axis.Z.name of r is not a number"),
                 ("axis.Z.lead_mm", {}, "r sets no axis.Z.lead_mm"),
                 ("axis.Z.teeth.first", {}, "r sets no axis.Z.teeth.first"),
                 ("tool.2.diameter_mm", {}, "r sets no tool.2.diameter_mm")):

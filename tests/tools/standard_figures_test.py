@@ -99,7 +99,7 @@ class Figures(unittest.TestCase):
 
     def test_wrong_files_are_refused(self):
         self.assertIn("reports.json:1: error:", self.draw(status=2, text="no json\n").stderr)
-        self.assertIn("is no report of servomill evaluate --json", self.draw(status=2, text="{}\n").stderr)
+        self.assertIn("is not a report of servomill evaluate --json", self.draw(status=2, text="{}\n").stderr)
         self.assertIn("is empty", self.draw(status=2, text="").stderr)
         self.draw(circle())
         self.assertIn("exists; use --force", self.draw(circle(), status=2).stderr)

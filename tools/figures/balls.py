@@ -63,7 +63,7 @@ def draw_nest(run):
         if turning:
             columns.append((sections, turning[0]))
     if not columns:
-        raise NotInFile("in no section one rotary axis turns alone")
+        raise NotInFile("no section moves exactly one rotary axis")
     looks = {case.name: _look(run, case.name) for case in cases}
     width = 4.4 * len(columns) + 0.8
     across, lines = style.legend_shape(looks.values(), width)
@@ -87,7 +87,7 @@ def draw_nest(run):
             ax.set_ylim(low, high)
         grid[row][0].set_ylabel(f"{name} of the table, µm")
     figure.align_ylabels([row[0] for row in grid])
-    style.headline(figure, "R-test: path of the ball in its nest" + _before_and_after(run, cases))
+    style.headline(figure, "R-test: displacement of the ball in the sensor nest" + _before_and_after(run, cases))
     return figure
 
 

@@ -21,7 +21,7 @@ def draw(responses, loop):
     """Columns are axes; rows magnitude and phase."""
     axes = [letter for letter in responses.axes if f"{loop}_loop" in responses.axes[letter]]
     if not axes:
-        raise NotInFile(f"the file holds no {loop} loop")
+        raise NotInFile(f"the file has no {loop} loop")
     figure, strip, grid = style.panels([1.15, 1.0], (max(6.6, 5.1 * len(axes)), 6.4),
                                        columns=len(axes))
     curves = [name for name in LOOKS if name.startswith(loop)]

@@ -43,7 +43,7 @@ FIGURES = (
     Figure("samples", "sweep", "quantities over sampled parameters and how they are distributed", sweeps.draw_samples),
     Figure("circular", "run", "circular test: radial deviation as a ball bar shows it", circular.draw),
     Figure("reversals", "run", "circular test: where the axes reverse", circular.draw_reversals),
-    Figure("nest", "run", "R-test: path of the ball in its nest of sensors", balls.draw_nest),
+    Figure("nest", "run", "R-test: displacement of the ball in the sensor nest", balls.draw_nest),
     Figure("ball_bar", "run", "BK4: length of a ball bar around a five-axis circle", balls.draw_bar),
     Figure("li_3_2", "run", "one segment: how the nonlinear error of rotary axes is distributed",
            nonlinear.draw_distribution),

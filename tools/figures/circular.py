@@ -78,7 +78,7 @@ def turns_of(run):
                          if (turn := turn_of(case, section)) is not None]
              for case in run.finished_cases()}
     if not any(found.values()):
-        raise NotInFile("no section is one turn of a circle")
+        raise NotInFile("no section is one full circle")
     return {name: turns for name, turns in found.items() if turns}
 
 

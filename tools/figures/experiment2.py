@@ -113,7 +113,7 @@ def fitted_plane(points, deviation):
     """Plane through the deviations (um) over X and Y (mm) of points that were met."""
     good = np.isfinite(deviation)
     if good.sum() < 3:
-        raise NotInFile("fewer than three points of the plane were met")
+        raise NotInFile("fewer than three points of the plane met the surface")
     matrix = np.column_stack([np.ones(good.sum()), points[good, 0], points[good, 1]])
     c, a, b = np.linalg.lstsq(matrix, deviation[good], rcond=None)[0]
     return FittedPlane(c, a, b, deviation[good] - matrix @ [c, a, b])
@@ -192,16 +192,16 @@ class FittedPart:
 
 
 def best_fit(run, case):
-    """All probed features of a part with normals in XY, as laid on its nominal part (part.stl of the scenario)."""
+    """All probed features of a part with normals in XY, as aligned with its nominal part (part.stl of the scenario)."""
     features = {name: cases[case] for name, cases in parts.probed(run).items() if case in cases and cases[case].is_level()}
     if not features:
         raise NotInFile(f"no probed feature of case {case} has normals in XY")
     if any(one.aligned_position is None for one in features.values()):
         stl = run.scenario.get("part", {}).get("stl")
-        raise NotInFile(f"the part of case {case} could not be laid on {stl}" if stl else
-                        f"the part of case {case} was laid on no nominal one: the scenario names none (part.stl)")
+        raise NotInFile(f"the part of case {case} could not be aligned with {stl}" if stl else
+                        f"the part of case {case} was not aligned: the scenario has no nominal part (part.stl)")
     if all(one.missed().all() for one in features.values()):
-        raise NotInFile(f"no point of the contours of case {case} was met")
+        raise NotInFile(f"no point of the contours of case {case} met the surface")
     nominal, place, deviation, normal, sigma = (np.concatenate([getattr(one, name) for one in features.values()])
                                                 for name in ("nominal", "aligned_position", "aligned_deviation", "normal", "sigma"))
     ends = np.cumsum([len(one.mean) for one in features.values()])

@@ -61,7 +61,7 @@ def draw(run):
         raise NotInFile("no feed moves")
     axes = first.column("tool_axis_nominal")[rows[first.name]]
     if np.degrees(np.linalg.norm(axes - axes[0], axis=1).max()) < TURNS:
-        raise NotInFile("the tool axis does not turn")
+        raise NotInFile("the tool axis does not rotate")
     looks = {case.name: style.look_of(run, case.name) for case in cases}
     columns, lines = style.legend_shape(looks.values(), WIDTH)
     figure, strip, grid = style.panels([1.5, 0.8, 0.8], (WIDTH, 9.1 + 0.26 * lines), legend_lines=lines)

@@ -39,5 +39,5 @@ def parse(texts, allowed, option):
             raise InputError(f"plot.py: error: --{option} {text}: no figure is about a {option} named {name}; " +
                              (f"did you mean {near[0]}?" if near else "there are " + ", ".join(allowed)))
         if found.setdefault(name, own) != own:
-            raise InputError(f"plot.py: error: --{option} names {name} twice: {found[name]} and {own}")
+            raise InputError(f"plot.py: error: --{option} lists {name} twice: {found[name]} and {own}")
     return found

@@ -34,7 +34,7 @@ class ResultFile:
         if self.path.is_dir():
             raise InputError(f"{path}: error: is a folder, not a result file of servomill")
         if not self.path.is_file():   # opening a pipe would wait for whoever writes into it
-            raise InputError(f"{path}: error: is no regular file; a result file of servomill is read from a disk")
+            raise InputError(f"{path}: error: is not a regular file")
         try:
             self.h5 = h5py.File(self.path, "r")
         except OSError as fault:
@@ -93,7 +93,7 @@ class Case:
         """A dataset (samples), or the column of one axis of it."""
         if (name, letter) not in self._read:
             if name not in self._servo:
-                raise NotInFile(f"case {self.name} holds no {name}")
+                raise NotInFile(f"case {self.name} has no {name}")
             data = self._servo[name]
             if letter is not None and letter not in self.labels(name):
                 raise NotInFile(f"{name} has no axis {letter}")
@@ -124,7 +124,7 @@ class Run(ResultFile):
     def __init__(self, path):
         super().__init__(path)
         if self.kind != "run":
-            raise InputError(f"{path}: error: holds a {self.kind}, not a run")
+            raise InputError(f"{path}: error: contains a {self.kind}, not a run")
         groups = self.h5.get("cases", {})
         order = [one.get("name") for one in self.scenario.get("case", [])]
         names = sorted(groups, key=lambda n: (order.index(n) if n in order else len(order), n))
@@ -141,7 +141,7 @@ class Run(ResultFile):
         for name in own or named + ["nominal"]:
             if name in self.cases:
                 if not self.cases[name].finished:
-                    raise NotInFile(f"case {name}, which the others are compared with, stopped")
+                    raise NotInFile(f"case {name}, the baseline, stopped")
                 return self.cases[name]
         raise NotInFile(f"no case named {self.names.case('nominal')} to compare with" + self.case_hint("nominal"))
 
@@ -230,9 +230,9 @@ class Sweep(ResultFile):
     def __init__(self, path):
         super().__init__(path)
         if self.kind != "sweep":
-            raise InputError(f"{path}: error: holds a {self.kind}, not a sweep")
+            raise InputError(f"{path}: error: contains a {self.kind}, not a sweep")
         if "sweep/status" not in self.h5:
-            raise InputError(f"{path}: error: was left before its table was complete")
+            raise InputError(f"{path}: error: has an incomplete table")
         table = self.h5["sweep"]
         self.run = table["status"][:] != 0
         self.done = table["status"][:][self.run] == DONE
@@ -290,7 +290,7 @@ class Responses(ResultFile):
         super().__init__(path)
         self.axes = dict(self.h5.get(self.kind, {}))
         if not self.axes:
-            raise InputError(f"{path}: error: holds no {self.kind} of any axis")
+            raise InputError(f"{path}: error: contains no {self.kind} of any axis")
 
     def unit(self, letter, curve):
         """Unit of the magnitude of a curve, as a reader writes it."""
@@ -345,7 +345,7 @@ class Budgets(ResultFile):
         self.budgets = [Budget(group) for group in self.h5.get("budget", {}).values()
                         if not str(group.attrs["note"])]
         if not self.budgets:
-            raise InputError(f"{path}: error: holds no budget of a case that finished")
+            raise InputError(f"{path}: error: contains no budget of a finished case")
 
 
 KINDS = {"budget": Budgets, "run": Run, "sweep": Sweep, "bode": Responses, "step": Responses, "compensate": CompensatedProgram}
@@ -369,7 +369,7 @@ def open_result(path):
     except DAMAGES as fault:
         raise damaged(path, fault) from None
     if kind not in KINDS:
-        raise InputError(f"{path}: error: holds a {kind}; figures are drawn from " +
+        raise InputError(f"{path}: error: contains a {kind}; figures are drawn from " +
                          ", ".join(KINDS))
     try:
         return KINDS[kind](path)

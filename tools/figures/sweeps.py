@@ -84,7 +84,7 @@ def draw_curves(sweep):
     x = max(numbers, key=lambda one: len(one.distinct()))
     groups = groups_of([one for one in parameters if one is not x], len(x.values))
     if len(groups) > MOST_LINES:
-        raise NotInFile(f"the sweep varies too much beside {x.key}: {len(groups)} lines a case" +
+        raise NotInFile(f"the sweep varies too many keys in addition to {x.key}: {len(groups)} lines per case" +
                         "".join(f"; {one.key}" for one in parameters if one is not x))
     shown, left_out = first_panels(questions(sweep))
     rows, columns = grid_of(len(shown))

@@ -31,7 +31,7 @@ def scenario_key(results, run, key, unit=""):
     try:
         value = float(number)
     except ValueError:
-        raise NotInFile(f"{key} of {run} is no number") from None
+        raise NotInFile(f"{key} of {run} is not a number") from None
     if written.strip() != unit:
         raise NotInFile(f"{key} of {run} is {node}, not in {unit or 'the unit of the key'}")
     return value
@@ -43,7 +43,7 @@ def _over_sweep(results, run, case, quantity):
         if one["case"] == case and one["quantity"] == quantity:
             good = np.isfinite(one["value"])
             if good.sum() < 2 or not good.all():
-                raise NotInFile(f"{quantity} of {case} stands at {good.sum()} of {good.size} points of {run}")
+                raise NotInFile(f"{quantity} of {case} has values at {good.sum()} of {good.size} points of {run}")
             return sweep, good, one["value"][good]
     raise NotInFile(f"{run} holds no {quantity} of {case}")
 

@@ -45,7 +45,7 @@ def _row(table, where):
     names = {field.name: field for field in dataclasses.fields(Row)}
     for key in table:
         if key not in names:
-            raise InputError(f"{where}: error: {key} is no key of a row; there are {', '.join(names)}")
+            raise InputError(f"{where}: error: {key} is not a key of a row; must be one of {', '.join(names)}")
     for name, field in names.items():
         if field.default is dataclasses.MISSING and name not in table:
             raise InputError(f"{where}: error: {name} is missing")
@@ -57,7 +57,7 @@ def _row(table, where):
     if compared and row.meaning == "between" and len(row.limits) != 2:
         raise InputError(f"{where}: error: limits must have two numbers")
     if compared and row.meaning != "between" and row.value is None:
-        raise InputError(f"{where}: error: value is missing; where the paper gives none, lacks must say what it lacks")
+        raise InputError(f"{where}: error: value is missing; if the paper gives none, lacks must name what is missing")
     if compared and row.meaning == "below" and row.value < 0.0:
         raise InputError(f"{where}: error: value = {row.value:g}; must be >= 0 where it limits a magnitude")
     if compared and not row.tolerance_reason:
@@ -95,5 +95,5 @@ def read(path=ROWS):
     ids = [row.id for row in rows]
     for one in ids:
         if ids.count(one) > 1:
-            raise InputError(f"{pathlib.Path(path).name}: row {one}: error: stands there {ids.count(one)} times")
+            raise InputError(f"{pathlib.Path(path).name}: row {one}: error: appears {ids.count(one)} times")
     return rows

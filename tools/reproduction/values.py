@@ -38,7 +38,7 @@ class Results:
         if run not in self._compared:
             table = self.opened(run).h5.get("comparison")
             if table is None:
-                raise NotInFile(f"{run} was left before its comparison was complete")
+                raise NotInFile(f"{run} has an incomplete comparison")
             self._compared[run] = [
                 {**{key: str(text) for key, text in row.attrs.items()}, "value": float(row["value"][()]),
                  "unit": str(row["value"].attrs["units"])} for row in table.values()]
@@ -79,7 +79,7 @@ def _compared(wanted, results, unit):
     if not math.isfinite(rows[0]["value"]):
         raise NotInFile(f"the value for {what} is not a number" + (f": {rows[0]['note']}" if "note" in rows[0] else ""))
     if "points of" in rows[0].get("note", ""):
-        raise NotInFile(f"the value for {what} is that of a part of its points: {rows[0]['note']}")
+        raise NotInFile(f"the value for {what} covers only part of its points: {rows[0]['note']}")
     if unit is not None and rows[0]["unit"] != unit:
         raise NotInFile(f"{what} is in {rows[0]['unit']}, not in {unit}")
     return rows[0]["value"]

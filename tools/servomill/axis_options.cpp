@@ -19,9 +19,9 @@ namespace po = boost::program_options;
 
 void add_axis_options(Options& options) {
   options.add()("axis,a", po::value<std::string>()->value_name("Y"),
-                "axis, or several (X,Y), or all");
+                "axis, several axes (X,Y), or all");
   options.add()("case", po::value<std::string>()->value_name("NAME"),
-                "takes the machine as this case of the scenario has it");
+                "uses the machine of this case of the scenario");
   add_plugin_option(options);
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as for servomill run, such as "
@@ -79,7 +79,9 @@ std::optional<double> quantity_option(const Options& options, const std::string&
   const auto& text = options.get<std::string>(name);
   const sim::config::ScaledText scaled = sim::config::scale_option(text, quantity, bare_unit);
   if (scaled.complaint.empty()) return scaled.si;
-  throw InputError({"--" + name}, fmt::format("'{}' {}", text, scaled.complaint));
+  throw InputError({"--" + name},
+                   fmt::format("'{}'{} {}", text, scaled.complaint.front() == '\'' ? ":" : "",
+                               scaled.complaint));
 }
 
 std::optional<double> positive_option(const Options& options, const std::string& name,
@@ -151,7 +153,8 @@ std::string axis_headline(const sim::model::MachineSettings& machine, int joint,
       machine.chain.layout.letter_of(joint), machine.name, c.Kv, c.Kp / c.J,
       c.Ki > 0.0 ? fmt::format(" with reset time {:.4g} ms", c.Kp / c.Ki / ms) : "",
       ms_of(p.position), ms_of(p.velocity), ms_of(p.current));
-  if (reading_delay > 0) out += fmt::format(", reading {:g} us old", p.seconds(reading_delay) / us);
+  if (reading_delay > 0)
+    out += fmt::format(", feedback delay {:g} us", p.seconds(reading_delay) / us);
   return out;
 }
 

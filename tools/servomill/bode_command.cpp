@@ -156,7 +156,9 @@ void print_margins(const sim::frequency::BodeResult& result) {
   const sim::frequency::ClosedLoop& c = result.closed;
   if (!result.stable) {  // distances to oscillation mean nothing
     if (result.loop == sim::frequency::BodeLoop::position && !result.has_stable_velocity_loop) {
-      fmt::print("  the velocity loop inside is unstable: no Kv helps, lower velocity_bandwidth\n");
+      fmt::print(
+          "  the velocity loop inside is unstable: no Kv stabilises it, lower "
+          "velocity_bandwidth\n");
     } else if (std::isfinite(m.reduction)) {
       fmt::print("  the gain must fall   by {:.2f} dB or more\n", decibel(m.reduction));
     }
@@ -260,19 +262,19 @@ void add_options(Options& options) {
                 "sine (one frequency after the other), multisine (all at once, Schroeder phases) "
                 "or none (exact only)");
   options.add()("amplitude", po::value<std::string>()->value_name("\"20 um\""),
-                "peak of what is fed in: a length (position), a velocity (velocity), a force "
+                "peak of the excitation: a length (position), a velocity (velocity), a force "
                 "(compliance), angles and torques for a rotary axis; bare numbers in mm, mm/s, N, "
-                "deg, deg/s, Nm (default: the velocity loop "
-                "takes 2 % of the current limit)");
-  options.add()("velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
-                "steady velocity beneath, so that friction does not stick; bare numbers in mm/min "
-                "or deg/min (default: 0 without "
-                "friction and backlash, else four times the velocity of the amplitude)");
+                "deg, deg/s, Nm (default: the velocity loop takes 2 % of the current limit)");
+  options.add()(
+      "velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
+      "superimposed constant velocity, so that the axis does not stick; bare numbers in mm/min "
+      "or deg/min (default: 0 without "
+      "friction and backlash, else four times the velocity of the amplitude)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the curves to a result file, for tools/plot.py");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object a frequency and curve, and one a loop");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("json", "prints one JSON object per frequency and curve, and one per loop");
+  options.add()("quiet,q", "prints only faults");
 }
 
 // All loops are checked before the first is measured.
@@ -281,7 +283,7 @@ std::vector<sim::frequency::BodeLoop> checked_loops(const Options& options,
                                                     const std::vector<int>& joints) {
   std::vector<sim::frequency::BodeLoop> loops = loops_of(options);
   if (loops.size() > 1 && options.has("amplitude")) {
-    throw InputError({"--amplitude"}, "needs one --loop: its unit is that of what is fed in");
+    throw InputError({"--amplitude"}, "needs one --loop: its unit depends on the loop");
   }
   for (const int joint : joints) {
     for (const sim::frequency::BodeLoop loop : loops) {

@@ -21,8 +21,8 @@ namespace po = boost::program_options;
 
 std::string causes_help() {
   std::string out =
-      "Splits the residuals of a scenario's cases into what each cause has of them, by running\n"
-      "each case again without it, and compares the signals at equal arc length. Causes:\n";
+      "Splits the residuals of a scenario's cases into the contributions of their causes: runs "
+      "each\ncase again without each cause and compares the signals at equal arc length. Causes:\n";
   for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
     const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
     out += fmt::format("  {:<15}{}\n", info.name, info.help);
@@ -51,7 +51,7 @@ void must_be_among(const std::string& name, const Names& names, const char* opti
   throw InputError(
       {option},
       fmt::format("no {} '{}'{}", what, name,
-                  !near.empty() ? near : fmt::format("; there are: {}", fmt::join(views, ", "))));
+                  !near.empty() ? near : fmt::format("; known are: {}", fmt::join(views, ", "))));
 }
 
 // Quantities of the scenario that the options choose.
@@ -65,7 +65,7 @@ std::vector<sim::model::QuantitySpec> chosen(const sim::model::Scenario& scenari
     throw InputError({options.word()},
                      "has no quantity with a budget (imposed_error_residual, realised_ratio, "
                      "lag_time, trajectory_difference, tool_deviation, following_error); "
-                     "ask for --quantity tool_deviation or following_error, which each case has");
+                     "use --quantity tool_deviation or following_error, which every case has");
   }
   if (options.has("section")) {
     for (sim::model::QuantitySpec& one : all) one.sections_place = {"--section"};
@@ -141,7 +141,7 @@ void print_budget(const sim::run::Budget& budget) {
   const double sum = budget.sum_at_place();
   fmt::print("  {:<15} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
   print_line("remainder", budget.remainder.at_place, share(budget.remainder.at_place),
-             budget.remainder.rms, "what causes do together");
+             budget.remainder.rms, "combined effects of causes");
   print_line("residual", whole, 1.0, budget.residual.rms, "");
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
@@ -185,9 +185,9 @@ void add_budget_options(Options& options) {
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as in run");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
-                "threads (default: one a core); results do not depend on it");
+                "threads (default: one per core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object a budget");
+  options.add()("json", "prints one JSON object per budget");
   options.add()("quiet,q", "no progress bar");
   add_plugin_option(options);
 }

@@ -19,43 +19,43 @@ namespace calibration = sim::calibration;
 
 void add_calibrate_options(Options& options) {
   options.add()("machine", po::value<std::string>()->value_name("MACHINE.toml"),
-                "machine that was measured (default: the one that the readings name)");
+                "measured machine (default: the machine of the readings)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
-                "writes the machine with the identified errors over it, their uncertainty and "
-                "covariance");
+                "writes the machine with the identified errors, their uncertainty and covariance");
   options.add()("table", po::value<std::string>()->value_name("OUT.csv"),
                 "writes every error along the travel with its standard uncertainty");
   options.add()("model", po::value<std::string>()->default_value("identified")->value_name("NAME"),
-                "name of the error model in it: [errors.NAME]");
+                "name of the identified error model: [errors.NAME]");
   options.add()("make-up", po::value<std::string>()->value_name("FOLDER"),
-                "writes readings there as they would be on the machine with the errors of --truth, "
-                "and calibrates nothing");
-  options.add()("truth", po::value<std::string>()->value_name("NAME"),
+                "writes synthetic readings of the machine with the errors of --machine-errors to "
+                "this folder, without calibrating");
+  options.add()("machine-errors", po::value<std::string>()->value_name("NAME"),
                 "error model of the machine file, for --make-up");
   options.add()("seed", po::value<int>()->default_value(1)->value_name("N"),
-                "of the noise of --make-up");
+                "seed of the noise of --make-up");
   options.add()("force,f", "replaces outputs that exist");
-  options.add()("quiet,q", "prints nothing but faults and warnings");
+  options.add()("quiet,q", "prints only faults and warnings");
 }
 
 const plant::ErrorModel& truth_of(const Options& options,
                                   const sim::input::MachineDescription& machine) {
   std::vector<std::string_view> names;
   for (const auto& [name, model] : machine.errors) names.push_back(name);
-  if (!options.has("truth")) {
-    throw InputError({"--truth"}, fmt::format("is missing; the machine has the error models {}",
-                                              fmt::join(names, ", ")));
+  if (!options.has("machine-errors")) {
+    throw InputError(
+        {"--machine-errors"},
+        fmt::format("is missing; the machine has the error models {}", fmt::join(names, ", ")));
   }
-  const auto& name = options.get<std::string>("truth");
+  const auto& name = options.get<std::string>("machine-errors");
   const auto found = machine.errors.find(name);
   if (found != machine.errors.end()) return found->second;
-  throw InputError({"--truth"}, fmt::format("'{}' is no error model of the machine{}", name,
-                                            did_you_mean(name, names)));
+  throw InputError({"--machine-errors"}, fmt::format("'{}' is not an error model of the machine{}",
+                                                     name, did_you_mean(name, names)));
 }
 
 void print_suggestions(const std::vector<std::string>& suggestions) {
   if (suggestions.empty()) return;
-  fmt::print("\nWould be determined:\n");
+  fmt::print("\nThese measurements would determine them:\n");
   for (const std::string& suggestion : suggestions) fmt::print("  {}\n", suggestion);
 }
 
@@ -64,10 +64,10 @@ void print_suggestions(const std::vector<std::string>& suggestions) {
 int calibrate_command(const Arguments& arguments) {
   Options options(
       "calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
-      "Finds the geometric errors of a machine from readings of lasers, squares, ball\n"
-      "bars, R-tests and touch probes: adjusts all of them at once, says how well each\n"
-      "error is known, which ones the readings cannot tell apart, and which readings\n"
-      "contradict the others. The kinds of readings: sim/readings/README.md.",
+      "Finds the geometric errors of a machine from readings of lasers, squares, ball\nbars, "
+      "R-tests and touch probes: adjusts all of them at once and reports the\nuncertainty of each "
+      "error, the errors that the readings cannot separate, and the\nreadings that contradict the "
+      "others. Kinds of readings: sim/readings/README.md.",
       "READINGS.toml");
   add_calibrate_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -13,9 +13,9 @@ int canon_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options("canon",
                   "PROGRAM [--tools TABLE] [--parameter '#101=1394']... [--machine M.toml]...",
-                  "Prints the canonical moves of a program, one JSON object a line: lengths in mm, "
-                  "angles in deg, end points in work and machine coordinates. Under G43.4, G43.5 "
-                  "and G68.2 (\"control\") the latter are the tip in the workpiece.",
+                  "Prints the canonical moves of a program, one JSON object per line: lengths in "
+                  "mm, angles in deg, end points in work and machine coordinates. Under G43.4, "
+                  "G43.5 and G68.2 (\"control\") the latter are the TCP in the workpiece.",
                   "PROGRAM");
   add_program_options(options);
   add_machine_option(options);

@@ -27,9 +27,9 @@ void declare(Options& options) {
                 "programs: position of G54 in the machine, mm and deg; G55:X=10,R=30 for another "
                 "one and with a rotation");
   options.add()("tool-length", texts("1=50"),
-                "programs: length of tool 1 (in mm, or \"1=50 mm\"), in place of that of --tools");
-  options.add()("json", "prints one JSON object a file");
-  options.add()("quiet,q", "prints nothing but faults");
+                "programs: length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
+  options.add()("json", "prints one JSON object per file");
+  options.add()("quiet,q", "prints only faults");
 }
 
 std::string to_json(const std::vector<Fault>& faults) {

@@ -9,10 +9,9 @@ namespace servomill::tools {
 int compare_command(const Arguments& arguments) {
   Options options(
       "compare", "OUT.h5...",
-      "Prints the comparison that the scenarios of result files ask for, evaluated anew "
-      "from the recorded signals.",
+      "Evaluates the comparison of result files again from their recorded signals and prints it.",
       "OUT.h5");
-  options.add()("json", "prints one JSON object a line");
+  options.add()("json", "prints one JSON object per line");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);

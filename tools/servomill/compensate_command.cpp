@@ -82,7 +82,8 @@ std::string program_name(const Options& options) {
   const std::string name = plain_name(stem);
   if (is_file && name != stem && dialect_of(options) == sim::programs::Dialect::heidenhain) {
     throw InputError({"--output " + output},
-                     "must be called by letters, digits and '_', as the program in it is");
+                     "must consist of letters, digits and '_', because the program takes its name "
+                     "from the file");
   }
   return upper(name);
 }
@@ -192,7 +193,7 @@ void add_correction_options(Options& options) {
   options.add()("machine,m", text()->value_name("M.toml"), "machine file, with its [errors.NAME]");
   options.add()("errors", text()->value_name("E.toml"),
                 "file of error models [errors.NAME], instead of the machine's own");
-  options.add()("model", text()->value_name("NAME"), "error model; needed if there are several");
+  options.add()("model", text()->value_name("NAME"), "error model; required if there are several");
   options.add()("set", texts()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
@@ -205,9 +206,9 @@ void add_correction_options(Options& options) {
       "max-block", text()->value_name("\"1 mm\""),
       "longest block where the correction varies, bare numbers in mm; default: as long as "
       "the tolerance allows");
-  options.add()("correct-rapids", "corrects G0 along its path, too");
+  options.add()("correct-rapids", "also corrects G0 along its path");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
-                "axes that carry the correction: X, Y and Z only, or rotary axes, too");
+                "axes that carry the correction: X, Y and Z only, or all including rotary axes");
 }
 
 void add_control_options(Options& options) {
@@ -221,21 +222,21 @@ void add_control_options(Options& options) {
                 "fanuc: number of the program; default: that of a file called 1234 or O1234");
   options.add()(
       "resolution", text()->value_name("\"1 um\""),
-      "other dialects: least step of a position, bare numbers in um; default: 1 um (IS-B), "
+      "other dialects: resolution of positions, bare numbers in um; default: 1 um (IS-B), "
       "siemens 10 nm");
   options.add()("smoothing", text()->value_name("\"10 um\""),
                 "other dialects: switches the control's smoothing on for feeds (G5.1 Q1, CYCLE832, "
-                "cycle 32) with this tolerance; short blocks run faster, and the path leaves the "
-                "corrected one by as much");
+                "cycle 32) with this tolerance; short blocks run faster, and the path deviates "
+                "from the corrected one by as much");
   options.add()("preset", text()->value_name("N"),
                 "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
                 "the active preset is G54");
-  options.add()("without", text()->value_name("polar,mirror"),
-                "fanuc: what the control does not have, so that the code that would end it is left "
-                "out (it is an alarm there): polar (G15), scaling (G50), mirror (G50.1), "
-                "surface-speed (G97), preset (G92.1); and settings that it does not have: rollover "
-                "of rotary axes (No. 1008#0), length-b (No. 5001#1: without it arcs in G18 and G19 "
-                "stay arcs). Default: it may have each");
+  options.add()(
+      "without", text()->value_name("polar,mirror"),
+      "fanuc: options that the control lacks, so that the code that cancels them is omitted (it "
+      "would be an alarm): polar (G15), scaling (G50), mirror (G50.1), surface-speed (G97), preset "
+      "(G92.1); and settings that it lacks: rollover of rotary axes (No. 1008#0), length-b (No. "
+      "5001#1: without it arcs in G18 and G19 stay arcs). Default: it may have all of them");
 }
 
 void add_other_options(Options& options) {
@@ -246,7 +247,7 @@ void add_other_options(Options& options) {
                 "position of G54 in the machine, such as X=10,Y=-5 (mm, deg) or \"X=10 mm\"; "
                 "G55:X=10,R=30 for another one with a rotation; may be given once per axis");
   options.add()("tool-length", texts()->value_name("1=50"),
-                "length of tool 1 (in mm, or \"1=50 mm\"), in place of that of --tools");
+                "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
   options.add()("start", text()->value_name("X=0,Y=0"),
                 "machine position before the program, for programs that feed before every axis has "
                 "been programmed");
@@ -257,7 +258,7 @@ void add_other_options(Options& options) {
                 "the rms");
   options.add()("json", "prints what it changed as JSON");
   options.add()("force,f", "replaces OUT if it exists");
-  options.add()("quiet,q", "prints nothing but warnings and faults");
+  options.add()("quiet,q", "prints only warnings and faults");
 }
 
 }  // namespace

@@ -23,15 +23,12 @@ std::string summary() {
   }
   out +=
       "The last columns say how many significant digits of the value are certain, and print it "
-      "with\n"
-      "these. The error is taken as twice the sum of all changes (an error that halves with its\n"
-      "step is twice the change), but no less than half the resolution of the recording or of the\n"
-      "scales; an r behind the digits says that the resolution limits them. Blocks whose length "
-      "or\n"
-      "tolerance the scenario sets to another value than the default, such as an identified one,\n"
-      "are an input: they are not halved, and named below the table. Where no drive is to be "
-      "solved\n"
-      "for, or no strategy writes blocks, nothing changes.";
+      "with\nthese. The error is taken as twice the sum of all changes (an error that halves with "
+      "its\nstep is twice the change), but at least half the resolution of the recording or of "
+      "the\nscales; an r after the digits means that the resolution limits them. Blocks whose "
+      "length or\ntolerance the scenario sets to another value than the default, such as an "
+      "identified one,\nare an input: they are not halved, and named below the table. Where no "
+      "drive is to be solved\nfor, or no strategy writes blocks, nothing changes.";
   return out;
 }
 
@@ -47,7 +44,7 @@ std::set<sim::run::Refinement> chosen(const Options& options) {
     if (found == names.end()) {
       const std::string near = did_you_mean(name, names);
       throw InputError({"--halve"}, fmt::format("no step '{}'{}", name,
-                                                near.empty() ? fmt::format("; there are: {}",
+                                                near.empty() ? fmt::format("; known are: {}",
                                                                            fmt::join(names, ", "))
                                                              : near));
     }
@@ -63,12 +60,12 @@ int converge_command(const Arguments& arguments) {
   Options options("converge", "SCENARIO.toml [--halve STEP]... [--set KEY=VALUE]...", text,
                   "SCENARIO.toml");
   options.add()("halve", po::value<std::vector<std::string>>()->value_name("STEP"),
-                "only this step (default: each of them)");
+                "only this step (default: all)");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as in run");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
-                "threads (default: one a core); results do not depend on it");
-  options.add()("json", "prints one JSON object a line of the comparison");
+                "threads (default: one per core); results do not depend on it");
+  options.add()("json", "prints one JSON object per line of the comparison");
   options.add()("quiet,q", "no progress bar");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;

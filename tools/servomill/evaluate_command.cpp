@@ -35,12 +35,12 @@ void add_evaluate_options(Options& options) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add()("standard", text("NAME"),
                 "iso230-2 (or 2), iso230-4, iso230-6, iso230-7, iso10791-6");
-  options.add()("table", text("OUT.csv"), "writes the parameters, one a row");
+  options.add()("table", text("OUT.csv"), "writes the parameters, one per row");
   options.add()("machine", text("MACHINE.toml"),
-                "machine of READINGS.toml (default: the one that it names)");
+                "machine of READINGS.toml (default: its own machine)");
   options.add()("radius", text("R"), "iso230-4: nominal radius of the circle in CSV files, mm");
   options.add()("distance", text("D"),
-                "iso230-7: from the sensors x, y to x2, y2 along the axis, mm");
+                "iso230-7: axial distance from the sensors x, y to x2, y2, mm");
   options.add()("period", text("P"),
                 "iso230-2: prints the periodic error of this period, mm or deg");
   options.add()("uncertainty", text("LASER.toml"),
@@ -51,9 +51,9 @@ void add_evaluate_options(Options& options) {
   options.add()("unit", text("UNIT"), "of that position, where the log does not name it");
   options.add()("standstill", text("T"), "least time that a target holds (default: 1 s)");
   options.add()("seed", po::value<std::uint64_t>()->default_value(1)->value_name("N"),
-                "of the Monte Carlo simulation of U");
+                "seed of the Monte Carlo simulation of U");
   options.add()("targets", "prints the tables of targets and curves, too");
-  options.add()("json", "prints one JSON object a test, numbers in m and rad");
+  options.add()("json", "prints one JSON object per test, numbers in m and rad");
   options.add()("force,f", "replaces OUT.csv if it exists");
 }
 
@@ -76,7 +76,7 @@ Standard standard_of(const Options& options) {
       return static_cast<Standard>(k);
     }
   }
-  throw InputError(place, fmt::format("'{}' is not known{}; known are {}", given,
+  throw InputError(place, fmt::format("unknown standard '{}'{}; known are {}", given,
                                       did_you_mean(word, kStandards), fmt::join(kStandards, ", ")));
 }
 
@@ -207,8 +207,8 @@ std::vector<Report> reports_of_groups(const std::string& file, Standard standard
   }
   if (!runs.empty()) return positioning_reports(runs, standard, options);
   if (out.empty()) {
-    throw InputError({file}, fmt::format("has no group that {} is for",
-                                         kStandards[static_cast<std::size_t>(standard)]));
+    throw InputError(
+        {file}, fmt::format("has no group for {}", kStandards[static_cast<std::size_t>(standard)]));
   }
   return out;
 }
@@ -216,7 +216,7 @@ std::vector<Report> reports_of_groups(const std::string& file, Standard standard
 std::vector<Report> reports_of(const Options& options, Standard standard) {
   const std::vector<std::string> files = options.words();
   if (files.empty()) {
-    throw InputError({"servomill evaluate"}, "needs files of readings; see --help");
+    throw InputError({"servomill evaluate"}, "expected files of readings; see --help");
   }
   const bool toml = files.front().ends_with(".toml");
   if (toml && files.size() > 1) {

@@ -18,8 +18,8 @@ namespace po = boost::program_options;
 
 void add_identify_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.toml"),
-                "writes the identified machine: the machine that was started from with the "
-                "identified values over it, their uncertainty and covariance");
+                "writes the identified machine: the initial machine overridden by the identified "
+                "values, with their uncertainty and covariance");
   options.add()("recording", po::value<std::vector<std::string>>()->value_name("FILE"),
                 "file of the first recording in place of the one that the experiment names; again: "
                 "of the second, ...");
@@ -29,19 +29,19 @@ void add_identify_options(Options& options) {
   options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
                 "writes measured and simulated signals, residuals and parameters");
   options.add()("make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
-                "writes what the first recording would hold if the machine were as the experiment "
-                "says, with the disturbances of its table [noise], and identifies nothing");
+                "writes a synthetic first recording of the machine of the experiment, with the "
+                "disturbances of its table [noise], without identifying");
   options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
   options.add()("bootstrap", po::value<int>()->value_name("N"),
                 "block bootstrap of the residual with N replicas (100 or more), next to the "
                 "intervals from its spectrum");
   options.add()("profile", po::value<std::vector<std::string>>()->value_name("KEY|all"),
-                "profile interval of an estimate, can be repeated: how far it can be moved, all "
-                "others fitted again, before the misfit shows it; may be asymmetric");
+                "profile interval of an estimate, can be repeated: how far it can change, with all "
+                "others refitted, before the misfit rises significantly; may be asymmetric");
   options.add()("force,f", "replaces outputs that exist");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
-                "threads (default: one a core); results do not depend on it");
-  options.add()("quiet,q", "prints nothing but faults");
+                "threads (default: one per core); results do not depend on it");
+  options.add()("quiet,q", "prints only faults");
 }
 
 // Number of the estimate with that key.
@@ -64,7 +64,7 @@ sim::identification::IntervalSettings intervals_of(
     const int count = options.get<int>("bootstrap");
     if (count < sim::identification::kFewestReplicas) {
       throw InputError({"--bootstrap"},
-                       fmt::format("{} are too few replicas for quantiles of 2.5 %; must be >= {}",
+                       fmt::format("{} replicas are too few for 2.5 % quantiles; must be >= {}",
                                    count, sim::identification::kFewestReplicas));
     }
     out.bootstrap.replicas = static_cast<std::size_t>(count);
@@ -85,11 +85,11 @@ sim::identification::IntervalSettings intervals_of(
 
 int identify_command(const Arguments& arguments) {
   Options options("identify", "EXPERIMENT.toml [-o identified.toml] [--signals OUT.h5]",
-                  "Finds parameters of drives from recordings of real axes: simulates the control\n"
-                  "that a recording was made with on our drives, varies what the experiment names\n"
-                  "until the simulated feedback is nearest to the recorded one, and says how well\n"
-                  "each value is known, what the recordings cannot tell, and how far recordings\n"
-                  "that the fit has not seen are predicted.",
+                  "Finds parameters of drives from recordings of real axes: simulates the "
+                  "recorded\ncontrol with the modelled drives, varies the parameters of the "
+                  "experiment until\nthe simulated feedback fits the recorded one best, and "
+                  "reports the uncertainty of\neach value, the parameters that the recordings do "
+                  "not determine, and the\nprediction error for recordings excluded from the fit.",
                   "EXPERIMENT.toml");
   add_identify_options(options);
   if (!options.parse(arguments)) return kDone;

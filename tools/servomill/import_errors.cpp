@@ -19,14 +19,14 @@ void refuse_idle_options(const Options& options) {
   for (const char* name : {"spacing", "rotary-spacing", "max-points", "travel", "at", "tool-length",
                            "comp-file-type"}) {
     if (!options.has(name)) continue;
-    throw InputError({std::string("--") + name}, "means nothing to --import");
+    throw InputError({std::string("--") + name}, "has no effect with --import");
   }
   if (options.get<std::string>("axis") != "all") {
-    throw InputError({"--axis"}, "means nothing to --import");
+    throw InputError({"--axis"}, "has no effect with --import");
   }
   if (!options.words().empty()) {
     throw InputError({options.words().front()},
-                     "is not read with --import, which takes the machine of --machine");
+                     "is not used with --import, which takes the machine from --machine");
   }
 }
 
@@ -36,7 +36,8 @@ std::string model_name(const Options& options) {
   constexpr std::string_view kBare =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   if (!name.empty() && name.find_first_not_of(kBare) == std::string::npos) return name;
-  throw InputError({"--model"}, fmt::format("'{}'; must be of letters, digits, _ and -", name));
+  throw InputError({"--model"},
+                   fmt::format("'{}'; must consist of letters, digits, _ and -", name));
 }
 
 sim::tables::ImportedColumns read_files(const Options& options) {

@@ -115,7 +115,7 @@ void print_interrupted(const std::string& kept) {
 std::string kept_in(const std::string& partial_path, const std::string& details) {
   std::error_code ignored;
   if (!std::filesystem::exists(partial_path, ignored)) return {};
-  return fmt::format("kept in {}: {}", partial_path, details);
+  return fmt::format("saved in {}: {}", partial_path, details);
 }
 
 }  // namespace servomill::tools

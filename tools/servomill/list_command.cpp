@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 void list_files(const std::string& folder, bool machines) {
   if (!fs::is_directory(folder)) {
-    throw InputError({folder}, "is not a folder; name that of the scenarios with --folder");
+    throw InputError({folder}, "is not a folder; set the scenario folder with --folder");
   }
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -36,7 +36,7 @@ void list_keys_of(const Options& options) {
                      fmt::format("takes one section, got {}; see --help", words.size() - 1));
   }
   if (options.has("json") && options.has("markdown")) {
-    throw InputError({"--json"}, "does not go with --markdown");
+    throw InputError({"--json"}, "excludes --markdown");
   }
   const std::vector<sim::input::KeyEntry> keys =
       sim::input::keys_of(words.size() == 2 ? words[1] : "");
@@ -59,8 +59,8 @@ int list_command(const Arguments& arguments) {
       "of sections. Machine files leave out 'machine.'. Required keys are so where they apply.",
       "strategies|machines|scenarios|quantities|rules|keys");
   options.add()("folder", po::value<std::string>()->default_value("scenarios")->value_name("DIR"),
-                "where machines and scenarios are looked for");
-  options.add()("json", "keys: prints one JSON object a key");
+                "folder of machines and scenarios");
+  options.add()("json", "keys: prints one JSON object per key");
   options.add()("markdown", "keys: prints a page with one table a section");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
@@ -71,7 +71,7 @@ int list_command(const Arguments& arguments) {
   }
   const std::string what = options.word();
   for (const char* form : {"json", "markdown"}) {
-    if (options.has(form)) throw InputError({std::string("--") + form}, "goes with keys only");
+    if (options.has(form)) throw InputError({std::string("--") + form}, "applies to 'keys' only");
   }
   if (what == "strategies") {
     fmt::print("{}", sim::input::describe_strategies());

@@ -33,9 +33,9 @@ constexpr std::array<Command, 21> kCommands = {{
      "runs a scenario at the points of its [sweep] table", sweep_command},
     {"merge", "SHARD.h5... -o OUT.h5 [--partial]", "joins the shards of a sweep", merge_command},
     {"budget", "SCENARIO.toml [--case NAME]... [-o OUT.h5]",
-     "splits residuals into what each cause has of them", budget_command},
+     "splits residuals into the contributions of their causes", budget_command},
     {"converge", "SCENARIO.toml [--halve STEP]...",
-     "halves periods, blocks and tolerances: digits that stay", converge_command},
+     "halves periods, blocks and tolerances: stable digits", converge_command},
     {"bode", "SCENARIO.toml --axis Y [--loop LOOP] [-o OUT.h5]",
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},
@@ -46,16 +46,16 @@ constexpr std::array<Command, 21> kCommands = {{
      "writes a program corrected for the errors of a machine", compensate_command},
     {"check", "FILE...", "checks scenarios, machines, cutter locations and programs",
      check_command},
-    {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object a line",
+    {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object per line",
      canon_command},
-    {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "posts cutter locations to G-code",
+    {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "post-processes cutter locations to G-code",
      post_command},
     {"recording", "FILE... [-o OUT.h5|OUT.csv]", "prints and converts recordings of real axes",
      recording_command},
     {"calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
      "finds the geometric errors of a machine from readings of instruments", calibrate_command},
     {"plan-calibration", "[READINGS.toml] --machine MACHINE.toml [-o FOLDER]",
-     "plans what to measure next on a machine, for the time that it takes",
+     "plans which measurements reduce the uncertainty of a machine most in the available time",
      plan_calibration_command},
     {"identify", "EXPERIMENT.toml [-o identified.toml]",
      "finds parameters of drives from recordings of real axes", identify_command},
@@ -63,7 +63,8 @@ constexpr std::array<Command, 21> kCommands = {{
      "frequency response of a real axis from a recording", response_command},
     {"evaluate", "READINGS... --standard iso230-2",
      "parameters of a test as its standard defines them", evaluate_command},
-    {"list", "strategies|machines|scenarios|quantities|keys", "prints what there is", list_command},
+    {"list", "strategies|machines|scenarios|quantities|keys",
+     "prints strategies, machines, scenarios, quantities, rules or keys", list_command},
 }};
 
 void print_usage(std::FILE* to) {
@@ -100,8 +101,8 @@ int dispatch(const Arguments& arguments) {
     std::array<std::string_view, kCommands.size()> names;
     std::transform(kCommands.begin(), kCommands.end(), names.begin(),
                    [](const Command& one) { return one.name; });
-    throw InputError({"servomill"}, fmt::format("no command '{}'{}; see servomill --help", name,
-                                                did_you_mean(name, names)));
+    throw InputError({"servomill"}, fmt::format("unknown command '{}'{}; see servomill --help",
+                                                name, did_you_mean(name, names)));
   }
   stop_on_interrupt();
   const InputRecord inputs;

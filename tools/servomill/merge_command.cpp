@@ -12,13 +12,13 @@ namespace po = boost::program_options;
 
 int merge_command(const Arguments& arguments) {
   Options options("merge", "SHARD.h5... -o OUT.h5 [--partial]",
-                  "Joins the tables that the shards of a sweep have written into the one that a "
-                  "single process would have written.",
+                  "Joins the tables of the shards of a sweep into the table that a single process "
+                  "would have written.",
                   "SHARD.h5");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"), "result file");
-  options.add()("partial", "merges what there is, where shards or points are missing");
+  options.add()("partial", "merges the existing points if shards or points are missing");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("quiet,q", "prints only faults");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);

@@ -37,7 +37,7 @@ std::string unknown_option(const po::unknown_option& error, const po::options_de
   std::vector<std::string> names;
   for (const auto& option : known.options()) names.push_back("--" + option->long_name());
   const std::vector<std::string_view> views(names.begin(), names.end());
-  return fmt::format("no option '{}'{}", given, did_you_mean(given, views));
+  return fmt::format("unknown option '{}'{}", given, did_you_mean(given, views));
 }
 
 }  // namespace
@@ -66,14 +66,15 @@ bool Options::parse(const Arguments& arguments) {
   } catch (const po::unknown_option& error) {
     throw InputError(place, unknown_option(error, description_));
   } catch (const po::too_many_positional_options_error&) {
-    throw InputError(place, "takes no arguments besides its options; see --help");
+    throw InputError(place, "accepts only options; see --help");
   } catch (const po::error& error) {
     throw InputError(place, error.what());
   }
   if (!has("help")) {
     remember_files();
     for (const std::string& one : words()) {
-      if (one.empty()) throw InputError(place, fmt::format("{} is empty; see --help", words_));
+      if (one.empty())
+        throw InputError(place, fmt::format("{} is an empty string; see --help", words_));
     }
     return true;
   }
@@ -99,7 +100,7 @@ std::string Options::word() const {
   const auto all = words();
   if (all.size() == 1) return all.front();
   throw InputError({"servomill " + command_},
-                   fmt::format("needs one {}, got {}; see --help", words_, all.size()));
+                   fmt::format("expected one {}, got {}; see --help", words_, all.size()));
 }
 
 ProgressBar::ProgressBar(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0), begin_(now()) {}

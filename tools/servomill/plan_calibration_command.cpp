@@ -28,15 +28,15 @@ constexpr double kLargestBall = 200.0;  // mm
 
 void add_plan_options(Options& options) {
   options.add()("machine,m", po::value<std::string>()->value_name("MACHINE.toml"),
-                "machine that is to be measured (default: the one that the readings name)");
+                "machine to be measured (default: the machine of the readings)");
   options.add()("instruments",
                 po::value<std::string>()->default_value("laser,square,ballbar")->value_name("LIST"),
-                "instruments at hand: laser, level, square, ballbar, probe");
+                "available instruments: laser, level, square, ballbar, probe");
   options.add()("hours", po::value<double>()->default_value(8.0)->value_name("H"),
-                "time that there is for measuring");
+                "available measuring time");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
-                "writes readings.toml there with a CSV file for each set-up, in which the numbers "
-                "are missing, and measuring programs of the touch probe for --controls");
+                "writes readings.toml to this folder with a CSV file to be filled in for each "
+                "set-up, and measuring programs of the touch probe for --controls");
   options.add()("controls",
                 po::value<std::string>()
                     ->default_value("linuxcnc,heidenhain,fanuc,siemens")
@@ -57,7 +57,7 @@ calibration::PlanSettings settings_of(const Options& options) {
     const auto found = std::find(names.begin(), names.end(), word);
     if (found == names.end()) {
       throw InputError({"--instruments"},
-                       fmt::format("'{}' is no instrument of {}{}", word, fmt::join(names, ", "),
+                       fmt::format("'{}' is not one of {}{}", word, fmt::join(names, ", "),
                                    did_you_mean(word, names)));
     }
     out.instruments.push_back(static_cast<calibration::PlanInstrument>(found - names.begin()));
@@ -133,11 +133,10 @@ void write_programs(const std::string& folder, const sim::readings::Readings& pl
 int plan_calibration_command(const Arguments& arguments) {
   Options options(
       "plan-calibration", "[READINGS.toml] --machine MACHINE.toml [-o FOLDER]",
-      "Plans what to measure (next): which set-ups of the instruments at hand lower the\n"
-      "worst uncertainty of the tip in the working volume most for the time they take,\n"
-      "beside what readings say already. Prints the uncertainty to expect, that of\n"
-      "lines through the middle of the travel in the same time, and the bound that no\n"
-      "plan of these set-ups goes below.",
+      "Plans measurements: selects the set-ups of the available instruments that lower the\nworst "
+      "uncertainty of the TCP in the working volume most for their time, given the\nexisting "
+      "readings. Prints the expected uncertainty, that of lines through the middle\nof the travel "
+      "in the same time, and the lower bound of all plans of these set-ups.",
       "READINGS.toml");
   add_plan_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -48,14 +48,15 @@ void take_tool_lengths(const Options& options, sim::programs::PostRequest& reque
                               : length.si < 0.0         ? "must be >= 0"
                                                         : "";
     if (!fault.empty()) {
-      throw InputError({"--tool-length"}, fmt::format("'{}' {}", text, fault));
+      throw InputError({"--tool-length"},
+                       fmt::format("'{}'{} {}", text, fault.front() == '\'' ? ":" : "", fault));
     }
     request.tool_length = length.si;
   }
 }
 
 // "10,0,-5.5" in mm
-Eigen::Vector3d part_zero_of(const std::string& text) {
+Eigen::Vector3d work_offset_of(const std::string& text) {
   std::array<double, 3> values{};
   std::size_t from = 0, n = 0;
   for (; n < values.size() && from <= text.size(); ++n) {
@@ -120,7 +121,7 @@ void read_approach(const Options& options, sim::programs::PostRequest& request) 
   if (request.options.approach == controllers::Approach::direct) {
     for (const char* name : {"clearance", "retract"}) {
       if (!options.has(name)) continue;
-      throw InputError({std::string("--") + name}, "means nothing to --approach direct");
+      throw InputError({std::string("--") + name}, "has no effect with --approach direct");
     }
   }
   if (options.has("clearance")) {
@@ -151,7 +152,7 @@ sim::programs::PostRequest request_of(const Options& options) {
   post.rotary_rate =
       bounded_option(options, "rotary-feed", sim::config::kAngularVelocity, "deg/min");
   if (options.has("work-offset")) {
-    request.work_offset = part_zero_of(options.get<std::string>("work-offset"));
+    request.work_offset = work_offset_of(options.get<std::string>("work-offset"));
   }
   post.work_system = whole_option(options, "work-system", 54, 59) - 53;
   if (options.has("tool")) {
@@ -170,46 +171,44 @@ void add_post_options(Options& options) {
                 "program; - for standard output. Default: PART.ngc in the current folder");
   options.add()("tolerance",
                 po::value<std::string>()->default_value("1 um")->value_name("\"1 um\""),
-                "by which the tip may leave the straight way (um): half of it for the chords "
+                "largest deviation of the TCP from the straight path (um): half for the chords "
                 "between inserted points, half for the NC to round corners (G64 P)");
   options.add()("axis-tolerance",
                 po::value<std::string>()->default_value("100 urad")->value_name("\"100 urad\""),
-                "by which the tool axis may leave its great circle (urad)");
-  options.add()("classical", "one block a location, nothing between them");
-  options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the tip");
-  options.add()(
-      "work-offset", po::value<std::string>()->value_name("X,Y,Z"),
-      "where the part's zero lies in the machine when the rotary axes are at zero, mm: "
-      "what the NC's work offset holds; needed with rotary axes (with --tcp where the table "
-      "turns, unless --approach direct)");
+                "largest deviation of the tool axis from its great circle (urad)");
+  options.add()("classical", "one block per location, nothing between them");
+  options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the TCP");
+  options.add()("work-offset", po::value<std::string>()->value_name("X,Y,Z"),
+                "work offset of the part in the machine with the rotary axes at zero, mm; required "
+                "with rotary axes (with --tcp only for a rotary table, unless --approach direct)");
   options.add()("approach",
                 po::value<std::string>()->default_value("safe")->value_name("safe|direct"),
-                "safe as above; direct: one rapid of all axes to the first location, no retract");
+                "safe: as above; direct: one rapid of all axes to the first location, no retract");
   options.add()("clearance", po::value<std::string>()->value_name("\"10 mm\""),
-                "distance from which the tool moves along its own axis (mm); default: 10 mm");
+                "distance over which the tool approaches along its axis (mm); default: 10 mm");
   options.add()("retract", po::value<std::string>()->value_name("Z=400"),
                 "machine coordinate of Z to retract to (mm); default: axis.Z.retract_mm of the "
-                "machine file, or the upper end of the travel");
+                "machine file, or the upper travel limit");
   options.add()("work-system", po::value<int>()->default_value(54)->value_name("54..59"),
                 "G54 to G59");
   options.add()("tools", po::value<std::string>()->value_name("TABLE"),
                 "tool table in LinuxCNC's format, mm: lengths of the tools");
-  options.add()("tool-length", po::value<std::vector<std::string>>()->value_name("\"110 mm\""),
-                "length of every tool, or 1=110 of tool 1 (mm); this or --tools is needed (0 is a "
-                "length, too)");
+  options.add()(
+      "tool-length", po::value<std::vector<std::string>>()->value_name("\"110 mm\""),
+      "length of every tool, or 1=110 of tool 1 (mm); this or --tools is required (0 is allowed)");
   options.add()("tool", po::value<int>()->value_name("N"),
                 "tool in the spindle before the first LOADTL; T1 where the file has none and "
                 "--tool-length is given; 0: none, G49, with --tool-length 0");
   options.add()("feed", po::value<std::string>()->value_name("\"300 mm/min\""),
-                "feed of the tip where the file gives none (mm/min)");
+                "feed of the TCP where the file gives none (mm/min)");
   options.add()(
       "rotary-feed",
       po::value<std::string>()->default_value("3600 deg/min")->value_name("\"3600 deg/min\""),
-      "of the tool axis where the tip stands still (deg/min)");
+      "feed of the tool axis where the TCP is at rest (deg/min)");
   options.add()("start", po::value<std::string>()->value_name("A=10,C=90"),
-                "axis positions near which the first location is sought; default: zero");
+                "axis positions near which the first location is solved; default: zero");
   options.add()("force,f", "replaces the program if it exists");
-  options.add()("quiet,q", "prints nothing but warnings and faults");
+  options.add()("quiet,q", "prints only warnings and faults");
 }
 
 }  // namespace
@@ -217,19 +216,16 @@ void add_post_options(Options& options) {
 int post_command(const Arguments& arguments) {
   Options options(
       "post", "PART.cls --machine M.toml [-o OUT.ngc] [...]",
-      "Posts cutter locations to G-code for a machine. PART is an APT cutter location file\n"
-      "(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\n"
-      "Between locations the tip goes straight and the tool axis on a great circle: points are\n"
-      "inserted where the axes alone would leave the tolerance. The feed is that of the tip; each\n"
-      "block says how long it takes (G93). Every location takes the axis positions nearest to "
-      "those\n"
-      "before, within the travel.\n\n"
-      "To the first location, after a tool change and across rapids on which the tool axis "
-      "changes:\n"
-      "Z to the height to retract to, rotary axes, spindle on, X and Y, Z to the clearance, and "
-      "along\n"
-      "the tool axis; back the same way. The program is read back and compared with the locations\n"
-      "before it is written. Bare numbers are in the unit that each option names.",
+      "Post-processes cutter locations to G-code for a machine. PART is an APT cutter location "
+      "file\n(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\nBetween "
+      "locations the TCP moves on a straight line and the tool axis on a great circle:\npoints are "
+      "inserted where axis interpolation would exceed the tolerance. The feed is that of\nthe TCP; "
+      "each block has inverse-time feed (G93). Every location uses the axis positions\nnearest to "
+      "the previous ones, within the travel.\n\nTo the first location, after a tool change and "
+      "across rapids on which the tool axis changes:\nZ to the retract height, rotary axes, "
+      "spindle on, X and Y, Z to the clearance, and along\nthe tool axis; back in reverse order. "
+      "The program is read back and compared with the locations\nbefore it is written. Bare "
+      "numbers are in the unit that each option names.",
       "PART.cls");
   add_post_options(options);
   if (!options.parse(arguments)) return kDone;

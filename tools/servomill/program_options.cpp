@@ -18,32 +18,32 @@ void add_program_options(Options& options) {
   options.add()("parameter-file", text("FILE"),
                 "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
   options.add()("subs", texts("FOLDER"),
-                "where files of subroutines are, NAME.ngc for O<NAME> CALL, M98 and G65, NAME.H "
-                "for CALL PGM; the "
-                "folder of the program comes first");
+                "folders of subroutine files, NAME.ngc for O<NAME> CALL, M98 and G65, NAME.H for "
+                "CALL PGM; the folder of the program is searched first");
   options.add()("reader", text("NAME"),
-                "whose rules the program follows: any (default: beyond LinuxCNC's what other "
+                "control whose rules the program follows: any (default: LinuxCNC plus what other "
                 "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
                 "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h)");
   options.add()("decimal-point", text("NAME"),
                 "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments "
-                "(X1000 = 1 mm); readers fanuc and haas ask for it");
-  options.add()("feed", text("\"300 mm/min\""), "feed of G1, G2 and G3 before any F");
+                "(X1000 = 1 mm); required with readers fanuc and haas");
+  options.add()("feed", text("\"300 mm/min\""), "feed of G1, G2 and G3 before the first F");
   options.add()("additional-offset", texts("P3:X=10,Y=5,Z=0"),
-                "where the work system of G54.1 P3 or G154 P3 lies, mm");
+                "additional work offset of G54.1 P3 or G154 P3, mm");
   options.add()("ignore-code", texts("M82"),
-                "M code of the machine's builder that has no effect on motion; without it the code "
-                "is refused, as some mirror or move axes");
-  options.add()("block-delete", "leaves out the lines that start with '/'");
-  options.add()("max-jumps", po::value<long>()->value_name("N"),
-                "loops turned and subroutines called before a program counts as endless "
-                "(1000000)");
+                "M code of the machine builder without effect on motion; otherwise the code is "
+                "refused, as some mirror or move axes");
+  options.add()("block-delete", "skips blocks that start with '/'");
+  options.add()(
+      "max-jumps", po::value<long>()->value_name("N"),
+      "loop iterations and subroutine calls before a program is considered endless (1000000)");
 }
 
 void add_machine_option(Options& options) {
   namespace po = boost::program_options;
-  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
-                "machine that runs it: G43.5, G53.1, and G43.4 or G68.2 with turned axes need it");
+  options.add()(
+      "machine", po::value<std::string>()->value_name("M.toml"),
+      "machine that runs it: required by G43.5, G53.1, and G43.4 or G68.2 with rotated axes");
 }
 
 sim::programs::ProgramInputs program_inputs(const Options& options) {

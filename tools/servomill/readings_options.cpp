@@ -10,11 +10,11 @@ namespace servomill::tools {
 std::string measured_machine(const Options& options, const std::string& readings) {
   if (options.has("machine")) return options.get<std::string>("machine");
   if (readings.empty()) {
-    throw InputError({"--machine"}, "is missing: the machine that is to be measured");
+    throw InputError({"--machine"}, "is missing: the machine to be measured");
   }
   std::string named = sim::readings::named_machine(readings);
   if (!named.empty()) return named;
-  throw InputError({readings}, "names no machine; add machine = \"FILE\", or pass --machine");
+  throw InputError({readings}, "has no machine; add machine = \"FILE\", or pass --machine");
 }
 
 std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {

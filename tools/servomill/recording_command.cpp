@@ -25,18 +25,18 @@ void refuse_output(const std::string& out, bool force) {
 }  // namespace
 
 int recording_command(const Arguments& arguments) {
-  Options options("recording", "FILE... [-o OUT.h5|OUT.csv]",
-                  "Prints the content of recordings of real axes: channels, units, rates, gaps,\n"
-                  "clipping, missing samples; and converts one. The kind of a file is recognised\n"
-                  "by its content: " +
-                      sim::recordings::format_names() + ".",
-                  "FILE");
+  Options options(
+      "recording", "FILE... [-o OUT.h5|OUT.csv]",
+      "Prints the content of recordings of real axes: channels, units, rates, gaps,\nclipping, "
+      "missing samples; and converts one. The format of a file is recognised\nby its content: " +
+          sim::recordings::format_names() + ".",
+      "FILE");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"),
                 "writes the recording as OUT.h5 or OUT.csv");
   options.add()("time-unit", po::value<std::string>()->value_name("us"),
-                "unit of times of which the file does not say it; not given: s");
+                "unit of times without a unit in the file; default: s");
   options.add()("force,f", "replaces OUT if it exists");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("quiet,q", "prints only faults");
   if (!options.parse(arguments)) return kDone;
   const Place place{"servomill recording"};
   const auto files = options.words();

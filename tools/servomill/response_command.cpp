@@ -26,26 +26,28 @@ using sim::responses::TwoMass;
 void add_response_options(Options& options) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   options.add()("input", text("CHANNEL"), "excitation: current, torque or position command");
-  options.add()("output", text("CHANNEL"), "what answers: an angle or a position");
+  options.add()("output", text("CHANNEL"), "response: an angle or a position");
   options.add()("period", po::value<double>()->value_name("S"),
-                "period of the excitation in s (samples, where the file knows no time); without it "
+                "period of the excitation in s (in samples, if the file has no time); without it "
                 "the local polynomial method takes the record as it is: a chirp, a pseudo-random "
                 "binary signal");
   options.add()("of-control",
                 "takes the response that the control has computed itself; CHANNEL is "
                 "the number of a signal");
   options.add()("skip", po::value<int>()->default_value(1)->value_name("N"),
-                "periods at the beginning, in which the transient has not ended");
-  options.add()("from", po::value<double>()->value_name("HZ"), "lines below are left out");
-  options.add()("to", po::value<double>()->value_name("HZ"), "lines above are left out");
+                "periods skipped at the beginning, for the transient");
+  options.add()("f-min", po::value<double>()->value_name("HZ"),
+                "excludes lines below this frequency");
+  options.add()("f-max", po::value<double>()->value_name("HZ"),
+                "excludes lines above this frequency");
   options.add()("fit", text("two-mass|N/M|N/M+delay"),
                 "fits the two-mass model from a current or torque to the motor's angle, or a "
                 "rational function: degrees of numerator and denominator, dead time");
-  options.add()("lines", "prints every line, not just those that tell most");
+  options.add()("lines", "prints every line, not only the most significant ones");
   options.add()("table", text("OUT.csv"), "writes all lines with their uncertainty");
   options.add()("signals", text("OUT.h5"),
                 "writes lines and fit for tools/identification_page.py, which draws them");
-  options.add()("time-unit", text("us"), "unit of times of which the file does not say it");
+  options.add()("time-unit", text("us"), "unit of times without a unit in the file");
   options.add()("force,f", "replaces OUT if it exists");
 }
 
@@ -53,7 +55,7 @@ const sim::recordings::Channel& channel_of(const sim::recordings::Recording& rec
                                            const Options& options, const char* option) {
   const Place place{fmt::format("--{}", option)};
   if (!options.has(option)) {
-    throw InputError(place, "names a channel of the recording; see servomill recording FILE");
+    throw InputError(place, "must name a channel of the recording; see servomill recording FILE");
   }
   const auto name = options.get<std::string>(option);
   std::vector<std::string_view> names;
@@ -61,7 +63,7 @@ const sim::recordings::Channel& channel_of(const sim::recordings::Recording& rec
     if (channel.name == name) return channel;
     names.push_back(channel.name);
   }
-  throw InputError(place, fmt::format("'{}' is no channel of {}{}", name, recording.file,
+  throw InputError(place, fmt::format("'{}' is not a channel of {}{}", name, recording.file,
                                       did_you_mean(name, names)));
 }
 
@@ -96,7 +98,7 @@ sim::responses::PeriodSettings periods_of(const Options& options,
   const double samples = options.get<double>("period") / interval;
   constexpr double kWhole = 1e-3;  // of a sample and period: a clock's error over one period
   if (!(samples >= 4.0) || std::abs(samples - std::round(samples)) > kWhole * std::sqrt(samples)) {
-    throw InputError(place, fmt::format("{:g} is {:.6g} samples of {:g}; it must be a whole number "
+    throw InputError(place, fmt::format("{:g} is {:.6g} samples of {:g}; it must be an integer "
                                         "of at least 4",
                                         options.get<double>("period"), samples, interval));
   }
@@ -110,12 +112,12 @@ sim::responses::PeriodSettings periods_of(const Options& options,
 // Without the lines that the user leaves out.
 MeasuredResponse within(MeasuredResponse response, const Options& options) {
   const auto outside = [&](const sim::responses::ResponseLine& line) {
-    return (options.has("from") && line.frequency < options.get<double>("from")) ||
-           (options.has("to") && line.frequency > options.get<double>("to"));
+    return (options.has("f-min") && line.frequency < options.get<double>("f-min")) ||
+           (options.has("f-max") && line.frequency > options.get<double>("f-max"));
   };
   std::erase_if(response.lines, outside);
   if (response.lines.empty()) {
-    throw InputError({"--from"}, "leaves no excited line between --from and --to");
+    throw InputError({"--f-min"}, "leaves no excited line between --f-min and --f-max");
   }
   return response;
 }
@@ -169,7 +171,7 @@ void print_fit(const sim::responses::TwoMassFit& fit) {
         "uncertainty includes it\n",
         fit.noise_ratio);
   }
-  fmt::print("only these ratios can be identified: inertias themselves need the torque constant\n");
+  fmt::print("only these ratios can be identified: the inertias need the torque constant\n");
 }
 
 void print_roots(const std::vector<sim::responses::Root>& roots, const char* name,
@@ -271,8 +273,8 @@ MeasuredResponse measured_response(const sim::recordings::Recording& recording,
   sim::responses::LocalPolynomialSettings settings;
   settings.rate =
       static_cast<double>(base.values.size() - 1) / (base.values.back() - base.values.front());
-  if (options.has("from")) settings.from = options.get<double>("from");
-  if (options.has("to")) settings.to = options.get<double>("to");
+  if (options.has("f-min")) settings.from = options.get<double>("f-min");
+  if (options.has("f-max")) settings.to = options.get<double>("f-max");
   return sim::responses::local_polynomial(input.samples, output.samples, settings, recording.file);
 }
 
@@ -288,9 +290,9 @@ sim::responses::SignalName signal_name(const sim::recordings::Recording& recordi
 int response_command(const Arguments& arguments) {
   Options options(
       "response", "RECORDING --input CHANNEL --output CHANNEL --period S [--fit two-mass]",
-      "Frequency response of a real axis from a recording with a periodic excitation\n"
-      "(multisine): maximum likelihood over its periods, with an interval for every line\n"
-      "from how the periods scatter; and the two-mass model fitted to it.",
+      "Frequency response of a real axis from a recording with a periodic excitation\n(multisine): "
+      "maximum likelihood over its periods, with an interval for every line\nfrom the scatter of "
+      "the periods; and the two-mass model fitted to it.",
       "RECORDING");
   add_response_options(options);
   if (!options.parse(arguments)) return kDone;
@@ -299,9 +301,10 @@ int response_command(const Arguments& arguments) {
   const auto order = rational_order(fit);
   if (!fit.empty() && fit != "two-mass" && !order) {
     throw InputError(
-        {"--fit"}, fmt::format("'{}' is not known; two-mass is, and N/M or N/M+delay with degrees "
-                               "N <= M of numerator and denominator, M from 1 to {}",
-                               fit, sim::responses::kMostOrder));
+        {"--fit"},
+        fmt::format("unknown model '{}'; must be two-mass, N/M or N/M+delay with degrees "
+                    "N <= M of numerator and denominator, M from 1 to {}",
+                    fit, sim::responses::kMostOrder));
   }
   const bool force = options.has("force");
   if (options.has("table")) {

@@ -127,13 +127,13 @@ void add_run_options(Options& options) {
                 "changes a key of the scenario, such as program.feed_override=0.5, "
                 "case[2].strategy[0].extrapolation_time_ms=auto or machine.nc.Kv=\"4 m/min/mm\"");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
-                "threads (default: one a core); results do not depend on it");
+                "threads (default: one per core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("touches", po::value<std::string>()->value_name("FOLDER"),
                 "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
                 "readings of kind touch");
-  options.add()("json", "prints the comparison as one JSON object a line");
-  options.add()("quiet,q", "prints nothing but warnings and faults");
+  options.add()("json", "prints the comparison as one JSON object per line");
+  options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
   options.add()("isolate",
                 "simulates cases with plug-ins in processes of their own: a plug-in that crashes, "
@@ -143,12 +143,12 @@ void add_run_options(Options& options) {
 }  // namespace
 
 int run_command(const Arguments& arguments) {
-  Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
-                  "Runs every case of a scenario, prints the comparison and writes all signals to "
-                  "one HDF5 file. A long run says first how many rows, how large a file, how much "
-                  "memory and how much time it takes; its rows are thinned where "
-                  "record.period_ms is not given and their signals exceed record.max_size_GB.",
-                  "SCENARIO.toml");
+  Options options(
+      "run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
+      "Runs every case of a scenario, prints the comparison and writes all signals to one HDF5 "
+      "file. A long run first reports its number of rows, file size, memory and time; its rows are "
+      "thinned if record.period_ms is not given and their signals exceed record.max_size_GB.",
+      "SCENARIO.toml");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);

@@ -90,14 +90,14 @@ void print_figures(const sim::frequency::StepSettings& settings,
   fmt::print("\n{} step of {:g} {}, {:.3g} s\n", sim::run::name_of(settings.kind),
              settings.amplitude / u.amplitude_unit, u.amplitude, response.time.back());
   if (settings.kind == sim::frequency::StepKind::load && f.peak == 0.0) {
-    fmt::print("  holds still: friction bears the force\n");
+    fmt::print("  at rest: friction carries the force\n");
   } else if (settings.kind == sim::frequency::StepKind::load) {
     fmt::print("  peak deviation  {:.4g} {} after {}\n", f.peak / u.value_unit, u.value,
                milliseconds(f.peak_time));
     fmt::print("  back within     {:g} % of it: {}\n", 100.0 * settings.band,
                std::isfinite(f.settling_time) ? "after " + milliseconds(f.settling_time)
                                               : "not in this time");
-    fmt::print("  left at the end {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
+    fmt::print("  residual at the end  {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
   } else {
     fmt::print("  overshoot       {}\n", f.overshoot > kLeastOvershoot
                                              ? fmt::format("{:.2f} % after {}", 100.0 * f.overshoot,
@@ -162,29 +162,28 @@ void add_step_options(Options& options) {
                 "50 Nm); bare numbers are in these units");
   options.add()(
       "band", po::value<std::string>()->default_value("2 %")->value_name("\"2 %\""),
-      "settled within this share of the amplitude, of the peak of a load step; a bare number "
+      "settling band as a share of the amplitude, of the peak of a load step; a bare number "
       "is in %");
-  options.add()(
-      "duration", po::value<std::string>()->value_name("\"0.5 s\""),
-      "simulated after the step, bare numbers in s (default: 12 of the slowest time constant)");
-  options.add()("linear", "leaves friction, backlash, constant load, quantisation and limits away");
+  options.add()("duration", po::value<std::string>()->value_name("\"0.5 s\""),
+                "simulated time after the step, bare numbers in s (default: 12 of the slowest time "
+                "constant)");
+  options.add()("linear", "disables friction, backlash, gravity load, quantisation and limits");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the signals to a result file, for tools/plot.py");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object a step");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("json", "prints one JSON object per step");
+  options.add()("quiet,q", "prints only faults");
 }
 
 }  // namespace
 
 int step_command(const Arguments& arguments) {
-  Options options(
-      "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
-      "Steps an axis in the simulation, with friction, backlash, quantisation and limits as the\n"
-      "scenario has them, and prints figures of merit: a step of the setpoint (nothing is fed\n"
-      "forward), of the velocity command (position loop open; the motor counts, as slide\n"
-      "velocity), of a force on the slide.",
-      "SCENARIO.toml");
+  Options options("step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
+                  "Simulates a step response of an axis, with friction, backlash, quantisation and "
+                  "limits of\nthe scenario, and prints figures of merit: a step of the setpoint "
+                  "(without feed-forward),\nof the velocity command (position loop open; motor "
+                  "speed as slide velocity), of a force\non the slide.",
+                  "SCENARIO.toml");
   add_step_options(options);
   if (!options.parse(arguments)) return kDone;
 
@@ -192,7 +191,7 @@ int step_command(const Arguments& arguments) {
   const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
   if (kinds.size() > 1 && options.has("amplitude")) {
-    throw InputError({"--amplitude"}, "needs one --kind: its unit is that of what steps");
+    throw InputError({"--amplitude"}, "needs one --kind: its unit depends on the kind");
   }
   for (const int joint : joints) {
     for (const sim::frequency::StepKind kind : kinds) settings_of(options, kind, joint);

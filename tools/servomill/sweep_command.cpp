@@ -29,19 +29,17 @@ namespace po = boost::program_options;
 
 constexpr const char* kSummary =
     "Runs a scenario at the points of its [sweep] table, prints one line for each and writes one "
-    "row a point to one HDF5 file; of samples it prints the mean, the standard deviation and the "
-    "interval of 95 % of each quantity, and of those with a tolerance the probability of "
-    "conformity "
-    "with the guard band of ISO 14253-1. What an interrupted or killed sweep has left is gone on "
-    "with. "
-    "Exit status 1: at some points the machine stopped or the input was refused; their rows say "
-    "why.";
+    "row per point to one HDF5 file; for samples it prints the mean, the standard deviation and "
+    "the interval of 95 % of each quantity, and of those with a tolerance the probability of "
+    "conformity with the guard band of ISO 14253-1. An interrupted or killed sweep is continued. "
+    "Exit status 1: at some points the machine stopped or the input was refused; their rows give "
+    "the reason.";
 constexpr const char* kSynopsis = "SCENARIO.toml [-o OUT.h5] [--shard I/N] [--set KEY=VALUE]...";
 
 void add_sweep_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "result file (default: name of the scenario with _sweep.h5, in this folder); "
-                "OUT.csv is written beside it");
+                "OUT.csv is written next to it");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario at all points");
   options.add()("points", po::value<std::string>()->default_value("")->value_name("A-B"),
@@ -50,16 +48,16 @@ void add_sweep_options(Options& options) {
                 "runs one of N parts of the points and writes OUT.I-of-N.h5; see servomill merge");
   options.add()("keep-signals",
                 "keeps the signals of every point: OUT.series/POINT.h5, as servomill run "
-                "writes them; points that an earlier sweep ran without are run again");
+                "writes them; points that an earlier sweep ran without them are run again");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
-                "threads (default: one a core); results do not depend on it");
+                "threads (default: one per core); results do not depend on it");
   options.add()("retry-failed",
                 "runs points again at which the program or the system failed, such as for lack of "
                 "memory");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object a point and quantity");
+  options.add()("json", "prints one JSON object per point and quantity");
   options.add()("csv", "prints the table as the CSV file has it, at the end");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("quiet,q", "prints only faults");
 }
 
 sim::sweep::Selection selection_of(const Options& options, const sim::sweep::Sweep& sweep) {
@@ -155,7 +153,7 @@ void print_points_there(const sim::sweep::SweepTable& table, const std::string& 
   const auto& counts = table.counts();
   const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   if (counts[0] == all) return;
-  fmt::print("{}: {} of {} points are there already\n",
+  fmt::print("{}: {} of {} points already exist\n",
              table.is_complete() ? file : table.partial_path(), all - counts[0], all);
   if (to_do > counts[0]) fmt::print("{} of them lack signals, run again\n", to_do - counts[0]);
 }
@@ -220,7 +218,7 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
 int print_complete(const Options& options, const sim::sweep::SweepTable& table,
                    const SweepFiles& files, std::uint64_t points) {
   if (!is_sweep_quiet(options)) {
-    fmt::print("{} holds all {} points already\n", files.table, points);
+    fmt::print("{} already contains all {} points\n", files.table, points);
     print_statistics(files.table);
   }
   return status_of(table.counts());

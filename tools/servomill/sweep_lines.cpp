@@ -148,9 +148,9 @@ void tell_refused_samples(const sim::model::SweepDesign& design,
   std::vector<std::string> names;
   for (const auto& file : design.sample_files) names.push_back(file.name);
   fmt::print(stderr,
-             "{} points refused: samples{} reach values that the machine does not take, and their "
-             "quantities count without them; narrow the interval by recordings that excite these "
-             "keys more, or take the keys out of [identified]\n",
+             "{} points refused: samples{} reach values that the machine does not accept and are "
+             "excluded from its quantities; narrow the interval by recordings that excite these "
+             "keys more, or remove the keys from [identified]\n",
              refused, names.empty() ? "" : fmt::format(" of {}", fmt::join(names, ", ")));
 }
 
@@ -159,11 +159,10 @@ void tell_mixed_levels(const std::string& path, const std::vector<SimdLevel>& le
   if (levels.size() < 2 || levels.front() != SimdLevel::baseline) return;
   std::vector<std::string_view> names;
   for (const SimdLevel level : levels) names.push_back(name_of(level));
-  fmt::print(
-      stderr,
-      "{}: points were computed with different instructions ({}; column simd_level): they "
-      "are alike but for their last bits; SERVOMILL_SIMD={} gives the same bits everywhere\n",
-      path, fmt::join(names, ", "), names.front());
+  fmt::print(stderr,
+             "{}: points were computed with different instructions ({}; column simd_level): they "
+             "differ only in their last bits; SERVOMILL_SIMD={} gives the same bits everywhere\n",
+             path, fmt::join(names, ", "), names.front());
 }
 
 }  // namespace servomill::tools

@@ -55,9 +55,9 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
   std::vector<std::string_view> names;
   for (const auto& [key, model] : inputs.models) names.push_back(key);
   if (names.empty()) {
-    throw InputError({error_file(options)}, "has no error model; write one as [errors.NAME]");
+    throw InputError({error_file(options)}, "has no error model; add one as [errors.NAME]");
   }
-  const std::string there_are = fmt::format("there are {}", fmt::join(names, ", "));
+  const std::string there_are = fmt::format("known are {}", fmt::join(names, ", "));
   if (!options.has("model") && names.size() > 1) {
     throw InputError({"--model"}, fmt::format("is missing; {}", there_are));
   }
@@ -134,7 +134,7 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
     for (const char* name : {"at", "tool-length"}) {
       if (!options.has(name)) continue;
       throw InputError({std::string("--") + name},
-                       fmt::format("means nothing to {}, which holds the errors themselves",
+                       fmt::format("has no effect with {}, which contains the errors themselves",
                                    sim::tables::name_of(format)));
     }
   }
@@ -143,13 +143,13 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
       if (!options.has(name) || (name == std::string_view("at") && options.has("bed-mesh")))
         continue;
       throw InputError({std::string("--") + name},
-                       fmt::format("means nothing to {}, which holds three angles",
+                       fmt::format("has no effect with {}, which contains three angles only",
                                    sim::tables::name_of(format)));
     }
   }
   if (format != sim::tables::TableFormat::linuxcnc && options.has("comp-file-type")) {
     throw InputError({"--comp-file-type"},
-                     fmt::format("means nothing to {}", sim::tables::name_of(format)));
+                     fmt::format("has no effect with {}", sim::tables::name_of(format)));
   }
   const auto joints = machine.joints();
   if (options.has("rotary-spacing") && joints.back() < kLinearJoints) {
@@ -164,11 +164,11 @@ void refuse_undocumented(const std::string& format) {
   };
   constexpr std::array<Refusal, 2> kRefusals = {{
       {"fanuc",
-       "is not written: the documents found name the parameters of pitch error compensation (3620 "
-       "to 3627), not the sign of its values nor the file that the control reads"},
+       "is not supported: the documents found describe the parameters of pitch error compensation "
+       "(3620 to 3627), but neither the sign of its values nor the file format"},
       {"vcs",
-       "is not written: no document of the files of Siemens VCS was found; siemens writes EEC and "
-       "CEC"},
+       "is not supported: no document describing the files of Siemens VCS was found; siemens "
+       "writes EEC and CEC"},
   }};
   for (const Refusal& refusal : kRefusals) {
     if (format != refusal.name) continue;
@@ -180,9 +180,10 @@ void refuse_undocumented(const std::string& format) {
 std::array<int, 2> mesh_of(const Options& options, sim::tables::TableFormat format) {
   const auto& text = options.get<std::string>("bed-mesh");
   if (!sim::tables::rules_of(format).skew) {
-    throw InputError({"--bed-mesh"},
-                     fmt::format("means nothing to {}; marlin, klipper and reprapfirmware take one",
-                                 sim::tables::name_of(format)));
+    throw InputError(
+        {"--bed-mesh"},
+        fmt::format("has no effect with {}; marlin, klipper and reprapfirmware take one",
+                    sim::tables::name_of(format)));
   }
   constexpr int kMost = 100;
   std::array<int, 2> out{};
@@ -199,7 +200,7 @@ sim::tables::TableRequest request_of(const Options& options,
                                      const sim::model::MachineSettings& machine) {
   sim::tables::TableRequest request;
   if (!options.has("format")) {
-    throw InputError({"--format"}, fmt::format("is missing; it is one of {}",
+    throw InputError({"--format"}, fmt::format("is missing; must be one of {}",
                                                fmt::join(sim::tables::kTableFormats, ", ")));
   }
   refuse_undocumented(options.get<std::string>("format"));
@@ -242,7 +243,7 @@ sim::tables::TableRequest request_of(const Options& options,
 void write(const std::vector<sim::tables::TextFile>& files, const std::string& folder, bool force) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    throw InputError({folder}, "is no folder; name one for the tables");
+    throw InputError({folder}, "is not a folder; specify a folder for the tables");
   }
   for (const sim::tables::TextFile& file : files) {
     const std::string path = (fs::path(folder) / file.name).string();
@@ -251,7 +252,7 @@ void write(const std::vector<sim::tables::TextFile>& files, const std::string& f
     }
   }
   fs::create_directories(folder, error);
-  if (error) throw sim::system::SystemError(folder, "cannot be made", error.message());
+  if (error) throw sim::system::SystemError(folder, "cannot be created", error.message());
   for (const sim::tables::TextFile& file : files) {
     sim::system::write_text_file((fs::path(folder) / file.name).string(), file.text, force);
   }
@@ -269,37 +270,37 @@ void add_table_options(Options& options) {
                 "csv: once for each file");
   options.add()(
       "machine", po::value<std::string>()->value_name("M.toml"),
-      "machine file, which needs structure, travel and errors only; instead of a scenario "
-      "a file of error models [errors.NAME] may be given, or nothing: the machine's own");
+      "machine file, which needs only structure, travel and errors; the scenario is then replaced "
+      "by a file of error models [errors.NAME], or omitted: the error models of the machine");
   options.add()("model", po::value<std::string>()->value_name("NAME"),
-                "error model; needed if there are several");
+                "error model; required if there are several");
   options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
                 "axes over which tables run");
-  options.add()("spacing", po::value<std::string>()->value_name("\"5 mm\""),
-                "distance of the points of linear axes, bare numbers in mm; otherwise 1, 2 or 5 x "
-                "10^n mm, heidenhain "
-                "2^n x 0.1 um: the smallest that gives 256 points or fewer (siemens: 200)");
+  options.add()(
+      "spacing", po::value<std::string>()->value_name("\"5 mm\""),
+      "spacing of the points of linear axes, bare numbers in mm; default: 1, 2 or 5 x 10^n mm, "
+      "heidenhain 2^n x 0.1 um, the smallest that gives 256 points or fewer (siemens: 200)");
   options.add()("rotary-spacing", po::value<std::string>()->value_name("\"5 deg\""),
-                "the same of rotary axes, bare numbers in deg");
+                "the same for rotary axes, bare numbers in deg");
   options.add()("max-points", po::value<int>()->value_name("N"),
-                "points that the NC takes in one table: siemens as MD38000 and MD18342 say (200 "
-                "unless you say so), linuxcnc and heidenhain at most 256, csv 10000");
+                "maximum number of points per table: siemens as set by MD38000 and MD18342 "
+                "(default 200), linuxcnc and heidenhain at most 256, csv 10000");
   options.add()("travel", po::value<std::vector<std::string>>()->value_name("X=FROM:TO"),
-                "range of an axis in mm or deg, instead of the machine's travel");
+                "range of an axis in mm or deg; default: its travel");
   options.add()("at", po::value<std::vector<std::string>>()->value_name("Z=POSITION"),
-                "where an axis stands while the tables of others are made, in mm or deg; otherwise "
-                "the middle of travel (linear) or 0 (rotary)");
+                "position of an axis while the tables of others are computed, in mm or deg; "
+                "default: the middle of travel (linear) or 0 (rotary)");
   options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
-                "from the spindle nose to the tip, 0 unless given; bare numbers in mm");
+                "distance from the spindle nose to the TCP; default 0; bare numbers in mm");
   options.add()("bed-mesh", po::value<std::string>()->value_name("7x5"),
                 "of marlin, klipper and reprapfirmware: also writes a bed mesh of that many points "
                 "along X and Y, at the reference of Z (--at)");
   options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
-                "of linuxcnc: 0 positions reached (unless you say so), 1 trims");
+                "linuxcnc: 0 positions reached (default), 1 trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario or of the machine file, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
-  options.add()("quiet,q", "prints nothing but faults");
+  options.add()("quiet,q", "prints only faults");
   add_plugin_option(options);
 }
 
@@ -308,19 +309,15 @@ void add_table_options(Options& options) {
 int table_command(const Arguments& arguments) {
   Options options(
       "table", "SCENARIO.toml|--machine M.toml --format FORMAT -o FOLDER",
-      "Writes an error model as compensation tables for a real NC: what corrects each axis over\n"
-      "its own position, with heidenhain and siemens also over that of the two other linear axes.\n"
-      "A table holds the errors on one line along its axis, and 0 at the reference. What it "
-      "cannot\n"
-      "hold is listed by its name of ISO 230-1, with what it leaves at the tip. csv, isg (ISG "
-      "CSV,\n"
-      "for Beckhoff TF5280) and etalon (exchange format, as TF5280 reads it) hold the errors\n"
-      "themselves, and are read by --import. marlin, klipper and reprapfirmware hold the\n"
-      "squareness of X, Y and Z as a skew correction. Every format names the document that it "
-      "follows. The "
-      "files are read "
-      "back\n"
-      "by the rules of that document and compared with the error model before they are written.",
+      "Writes an error model as compensation tables for a real NC: corrections of each axis "
+      "over\nits own position, with heidenhain and siemens also over those of the two other linear "
+      "axes.\nA table contains the errors on one line along its axis, and 0 at the reference. "
+      "Errors that\nit cannot represent are listed by their ISO 230-1 names, with their residual "
+      "at the TCP. csv, isg (ISG CSV,\nfor Beckhoff TF5280) and etalon (exchange format, as TF5280 "
+      "reads it) contain the errors\nthemselves, and can be read by --import. marlin, klipper and "
+      "reprapfirmware represent the\nsquareness of X, Y and Z as a skew correction. The document "
+      "of each format is named in its files. The files are read back\nby the rules of that "
+      "document and compared with the error model before they are written.",
       "SCENARIO.toml");
   add_table_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -212,13 +212,13 @@ void print_limits(const TunedAxis& axis, const sim::frequency::TuneSettings& wan
              reason(t.position, wanted, drive, "position"));
   if (t.wv_lowered > 0.0 || t.Kv_lowered > 0.0) {
     fmt::print(
-        "  Both are {:.2g} % and {:.2g} % lower than found first, to keep the requested "
-        "margins\n",
+        "  Both are {:.2g} % and {:.2g} % lower than first found, to keep the requested margins\n",
         100.0 * t.wv_lowered, 100.0 * t.Kv_lowered);
   }
   if (t.calmer_wv > 0.0) {
     fmt::print(
-        "  Less would be more: at wv = {:.3g} rad/s the margins of the position loop allow "
+        "  A lower bandwidth allows more: at wv = {:.3g} rad/s the margins of the position loop "
+        "allow "
         "Kv = {:.3g} 1/s; see --velocity-bandwidth\n",
         t.calmer_wv, t.calmer_Kv);
   }
@@ -240,32 +240,32 @@ void add_tune_options(Options& options) {
   add_axis_options(options);
   const auto text = [] { return po::value<std::string>(); };
   options.add()("phase-margin", text()->default_value("60 deg")->value_name("\"60 deg\""),
-                "minimum of both loops; a bare number is in deg");
+                "minimum for both loops; a bare number is in deg");
   options.add()("gain-margin", text()->default_value("8 dB")->value_name("\"8 dB\""),
-                "minimum of both loops; a bare number is in dB");
+                "minimum for both loops; a bare number is in dB");
   options.add()("overshoot", text()->default_value("5 %")->value_name("\"5 %\""),
                 "maximum after a step of the setpoint without feed-forward; a bare number is in %");
   options.add()("bandwidth", text()->value_name("\"50 Hz\""),
-                "of the closed position loop (-3 dB): Kv is raised no further than that; a bare "
+                "of the closed position loop (-3 dB): limits Kv; a bare "
                 "number is in Hz");
   options.add()("velocity-bandwidth", po::value<std::string>()->value_name("\"300 rad/s\""),
-                "no more than this; a bare number is in rad/s");
+                "upper limit; a bare number is in rad/s");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
                 "reset time times velocity bandwidth");
-  options.add()("json", "prints one JSON object an axis");
+  options.add()("json", "prints one JSON object per axis");
 }
 
 }  // namespace
 
 int tune_command(const Arguments& arguments) {
-  Options options(
-      "tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
-      "Finds gains for an axis on the exact multirate model: the largest velocity bandwidth that\n"
-      "keeps phase and gain margin of the velocity loop (its reset time goes along), then the\n"
-      "largest Kv that keeps those of the position loop and the overshoot. Says what binds, what\n"
-      "changes, what a simulation of the whole axis shows, and prints the lines for the scenario.\n"
-      "Several axes get one Kv, as interpolation needs it: the smallest rules.",
-      "SCENARIO.toml");
+  Options options("tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
+                  "Finds gains for an axis on the exact multirate model: the largest velocity "
+                  "bandwidth that\nkeeps phase and gain margin of the velocity loop (its reset "
+                  "time follows), then the\nlargest Kv that keeps those of the position loop and "
+                  "the overshoot. Reports the limiting\ncriterion, the changes and the result of a "
+                  "simulation of the whole axis, and prints the\nlines for the scenario. Several "
+                  "axes get a common Kv, as interpolation requires: the smallest.",
+                  "SCENARIO.toml");
   add_tune_options(options);
   if (!options.parse(arguments)) return kDone;
 

@@ -79,11 +79,11 @@ double rounded_to(double x, double increment) {
 MacroValue Expression::settled(const Term& term) const {
   if (term.is_doubtful) {
     refuse(term.column,
-           "a vacant variable behind a sign or alone in brackets: no manual says whether it is 0 "
-           "or stays vacant; write it without them, or set it");
+           "a vacant variable after a sign or alone in brackets: no manual says whether it is 0 or "
+           "stays vacant; remove the sign or brackets, or set it");
   }
   if (term.is_comparison && context_.reading.reader() == Reader::fanuc) {
-    refuse(term.column, "a comparison stands in IF and WHILE only");
+    refuse(term.column, "a comparison is allowed only in IF and WHILE");
   }
   return term.value;
 }
@@ -103,10 +103,10 @@ MacroValue Expression::assigned_value() { return settled(expression()); }
 
 bool Expression::condition() {
   const int column = cursor_.column();
-  if (cursor_.peek() != '[') refuse(column, "'[' expected: a condition stands in brackets");
+  if (cursor_.peek() != '[') refuse(column, "expected '[': a condition must be in brackets");
   const Term term = bracketed();
   if (!term.is_comparison && context_.reading.reader() == Reader::fanuc) {
-    refuse(column, "a condition compares two values, with EQ, NE, GT, GE, LT or LE");
+    refuse(column, "a condition must compare two values with EQ, NE, GT, GE, LT or LE");
   }
   return term.number() != 0.0;
 }
@@ -115,7 +115,7 @@ long Expression::variable_number() {
   const int column = cursor_.column();
   if (cursor_.peek() == '#') refuse(column, "## is not read: write #[#1]");
   if (cursor_.peek() != '[' && !is_digit(cursor_.peek())) {
-    refuse(column, "the number of a variable is expected behind '#'");
+    refuse(column, "expected a variable number after '#'");
   }
   std::uint64_t digits = 0;
   double number = 0.0;
@@ -129,7 +129,7 @@ long Expression::variable_number() {
   }
   const double nearest = std::round(number);
   if (std::abs(number - nearest) > 1e-4 || nearest < 0.0 || nearest > 1e7) {
-    refuse(column, fmt::format("#[{}]: the number of a variable is a whole number", number));
+    refuse(column, fmt::format("#[{}]: the number of a variable is an integer", number));
   }
   return std::lround(nearest);
 }
@@ -140,7 +140,7 @@ long Expression::variable_number() {
 // stack small.
 Expression::Term Expression::operand() {
   constexpr int kDeepest = 40;
-  if (++depth_ > kDeepest) refuse(cursor_.column(), "brackets and signs are nested too deep");
+  if (++depth_ > kDeepest) refuse(cursor_.column(), "brackets and signs are nested too deeply");
   const Term out = operand_within();
   --depth_;
   return out;
@@ -167,7 +167,7 @@ Expression::Term Expression::operand_within() {
   double number = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    refuse(column, digits.empty() ? "a value is expected here" : "not a number: " + digits);
+    refuse(column, digits.empty() ? "expected a value" : "not a number: " + digits);
   }
   return {number, false, false, column};
 }
@@ -187,7 +187,7 @@ Expression::Term Expression::bracketed() {
   cursor_.advance();
   Term term = expression();
   if (cursor_.at_end()) refuse(column, "'[' is not closed; ']' is missing");
-  if (!cursor_.accept("]")) refuse(cursor_.column(), "operator or ']' expected");
+  if (!cursor_.accept("]")) refuse(cursor_.column(), "expected an operator or ']'");
   term.is_doubtful = !term.value;
   term.column = column;
   return term;
@@ -200,8 +200,8 @@ Expression::Term Expression::expression() {
   const bool is_fanuc = context_.reading.reader() == Reader::fanuc;
   if (seen.logic && (seen.comparison || (seen.arithmetic && !is_fanuc))) {
     refuse(column,
-           "AND, OR or XOR beside other operators: controls differ in the order; "
-           "write brackets around each part");
+           "AND, OR or XOR combined with other operators: the precedence differs between controls; "
+           "put brackets around each part");
   }
   return term;
 }
@@ -214,7 +214,7 @@ Expression::Term Expression::expression(int loosest, Seen& seen) {
     if (op == nullptr || op->level < loosest) return left;
     const int column = cursor_.column();
     if (op->level == 1 && seen.comparison) {
-      refuse(column, "a second comparison; write brackets around each");
+      refuse(column, "a second comparison; put brackets around each");
     }
     (op->level == 1 ? seen.comparison : is_logic(op->op) ? seen.logic : seen.arithmetic) = true;
     cursor_.accept(op->token);
@@ -258,10 +258,11 @@ double Expression::compare(int op, const Term& a, const Term& b, int column) {
   }
   if (is_near(x, y)) {
     context_.reading.warn(
-        here(column), fmt::format("the values compared, {:.10g} and a value {:.1g} beside it, are "
-                                  "nearer than controls calculate: another control may go "
-                                  "the other way; compare with a margin",
-                                  x, std::abs(x - y)));
+        here(column),
+        fmt::format(
+            "the compared values, {:.10g} and a value {:.1g} away, are closer than controls "
+            "calculate: another control may branch differently; compare with a margin",
+            x, std::abs(x - y)));
   }
   const bool holds = op == kEq   ? x == y
                      : op == kNe ? x != y
@@ -276,8 +277,7 @@ double Expression::logic(int op, const Term& a, const Term& b, int column) const
   const auto bits = [&](const Term& term) {
     const double x = term.number();
     if (x < 0.0 || x != std::floor(x) || x > 4294967295.0) {
-      refuse(column,
-             fmt::format("{}: AND, OR and XOR work on the bits of whole numbers from 0 on", x));
+      refuse(column, fmt::format("{}: AND, OR and XOR need integers >= 0", x));
     }
     return static_cast<std::uint64_t>(x);
   };

@@ -22,7 +22,7 @@ bool is_name_letter(char c) { return c >= 'A' && c <= 'Z'; }
 
 double Expression::argument() {
   const int column = cursor_.column();
-  if (cursor_.peek() != '[') refuse(column, "'[' expected behind the name of a function");
+  if (cursor_.peek() != '[') refuse(column, "expected '[' after the function name");
   return bracketed().number();
 }
 
@@ -45,33 +45,34 @@ double Expression::angle(double degrees, int column) const {
 // ATAN[y]/[x], of Fanuc also ATAN[y, x] (B-64484EN, arithmetic and logic operation, from memory).
 double Expression::atan(int column) {
   const int opened = cursor_.column();
-  if (!cursor_.accept("[")) refuse(opened, "'[' expected behind the name of a function");
+  if (!cursor_.accept("[")) refuse(opened, "expected '[' after the function name");
   const double y = expression().number();
   const bool has_comma = cursor_.accept(",");
   const double pair_x = has_comma ? expression().number() : 0.0;
   if (cursor_.at_end()) refuse(opened, "'[' is not closed; ']' is missing");
-  if (!cursor_.accept("]")) refuse(cursor_.column(), "operator or ']' expected");
+  if (!cursor_.accept("]")) refuse(cursor_.column(), "expected an operator or ']'");
   if (!has_comma && !cursor_.accept("/")) return std::atan(y) / deg;
   const double x = has_comma ? pair_x : argument();
-  if (x == 0.0 && y == 0.0) refuse(column, "ATAN[0]/[0] is no angle");
+  if (x == 0.0 && y == 0.0) refuse(column, "ATAN[0]/[0] is not an angle");
   return angle(std::atan2(y, x) / deg, column);
 }
 
 double Expression::pow(int column) {
-  if (!cursor_.accept("[")) refuse(cursor_.column(), "'[' expected behind POW");
+  if (!cursor_.accept("[")) refuse(cursor_.column(), "expected '[' after POW");
   const double base = expression().number();
-  if (!cursor_.accept(",")) refuse(cursor_.column(), "',' expected: POW[base, exponent]");
+  if (!cursor_.accept(",")) refuse(cursor_.column(), "expected ',': POW[base, exponent]");
   const double exponent = expression().number();
-  if (!cursor_.accept("]")) refuse(cursor_.column(), "']' expected behind POW[base, exponent");
+  if (!cursor_.accept("]")) refuse(cursor_.column(), "expected ']' after POW[base, exponent");
   const double out = std::pow(base, exponent);
-  if (!std::isfinite(out)) refuse(column, fmt::format("POW[{},{}] is no number", base, exponent));
+  if (!std::isfinite(out))
+    refuse(column, fmt::format("POW[{},{}] is not a number", base, exponent));
   return out;
 }
 
 // BIN reads the decimal digits of a number as written in four bits each, BCD writes them so.
 double Expression::decimal(bool is_to_binary, double x, int column) const {
   if (x < 0.0 || x != std::floor(x) || x > 99999999.0 * (is_to_binary ? 29.0 : 1.0)) {
-    refuse(column, fmt::format("{}: BIN and BCD take whole numbers of up to 8 digits", x));
+    refuse(column, fmt::format("{}: BIN and BCD need integers of up to 8 digits", x));
   }
   const double from = is_to_binary ? 16.0 : 10.0, to = is_to_binary ? 10.0 : 16.0;
   double out = 0.0, place = 1.0;
@@ -90,7 +91,7 @@ Expression::Term Expression::function() {
   const Term out{0.0, false, false, column};
   const auto is = [&](std::string_view other) { return name == other; };
   const auto result = [&](double value) {
-    if (!std::isfinite(value)) refuse(column, fmt::format("{}: the result is no number", name));
+    if (!std::isfinite(value)) refuse(column, fmt::format("{}: the result is not a number", name));
     return Term{value, false, false, column};
   };
   if (is("ATAN")) return result(atan(column));
@@ -98,7 +99,7 @@ Expression::Term Expression::function() {
   if (is("ADP")) {
     context_.reading.fail(here(column),
                           "ADP adds a decimal point by the increments of the control, which are "
-                          "not known; write the value with its point");
+                          "unknown; write the value with its decimal point");
   }
   if (std::find(kFunctions.begin(), kFunctions.end(), name) == kFunctions.end()) {
     refuse(column, fmt::format("unknown function '{}'{}", name, did_you_mean(name, kFunctions)));

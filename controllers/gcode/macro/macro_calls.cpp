@@ -36,7 +36,7 @@ bool moves(const std::vector<MacroWord>& words) {
 
 void MacroSource::call_codes(std::vector<MacroWord>& words, const WordUnits& units) {
   if (MacroWord* code = find_code(words, 'G', 661)) {
-    refuse(code->column(), "G66.1, a call at every block, is not read; write G66 or G65");
+    refuse(code->column(), "G66.1, a call at every block, is not supported; use G66 or G65");
   }
   for (const int tenths : {650, 660}) {
     const MacroWord* code = find_code(words, 'G', tenths);
@@ -74,8 +74,8 @@ void MacroSource::call_codes(std::vector<MacroWord>& words, const WordUnits& uni
 void MacroSource::begin_modal(MacroCall call) {
   if (!calls_.empty()) {
     refuse(call.column,
-           "G66 within a program that is called: how long it holds is not documented; "
-           "write it in the main program");
+           "G66 within a called program: how long it stays active is undocumented; move it to the "
+           "main program");
   }
   modals_.push_back(std::move(call));
 }
@@ -83,7 +83,7 @@ void MacroSource::begin_modal(MacroCall call) {
 void MacroSource::end_modal(MacroWord& code) {
   reading_.apply(ReaderRule::modal_macro_call, here(code.column()));
   if (!calls_.empty()) {
-    refuse(code.column(), "G67 within a program that is called: write it in the main program");
+    refuse(code.column(), "G67 within a called program: move it to the main program");
   }
   code.is_erased = true;
   if (!modals_.empty()) modals_.pop_back();
@@ -97,8 +97,8 @@ void MacroSource::call_modal(const std::vector<MacroWord>& words) {
   if (!calls_.empty()) {
     if (!calls_.back().modal) {
       refuse(static_cast<int>(line_.begin) + 1,
-             "a move of a program that is called while G66 is in force: whether it calls again is "
-             "not documented; write G67 before the call");
+             "a move of a program called while G66 is active: whether it calls again is "
+             "undocumented; program G67 before the call");
     }
     count = *calls_.back().modal;
   }
@@ -113,10 +113,10 @@ void MacroSource::check_depth(const MacroCall& call) {
     return one.call.locals.has_value();
   });
   if (call.locals && macros >= kMostMacros && reading_.reader() == Reader::fanuc) {
-    refuse(call.column, fmt::format("more than {} macros called by each other", kMostMacros));
+    refuse(call.column, fmt::format("macro calls nested deeper than {}", kMostMacros));
   }
   if (calls_.size() >= kMostCalls) {
-    refuse(call.column, fmt::format("more than {} programs called by each other", kMostCalls));
+    refuse(call.column, fmt::format("program calls nested deeper than {}", kMostCalls));
   }
 }
 
@@ -171,8 +171,8 @@ bool MacroSource::turn_again(RunningCall& running) {
   const bool has_changed = running.call.locals && variables_.locals() != *running.call.locals;
   if (has_changed && reading_.reader() != Reader::haas) {
     reading_.fail(here(0),
-                  "the program changes its local variables, and L calls it again: whether "
-                  "they keep their values differs between controls; write a WHILE loop");
+                  "the program changes its local variables, and L calls it again: whether they "
+                  "keep their values differs between controls; use a WHILE loop");
   }
   count_jump();
   file_ = running.file;

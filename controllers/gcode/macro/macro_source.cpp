@@ -134,8 +134,8 @@ void MacroSource::program_number() {
     return emit_as_written();
   }
   refuse(static_cast<int>(line_.begin) + 1,
-         calls_.empty() ? "the program runs into the next one; it ends with M30 or M2"
-                        : "the program that is called runs into the next one; it ends with M99");
+         calls_.empty() ? "the program runs into the next one; end it with M30 or M2"
+                        : "the called program runs into the next one; end it with M99");
 }
 
 bool MacroSource::end_of_text() {
@@ -144,7 +144,7 @@ bool MacroSource::end_of_text() {
     return false;
   }
   has_ended_ = true;
-  reading_.refuse({file(), text().number(), 0}, "a program that is called ends with M99");
+  reading_.refuse({file(), text().number(), 0}, "a called program must end with M99");
 }
 
 }  // namespace servomill::controllers::macro

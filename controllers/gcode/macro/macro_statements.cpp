@@ -28,9 +28,9 @@ void MacroSource::run_statement(Statement statement, std::size_t begin) {
   }
   reading_.apply(ReaderRule::macro_statement, here(static_cast<int>(begin) + 1));
   if (line_.is_optional) {
-    reading_.warn(here(1),
-                  "a macro statement that the operator may skip runs as if the switch is "
-                  "off; --block-delete leaves it out");
+    reading_.warn(
+        here(1),
+        "an optional macro statement runs as if block delete is off; --block-delete skips it");
   }
   switch (statement) {
     case Statement::assignment:
@@ -54,8 +54,7 @@ void MacroSource::run_statement(Statement statement, std::size_t begin) {
 void MacroSource::nothing_behind(const Cursor& cursor) {
   if (cursor.at_end()) return;
   refuse(cursor.column(),
-         fmt::format("unexpected '{}' behind a macro statement, which stands in a block of "
-                     "its own",
+         fmt::format("unexpected '{}' after a macro statement, which needs a separate block",
                      cursor.peek()));
 }
 
@@ -80,7 +79,7 @@ void MacroSource::assignment(std::size_t begin) {
   Cursor& cursor = expression.cursor();
   cursor.accept("#");
   const long number = expression.variable_number();
-  if (!cursor.accept("=")) refuse(cursor.column(), "'=' expected behind a variable");
+  if (!cursor.accept("=")) refuse(cursor.column(), "expected '=' after a variable");
   const MacroValue value = expression.assigned_value();
   const bool has_next = has_next_statement(cursor);
   const Place place = here(static_cast<int>(begin) + 1);
@@ -94,19 +93,18 @@ void MacroSource::assignment(std::size_t begin) {
 
 void MacroSource::write_system_variable(long number, MacroValue value, const Place& place) {
   if (number == 3000) {
-    reading_.fail(
-        place, fmt::format("the program stops itself with an alarm (#3000={}){}{}",
-                           value.value_or(0.0), line_.comment.empty() ? "" : ": ", line_.comment));
+    reading_.fail(place,
+                  fmt::format("the program raises an alarm (#3000={}){}{}", value.value_or(0.0),
+                              line_.comment.empty() ? "" : ": ", line_.comment));
   }
   if (number == 3006) return stop_with_message();
   const bool is_without_effect =
       (number >= 3001 && number <= 3004) || (number >= 1100 && number <= 1139);
   if (is_without_effect) return reading_.apply(ReaderRule::macro_output, place);
   const std::string_view name = system_variable_name(number);
-  std::string_view remedy = "what it changes is not simulated";
+  std::string_view remedy = "its effect is not simulated";
   if (name == "a work offset") remedy = "set it with G10 L2";
-  if (name == "a tool offset")
-    remedy = "give it in the tool table (--tools), and take the line out";
+  if (name == "a tool offset") remedy = "put it in the tool table (--tools), and remove the line";
   reading_.fail(place, fmt::format("#{} is {} and is not set from here: {}", number,
                                    name.empty() ? "a variable of the control" : name, remedy));
 }
@@ -127,11 +125,11 @@ void MacroSource::condition(std::size_t begin) {
     if (holds) go_to(at);
     return;
   }
-  if (!cursor.accept("THEN")) refuse(cursor.column(), "GOTO or THEN expected behind IF[...]");
+  if (!cursor.accept("THEN")) refuse(cursor.column(), "expected GOTO or THEN after IF[...]");
   const Statement statement = statement_at(line_.body, cursor.at());
   const bool is_macro = statement == Statement::assignment || statement == Statement::go_to ||
                         statement == Statement::output || statement == Statement::if_;
-  if (!is_macro) refuse(cursor.column(), "a macro statement is expected behind THEN");
+  if (!is_macro) refuse(cursor.column(), "expected a macro statement after THEN");
   if (!holds) return check_left_out(statement, cursor.at());
   is_behind_then_ = true;
   run_statement(statement, cursor.at());
@@ -156,11 +154,11 @@ void MacroSource::check_left_out(Statement statement, std::size_t begin) {
   if (statement == Statement::assignment) {
     const std::size_t equals = body.find('=', begin);
     if (equals == std::string::npos) {
-      refuse(static_cast<int>(begin) + 1, "'=' expected behind a variable");
+      refuse(static_cast<int>(begin) + 1, "expected '=' after a variable");
     }
     constexpr std::string_view kOpenEnds = "=+-*/#";
     if (kOpenEnds.find(body[last]) != std::string_view::npos) {
-      refuse(static_cast<int>(last) + 1, "a value is expected behind it");
+      refuse(static_cast<int>(last) + 1, "expected a value after it");
     }
   }
 }
@@ -171,14 +169,14 @@ void MacroSource::conditional_return(std::size_t begin) {
   Cursor& cursor = expression.cursor();
   const int column = cursor.column();
   if (reading_.reader() == Reader::fanuc) {
-    refuse(column, "a condition before M99 is one of Haas; write IF[...]GOTO");
+    refuse(column, "a condition before M99 is specific to Haas; use IF[...]GOTO");
   }
   const bool holds = expression.condition();
   const auto words = read_words(line_.body, cursor.at(), context(), {});
   const bool is_return = !words.empty() && words[0].letter == 'M' && words[0].tenths() == 990;
   const bool has_block = words.size() == 2 && words[1].letter == 'P' && words[1].value;
   if (!is_return || (words.size() > 1 && !has_block)) {
-    refuse(column, "M99, or M99 P and the number of a block, is expected behind a condition");
+    refuse(column, "expected M99, or M99 P with a block number, after a condition");
   }
   if (!holds) return;
   std::optional<long> block;
@@ -189,7 +187,7 @@ void MacroSource::conditional_return(std::size_t begin) {
 
 const Loop& MacroSource::loop_of_line() {
   const Loop* loop = places().loop_from(text().number());
-  if (loop == nullptr) refuse(static_cast<int>(line_.begin) + 1, "DO begins no loop here");
+  if (loop == nullptr) refuse(static_cast<int>(line_.begin) + 1, "DO does not start a loop here");
   if (!loop->fault.empty()) refuse(static_cast<int>(line_.begin) + 1, loop->fault);
   return *loop;
 }
@@ -199,7 +197,7 @@ void MacroSource::while_line(std::size_t begin) {
   Cursor& cursor = expression.cursor();
   cursor.accept("WHILE");
   const bool holds = expression.condition();
-  if (!cursor.accept("DO")) refuse(cursor.column(), "DO and its number expected behind WHILE[...]");
+  if (!cursor.accept("DO")) refuse(cursor.column(), "expected DO with its number after WHILE[...]");
   std::uint64_t number = 0;
   cursor.take_digits(number);
   const bool has_next = has_next_statement(cursor);
@@ -211,7 +209,7 @@ void MacroSource::while_line(std::size_t begin) {
 void MacroSource::end_of_loop() {
   const Loop* loop = places().loop_to(text().number());
   if (loop == nullptr) {
-    refuse(static_cast<int>(line_.begin) + 1, "END without the DO of its number before it");
+    refuse(static_cast<int>(line_.begin) + 1, "END without a matching DO before it");
   }
   if (!loop->fault.empty()) refuse(static_cast<int>(line_.begin) + 1, loop->fault);
   count_jump();
@@ -226,7 +224,7 @@ void MacroSource::go_to(std::size_t begin) {
   const MacroValue number = expression.word_value();
   nothing_behind(cursor);
   if (!number || *number < 0.0 || *number > 99'999'999.0) {
-    refuse(column, "GOTO needs the number of a block");
+    refuse(column, "GOTO needs a block number");
   }
   jump(std::lround(*number), column);
 }
@@ -236,8 +234,9 @@ void MacroSource::jump(long number, int column) {
   const auto mark = places().block(number);
   if (!mark) refuse(column, fmt::format("there is no block N{} in this program", number));
   if (const Loop* loop = places().loop_entered(from, mark->line + 1)) {
-    refuse(column, fmt::format("N{} is within the loop DO{} of line {}: no jump leads into a loop",
-                               number, loop->number, loop->begin_line));
+    refuse(column,
+           fmt::format("N{} is inside the loop DO{} of line {}: jumps into a loop are not allowed",
+                       number, loop->number, loop->begin_line));
   }
   count_jump();
   text().go_to(*mark);
@@ -250,7 +249,7 @@ void MacroSource::count_jump() {
   if (++jumps_ <= most_jumps_ && lines_ <= kLinesOfATurn * most_jumps_) return;
   has_ended_ = true;
   refuse(static_cast<int>(line_.begin) + 1,
-         fmt::format("{} jumps, turns of loops and calls, {} lines; the program seems endless",
+         fmt::format("{} jumps, loop iterations and calls, {} lines; the program looks endless",
                      jumps_, lines_));
 }
 

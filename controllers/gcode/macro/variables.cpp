@@ -89,8 +89,8 @@ bool Variables::is_of_system(long number) const { return kind_of(number) == Kind
 
 MacroValue Variables::unset(long number, Kind kind, const Place& place) const {
   if (kind == Kind::kept_common) {
-    reading_.fail(place, fmt::format("#{0} keeps its value from earlier programs, and this one "
-                                     "has not set it; give it with --parameter '#{0}=...'",
+    reading_.fail(place, fmt::format("#{0} keeps its value from earlier programs, and this program "
+                                     "has not set it; set it with --parameter '#{0}=...'",
                                      number));
   }
   reading_.choose(WordDifference::common_variable, place);
@@ -112,8 +112,8 @@ MacroValue Variables::read(long number, const Place& place) const {
   const std::optional<double> value =
       control_->system_variable ? control_->system_variable(number, why) : std::nullopt;
   if (value) return value;
-  if (why.empty()) why = "a simulation does not know it";
-  why += fmt::format("; or give it with --parameter '#{}=...'", number);
+  if (why.empty()) why = "it is unknown to a simulation";
+  why += fmt::format("; or set it with --parameter '#{}=...'", number);
   const std::string_view name = system_variable_name(number);
   reading_.fail(place, fmt::format("#{} is {}: {}", number,
                                    name.empty() ? "a variable of the control" : name, why));

@@ -55,14 +55,16 @@ class WordReader {
   void refuse_character() const {
     const int column = cursor_.column();
     if (cursor_.peek() == '#') {
-      refuse(column, "a macro statement stands in a block of its own");
+      refuse(column, "a macro statement needs a separate block");
     }
     if (has("+-*/]", cursor_.peek())) {
-      refuse(column, fmt::format("unexpected '{}': an expression of several terms stands in "
-                                 "brackets, like X[#1+5]",
-                                 cursor_.peek()));
+      refuse(
+          column,
+          fmt::format(
+              "unexpected '{}': an expression of several terms must be in brackets, as in X[#1+5]",
+              cursor_.peek()));
     }
-    refuse(column, fmt::format("unexpected '{}'; a word begins with a letter", cursor_.peek()));
+    refuse(column, fmt::format("unexpected '{}'; a word starts with a letter", cursor_.peek()));
   }
 
   void literal(MacroWord& word) {
@@ -77,7 +79,7 @@ class WordReader {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) {
-      refuse(word.column(), fmt::format("{}{} is no number", word.letter, text));
+      refuse(word.column(), fmt::format("{}{} is not a number", word.letter, text));
     }
     word.value = value;
   }
@@ -86,11 +88,11 @@ class WordReader {
     const char next = cursor_.peek();
     if (!has("#[-+", next)) {
       refuse(word.column(),
-             fmt::format("a value is expected behind {}: a number, #1 or an expression in brackets",
+             fmt::format("expected a value after {}: a number, #1 or an expression in brackets",
                          word.letter));
     }
     if (word.letter == 'N' || word.letter == 'O') {
-      refuse(word.column(), fmt::format("{} takes a number, no variable", word.letter));
+      refuse(word.column(), fmt::format("{} needs a number, not a variable", word.letter));
     }
     const double increment = units_.are_arguments ? 0.0 : increment_of(word.letter, units_.is_inch);
     Expression reader(

@@ -189,13 +189,13 @@ void ReadingStep::foreign_codes() {
     if (word.letter != 'G' && word.letter != 'M') continue;
     const int tenths = tenths_of(word.value);
     if (!lacks(options.reader, word.letter, tenths)) continue;
-    refuse(word.column, fmt::format("{}: {} does not have it", code_name(word.letter, tenths),
+    refuse(word.column, fmt::format("{} is not supported by {}", code_name(word.letter, tenths),
                                     kReaders[static_cast<std::size_t>(options.reader)]));
   }
   const bool is_of_linuxcnc = words.has_code('G', 640) && (words.has('P') || words.has('Q'));
   if (is_of_linuxcnc && options.reader != Reader::mach) {
     refuse(words.code('G', 640)->column,
-           fmt::format("G64 with P or Q: {} does not have it",
+           fmt::format("G64 with P or Q is not supported by {}",
                        kReaders[static_cast<std::size_t>(options.reader)]));
   }
 }
@@ -209,7 +209,7 @@ bool ReadingStep::apply(ReaderRule rule, int column, std::string detail) {
 void ReadingStep::need(ReaderRule rule, int column, std::string detail) {
   if (apply(rule, column, std::move(detail))) return;
   const ReaderRuleEntry& entry = reader_rules()[static_cast<std::size_t>(rule)];
-  refuse(column, fmt::format("{}: the reader {} does not read it ({}: {})", entry.found,
+  refuse(column, fmt::format("{}: not supported by reader {} ({}: {})", entry.found,
                              kReaders[static_cast<std::size_t>(options.reader)], entry.controls,
                              entry.reading));
 }

@@ -38,11 +38,11 @@ std::string PlaneCorner::fault(std::string_view name, double size) const {
   const bool is_corner =
       shortest() > 0.0 && angle() > kSmallest && angle() < std::numbers::pi - kSmallest;
   if (!is_corner || size <= 0.0) {
-    return fmt::format("'{}{:g}': the lines make no corner", name, size);
+    return fmt::format("'{}{:g}': the lines form no corner", name, size);
   }
   const double taken = way(name.back(), size);
   if (taken <= shortest()) return {};
-  return fmt::format("'{}{:g}' takes {:.4g} of each line; the shorter one has {:.4g}", name, size,
+  return fmt::format("'{}{:g}' takes {:.4g} of each line; the shorter one is {:.4g}", name, size,
                      taken, shortest());
 }
 
@@ -57,8 +57,9 @@ Eigen::Vector2d in_plane(const Eigen::Vector3d& p, int first, int second) {
 // The reason why a block is no line in the plane beside a corner; empty if it is one.
 std::string ReadingStep::no_line_for(std::string_view corner, int motion) const {
   if (motion != 10) {
-    return fmt::format("'{}' is read between lines only (G1), not beside {}; write the corner",
-                       corner, motion < 0 ? "this block" : code_name('G', motion));
+    return fmt::format(
+        "'{}' is supported only between lines (G1), not next to {}; program the corner", corner,
+        motion < 0 ? "this block" : code_name('G', motion));
   }
   for (const BlockWord& word : words.all()) {
     if (word.is_erased) continue;
@@ -69,7 +70,7 @@ std::string ReadingStep::no_line_for(std::string_view corner, int motion) const 
         tenths == 10 || tenths == 900 || tenths == 910 || word.letter == 'M';
     const bool is_rate = word.letter == 'F' || word.letter == 'S' || word.letter == 'N';
     if (is_of_plane || is_allowed_code || is_rate) continue;
-    return fmt::format("'{}' with {} in this or the next block; write the corner", corner,
+    return fmt::format("'{}' with {} in this or the next block; program the corner", corner,
                        tenths >= 0 ? code_name('G', tenths) : std::string(1, word.letter));
   }
   return {};
@@ -83,15 +84,16 @@ void ReadingStep::corner() {
   const bool is_other_frame = memory.frame.is_active() || memory.polar.is_on;
   if (is_other_frame || state.feed_mode == FeedMode::inverse_time) {
     fail(size.column,
-         fmt::format("'{}' is read in G94 only, without G16, G51, G54.1 and G68; write the corner",
-                     name));
+         fmt::format(
+             "'{}' is supported only in G94, without G16, G51, G54.1 and G68; program the corner",
+             name));
   }
   if (const std::string why = no_line_for(name, motion_in_block()); !why.empty()) {
     fail(size.column, why);
   }
   const bool is_next_move = reading_.next_words_ && reading_.next_words_->has_axis();
   if (!is_next_move) {
-    fail(size.column, fmt::format("'{}' needs a line in the next block, of plain numbers", name));
+    fail(size.column, fmt::format("'{}' needs a line with plain numbers in the next block", name));
   }
   ReadingStep next(reading_, *reading_.next_words_, state, file_, reading_.corner_->next);
   next.decimal_points();
@@ -101,7 +103,7 @@ void ReadingStep::corner() {
   }
   const bool has_distance = next.words.has_code('G', 900) || next.words.has_code('G', 910);
   if (has_distance && next.words.has_code('G', 910) != is_incremental()) {
-    fail(size.column, fmt::format("'{}' with {} in the next block; write the corner", name,
+    fail(size.column, fmt::format("'{}' with {} in the next block; program the corner", name,
                                   is_incremental() ? "G90" : "G91"));
   }
   const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas ||

@@ -69,9 +69,9 @@ void ReadingStep::begin_cycle(int code) {
          "K of LinuxCNC");
   }
   if (is_pecking(code) && (words.has('I') || words.has('J'))) {
-    fail(word.column, fmt::format("{} with I, J, K (Haas): pecks that become shorter are not "
-                                  "simulated; use Q",
-                                  code_name('G', code)));
+    fail(word.column,
+         fmt::format("{} with I, J, K (Haas): decreasing pecks are not simulated; use Q",
+                     code_name('G', code)));
   }
 }
 

@@ -36,7 +36,7 @@ void ReadingStep::frames() {
 
 void ReadingStep::refuse_frame_change(const BlockWord& code) const {
   if (!state.compensation.is_on) return;
-  fail(code.column, fmt::format("{} with cutter compensation on; G40 first",
+  fail(code.column, fmt::format("{} with cutter compensation active; G40 first",
                                 code_name('G', tenths_of(code.value))));
 }
 
@@ -44,7 +44,8 @@ void ReadingStep::polar_mode() {
   for (const int tenths : {150, 160}) {
     BlockWord* code = words.code('G', tenths);
     if (code == nullptr) continue;
-    if (words.has('H')) fail(words.column('H'), "H beside G15 or G16 is a work system of Okuma");
+    if (words.has('H'))
+      fail(words.column('H'), "H with G15 or G16 is a work coordinate system on Okuma");
     need(ReaderRule::polar_coordinates, code->column);
     memory.polar = {};
     memory.polar.is_on = tenths == 160;
@@ -59,7 +60,7 @@ void ReadingStep::polar_origin(int column) {
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
   const Eigen::Vector2d here(now[(n + 1) % 3], now[(n + 2) % 3]);
   if (here.isZero() || choose(WordDifference::polar_centre, column) == 0) return;
-  if (is_incremental()) fail(column, "G16 under G91 is no known mode of Mach; use G90");
+  if (is_incremental()) fail(column, "G16 under G91 is not a known mode of Mach; use G90");
   memory.polar.origin = here;
 }
 
@@ -69,7 +70,7 @@ void ReadingStep::scale_inputs(BlockWord& code) {
   for (const char letter : {'P', 'I', 'J', 'K'}) {
     if (!words.has(letter)) continue;
     fail(words.column(letter),
-         fmt::format("{} beside G51: the factors of Mach are X, Y and Z", letter));
+         fmt::format("{} with G51: the factors on Mach are X, Y and Z", letter));
   }
   need(ReaderRule::scaling, code.column);
   for (int i = 0; i < 3; ++i) {
@@ -90,7 +91,7 @@ void ReadingStep::scaling() {
   PlaneFrame& frame = memory.frame;
   if (BlockWord* off = words.code('G', 500)) {
     refuse_frame_change(*off);
-    if (words.has('S')) fail(off->column, "G50 S limits the speed of a lathe's spindle");
+    if (words.has('S')) fail(off->column, "G50 S limits the spindle speed of a lathe");
     need(ReaderRule::scaling, off->column);
     if (frame.is_scaled) frame.scale.setOnes();
     frame.is_scaled = false;
@@ -159,7 +160,7 @@ void ReadingStep::centre_of_mach(const BlockWord& code) {
   const bool can_be = is_mach || options.reader == Reader::any;
   for (const auto& [letter, axis] : {std::pair{'A', 'X'}, std::pair{'B', 'Y'}}) {
     if (is_mach && words.has(axis)) {
-      fail(words.column(axis), fmt::format("{} beside G68: the centre of Mach is A and B", axis));
+      fail(words.column(axis), fmt::format("{} with G68: the centre on Mach is A and B", axis));
     }
     if (!words.has(letter)) continue;
     const int column = words.column(letter);
@@ -247,8 +248,7 @@ void ReadingStep::additional_offset() {
   const AxisWords off =
       frame.is_translation_known ? AxisWords(found->second - state.work_offset) : AxisWords::Zero();
   if (off.tail<3>().cwiseAbs().maxCoeff() > 0.0 || state.sin_rotation != 0.0) {
-    fail(words.column('P'),
-         fmt::format("{} P{} turns rotary axes or a work system that is turned", name, P));
+    fail(words.column('P'), fmt::format("{} P{} has rotary axes or a rotation", name, P));
   }
   frame.translation = off.head<3>();
   frame.is_translated = true;
@@ -267,7 +267,7 @@ void ReadingStep::polar_words() {
   const bool is_of_machine = words.has_code('G', 530) || has_axis_taker();
   if (!polar.is_on || !has_words || is_of_machine) return;
   if (words.has('L') && words['L'] > 1.0) {
-    fail(words.column('L'), "repetitions under G16 are not read; write each hole");
+    fail(words.column('L'), "repetitions under G16 are not supported; program each hole");
   }
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
   if (words.has(radius)) {
@@ -281,7 +281,7 @@ void ReadingStep::polar_words() {
   }
   if (!polar.has_radius || !polar.has_angle) {
     const char lacks = polar.has_radius ? angle : radius;
-    fail(words.all().front().column, fmt::format("G16 without {} since; it is the {}", lacks,
+    fail(words.all().front().column, fmt::format("{} not programmed since G16; it is the {}", lacks,
                                                  polar.has_radius ? "angle" : "radius"));
   }
   Eigen::Vector2d target =
@@ -310,8 +310,8 @@ void ReadingStep::refuse_lone_axis(const Eigen::Vector3d& now) {
   if (has_first != has_second && std::abs(now[other] - known[other]) > kSame) {
     const char named = "XYZ"[has_first ? first : second];
     fail(words.column(named),
-         fmt::format("{} alone behind G68: whether {} stays where it is or keeps its coordinate "
-                     "from before G68 is a parameter of the control (Fanuc 11600#5); name both",
+         fmt::format("{} alone after G68: whether {} keeps its machine position or its coordinate "
+                     "from before G68 is a parameter of the control (Fanuc 11600#5); program both",
                      named, "XYZ"[other]));
   }
   known = now;
@@ -336,9 +336,9 @@ void ReadingStep::frame_words() {
   bool is_named = false;
   for (int i = 0; i < 3; ++i) is_named = is_named || (frame.concerns(i) && words.has("XYZ"[i]));
   if (is_named && has_axis_taker()) {
-    fail(
-        words.all().front().column,
-        "G10, G28, G30, G52 or G92 of an axis that G51, G51.1, G54.1 or G68 moves; end that first");
+    fail(words.all().front().column,
+         "G10, G28, G30, G52 or G92 of an axis that G51, G51.1, G54.1 or G68 moves; cancel that "
+         "first");
   }
   if (has_axis_taker()) return;
   const bool is_cycle = is_canned_cycle(motion);
@@ -377,7 +377,7 @@ void ReadingStep::frame_centre() {
   const int n = normal_axis();
   const double factor = std::abs(frame.scale[(n + 1) % 3]);
   if (factor != std::abs(frame.scale[(n + 2) % 3])) {
-    fail(words.all().front().column, "an arc under G51 with two factors is no arc");
+    fail(words.all().front().column, "an arc under G51 with two different factors is not an arc");
   }
   if (words.has('R')) return words.set('R', words['R'] * factor);
   const bool is_absolute =

@@ -75,7 +75,7 @@ void ReadingStep::circular_pocket_of_haas(BlockWord& code, bool is_clockwise) {
          fmt::format("{} with L repeats it deeper by Z: under G91, with Z and a whole L", name));
   }
   if (memory.frame.is_active() || memory.polar.is_on || state.compensation.is_on) {
-    fail(column, fmt::format("{} under G16, G41, G51, G54.1 or G68 is not read", name));
+    fail(column, fmt::format("{} under G16, G41, G51, G54.1 or G68 is not supported", name));
   }
   if (L * (1.0 + (K - I) / (Q > 0.0 ? Q : 1.0)) > kMostCircles)
     fail(column, name + " with too many circles");

@@ -18,13 +18,13 @@ void ReadingStep::home() {
   if (words.has_code('G', 281)) {
     if (choose(WordDifference::stored_home, words.code('G', 281)->column) == 0) return;
     fail(words.code('G', 281)->column,
-         "G28.1: the search for the switches is not simulated; G53 names a place of the machine");
+         "G28.1: homing is not simulated; use G53 for a machine position");
   }
   if (code == nullptr) return;
   if (G30 != nullptr && words.has('P')) {
     if (words['P'] != 2.0) {
       fail(words.column('P'),
-           fmt::format("G30 P{}: the place is not in the program; use G53", words['P']));
+           fmt::format("G30 P{}: the position is not in the program; use G53", words['P']));
     }
     need(ReaderRule::second_home_number, words.column('P'));
     words.erase('P');
@@ -87,8 +87,8 @@ void ReadingStep::machine_coordinates() {
   }
   if (words.has_axis() && is_incremental()) {
     fail(code->column,
-         "G53 under G91: a place of the machine (LinuxCNC refuses it), or a distance (Mitsubishi "
-         "M700V p. 508); write G90");
+         "G53 under G91: a machine position (LinuxCNC refuses it), or a distance (Mitsubishi M700V "
+         "p. 508); program G90");
   }
   if (words.has_axis()) return;
   if (!has_work_offset()) {
@@ -135,8 +135,7 @@ void ReadingStep::inputs() {
     if (choose(WordDifference::tool_table_input, words.column('L')) == 0) return;
     if (L == 11 || is_incremental() || !words.has('R')) {
       fail(words.column('L'),
-           "G10 L11 and G10 L10 under G91 add to an offset that is not known; "
-           "use G10 L10 under G90");
+           "G10 L11 and G10 L10 under G91 add to an unknown offset; use G10 L10 under G90");
     }
     words.set('L', 1.0);
     words.add('Z', words['R'], words.column('R'));
@@ -168,7 +167,7 @@ void ReadingStep::inputs() {
 // Surveys go on without the offset.
 void ReadingStep::refuse_unknown_system(const std::string& name, int P) {
   const std::string why = fmt::format(
-      "{} P{}: where this work system lies is unknown; give it with --additional-offset "
+      "{} P{}: this work offset is unknown; set it with --additional-offset "
       "P{}:X=...,Y=...,Z=...",
       name, P, P);
   if (!options.accepts_unknown_positions) fail(words.column('P'), why);

@@ -74,11 +74,10 @@ void ReadingStep::radius_of_line() {
   const int motion = motion_in_block();
   const BlockWord* R = words.find('R');
   if (R == nullptr || motion > 10 || !words.has_axis() || has_axis_taker()) return;
-  fail(R->column,
-       fmt::format("R beside {0}: it rounds the corner to the next line on lathes and where "
-                   "the control is so set (Fanuc, parameter 3405#4), and is an alarm on "
-                   "others; write ,R{1:g} behind G1, or the arc",
-                   code_name('G', motion), R->value));
+  fail(R->column, fmt::format("R beside {0}: it rounds the corner to the next line on lathes and "
+                              "where the control is set so (Fanuc, parameter 3405#4), and is an "
+                              "alarm on others; program ,R{1:g} after G1, or the arc",
+                              code_name('G', motion), R->value));
 }
 
 // G80, alone or with axis words.
@@ -102,7 +101,7 @@ void ReadingStep::cancel_cycle(bool has_words) {
 
 void ReadingStep::refuse_arc_behind_cycle(int motion, int column) const {
   if (motion <= 10) return;
-  fail(column, fmt::format("axis words behind G80 while {} is in force; write the code",
+  fail(column, fmt::format("axis words after G80 while {} is active; program the code",
                            code_name('G', motion)));
 }
 
@@ -130,13 +129,11 @@ void ReadingStep::feed() {
   const BlockWord* code = words.code('G', motion);
   const int column = code != nullptr ? code->column : words.all().front().column;
   if (!options.feed) {
-    fail(
-        column,
-        fmt::format(
-            "{} before any F: Mach goes on with the feed that it had last, other "
-            "controls refuse it; write F, or give the feed with --feed or as program.first_feed of "
-            "a scenario",
-            code_name('G', motion)));
+    fail(column,
+         fmt::format(
+             "{} before the first F: Mach keeps the last feed, other controls raise an alarm; "
+             "program F, or set the feed with --feed or program.first_feed of a scenario",
+             code_name('G', motion)));
   }
   if (!apply(ReaderRule::given_feed, column)) return;
   words.add('F', *options.feed * minute / state.unit, column);

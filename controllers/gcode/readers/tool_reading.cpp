@@ -52,7 +52,7 @@ void ReadingStep::diameter_offset() {
   if (is_other) return;
   if (D != nullptr && on == nullptr) {
     if (state.compensation.is_on && !words.has_code('G', 400)) {
-      fail(D->column, "D with cutter compensation on; G40 first");
+      fail(D->column, "D with cutter compensation active; G40 first");
     }
     need(ReaderRule::modal_diameter_offset, D->column);
     memory.diameter_offset = D->value;
@@ -92,12 +92,12 @@ void ReadingStep::laser_power() {
   if (++memory.power_changes == 1) {
     reading_.notes_.push_back(
         {words.column('S'),
-         "S changes in a move at feed, without M3 or M4: read as the speed of the spindle, which a "
-         "mill changes at rest; where it is the power of a laser, no move is another"});
+         "S changes in a feed move without M3 or M4: read as a spindle speed, which a mill changes "
+         "at rest; if it is a laser power, the motion is the same"});
   }
   if (memory.power_changes < kPowerChanges) return;
   fail(words.column('S'),
-       "S changes from move to move: the power of a laser; programs for milling are read here");
+       "S changes from move to move: a laser power; only milling programs are supported");
 }
 
 }  // namespace servomill::controllers

@@ -65,52 +65,53 @@ struct Refused {
   std::string_view why;
 };
 constexpr auto kRefused = std::to_array<Refused>({
-    {'G', 62, "a curve as NURBS; post it as lines and arcs"},
-    {'G', 71, "turns an axis into coordinates of a cylinder; post the moves of the rotary axis"},
-    {'G', 121, "couples a linear and a rotary axis in polar coordinates; post the moves of both"},
-    {'G', 270, "checks by a move that the axes stand at the reference point; use G53"},
+    {'G', 62, "a NURBS curve; post-process it to lines and arcs"},
+    {'G', 71, "cylindrical interpolation; post-process to moves of the rotary axis"},
+    {'G', 121,
+     "polar coordinate interpolation of a linear and a rotary axis; post-process to moves of both"},
+    {'G', 270, "checks by a move that the axes are at the reference point; use G53"},
     {'G', 283, "sets machine coordinates without a move (TinyG); use G92"},
-    {'G', 290, "comes back through the point of the last G28; write the moves"},
-    {'G', 310, "a move up to what a probe touches, which is not simulated"},
-    {'G', 360, "measures by a probe, which is not simulated"},
-    {'G', 370, "measures a tool by a probe, which is not simulated"},
-    {'G', 440, "takes the length of the tool off; use G43 and a length of the other sign"},
-    {'G', 450, "lengthens a move by a tool offset; write the move"},
-    {'G', 460, "shortens a move by a tool offset; write the move"},
+    {'G', 290, "returns through the intermediate point of the last G28; program the moves"},
+    {'G', 310, "a probing move, which is not simulated"},
+    {'G', 360, "a probing measurement, which is not simulated"},
+    {'G', 370, "a tool measurement, which is not simulated"},
+    {'G', 440, "subtracts the tool length; use G43 with the opposite sign"},
+    {'G', 450, "lengthens a move by a tool offset; program the move"},
+    {'G', 460, "shortens a move by a tool offset; program the move"},
     {'G', 470,
-     "engraves a text (Haas), or lengthens a move by twice a tool offset (Fanuc); write "
-     "the moves"},
-    {'G', 480, "shortens a move by twice a tool offset; write the move"},
-    {'G', 600,
-     "comes from one side by a distance that is a parameter of the control; write the "
+     "engraves a text (Haas), or lengthens a move by twice a tool offset (Fanuc); program the "
      "moves"},
-    {'G', 650, "calls a macro of the control, whose text is not in the program"},
-    {'G', 660, "calls a macro of the control at each move, whose text is not in the program"},
+    {'G', 480, "shortens a move by twice a tool offset; program the move"},
+    {'G', 600,
+     "approaches from one direction by a distance set in a control parameter; program the moves"},
+    {'G', 650, "calls a macro of the control that is not in the program"},
+    {'G', 660, "calls a macro of the control at each move that is not in the program"},
     {'G', 770, "back boring by an oriented spindle is not simulated"},
     {'G', 1000,
-     "ends a mirror image (Haas), or changes a tool (Brother); choose with --reader haas, or "
-     "write G50.1 or M6"},
+     "ends a mirror image (Haas), or changes a tool (Brother); choose with --reader haas, or use "
+     "G50.1 or M6"},
     {'G', 1010,
-     "a mirror image (Haas), or a code of the machine's builder; choose with --reader haas, "
-     "or write G51.1"},
-    {'G', 1070, "turns an axis into coordinates of a cylinder; post the moves of the rotary axis"},
-    {'G', 1120, "couples a linear and a rotary axis in polar coordinates; post the moves of both"},
-    {'G', 1410, "compensates the radius in space (Haas); post the path of the tool centre"},
-    {'G', 1430, "compensates the length on tilted axes (Haas); post it with G43.4"},
-    {'G', 1500, "a pocket cycle (Haas); post the moves of the pocket"},
-    {'G', 2340, "tool centre point control (Haas); write G43.4, which is the same"},
+     "a mirror image (Haas), or a code of the machine builder; choose with --reader haas, or use "
+     "G51.1"},
+    {'G', 1070, "cylindrical interpolation; post-process to moves of the rotary axis"},
+    {'G', 1120,
+     "polar coordinate interpolation of a linear and a rotary axis; post-process to moves of both"},
+    {'G', 1410, "3D cutter compensation (Haas); post-process to the path of the tool centre"},
+    {'G', 1430, "length compensation on tilted axes (Haas); post-process with G43.4"},
+    {'G', 1500, "a pocket cycle (Haas); post-process to the moves of the pocket"},
+    {'G', 2340, "tool centre point control (Haas); use G43.4, which is the same"},
     {'G', 2540,
-     "shifts the work offset with the rotary axes (Haas), by centres of rotation that "
-     "are in the control; post it with G68.2 or G43.4"},
+     "shifts the work offset with the rotary axes (Haas), by centres of rotation stored in the "
+     "control; post-process with G68.2 or G43.4"},
     {'M', 170,
      "ends a subprogram of Siemens, or switches the motors on that drive a hobby machine; write "
-     "M99, or take it out"},
-    {'M', 470, "starts the program again and again (Mach); write M30"},
-    {'M', 960, "lets a signal interrupt the program, and none are simulated"},
-    {'M', 1040, "heats the extruder of a printer; programs for milling are read here"},
-    {'M', 1090, "heats the extruder of a printer; programs for milling are read here"},
-    {'M', 1400, "heats the bed of a printer; programs for milling are read here"},
-    {'M', 1900, "heats the bed of a printer; programs for milling are read here"},
+     "M99, or remove it"},
+    {'M', 470, "restarts the program endlessly (Mach); use M30"},
+    {'M', 960, "lets a signal interrupt the program; signals are not simulated"},
+    {'M', 1040, "heats the extruder of a 3D printer; only milling programs are supported"},
+    {'M', 1090, "heats the extruder of a 3D printer; only milling programs are supported"},
+    {'M', 1400, "heats the bed of a 3D printer; only milling programs are supported"},
+    {'M', 1900, "heats the bed of a 3D printer; only milling programs are supported"},
     {'M', 1980, "calls a program from another memory of the control; use M98 and --subs"},
 });
 
@@ -162,7 +163,7 @@ void ReadingStep::unit_codes() {
     if (code == nullptr || words.has('Q') || words.has('P')) continue;
     if (words.has('L')) {
       fail(code->column,
-           fmt::format("{} with L: holes along a circle (Haas); write each hole", name_of(*code)));
+           fmt::format("{} with L: holes on a circle (Haas); program each hole", name_of(*code)));
     }
     need(ReaderRule::unit_codes, code->column);
     code->value = tenths == 700 ? 20.0 : 21.0;
@@ -196,8 +197,8 @@ void ReadingStep::repeated_groups() {
       if (last != nullptr && !has_g80) {
         if (group == Group::g_distance && (words.has_code('G', 280) || words.has_code('G', 300))) {
           fail(word.column,
-               "G90 and G91 beside G28 or G30: which of them holds for the way there "
-               "no control documents; write two blocks");
+               "G90 and G91 with G28 or G30: no control documents which one applies to the "
+               "intermediate point; use two blocks");
         }
         if (tenths_of(last->value) != code->tenths) need(ReaderRule::repeated_group, word.column);
         words.erase(*last);
@@ -266,7 +267,7 @@ void ReadingStep::leave_out(ReaderRule rule, BlockWord& word) {
   const int tenths = tenths_of(word.value);
   const std::string name = name_of(word);
   need(rule, word.column,
-       fmt::format("; {} becomes a comment, also where the program is written again", name));
+       fmt::format("; {} becomes a comment, also where the program is rewritten", name));
   if (memory.first_left_out < 0) memory.first_left_out = tenths;
   if (memory.first_left_out != tenths) {
     reading_.notes_.push_back({word.column, fmt::format("{} becomes a comment, too", name)});
@@ -279,12 +280,11 @@ void ReadingStep::leave_out(ReaderRule rule, BlockWord& word) {
 void ReadingStep::refuse_function(const BlockWord& word) const {
   const std::string name = name_of(word);
   const bool has_none = options.reader == Reader::grbl;
-  if (has_none) refuse(word.column, fmt::format("{}: grbl does not have it", name));
-  fail(
-      word.column,
-      fmt::format("unknown M code {0}: a function of the machine's builder; some of them mirror or "
-                  "move an axis. If {0} does not, name it with --ignore-code {0}, or take it out",
-                  name));
+  if (has_none) refuse(word.column, fmt::format("{} is not supported by grbl", name));
+  fail(word.column,
+       fmt::format("unknown M code {0}: a function of the machine builder; some of them mirror or "
+                   "move an axis. If {0} does not, pass --ignore-code {0}, or remove it",
+                   name));
 }
 
 // M7 M8: both are on.
@@ -333,7 +333,7 @@ void ReadingStep::idle_codes() {
   if (const BlockWord* table = words.code('G', 542);
       table != nullptr && !(words.has('P') && words['P'] == 0.0)) {
     fail(table->column,
-         "G54.2: the offset turns with the rotary axes by what is in the control; post it with "
+         "G54.2: the offset rotates with the rotary axes by data in the control; post-process with "
          "G68.2 or G43.4");
   }
   leave_out_all(ReaderRule::smoothing, kSmoothing);
@@ -346,7 +346,7 @@ double ReadingStep::dwell_of(WordDifference difference, const BlockWord& P) {
   if (reading) return P.value * (*reading == 0 ? 1.0 : 1e-3);
   if (!options.accepts_unknown_dwells) fail(P.column, both_readings(difference));
   reading_.notes_.push_back(
-      {P.column, both_readings(difference) + "; how long it dwells is left unknown"});
+      {P.column, both_readings(difference) + "; the dwell time stays unknown"});
   reading_.has_unknown_dwell_ = true;
   return 0.0;
 }
@@ -381,10 +381,10 @@ void ReadingStep::dwell_of_other_controls() {
   if (word == nullptr) return;
   const int column = word->column;
   const std::string readings =
-      has_S ? "G4 S: seconds (Marlin), or turns of the spindle (Siemens); write G4 P"
-            : "G4 F: seconds (Siemens), and other controls do not have it; write G4 P";
+      has_S ? "G4 S: seconds (Marlin), or spindle revolutions (Siemens); use G4 P"
+            : "G4 F: seconds (Siemens), not supported by other controls; use G4 P";
   if (!options.accepts_unknown_dwells) fail(column, readings);
-  reading_.notes_.push_back({column, readings + "; how long it dwells is left unknown"});
+  reading_.notes_.push_back({column, readings + "; the dwell time stays unknown"});
   reading_.has_unknown_dwell_ = true;
   words.erase(has_S ? 'S' : 'F');
   words.add('P', 0.0, column);

@@ -44,12 +44,12 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
   std::vector<std::string_view> names;
   for (const auto& [key, model] : models) names.push_back(key);
   if (names.empty()) {
-    throw InputError({file}, request.error_file.empty()
-                                 ? "has no error model; write one as [errors.NAME] or name a file "
-                                   "of them with --errors"
-                                 : "has no error model; write one as [errors.NAME]");
+    throw InputError({file},
+                     request.error_file.empty()
+                         ? "has no error model; add [errors.NAME] or pass a file with --errors"
+                         : "has no error model; add one as [errors.NAME]");
   }
-  const std::string there_are = fmt::format("there are {}", fmt::join(names, ", "));
+  const std::string there_are = fmt::format("known are {}", fmt::join(names, ", "));
   if (request.model.empty() && names.size() > 1) {
     throw InputError({"--model"}, fmt::format("is missing; {}", there_are));
   }
@@ -204,7 +204,7 @@ void refuse_too_many_blocks(const CompensateRequest& request,
   if (way <= kMostBlocks * request.max_block) return;
   throw InputError({"--max-block"},
                    fmt::format("{:g} um makes {:.2g} blocks of {:.4g} m of feed; must be <= {:g} "
-                               "blocks: name a longer one",
+                               "blocks; use a larger value",
                                request.max_block / um, way / request.max_block, way, kMostBlocks));
 }
 
@@ -286,7 +286,7 @@ Compensated compensate(const CompensateRequest& request) {
     refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
       out.warnings.push_back({{request.program_file, block->line},
-                              "this program has been corrected before; it is corrected again"});
+                              "this program was corrected before and is now corrected again"});
     }
     writer->write(*block);
   }

@@ -21,9 +21,9 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Wor
     const bool is_there = !place.offset.isZero(0.0) || place.rotation != 0.0;
     if (!is_there && system != 1) continue;
     out.push_back(fmt::format(
-        "{} lies at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
+        "{} is at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
         words_text(place.offset, layout),
-        place.rotation == 0.0 ? "" : fmt::format(", turned by {:g} deg", place.rotation / deg)));
+        place.rotation == 0.0 ? "" : fmt::format(", rotated by {:g} deg", place.rotation / deg)));
   }
   for (const auto& [number, length] : summary.tools) {
     out.push_back(number == 0  ? fmt::format("no tool is known: length {:g} mm", length / mm)
@@ -37,10 +37,11 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Wor
 std::vector<std::string> unrolled_parts(const Summary& summary) {
   std::vector<std::string> out;
   if (summary.unrolled) out.emplace_back("loops and subroutines are unrolled");
-  if (summary.has_expressions) out.emplace_back("expressions became numbers");
-  if (summary.has_cycles) out.emplace_back("canned cycles became their moves");
+  if (summary.has_expressions) out.emplace_back("expressions are replaced by numbers");
+  if (summary.has_cycles) out.emplace_back("canned cycles are replaced by their moves");
   if (summary.has_cutter_compensation) {
-    out.emplace_back("cutter compensation became its moves, for the diameters of the tool table");
+    out.emplace_back(
+        "cutter compensation is replaced by its moves, for the diameters of the tool table");
   }
   return out;
 }
@@ -61,15 +62,16 @@ std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& 
   const bool turns = request.axes == strategies::DisplacedAxes::all;
   std::vector<std::string> left;
   if (summary.left.tip > kReportedTip) {
-    left.push_back(fmt::format("{:.2f} um of the tip", summary.left.tip / um));
+    left.push_back(fmt::format("{:.2f} um at the TCP", summary.left.tip / um));
   }
   if (summary.left.axis > kReportedAxis) {
     left.push_back(fmt::format("{:.1f} urad of the tool axis", summary.left.axis / urad));
   }
   if (!left.empty() && summary.most_left) {
-    out.push_back({{request.program_file, summary.most_left->line},
-                   fmt::format("cannot correct {} here, the most found{}", fmt::join(left, " and "),
-                               turns ? "" : "; linear axes do not turn the tool")});
+    out.push_back(
+        {{request.program_file, summary.most_left->line},
+         fmt::format("cannot correct {} here, the largest found{}", fmt::join(left, " and "),
+                     turns ? "" : "; linear axes do not turn the tool")});
   }
   return out;
 }

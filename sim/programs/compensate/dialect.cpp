@@ -83,8 +83,8 @@ void DialectPrinter::warn(std::string sentence) {
 std::string DialectPrinter::rate(double x, int decimals, std::string_view name) const {
   std::string text = controllers::fixed_text(x, decimals);
   if (text == "0") {
-    throw Unsayable{
-        fmt::format("has {} = {:g}, less than the {} decimals of the control", name, x, decimals)};
+    throw Unsayable{fmt::format("has {} = {:g}, smaller than the resolution of {} decimals", name,
+                                x, decimals)};
   }
   return text;
 }

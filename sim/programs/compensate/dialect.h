@@ -35,11 +35,11 @@ struct FanucFunction {
   std::string_view name, absent;  // the latter as a clause
 };
 inline constexpr std::array<FanucFunction, 7> kFanucFunctions = {{
-    {"polar", "the control has no polar coordinate command (G16), so that G15 is left out"},
-    {"scaling", "the control has no scaling (G51), so that G50 is left out"},
-    {"mirror", "the control has no mirror image by G51.1, so that G50.1 is left out"},
-    {"surface-speed", "the control has no constant surface speed (G96), so that G97 is left out"},
-    {"preset", "no G92 has shifted the work systems, so that G92.1 is left out"},
+    {"polar", "the control has no polar coordinate command (G16), so that G15 is omitted"},
+    {"scaling", "the control has no scaling (G51), so that G50 is omitted"},
+    {"mirror", "the control has no mirror image by G51.1, so that G50.1 is omitted"},
+    {"surface-speed", "the control has no constant surface speed (G96), so that G97 is omitted"},
+    {"preset", "no G92 has shifted the work systems, so that G92.1 is omitted"},
     {"rollover", "rotary axes count beyond 360 deg (No. 1008#0, ROA, is 0)"},
     {"length-b", "the tool length acts along Z in every plane (No. 5001#1, TLB, is 0)"},
 }};

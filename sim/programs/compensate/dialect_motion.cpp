@@ -34,13 +34,13 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
   for (const Axis axis : kAllAxes) {
     if (axis != Axis::Z && !request.has(letter(axis))) continue;
     if (axis == Axis::Z && request.has('Z')) continue;
-    throw Unsayable{fmt::format(
-        "{} of other axes than Z goes to places that LinuxCNC has stored; write G53 G0 X... Y... "
-        "with the places of this machine",
-        is_G28 ? "G28" : "G30")};
+    throw Unsayable{
+        fmt::format("{} of axes other than Z goes to positions stored in LinuxCNC; program G53 G0 "
+                    "X... Y... with the positions of this machine",
+                    is_G28 ? "G28" : "G30")};
   }
   if (block.state->is_incremental && request['Z'] != 0.0) {
-    throw Unsayable{"goes home by an incremental move; program Z0 under G91"};
+    throw Unsayable{"returns to reference by an incremental move; program Z0 under G91"};
   }
   if (!is_last) {
     if (block.state->is_incremental) return;
@@ -55,8 +55,7 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
   } else {
     printer_->retract();
     printer_->assume(
-        fmt::format("Z{:g} of the machine serves where the original goes to the second "
-                    "reference position (G30)",
+        fmt::format("machine Z{:g} replaces the second reference position (G30) of the original",
                     settings_.retract_Z / mm));
   }
   height_.reset();
@@ -97,8 +96,8 @@ DialectMotion DialectWriter::motion_of(const Block& block, const Step& step) con
   across[index_of(Axis::Z)] = 0.0;
   if (!motion.is_place && !across.isZero(0.0)) {
     throw Unsayable{
-        fmt::format("moves with offsets of tool {0} in other axes than Z; give tool {0} none of "
-                    "X, Y, ... in the tool table",
+        fmt::format("moves with offsets of tool {0} in axes other than Z; remove X, Y, ... of tool "
+                    "{0} from the tool table",
                     move.tool_offset)};
   }
   return motion;
@@ -120,7 +119,7 @@ void DialectWriter::set_feed(DialectMotion& motion, const Step& step,
   // rotary axes that carry the correction of a straight move have no feed of their own
   if (by_time || (has_linear && has_rotary && length > 0.0)) {
     if (move.feed_mode == FeedMode::units_per_revolution) {
-      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95); write G94 or G93"};
+      throw Unsayable{"feeds rotary axes per revolution of the spindle (G95); use G94 or G93"};
     }
     const double share = std::max(fitted.t_end - fitted.t_begin, kShortestShare);
     motion.feed_mode = FeedMode::inverse_time;

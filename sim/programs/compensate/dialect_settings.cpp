@@ -54,9 +54,10 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   settings.smoothing = request.smoothing;
   const std::optional<double> retract = retract_of(request, described);
   if (!retract) {
-    throw InputError({"--retract"},
-                     "is missing: programs for other controls retract before and after; --retract "
-                     "Z=... in machine coordinates, or axis.Z.retract_mm of the machine file");
+    throw InputError(
+        {"--retract"},
+        "is missing: programs for other controls retract before and after; set --retract Z=... in "
+        "machine coordinates, or axis.Z.retract_mm in the machine file");
   }
   const model::NcSettings& nc = described.machine.nc;
   if (*retract < nc.lower[2] || *retract > nc.upper[2]) {
@@ -66,9 +67,9 @@ DialectSettings dialect_settings(const CompensateRequest& request,
   }
   settings.retract_Z = *retract;
   if (request.dialect == Dialect::fanuc && request.program_number == 0) {
-    throw InputError({"--program-number"},
-                     "is missing: Fanuc programs have a number, 1 ... 9999, and the name of the "
-                     "file gives none");
+    throw InputError(
+        {"--program-number"},
+        "is missing: Fanuc programs need a number, 1 ... 9999, and the file name has none");
   }
   const JointLayout& layout = described.machine.chain.layout;
   settings.axes.clear();

@@ -73,20 +73,20 @@ struct Remedy {
 
 constexpr std::array kRemedies = {
     Remedy{false, 100, 100, "enter tools and their lengths at the control"},
-    Remedy{false, 281, 301, "write G53 G0 where the program goes to the place that it stores"},
-    Remedy{false, 431, 432, "write G43 H with the number of a length that the control has"},
+    Remedy{false, 281, 301, "program G53 G0 where the program goes to the stored position"},
+    Remedy{false, 431, 432, "program G43 H with a length number of the control"},
     Remedy{false, 434, 435, kWriteAxes},
     Remedy{false, 531, 531, kWriteAxes},
     Remedy{false, 682, 682, kWriteAxes},
-    Remedy{true, 520, 530, "adaptive feed and feed stop are inputs of LinuxCNC; take it out"},
-    Remedy{true, 700, 730, "write the modes out that it saves or restores"},
+    Remedy{true, 520, 530, "adaptive feed and feed stop are inputs of LinuxCNC; remove it"},
+    Remedy{true, 700, 730, "program the modes that it saves or restores"},
 };
 
 std::string_view remedy_of(bool is_M, int tenths) {
   for (const Remedy& one : kRemedies) {
     if (one.is_M == is_M && tenths >= one.first && tenths <= one.last) return one.text;
   }
-  return "take it out";
+  return "remove it";
 }
 
 std::string comment_text(std::string_view piece) {
@@ -124,7 +124,7 @@ void DialectWriter::check_codes(const Block& block) {
     if (moves_work_system(*chosen.code, *block.request) || is_override(*chosen.code)) continue;
     const bool is_M = chosen.code->group >= Group::m_input_output;
     throw InputError({file_, block.line, chosen.column},
-                     fmt::format("{} cannot be expressed for {}; {}",
+                     fmt::format("{} cannot be expressed in {}; {}",
                                  controllers::code_name(is_M ? 'M' : 'G', chosen.code->tenths),
                                  kDialects[static_cast<std::size_t>(settings_.dialect)],
                                  remedy_of(is_M, chosen.code->tenths)));
@@ -159,8 +159,8 @@ void DialectWriter::note_unit(const Block& block) {
   if (*is_inch_ == is_inch || !printer_->set_inches(*is_inch_)) return;
   throw InputError(
       {file_, block.line},
-      fmt::format("moves in {}, moves before were in {}: {} changes origin offsets "
-                  "and tool lengths with G20 and G21; write the program in one unit",
+      fmt::format("moves in {}, earlier moves were in {}: {} changes work offsets and tool lengths "
+                  "with G20 and G21; write the program in one unit",
                   is_inch ? "inches (G20)" : "mm (G21)", is_inch ? "mm (G21)" : "inches (G20)",
                   kDialects[static_cast<std::size_t>(settings_.dialect)]));
 }
@@ -183,7 +183,7 @@ void DialectWriter::write_always(const Block& block) {
     write_moves(block);
   } catch (const Unsayable& what) {
     throw InputError({file_, block.line},
-                     fmt::format("{}; that cannot be expressed for {}", what.why,
+                     fmt::format("{}; it cannot be expressed in {}", what.why,
                                  kDialects[static_cast<std::size_t>(settings_.dialect)]));
   }
 }
@@ -319,11 +319,11 @@ void DialectWriter::restate_spindle_and_coolant() {
 std::vector<std::string> DialectWriter::warnings() const {
   std::vector<std::string> out = printer_->warnings();
   if (has_overrides_) {
-    out.emplace_back("M48 ... M51 are left out: the override switches stay the operator's");
+    out.emplace_back("M48 ... M51 are omitted: the operator keeps the override switches");
   }
   if (moves_work_systems_) {
     out.emplace_back(
-        "G10 acts on the numbers of this program only: the work offsets of the control stay");
+        "G10 acts only within this program: the work offsets of the control are unchanged");
   }
   if (has_pallets_) {
     out.emplace_back("M60 is a stop (M0) at which the operator exchanges the pallets");

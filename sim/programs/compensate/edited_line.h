@@ -69,8 +69,8 @@ void drop(EditedLine& line, std::size_t i);
 /// @throws InputError
 void refuse_slash(const EditedLine& line);
 inline constexpr std::string_view kSlash =
-    "the operator decides about blocks with '/', and what follows depends on them; take the slash "
-    "away, or leave them out by --block-delete";
+    "the rest of the program depends on whether the operator skips blocks with '/'; remove the "
+    "slash, or omit these blocks with --block-delete";
 /// Everything but comments that no one hears.
 void drop_o_words(EditedLine& line);
 void drop_motion(EditedLine& line);

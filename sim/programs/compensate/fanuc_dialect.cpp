@@ -132,7 +132,7 @@ class Fanuc final : public IsoDialect {
   void path_mode(PathMode mode, double tolerance) override {
     if (mode == PathMode::exact_path) throw Unsayable{std::string(kExactPath)};
     if (tolerance > 0.0)
-      warn("G64 P: the tolerance is left out; smoothing is G5.1's on this control");
+      warn("G64 P: the tolerance is omitted; smoothing is set by G5.1 on this control");
     put(mode == PathMode::exact_stop ? "G61" : "G64");
   }
   void preselect(int tool) override { put(fmt::format("T{}", tool)); }
@@ -154,7 +154,7 @@ class Fanuc final : public IsoDialect {
   void end_optional() override {
     IsoDialect::end_optional();
     if (normal_axis_ != normal_before_) {
-      throw Unsayable{"leaves another plane behind blocks with '/'; write arcs in G17 there"};
+      throw Unsayable{"leaves another plane after blocks with '/'; program arcs in G17 there"};
     }
     for (std::size_t i = 0; i < rotary_.size(); ++i) {
       if (rotary_[i] != rotary_before_[i]) rotary_[i].reset();
@@ -199,7 +199,8 @@ class Fanuc final : public IsoDialect {
     // B-63844EN/02 p. 48
     if (motion.may_leave_its_line()) {
       assume(
-          "rapids of several axes meet nothing, also off their line (No. 1401#1, LRP, may be 0)");
+          "rapids of several axes are collision-free off their line (No. 1401#1, "
+          "LRP, may be 0)");
     }
   }
 
@@ -218,16 +219,16 @@ class Fanuc final : public IsoDialect {
       std::optional<double>& before = rotary_[static_cast<std::size_t>(i)];
       const double way = before ? std::abs(origin + value - *before) : 0.0;
       if (way >= kHalfTurn) {
-        throw Unsayable{fmt::format(
-            "rotates {} by {:g} deg in one block, for which a control whose axes roll over (No. "
-            "1008#0, ROA, is 1) takes the shorter way; divide it, or give --without rollover if "
-            "ROA is 0",
-            letter(axis), way)};
+        throw Unsayable{
+            fmt::format("rotates {} by {:g} deg in one block, for which a control whose axes roll "
+                        "over (No. 1008#0, ROA, is 1) takes the shorter direction; split it, or "
+                        "pass --without rollover if ROA is 0",
+                        letter(axis), way)};
       }
       before = origin + value;
       assume(
-          fmt::format("{}, if it rolls over (No. 1008#0, ROA), goes the shorter way (#1, RAB, "
-                      "and #3, RAA, are 0)",
+          fmt::format("{}, if it rolls over (No. 1008#0, ROA), takes the shorter direction (#1, "
+                      "RAB, and #3, RAA, are 0)",
                       letter(axis)));
     }
   }
@@ -264,7 +265,7 @@ class Fanuc final : public IsoDialect {
     if (!motion.is_rapid || motion.words.size() > 1 || is_in_force) {
       throw Unsayable{
           "moves Z without the tool length that was in force (G49 after G43), which the control "
-          "cancels safely on a retract only; write G53 G0 Z... before G49"};
+          "cancels safely only on a retract; program G53 G0 Z... before G49"};
     }
     retract();
   }
@@ -272,10 +273,9 @@ class Fanuc final : public IsoDialect {
   void place(const DialectMotion& motion) {
     if (!motion.is_rapid)
       throw Unsayable{
-          "feeds in machine coordinates (G53 G1), and G53 is a rapid there; write G53 G0, or the "
-          "feed in "
-          "work coordinates"};
-    assume("machine coordinates count from the same zero as in the original");
+          "feeds in machine coordinates (G53 G1), but G53 is always a rapid there; use G53 G0, or "
+          "feed in work coordinates"};
+    assume("machine coordinates have the same zero as in the original");
     const bool has_Z = motion.names(Axis::Z);
     modes_.code.reset();
     put(motion_text(motion, has_Z ? "G90 G49 G53" : "G53"));
@@ -288,7 +288,7 @@ class Fanuc final : public IsoDialect {
 
   static std::string system_code(int system) {
     if (system > 6) {
-      throw Unsayable{"selects G59.1 ... G59.3; write one of G54 ... G59"};
+      throw Unsayable{"selects G59.1 ... G59.3; use one of G54 ... G59"};
     }
     return fmt::format("G{}", 53 + system);
   }

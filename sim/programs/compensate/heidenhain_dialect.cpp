@@ -56,7 +56,7 @@ class Heidenhain final : public DialectPrinter {
 
   bool takes_arc(const DialectMotion& motion) const override { return motion.arc->is_in_XY(); }
   std::string_view why_lines() const override {
-    return "circles lie in the plane that the tool axis determines (TNC 407 manual p. 5-20)";
+    return "circles are in the plane normal to the tool axis (TNC 407 manual p. 5-20)";
   }
 
   // Cycle 32 without a tolerance takes that of the machine, MP1096 (technical manual TNC 426/430
@@ -82,7 +82,9 @@ class Heidenhain final : public DialectPrinter {
     // "Straight line at rapid traverse" is G00: iTNC 530 (60642x-03) ISO p. 211. Of FMAX none was
     // found.
     if (motion.may_leave_its_line()) {
-      assume("rapids of several axes meet nothing, also off their line (FMAX may not be straight)");
+      assume(
+          "rapids of several axes are collision-free off their line (FMAX may not "
+          "be straight)");
     }
     if (motion.arc) {
       const Eigen::Vector3d& centre = motion.arc->centre;
@@ -95,7 +97,7 @@ class Heidenhain final : public DialectPrinter {
     add_word(text, feed_word(motion));
     if (motion.is_place) {
       add_word(text, "M91");
-      assume("machine coordinates count from the same zero as in the original");
+      assume("machine coordinates have the same zero as in the original");
     }
     put(text);
   }
@@ -124,7 +126,7 @@ class Heidenhain final : public DialectPrinter {
 
   void path_mode(PathMode mode, double tolerance) override {
     if (mode != PathMode::continuous) {
-      throw Unsayable{"needs exact stops (G61, G61.1), which no word sets; write G64"};
+      throw Unsayable{"needs exact stops (G61, G61.1), which the control cannot set; use G64"};
     }
     put("CYCL DEF 32.0 TOLERANCE");
     put(tolerance > 0.0 ? "CYCL DEF 32.1 T" + fixed_text(tolerance / mm, 4) : "CYCL DEF 32.1");
@@ -159,7 +161,7 @@ class Heidenhain final : public DialectPrinter {
   void coolant(int code) override {
     if (code == 7)
       throw Unsayable{
-          "switches mist (M7), which is the machine builder's; write M8, or take it out"};
+          "switches mist (M7), which is up to the machine builder; use M8, or remove it"};
     put(fmt::format("L M{}", code));
   }
   void dwell(double seconds) override {
@@ -224,25 +226,24 @@ class Heidenhain final : public DialectPrinter {
   void check_frame(const DialectMotion& motion) {
     if (motion.work_system != 1) {
       throw Unsayable{
-          "selects a work system other than G54; write a program for each, with its --preset"};
+          "selects a work offset other than G54; write one program per offset, with its --preset"};
     }
     if (!settings_.preset) assume("the active preset is G54");
     // No manual was found that describes how these end; scaling: TNC 410 p. 186, TNC 620 p. 256
     assume(settings_.has_rotary_axes
-               ? "CYCL DEF 7, 8, 10 and PLANE RESET end shift, mirror image, rotation and tilt"
-               : "CYCL DEF 7, 8 and 10 end shift, mirror image and rotation");
+               ? "CYCL DEF 7, 8, 10 and PLANE RESET cancel shift, mirror image, rotation and tilt"
+               : "CYCL DEF 7, 8 and 10 cancel shift, mirror image and rotation");
     if (!tool_) {
       throw Unsayable{
-          "moves before a tool is called; the control takes axis and length of the tool called: "
-          "write "
-          "T... M6 before"};
+          "moves before a tool call; the control takes tool axis and length from the tool call: "
+          "program T... M6 first"};
     }
     if (!motion.names(Axis::Z)) return;
     if (motion.length != motion.tool) {
-      throw Unsayable{fmt::format(
-          "moves with the length of tool {0} while tool {1} is called; the control takes that of "
-          "the tool called: write G43 H{1}",
-          motion.length, motion.tool)};
+      throw Unsayable{
+          fmt::format("moves with the length of tool {0} while tool {1} is active; the control "
+                      "uses the length of the active tool: program G43 H{1}",
+                      motion.length, motion.tool)};
     }
     if (motion.length != 0) {
       assume(fmt::format("the tool table holds the length of tool {}", motion.length));
@@ -258,7 +259,7 @@ class Heidenhain final : public DialectPrinter {
       if (before != rotary_.end() && std::abs(value - before->second) >= kHalfTurn) {
         throw Unsayable{
             fmt::format("rotates {} by {:g} deg in one block, for which some controls take the "
-                        "shorter path; divide it",
+                        "shorter direction; split it",
                         letter(axis), std::abs(value - before->second))};
       }
       rotary_[axis] = value;
@@ -268,7 +269,9 @@ class Heidenhain final : public DialectPrinter {
   std::string feed_word(const DialectMotion& motion) {
     if (motion.is_rapid) return "FMAX";
     if (motion.feed_mode == FeedMode::inverse_time) {
-      warn("G93 is written as FT, in seconds; not found in a manual: try it before you rely on it");
+      warn(
+          "G93 is written as FT, in seconds, which no manual found describes: test it before "
+          "relying on it");
       F_.reset();
       return "FT" + rate(60.0 / motion.feed, kDecimals, "FT");
     }

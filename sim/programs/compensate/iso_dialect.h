@@ -12,7 +12,7 @@ namespace servomill::sim::programs {
 
 /// LinuxCNC's G61 keeps to the path and stops where it must only; other controls stop at each end.
 inline constexpr std::string_view kExactPath =
-    "needs the exact path of LinuxCNC's G61; write G61.1 (stops at each end) or G64";
+    "needs the exact path of LinuxCNC's G61; use G61.1 (exact stop) or G64";
 
 class IsoDialect : public DialectPrinter {
  public:

@@ -40,26 +40,25 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
     throw InputError({*block.file, block.line, request.of(group).column}, std::move(message));
   };
   if (request.code(Group::m_spindle) >= 700 && block.call_depth > 0) {
-    fail(Group::m_spindle,
-         fmt::format("M{} in a subroutine: what it saves belongs to the call, and subroutines are "
-                     "unrolled",
-                     request.code(Group::m_spindle) / 10));
+    fail(Group::m_spindle, fmt::format("M{} in a subroutine: the saved state belongs to the call, "
+                                       "and subroutines are unrolled",
+                                       request.code(Group::m_spindle) / 10));
   }
   const int code = request.code(Group::g_non_modal);
   if (code == 281 || code == 301) {
     fail(Group::g_non_modal,
-         fmt::format("{} would store the corrected place as that of the machine",
+         fmt::format("{} would store the corrected position as a machine position",
                      controllers::code_name('G', code)));
   }
   if (request.code(Group::g_tool_length) == 431 && request.motion.code != nullptr) {
-    fail(Group::g_tool_length, "G43.1 beside a motion: both take the axis words");
+    fail(Group::g_tool_length, "G43.1 with a motion: both use the axis words");
   }
   const controllers::ModalState& state = *block.state;
   if (state.compensation.acts() && state.feed_mode == FeedMode::inverse_time &&
       request.motion_code() > 0) {
     throw InputError({*block.file, block.line, request.motion.column},
                      "inverse time (G93) under cutter compensation cannot be unrolled: its moves "
-                     "are of other lengths; use G94");
+                     "have other lengths; use G94");
   }
   if (state.feed_mode == FeedMode::units_per_revolution && request.motion_code() > 0 &&
       turns_alone(block)) {
@@ -75,8 +74,7 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
   if (request.code(Group::g_path_control) > 610 &&
       controllers::is_canned_cycle(request.motion_code())) {
     fail(Group::g_path_control,
-         fmt::format("{} beside a canned cycle, which runs under G61: write it in a block of its "
-                     "own",
+         fmt::format("{} with a canned cycle, which runs under G61: program it in a separate block",
                      controllers::code_name('G', request.code(Group::g_path_control))));
   }
   const int L = static_cast<int>(std::lround(request['L']));
@@ -84,7 +82,7 @@ void refuse_what_changes_its_meaning(const ExecutedBlock& block) {
   const auto P = static_cast<int>(std::lround(request['P']));
   if (sets_position && P != 0 && P != block.state->work_system) {
     fail(Group::g_non_modal,
-         fmt::format("G10 L20 P{} of a work system that is not in force cannot be corrected", P));
+         fmt::format("G10 L20 P{} of an inactive work offset cannot be corrected", P));
   }
 }
 
@@ -297,7 +295,7 @@ std::vector<std::string> LinuxCncWriter::assumptions() const {
   if (!assumes_G64_) return {};
   return {
       "G64 without a tolerance is in force at the start (no other path mode in "
-      "RS274NGC_STARTUP_CODE): it is restored behind canned cycles"};
+      "RS274NGC_STARTUP_CODE): it is restored after canned cycles"};
 }
 
 void LinuxCncWriter::put_cycle_step(const Move& one, const Block& block, const EditedLine& line) {

@@ -18,8 +18,8 @@ using controllers::Group;
 
 constexpr auto kZ = static_cast<std::size_t>(2);
 constexpr std::string_view kUnwrittenSlash =
-    "no manual was found that says how the control writes blocks with '/'; take the slash away, "
-    "or leave them out by --block-delete";
+    "no manual found specifies blocks with '/' for this control; remove the slash, or omit these "
+    "blocks with --block-delete";
 
 // Whole parts of a program depend on these.
 bool decides_about_the_rest(const controllers::ExecutedBlock& block) {
@@ -78,8 +78,7 @@ void DialectWriter::write_optional(const Block& block) {
 
 void DialectWriter::restate_coolant() {
   if ((skipped_coolant_ & ~coolant_) != 0) {
-    throw Unsayable{
-        "needs the coolant that a block with '/' has switched off; take the slash away"};
+    throw Unsayable{"needs the coolant that a block with '/' has switched off; remove the slash"};
   }
   for (const auto& [bit, code] :
        {std::pair(controllers::kMist, 7), std::pair(controllers::kFlood, 8)}) {
@@ -99,8 +98,8 @@ bool DialectWriter::rises(double height) const {
   const bool is_up_if_skipped = skipped_height_ && height > *skipped_height_;
   if (is_up == is_up_if_skipped) return is_up;
   throw Unsayable{
-      "moves Z and other axes by rapid, up or down as the operator decides about blocks with '/'; "
-      "name Z in a rapid of its own before"};
+      "moves Z and other axes by rapid, up or down depending on blocks with '/'; program Z in a "
+      "separate rapid before"};
 }
 
 }  // namespace servomill::sim::programs

@@ -60,14 +60,13 @@ void PathRecord::write(const std::string& path, bool force, const std::string& t
   records::Hdf5Group group = root.group("compensate");
   group.list("s", s_, {"mm", "arc length on the programmed path"});
   group.list("line", line_, {"1", "line of the program"}, "s");
-  group.list("block_end", block_end_, {"1", "whether a block of the corrected program ends here"},
-             "s");
-  group.list("rapid", rapid_, {"1", "whether on the way of a rapid"}, "s");
+  group.list("block_end", block_end_, {"1", "1 where a block of the corrected program ends"}, "s");
+  group.list("rapid", rapid_, {"1", "1 during a rapid move"}, "s");
   constexpr std::array<char, 3> kLetters = {'x', 'y', 'z'};
   for (int i = 0; i < kLinearJoints; ++i) {
     const char c = kLetters[static_cast<std::size_t>(i)];
     group.list(fmt::format("position_{}", c), position_[i],
-               {"mm", fmt::format("programmed {} of the machine", c)}, "s");
+               {"mm", fmt::format("programmed machine {}", c)}, "s");
     group.list(fmt::format("correction_{}", c), correction_[i],
                {"um", fmt::format("correction of {}", c)}, "s");
   }

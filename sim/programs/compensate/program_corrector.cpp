@@ -121,12 +121,13 @@ void ProgramCorrector::refuse_unknown_begin(const Move& move, const ExecutedBloc
     const char name = letter(kAllAxes[k]);
     throw InputError(
         {options_.file, move.line},
-        is_mixed ? fmt::format("moves in a turned work system while the position of {0} is not "
-                               "known; name X and Y together",
-                               name)
-                 : fmt::format("moves {0} by an increment from a position that nothing has named; "
-                               "name {0} under G90 before",
-                               name));
+        is_mixed
+            ? fmt::format("moves under a rotated work offset while the position of {0} is unknown; "
+                          "program X and Y together",
+                          name)
+            : fmt::format(
+                  "incremental move of {0} from an unknown position; program {0} under G90 first",
+                  name));
   }
 }
 
@@ -139,8 +140,7 @@ void ProgramCorrector::refuse_unknown_height(const ExecutedBlock& block,
   if (was_known[k]) return;
   throw InputError(
       {options_.file, block.line, block.request->motion.column},
-      fmt::format("a canned cycle from a {0} that is not known, to which it goes back; "
-                  "name {0} in a rapid before",
+      fmt::format("a canned cycle returns to an unknown initial {0}; program {0} in a rapid first",
                   letter(kAllAxes[k])));
 }
 
@@ -161,11 +161,12 @@ void ProgramCorrector::refuse(const Move& move, const AxisFlags& was_known) cons
   throw InputError(
       {options_.file, move.line},
       options_.is_for_other_control
-          ? fmt::format("feeds while the position of {0} is not known: no block since the start, "
-                        "the last tool change or the last stop names it; name it in a rapid",
-                        axes)
-          : fmt::format("feeds while the position of {0} is not known, and with it the errors: no "
-                        "block before this names it; --start {1}=... says where the machine stands",
+          ? fmt::format(
+                "feeds while the position of {0} is unknown: no block since the start, the last "
+                "tool change or the last stop programs it; program it in a rapid first",
+                axes)
+          : fmt::format("feeds while the position of {0} is unknown, so the errors are unknown: no "
+                        "earlier block programs it; set the start position with --start {1}=...",
                         axes, axes.front()));
 }
 

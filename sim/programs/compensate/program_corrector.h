@@ -116,7 +116,7 @@ class ProgramCorrector {
 
 /// Remedy for programs that move the tip and not the axes.
 inline constexpr std::string_view kWriteAxes =
-    "let the CAM system, or servomill post, write positions of the axes";
+    "have the CAM system, or servomill post, output axis positions";
 
 /// True if O-words skip the line.
 bool is_skipped(const controllers::ExecutedBlock& block);

@@ -48,11 +48,10 @@ std::vector<Axis> DialectWriter::lost_axes(const Move& move, const Block& block)
   const std::string axes = names_of(unnamed);
   throw InputError(
       {file_, move.line},
-      fmt::format(
-          "moves Z while the position of {0} is not known: the tool change or stop may have "
-          "moved it, and no block names it; name {0} in a rapid between it and this line, "
-          "or the start with --start",
-          axes));
+      fmt::format("moves Z while the position of {0} is unknown: the tool change or stop may have "
+                  "moved it, and no block programs it; program {0} in a rapid between it and this "
+                  "line, or set the start position with --start",
+                  axes));
 }
 
 // Blocks with '/' may have named these axes since they were lost, or left them out, and Z comes
@@ -71,9 +70,8 @@ void DialectWriter::refuse_doubtful_axes(double height, const Block& block) cons
   const std::vector<Axis> axes = unnamed_lost(doubtful, block);
   if (axes.empty()) return;
   throw Unsayable{fmt::format(
-      "moves Z behind a tool change or stop that may have moved {0}, and the operator decides "
-      "about "
-      "the blocks with '/' between them; name {0} in a rapid without '/' between it and this line",
+      "moves Z after a tool change or stop that may have moved {0}, and the blocks between them "
+      "depend on '/'; program {0} in a rapid without '/' between it and this line",
       names_of(axes))};
 }
 

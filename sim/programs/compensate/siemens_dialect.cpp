@@ -52,7 +52,8 @@ class Siemens final : public IsoDialect {
     return (is_in_XY && !motion.names(Axis::Z)) || modes_.length == edge(motion);
   }
   std::string_view why_lines() const override {
-    return "G18 may give the tool length to another axis (SD42940), and CIP makes no helix";
+    return "G18 may assign the tool length to another axis (SD42940), and CIP cannot describe a "
+           "helix";
   }
 
   void motion(const DialectMotion& motion) override {
@@ -60,13 +61,14 @@ class Siemens final : public IsoDialect {
     // 6FC5398-2EP40-0BA0 p. 181: G0 under G64 is a line, under G60 where RTLION is in force
     if (stops_at_ends_ && motion.may_leave_its_line()) {
       assume(
-          "rapids of several axes meet nothing, also off their line (G60; RTLIOF may be in "
+          "rapids of several axes are collision-free off their line (G60; RTLIOF "
+          "may be in "
           "force)");
     }
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
     // Basic frames act with every settable one (6FC5397-0BP10-0BA0, K2)
-    assume("work offsets of the control are given with its basic frame");
+    assume("work offsets are given including the basic frame of the control");
     std::string prefix;
     if (motion.names(Axis::Z)) {
       const int wanted = edge(motion);
@@ -189,13 +191,13 @@ class Siemens final : public IsoDialect {
   }
 
   void place(const DialectMotion& motion) {
-    assume("machine coordinates count from the same zero as in the original");
+    assume("machine coordinates have the same zero as in the original");
     modes_.code.reset();
     is_of_machine_ = true;
     std::string text = motion_text(motion, "SUPA");
     is_of_machine_ = false;
     if (motion.names(Axis::Z)) {
-      if (motion.arc) throw Unsayable{"goes along an arc in machine coordinates"};
+      if (motion.arc) throw Unsayable{"moves on an arc in machine coordinates"};
       add_word(text, "D0");
       modes_.length = 0;
     }
@@ -228,17 +230,17 @@ class Siemens final : public IsoDialect {
     if (is_doubtful) {
       throw Unsayable{
           fmt::format("rotates {0} to {1}, while it may be a modulo axis, whose absolute positions "
-                      "are from 0 to 360 deg, and the operator decides by blocks with '/' where it "
-                      "comes from; name {0} without '/' between 0 and 360 deg before",
+                      "are from 0 to 360 deg, and its start position depends on blocks with '/'; "
+                      "program {0} without '/' between 0 and 360 deg before",
                       letter(axis), text)};
     }
     if (!known) return letter(axis) + text;
     if (is_of_machine_ || known->offset != offset) {
       throw Unsayable{
           fmt::format("rotates {0} from {1:.7g} to {2} {3}, while it may be a modulo axis, whose "
-                      "absolute positions are from 0 to 360 deg; keep to those there",
+                      "absolute positions are from 0 to 360 deg; stay within that range",
                       letter(axis), before, text,
-                      is_of_machine_ ? "of the machine" : "behind a change of its work offset")};
+                      is_of_machine_ ? "of the machine" : "after a change of its work offset")};
     }
     return fmt::format("{}=IC({})", letter(axis), fixed_text(count - before, decimals(axis)));
   }
@@ -252,7 +254,7 @@ class Siemens final : public IsoDialect {
     if (motion.length != 0 && motion.length != motion.tool) {
       throw Unsayable{
           fmt::format("moves with the length of tool {0} while tool {1} is in the spindle; D1 is "
-                      "that of the tool: write G43 H{1}",
+                      "the length of that tool: program G43 H{1}",
                       motion.length, motion.tool)};
     }
     return motion.length == 0 ? 0 : 1;

@@ -51,14 +51,15 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
         system::counted(reversals, "reversal"), reversal_distance / mm, reversal_width / um));
   }
   if (undirected) {
-    out.push_back(fmt::format(
-        "the direction of travel is not known from line {} on until each axis has moved: the mean "
-        "of both is taken there, up to {:.1f} um remain",
-        undirected->line, undirected_width / um));
+    out.push_back(
+        fmt::format("the direction of travel is not known from line {} on until each axis has "
+                    "moved: the mean of both is used there, up to {:.1f} um remain",
+                    undirected->line, undirected_width / um));
   }
   if (!smoothing.empty()) out.push_back(smoothing);
   if (largest_turn > 0.0) {
-    out.push_back(fmt::format("largest turn of a rotary axis {:.1f} urad", largest_turn / urad));
+    out.push_back(
+        fmt::format("largest rotation of a rotary axis {:.1f} urad", largest_turn / urad));
   }
   out.push_back(fmt::format(
       "path at feed {:.1f} mm, corrected {:+.4f} %; time at feed {:.1f} s, corrected {:+.4f} %",

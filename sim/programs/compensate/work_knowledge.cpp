@@ -62,7 +62,7 @@ void add_work_offset(const std::string& text, const JointLayout* layout, GivenWo
   const auto found = std::find(kWorkSystems.begin(), kWorkSystems.end(), name);
   if (found == kWorkSystems.end()) {
     throw InputError({"--work-offset " + text},
-                     fmt::format("'{}' is none of {}", name, fmt::join(kWorkSystems, ", ")));
+                     fmt::format("'{}' is not one of {}", name, fmt::join(kWorkSystems, ", ")));
   }
   const AxisValues values = axis_values(
       "--work-offset", std::string_view(text).substr(colon == std::string::npos ? 0 : colon + 1),
@@ -73,8 +73,9 @@ void add_work_offset(const std::string& text, const JointLayout* layout, GivenWo
     return;
   }
   const auto contradict = [&](char what, double a, double b, double unit) {
-    throw InputError({"--work-offset " + text}, fmt::format("{} of {} is {:g} here and {:g} before",
-                                                            what, name, a / unit, b / unit));
+    throw InputError(
+        {"--work-offset " + text},
+        fmt::format("{} of {} is {:g} here, but was {:g} before", what, name, a / unit, b / unit));
   };
   for (const Axis axis : kAllAxes) {
     const int i = index_of(axis);
@@ -163,10 +164,10 @@ void refuse_unknown_system(const controllers::ExecutedBlock& block,
   const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
   throw InputError(
       {request.program_file, block.line, chosen.column},
-      fmt::format("where {0} lies in the machine is not known, and with it the errors; "
-                  "--work-offset {0}:X=...,Y=...,Z=... or --parameter-file names it (0 may be "
-                  "given, it is not assumed)",
-                  name));
+      fmt::format(
+          "the work offset {0} is unknown, so the errors are unknown; set it with --work-offset "
+          "{0}:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)",
+          name));
 }
 
 std::string words_text(const AxisWords& words, const JointLayout& layout) {

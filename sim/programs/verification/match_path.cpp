@@ -100,16 +100,16 @@ void ReplayComparison::match_path(const OriginalAction& action) {
     const bool improves = admits(action, one) && off(end) <= 1.0 && off(end) < off(at) &&
                           Piece(*one, at, end).length() <= 4.0 * tolerance;
     if (is_there && !improves) break;
-    if (one == nullptr) fail("a feed is missing; the written program has ended");
+    if (one == nullptr) fail("a feed move is missing; the written program has ended");
     if (!admits(action, one)) {
-      fail(fmt::format("a feed to {} must come here, and another action comes", place(last)));
+      fail(fmt::format("expected a feed move to {}, found another action", place(last)));
     }
     if (!is_compared) compare_auxiliary(action, action.move.kind != MoveKind::rapid);
     is_compared = true;
     const double t_end = curve.is_still() ? 1.0 : curve.share(at, end, t, *one);
-    if ((t - t_end) * size > 2.0) fail("goes back on the path");
+    if ((t - t_end) * size > 2.0) fail("moves backwards on the path");
     if ((t_end - 1.0) * size > 2.0) {
-      fail(fmt::format("goes beyond {}, where the original ends", place(last)));
+      fail(fmt::format("moves beyond {}, where the original ends", place(last)));
     }
     check_piece(action, curve, *one, at, t, std::clamp(t_end, t, 1.0));
     t = std::clamp(t_end, t, 1.0);
@@ -151,7 +151,7 @@ void ReplayComparison::check_piece(const OriginalAction& action, const Corrected
     }
   }
   if (is_approach && piece.length() > begin_off + 2.0 * tolerance) {
-    fail("goes another way to the begin of the path");
+    fail("takes another path to the start");
   }
   if (action.move.kind == MoveKind::rapid) return;
   check_path_mode(action, one);
@@ -169,7 +169,7 @@ void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedC
   if (is_per_revolution || one.feed_mode == FeedMode::units_per_revolution) {
     if (one.feed_mode != move.feed_mode) fail("a feed per revolution and one per minute");
     if (std::abs(one.feed - move.value) > kFeedTol * move.value + kRevolutionDigit) {
-      fail(fmt::format("the feed must be {:g} mm per revolution, and is {:g}", move.value / mm,
+      fail(fmt::format("the feed must be {:g} mm per revolution, but is {:g}", move.value / mm,
                        one.feed / mm));
     }
     return;
@@ -188,7 +188,7 @@ void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedC
     const double rounded = is_helix ? 2.0 * limits_.grid / piece.length() : 0.0;
     if (std::abs(one.feed - move.feed) >
         (kFeedTol + rounded) * move.feed + kFeedDigit * mm_per_min) {
-      fail(fmt::format("the feed must be {:g} mm/min, and is {:g} mm/min", move.feed / mm_per_min,
+      fail(fmt::format("the feed must be {:g} mm/min, but is {:g} mm/min", move.feed / mm_per_min,
                        one.feed / mm_per_min));
     }
     return;
@@ -202,7 +202,7 @@ void ReplayComparison::check_feed(const OriginalAction& action, const CorrectedC
   const double rounded =
       is_by_time ? std::min(0.5 * limits_.time_digit, kTimeRounding * share * time) : 0.0;
   if (std::abs(own - share * time) > 1e-3 * share * time + 4.0 / size * time + rounded) {
-    fail(fmt::format("the block must take {:g} s, and takes {:g} s", share * time, own));
+    fail(fmt::format("the block must take {:g} s, but takes {:g} s", share * time, own));
   }
 }
 
@@ -210,7 +210,7 @@ void ReplayComparison::check_path_mode(const OriginalAction& action, const Actio
   if (action.is_of_cycle && !limits_.is_linuxcnc) return;
   const bool stops = one.is_path_mode_known && one.path_mode != PathMode::continuous;
   const bool must_stop = action.has_path_mode && action.move.path_mode != PathMode::continuous;
-  if (must_stop && !stops) fail("corners must be exact (G61), and are not");
+  if (must_stop && !stops) fail("corners must be exact (G61), but are not");
   if (stops && !must_stop) fail("stops at corners, which the original does not");
   if (!limits_.is_linuxcnc || !action.has_path_mode) return;
   if (one.path_mode != action.move.path_mode ||

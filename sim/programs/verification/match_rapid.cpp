@@ -70,8 +70,9 @@ void ReplayComparison::check_lost_axes(const OriginalAction& action) const {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     if (i == kZ || !correction_.layout().joint_of(kAllAxes[i])) continue;
     if (!is_lost_[i] || !action.was_ever_known[i]) continue;
-    fail(fmt::format("moves Z where the tool change or stop has left {}, which the original knows",
-                     name_of(i)));
+    fail(fmt::format(
+        "moves Z where a tool change or stop has moved {}, which is known in the original",
+        name_of(i)));
   }
 }
 
@@ -119,11 +120,11 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
                                          const Action& one) {
   const bool may_feed = action.is_machine_position && action.move.kind == MoveKind::feed;
   if (one.kind != (may_feed ? ActionKind::feed : ActionKind::rapid)) {
-    fail("a rapid must come here, and another action comes");
+    fail("expected a rapid, found another action");
   }
   if (one.is_machine_position != action.is_machine_position) {
-    fail(action.is_machine_position ? "a machine position is written as one of the workpiece"
-                                    : "a position of the workpiece is written as a machine one");
+    fail(action.is_machine_position ? "a machine position is written as a work position"
+                                    : "a work position is written as a machine position");
   }
   bool moves_Z = false, moves_other = false, from_unknown = false;
   for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -132,9 +133,9 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
     (i == kZ ? moves_Z : moves_other) = true;
     from_unknown |= !at_[i];
     if (!targets.is_allowed[i]) {
-      fail(fmt::format("moves {}, which the original leaves where it is", name_of(i)));
+      fail(fmt::format("moves {}, which is at rest in the original", name_of(i)));
     }
-    if (!one.end[i]) fail(fmt::format("leads {} to a place that is not known", name_of(i)));
+    if (!one.end[i]) fail(fmt::format("moves {} to an unknown position", name_of(i)));
   }
   // behind a stop Z may go up from where it was, if nobody has jogged
   const bool goes_up = unmoved_[kZ] && one.end[kZ] && *one.end[kZ] > *unmoved_[kZ] + kSame;
@@ -142,9 +143,9 @@ void ReplayComparison::check_rapid_block(const OriginalAction& action, const Tar
     check_lost_axes(action);
   }
   if (!moves_Z || !moves_other || limits_.is_linuxcnc) return;
-  if (from_unknown) fail("a rapid of Z together with other axes from a place that is not known");
+  if (from_unknown) fail("a rapid of Z together with other axes from an unknown position");
   if (!one.is_straight) {
-    fail("a rapid of Z together with other axes, each at its own rate: the path is not known");
+    fail("a rapid of Z together with other axes, each at its own rate: the path is unknown");
   }
 }
 
@@ -156,7 +157,7 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
   for (int blocks = 0; !is_reached(targets); ++blocks) {
     if (!at_[kZ] && !limits_.is_linuxcnc && !action.is_machine_position) skip_retracts(&action);
     const Action& one = need("a rapid");
-    if (blocks == kMaxBlocks) fail("the rapid does not end where it must");
+    if (blocks == kMaxBlocks) fail("the rapid ends at a wrong position");
     if (blocks == 0) z_begin = unmoved_[kZ];
     check_rapid_block(action, targets, one);
     const bool is_Z = one.is_commanded[kZ];
@@ -167,11 +168,11 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
     const bool goes_down = !z_begin || (z_end && *z_end < *z_begin - kSame);
     const bool goes_up = z_begin && z_end && *z_end > *z_begin + kSame;
     if (is_other && began_with_Z && !is_Z && goes_down && !limits_.is_linuxcnc) {
-      fail("goes down before it moves the other axes");
+      fail("moves down before the other axes");
     }
     // from the height of the frames every way across is clear
     if (is_Z && began_without_Z && goes_up && !is_retracted_ && !limits_.is_linuxcnc) {
-      fail("moves the other axes before it goes up");
+      fail("moves the other axes before moving up");
     }
     if (is_other && !is_Z) began_without_Z = true;
     const controllers::KnownPosition before = at_;
@@ -183,7 +184,7 @@ void ReplayComparison::match_rapid(const OriginalAction& action) {
       if (keeps || is_at(i, targets.corrected[k])) continue;
       if (is_at(i, targets.programmed[k]) && targets.is_programmed_allowed) continue;
       --next_;
-      fail(fmt::format("{} must end at {:.5f} of the machine, and ends at {:.5f}", name_of(i),
+      fail(fmt::format("{} must end at machine position {:.5f}, but ends at {:.5f}", name_of(i),
                        targets.corrected[k] / unit_of(i), *at_[i] / unit_of(i)));
     }
   }
@@ -250,11 +251,11 @@ void ReplayComparison::match_reference(const OriginalAction& action) {
     }
     const Action& one = need("a return to the reference position");
     if (!is_return(one)) {
-      fail("a return to the reference position must come here, and another action comes");
+      fail("expected a return to the reference position, found another action");
     }
     for (std::size_t i = 0; i < remaining.size(); ++i) {
       if (!one.is_commanded[i]) continue;
-      if (!remaining[i]) fail(fmt::format("moves {} to its reference, too", name_of(i)));
+      if (!remaining[i]) fail(fmt::format("also moves {} to its reference position", name_of(i)));
       remaining[i] = false;
     }
     arrive(one);

@@ -97,7 +97,7 @@ AxisWords ReplayComparison::known_position() const {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     const Axis axis = kAllAxes[i];
     if (!correction_.layout().joint_of(axis)) continue;
-    if (!at_[i]) fail(fmt::format("feeds while the position of {} is not known", letter(axis)));
+    if (!at_[i]) fail(fmt::format("feeds while the position of {} is unknown", letter(axis)));
     out[static_cast<int>(i)] = *at_[i];
   }
   return out;
@@ -126,7 +126,7 @@ void ReplayComparison::compare_auxiliary(const OriginalAction& action, bool is_s
   const int direction = wanted.direction.value_or(0);
   if (is_strict ? auxiliary_.direction.value_or(0) != direction
                 : auxiliary_.direction && *auxiliary_.direction != direction) {
-    fail(fmt::format("the spindle must be {}, and is {}",
+    fail(fmt::format("the spindle must be {}, but is {}",
                      direction > 0   ? "on (M3)"
                      : direction < 0 ? "on (M4)"
                                      : "off",
@@ -137,13 +137,13 @@ void ReplayComparison::compare_auxiliary(const OriginalAction& action, bool is_s
   }
   const bool runs = direction != 0 && auxiliary_.direction.value_or(0) != 0;
   if (runs && std::abs(auxiliary_.speed - wanted.speed) > kSpeedTol * rpm) {
-    fail(fmt::format("the spindle must run at {:g} rpm, and runs at {:g} rpm", wanted.speed / rpm,
+    fail(fmt::format("the spindle must run at {:g} rpm, but runs at {:g} rpm", wanted.speed / rpm,
                      auxiliary_.speed / rpm));
   }
   const int coolant = wanted.coolant.value_or(0);
   if (is_strict ? auxiliary_.coolant.value_or(0) != coolant
                 : auxiliary_.coolant && *auxiliary_.coolant != coolant) {
-    fail(fmt::format("coolant must be {}, and is {}", coolant == 0 ? "off" : "on",
+    fail(fmt::format("coolant must be {}, but is {}", coolant == 0 ? "off" : "on",
                      coolant == 0              ? "on"
                      : auxiliary_.coolant == 0 ? "off"
                                                : "another or in an unknown state"));
@@ -176,8 +176,7 @@ void ReplayComparison::skip_retracts(const OriginalAction* before) {
 void ReplayComparison::compare_stop(const OriginalAction& action, const Action& one) {
   const bool is_pallet = action.move.number == kPalletStop && !limits_.is_linuxcnc;
   const int number = is_pallet ? 0 : action.move.number;
-  if (one.number != number)
-    fail(fmt::format("M{} must come here, and M{} comes", number, one.number));
+  if (one.number != number) fail(fmt::format("expected M{}, found M{}", number, one.number));
   const AuxiliaryState after = auxiliary_;
   if (auxiliary_line_ == one.line && !limits_.is_linuxcnc) auxiliary_ = auxiliary_before_line_;
   if (has_moved_since_stop_) compare_auxiliary(action, true);
@@ -194,7 +193,7 @@ void ReplayComparison::check_retract(const Action& action) {
       (action.end[2] && std::abs(*action.end[2] - *limits_.retract) < limits_.grid);
   if (action.is_commanded[2]) is_retracted_ = is_retract && is_clear;
   if (!has_motion_ && !is_retract && !limits_.is_linuxcnc) {
-    fail("the first motion is no retract of Z in machine coordinates");
+    fail("the first motion is not a retract of Z in machine coordinates");
   }
   has_motion_ = has_moved_since_stop_ = true;
 }
@@ -207,23 +206,23 @@ void ReplayComparison::match_other(const OriginalAction& action) {
   }
   const Action& one = need(std::string(name_of(kind)));
   if (one.kind != kind) {
-    fail(fmt::format("{} must come here, and {} comes", name_of(kind), name_of(one.kind)));
+    fail(fmt::format("expected {}, found {}", name_of(kind), name_of(one.kind)));
   }
   if (kind == ActionKind::tool && one.number != action.move.number) {
-    fail(fmt::format("tool {} must be called, and {} is", action.move.number, one.number));
+    fail(fmt::format("tool {} must be called, but {} is", action.move.number, one.number));
   }
   if (kind == ActionKind::dwell && std::abs(one.value - action.move.value) > kDwellTol) {
-    fail(fmt::format("the dwell must last {:g} s, and lasts {:g} s", action.move.value, one.value));
+    fail(fmt::format("the dwell must last {:g} s, but lasts {:g} s", action.move.value, one.value));
   }
   if (kind == ActionKind::stop) compare_stop(action, one);
   if (kind == ActionKind::dwell) compare_auxiliary(action, false);
   const bool ends_coolant = action.auxiliary.coolant == 0 && auxiliary_.coolant.value_or(0) != 0;
   if (kind != ActionKind::stop && kind != ActionKind::dwell && ends_coolant) {
-    fail("coolant must be off, and is on");
+    fail("coolant must be off, but is on");
   }
   const bool ends_spindle = kind == ActionKind::end && action.auxiliary.direction == 0 &&
                             auxiliary_.direction.value_or(0) != 0;
-  if (ends_spindle) fail("the spindle must be off, and is on");
+  if (ends_spindle) fail("the spindle must be off, but is on");
   const bool needs_retract = kind == ActionKind::end && has_motion_ && !limits_.is_linuxcnc;
   if (needs_retract && !is_retracted_) fail("ends without a retract of Z in machine coordinates");
   const bool is_dwell = kind == ActionKind::dwell;
@@ -287,7 +286,7 @@ void ReplayComparison::finish() {
     one = peek();
   }
   if (one != nullptr)
-    fail(fmt::format("{} comes behind the end of the original", name_of(one->kind)));
+    fail(fmt::format("{} comes after the end of the original", name_of(one->kind)));
 }
 
 }  // namespace servomill::sim::programs

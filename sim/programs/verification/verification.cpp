@@ -19,7 +19,7 @@ namespace {
 using controllers::MachineAction;
 
 constexpr std::string_view kRemedy =
-    "take the slash away where they shall run, or leave them out by --block-delete";
+    "remove the slash where they must run, or omit these blocks with --block-delete";
 
 std::string line_of(std::string_view text, int number) {
   for (int line = 1; !text.empty(); ++line) {
@@ -181,7 +181,7 @@ class Verifier {
                                                 line_of(written_, difference.written_line));
     throw InputError(
         {request_.original_file, line},
-        fmt::format("the program written for {} would do something else than \"{}\": "
+        fmt::format("the program written for {} differs in effect from \"{}\": "
                     "{} ({}; {}){}",
                     dialect(), here, difference.why, there, settings_, remedy(skips_)));
   }

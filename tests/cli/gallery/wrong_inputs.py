@@ -82,7 +82,7 @@ SCENARIO = [
     line("a tolerance with its limits exchanged", 'axis = "Y"\nbase', 'tolerance = [3.0, -3.0]\naxis = "Y"\nbase'),
     line("an axis that the quantity does not have", 'axis = "Y"\nbase', 'axis = "C"\nbase'),
     machine("an axis that the machine does not have", '"[w X b Y Z t]"', '"[w X b Z t]"'),
-    line("a section that is no circle", 'name = "imposed_error_residual"\naxis = "Y"\nbaseline = "nominal"',
+    line("a section that is not a circle", 'name = "imposed_error_residual"\naxis = "Y"\nbaseline = "nominal"',
          'name = "circular_error"'),
     line("one direction of a circle where both are needed", 'name = "imposed_error_residual"\naxis = "Y"\nbaseline = "nominal"',
          'name = "bidirectional_circular_error"'),

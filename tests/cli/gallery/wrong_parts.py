@@ -16,14 +16,14 @@ BLOCK = "[[part.stock]]\nbox = { from_mm = [-50.0, -50.0, -130.0], to_mm = [50.0
 STEEL = '[cutting]\nmaterial = "42CrMo4"\n'
 
 CUTTING = [
-    cut("cutting without a raw part", STEEL),
+    cut("cutting without stock", STEEL),
     cut("a material that is not known", BLOCK + '[cutting]\nmaterial = "42CrMo"'),
     cut("some coefficients of a material are missing", BLOCK + '[cutting]\nKtc = "2300 N/mm^2"\nKrc = "900 N/mm"'),
-    cut("raw parts that are none", "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, 0.0], to_mm = [1.0, 1.0, -1.0] }\n[[part.stock]]\n"
+    cut("stock of impossible shapes", "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, 0.0], to_mm = [1.0, 1.0, -1.0] }\n[[part.stock]]\n"
         "cylinder = { centre_mm = [0.0], radius_mm = 0.0, from_mm = 0.0, to_mm = 1.0 }\n[[part.stock]]\n" + STEEL),
     cut("wear of a case in air", BLOCK + STEEL, case="\ncutting = false\nwear = 2.0"),
     cut("a case that cuts without cutting", "", case="\ncutting = true"),
-    cut("a raw part that is never touched", BLOCK.replace("-50.0, -50.0", "-900.0, -900.0").replace("[50.0, 50.0", "[-800.0, -800.0") + STEEL),
+    cut("stock that is never touched", BLOCK.replace("-50.0, -50.0", "-900.0, -900.0").replace("[50.0, 50.0", "[-800.0, -800.0") + STEEL),
     cut("a cut with the spindle standing", BLOCK + STEEL),
     cut("a tool without diameter in the stock", BLOCK + STEEL, tool=""),
     cut("cuts and coordinates that are odd, and run all the same", BLOCK + STEEL, tool="diameter_mm = 8.0\nflute_length_mm = 5.0",
@@ -62,7 +62,7 @@ PART = [
     stl("a probe that faces into the part, and one that misses it", cuboid(10, 10, 10),
         PROBE + PROBE.replace("top", "middle").replace("0.0, 0.0, 0.0", "5.0, 0.0, 0.0"), about="a cuboid of 10 mm"),
     line("an STL that is no name", "[record]", "[part]\nstl = 1\n[record]"),
-    line("a raw part in STL", "[record]", '[[part.stock]]\nstl = "raw.stl"\n[record]'),
+    line("stock in STL", "[record]", '[[part.stock]]\nstl = "raw.stl"\n[record]'),
 ]
 
 CASES = '[[case]]\nname = "nominal"'

@@ -61,7 +61,7 @@ TEST(Conversational, LinesInBracketsBeforeTheProgramAreLeftOut) {
       "t.h", setup);
   EXPECT_EQ(interpreter.rest().size(), 4u);
   ASSERT_EQ(interpreter.warnings().size(), 1u);
-  EXPECT_EQ(interpreter.warnings()[0].message, "2 lines before BEGIN PGM: left out");
+  EXPECT_EQ(interpreter.warnings()[0].message, "2 lines before BEGIN PGM are ignored");
   EXPECT_EQ(interpreter.warnings()[0].place, (Place{"t.h", 4, 1}));
 }
 
@@ -79,8 +79,8 @@ TEST(Conversational, BlockNumbersWithN) {
       "BEGIN PGM T MM\nN1 TOOL CALL 1 Z S100\nN2 L X+1 Y+2 Z+3 R0 FMAX\nN3 END PGM T MM\n";
   EXPECT_EQ(all_moves(program), "2 tool 1\n2 spindle 0 S100\n3 rapid 1 2 3\n4 end\n");
   EXPECT_EQ(warnings_of(program, example_setup()),
-            std::vector<std::string>{"block numbers with N: read as block numbers, which controls "
-                                     "write without N"});
+            std::vector<std::string>{
+                "block numbers with N: accepted, although controls write them without N"});
 }
 
 // Neither line of the comment is a block, with or without a number.
@@ -89,18 +89,16 @@ TEST(Conversational, CommentsThatGoOn) {
     const std::string lines = number + ";Free software: see~\n L X+99 F1\n4 L X+1 FMAX\n";
     EXPECT_EQ(framed_moves(lines), "3 rapid 1 0 0\n");
     EXPECT_EQ(warnings_of(with_frame(lines), example_setup()),
-              std::vector<std::string>{"a comment that ends with '~': the next line is read as a "
-                                       "part of it"});
+              std::vector<std::string>{
+                  "a comment that ends with '~': the next line is taken as part of it"});
   }
 }
 
 TEST(Conversational, Cycle392MovesNothing) {
   const std::string lines = "CYCL DEF 392 ATC~\n Q240=0 ;MODE~\n Q241=1\nL X+1 FMAX\n";
   EXPECT_EQ(framed_moves(lines), "4 rapid 1 0 0\n");
-  EXPECT_EQ(
-      warnings_of(with_frame(lines), example_setup()),
-      std::vector<std::string>{"CYCL DEF 392: matches the drives to the load; read as without "
-                               "effect"});
+  EXPECT_EQ(warnings_of(with_frame(lines), example_setup()),
+            std::vector<std::string>{"CYCL DEF 392: adapts the drives to the load; ignored"});
 }
 
 // A table that tilts about A and turns about C: tilted by 30 degrees about X, the tool stands along
@@ -144,10 +142,11 @@ TEST(Conversational, TheBuildersReferencePointIsUnknown) {
   setup.stored = {{5183, 250.0}};
   EXPECT_EQ(framed_moves("L X+3 FMAX\nL Z+0 R0 FMAX M92\nL Z+5 FMAX\n", setup),
             "1 rapid 3 0 0\n2 rapid 3 0 0\n2 rapid 3 0 150\n3 rapid 3 0 5\n");
-  EXPECT_EQ(warnings_of(with_frame("L Z+0 FMAX M92\n"), setup),
-            std::vector<std::string>{"M92: the builder's reference point is not known; use M91"});
+  EXPECT_EQ(
+      warnings_of(with_frame("L Z+0 FMAX M92\n"), setup),
+      std::vector<std::string>{"M92: the machine builder's reference point is unknown; use M91"});
   EXPECT_EQ(fault_of("L Z+0 FMAX M92\nL IZ+1 F100 X+1\n", setup),
-            "t.h:5:3: error: IZ: the position of Z is unknown here; write it without I");
+            "t.h:5:3: error: IZ: the position of Z is unknown here; program an absolute position");
 }
 
 // Z travels to 400 mm in machine coordinates, at rapid and at F2000; the tip is then 300 mm high.
@@ -157,11 +156,11 @@ TEST(Conversational, RetractToTheEndOfTravel) {
   EXPECT_EQ(framed_moves("L X+5 FMAX\nL M140 MB MAX\nL Z+2 FMAX\nL M140 MB MAX F2000\n", setup),
             "1 rapid 5 0 0\n2 rapid 5 0 300\n3 rapid 5 0 2\n4 feed 5 0 300 F2000\n");
   EXPECT_EQ(fault_of("L M140 MB MAX\nL IZ-1 F100\nL X+1 Z+0\nL M140 MB MAX\nL IZ-1 X+1\n", setup),
-            "t.h:8:3: error: IZ: the position of Z is unknown here; write it without I");
+            "t.h:8:3: error: IZ: the position of Z is unknown here; program an absolute position");
   setup.machine = machine_with_z_travel(std::numeric_limits<double>::infinity());
   EXPECT_EQ(fault_of("L M140 MB MAX\n", setup),
-            "t.h:4:1: error: M140 MB MAX: the end of travel of Z is the machine's; name a machine "
-            "that has it (--machine), or write MB with a number or M91");
+            "t.h:4:1: error: M140 MB MAX: the upper travel limit of Z is unknown; pass a machine "
+            "with --machine, or use MB with a number or M91");
 }
 
 TEST(Conversational, NamesOfToolsWithoutATable) {
@@ -176,7 +175,7 @@ TEST(Conversational, NamesOfToolsWithoutATable) {
   const auto warnings = warnings_of(program, setup);
   ASSERT_GE(warnings.size(), 1u);
   EXPECT_EQ(warnings.front(),
-            "TOOL CALL \"END MILL\": read as tool 30001 of unknown length, since no tool table is "
+            "TOOL CALL \"END MILL\": taken as tool 30001 of unknown length, since no tool table is "
             "given");
 }
 

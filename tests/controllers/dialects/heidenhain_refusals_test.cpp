@@ -44,14 +44,14 @@ constexpr const char* kCycles =
     "CYCL DEF 11.1 SCL 1\nCYCL DEF 26.0\nCYCL DEF 26.1 X 1 Y 1 Z 1\n";  // eight lines
 
 TEST(HeidenhainRefusals, OfTheFrameOfAProgram) {
-  EXPECT_EQ(refusal(""), "t.h:1:1: error: no block; a program begins with BEGIN PGM");
+  EXPECT_EQ(refusal(""), "t.h:1:1: error: no block; a program starts with BEGIN PGM");
   EXPECT_EQ(refusal("L X+1\n"), "t.h:1:1: error: expected BEGIN PGM name MM (or INCH)");
   EXPECT_EQ(refusal("BEGIN PGM A B MM\n"),
             "t.h:1:1: error: BEGIN PGM needs a name without spaces, then MM or INCH");
   EXPECT_EQ(refusal("BEGIN PGM A MM\nM30\nEND PGM B MM\n"),
-            "t.h:3:9: error: END PGM B: the program begins as A");
+            "t.h:3:9: error: END PGM B: the program starts as A");
   EXPECT_EQ(refusal("BEGIN PGM A MM\nM30\nEND PGM A INCH\n"),
-            "t.h:3:11: error: END PGM in INCH: the program begins in MM");
+            "t.h:3:11: error: END PGM in INCH: the program starts in MM");
   EXPECT_EQ(refusal("BEGIN PGM A MM\nM30\n"), "t.h:2: error: END PGM A is missing");
   EXPECT_EQ(refusal("BEGIN PGM A MM\nEND PGM A MM\n"),
             "t.h:2:1: error: END PGM without M2 or M30: whether the spindle stops depends on the "
@@ -80,41 +80,43 @@ TEST(HeidenhainRefusals, OfBlockNumbersAndLines) {
 TEST(HeidenhainRefusals, OfWhatMayBeActiveFromTheProgramBefore) {
   const std::string move = "L Z+0 R0 FMAX M91\n";
   EXPECT_EQ(refusal_at_start(move),
-            "t.h:2:1: error: cycle 8 may be active from the program before: reset it first");
+            "t.h:2:1: error: cycle 8 may be active from the previous program: reset it first");
   EXPECT_EQ(refusal_at_start("CYCL DEF 8.0\nCYCL DEF 8.1\n" + move),
-            "t.h:4:1: error: cycle 10 may be active from the program before: reset it first");
+            "t.h:4:1: error: cycle 10 may be active from the previous program: reset it first");
   EXPECT_EQ(
       refusal_at_start("CYCL DEF 8.0\nCYCL DEF 8.1\nCYCL DEF 10.0\nCYCL DEF 10.1 ROT+0\n" + move),
-      "t.h:6:1: error: cycle 11 may be active from the program before: reset it first");
-  EXPECT_EQ(refusal_at_start("CYCL DEF 8.0\nCYCL DEF 8.1\nCYCL DEF 10.0\nCYCL DEF 10.1 ROT+0\n"
-                             "CYCL DEF 11.0\nCYCL DEF 11.1 SCL 1\nCYCL DEF 26.0\n"
-                             "CYCL DEF 26.1 X1 Z1\n" +
-                             move),
-            "t.h:10:1: error: cycle 26 may be active in Y from the program before: reset it first");
+      "t.h:6:1: error: cycle 11 may be active from the previous program: reset it first");
+  EXPECT_EQ(
+      refusal_at_start("CYCL DEF 8.0\nCYCL DEF 8.1\nCYCL DEF 10.0\nCYCL DEF 10.1 ROT+0\n"
+                       "CYCL DEF 11.0\nCYCL DEF 11.1 SCL 1\nCYCL DEF 26.0\n"
+                       "CYCL DEF 26.1 X1 Z1\n" +
+                       move),
+      "t.h:10:1: error: cycle 26 may be active in Y from the previous program: reset it first");
   EXPECT_EQ(refusal_at_start("CYCL DEF 26.0\nCYCL DEF 26.1 X1.01\n"),
             "t.h:3:15: error: cycle 26 with a factor other than 1 is not covered");
   EXPECT_EQ(refusal_at_start("CYCL DEF 26.0\nCYCL DEF 26.1 X1 CCX+5\n"),
             "t.h:3:18: error: cycle 26 with 'CCX+5': only X, Y and Z are covered");
   EXPECT_EQ(refusal_at_start(move, tilting()),
-            "t.h:2:1: error: a tilted plane may be active from the program before: write PLANE "
+            "t.h:2:1: error: a tilted plane may be active from the previous program: program PLANE "
             "RESET STAY first");
   EXPECT_EQ(refusal_at_start("PLANE RESET STAY\n" + move, tilting()),
-            "t.h:3:1: error: M128 may be active from the program before: write M129 first");
+            "t.h:3:1: error: M128 may be active from the previous program: program M129 first");
   EXPECT_EQ(refusal_at_start("TOOL CALL 1 Z\n", tilting()),
-            "t.h:2:1: error: M128 may be active from the program before: write M129 before TOOL "
-            "CALL");
+            "t.h:2:1: error: M128 may be active from the previous program: program M129 before "
+            "TOOL CALL");
   const std::string frame = kCycles;
   EXPECT_EQ(refusal_at_start(frame + "L Z+0 FMAX M91\n"),
-            "t.h:10:1: error: cutter radius compensation may be active from the program before: "
-            "write R0 first");
+            "t.h:10:1: error: cutter radius compensation may be active from the previous program: "
+            "program R0 first");
   EXPECT_EQ(refusal_at_start(frame + "L Z+0 R0 F100 M91\n"),
-            "t.h:10:1: error: M136 may be active from the program before: write M137 before F");
+            "t.h:10:1: error: M136 may be active from the previous program: program M137 before F");
   EXPECT_EQ(refusal_at_start(frame + "L X+0 R0 FMAX\n"),
             "t.h:10:1: error: no TOOL CALL yet: the axis and the length of the tool are unknown");
-  EXPECT_EQ(refusal_at_start(frame + "TOOL CALL 1 Z\nL X+0 R0 FMAX\n"),
-            "t.h:11:3: error: cycle 7 may be active in X from the program before: reset it first");
+  EXPECT_EQ(
+      refusal_at_start(frame + "TOOL CALL 1 Z\nL X+0 R0 FMAX\n"),
+      "t.h:11:3: error: cycle 7 may be active in X from the previous program: reset it first");
   EXPECT_EQ(refusal_of("L C+5 F100\n"),
-            "t.h:14:4: error: F moves a rotary axis, and M116 may be active: write M117 first");
+            "t.h:14:4: error: F moves a rotary axis, and M116 may be active: program M117 first");
 }
 
 TEST(HeidenhainRefusals, OfUnknownPositionsAndLengths) {
@@ -123,66 +125,67 @@ TEST(HeidenhainRefusals, OfUnknownPositionsAndLengths) {
   EXPECT_EQ(refusal_of("L X+1 FMAX M0\nL IX+1 FMAX\n"),
             "t.h:15:6: error: 'IX+1': the position of X is unknown here");
   EXPECT_EQ(refusal_of("L X+1 FMAX M1\nCC X+0 Y+0\nC X+1 DR+ F100\n"),
-            "t.h:16:4: error: the circle starts at a position that is unknown");
+            "t.h:16:4: error: the circle starts at an unknown position");
   EXPECT_EQ(refusal_of("TOOL CALL 3 Z S10\nL Z+1 R0 FMAX\n"),
             "t.h:15:6: error: the length of tool 3 is unknown");
   EXPECT_EQ(refusal_of("TOOL CALL 2 Z\nL X+1 R0 FMAX M3\n"),
             "t.h:15:18: error: M3: no S since the last TOOL CALL");
   EXPECT_EQ(refusal_of("TOOL CALL 2 Z S100\nL X+1 FMAX\n"),
-            "t.h:15:4: error: cutter radius compensation may be active from the program before: "
-            "write R0 first");
+            "t.h:15:4: error: cutter radius compensation may be active from the previous program: "
+            "program R0 first");
   EXPECT_EQ(refusal_of("L X+1 F100\nTOOL CALL 2 Z S100\nL X+2 R0\n"),
-            "t.h:16:4: error: no F in the block, and none is in force");
+            "t.h:16:4: error: no F in the block, and none is active");
   EXPECT_EQ(refusal_of("CYCL DEF 247 ~\n  Q339=+4 ;DATUM NUMBER\nL X+1 FMAX\n"),
             "t.h:16:6: error: the work offset of preset 4 is unknown");
   EXPECT_EQ(refusal_of("CC\nTOOL CALL 2 Z S100\nL X+1 Y+0 R0 FMAX\nC X+1 Y+0 DR+ F1\n"),
-            "t.h:17:4: error: no CC before the circle, or what it counted from has changed");
+            "t.h:17:4: error: no CC before the circle, or its reference has changed");
   EXPECT_EQ(refusal_of("CYCL DEF 247 ~\n  Q339=+3\nTOOL CALL 1 Z\nL X+1 R0 FMAX\n"),
-            "t.h:17:6: error: coordinates are rotated, and the position of X or Y is unknown here");
+            "t.h:17:6: error: the coordinate system is rotated, and the position of X or Y is "
+            "unknown here");
 }
 
 TEST(HeidenhainRefusals, OfWhatIsNotDetermined) {
   for (const char* feed : {"FT2", "FU0.1"}) {
-    EXPECT_EQ(refusal_of(fmt::format("L X+1 {}\nL X+2\n", feed)),
-              "t.h:15:4: error: no F in the block; how long FT and FU hold was not found in a "
-              "manual");
+    EXPECT_EQ(
+        refusal_of(fmt::format("L X+1 {}\nL X+2\n", feed)),
+        "t.h:15:4: error: no F in the block; no manual found says how long FT and FU stay active");
   }
   EXPECT_EQ(refusal_of("L X+1 F100\nL M136\nL X+2\n"),
-            "t.h:16:4: error: no F in the block, and none is in force");
+            "t.h:16:4: error: no F in the block, and none is active");
   EXPECT_EQ(refusal_of("L X+1 FAUTO\n"), "t.h:14:4: error: FAUTO: the last TOOL CALL has no F");
   EXPECT_EQ(refusal_of("L M117\nL X+1 C+5 F100\n"),
-            "t.h:15:4: error: F moves linear and rotary axes from a position that is unknown: the "
-            "feed is not determined");
+            "t.h:15:4: error: F moves linear and rotary axes from an unknown position: the feed is "
+            "undetermined");
   HeidenhainSettings reduced;
   reduced.is_rotary_display_reduced = true;
   EXPECT_EQ(refusal_of("L C+0 FMAX\nL C+200 FMAX\n", reduced),
             "t.h:15:6: error: a rotary axis would move 180 degrees or more, and M126 may be active "
-            "from the program before: write M127 or M126 first");
+            "from the previous program: program M127 or M126 first");
   EXPECT_EQ(refusal_of("L C+0 FMAX M126\nL C+180 FMAX\n", reduced),
-            "t.h:15:6: error: a rotary axis would move 180 degrees: which way is not determined");
+            "t.h:15:6: error: a rotary axis would move 180 degrees: the direction is undetermined");
   EXPECT_EQ(refusal_of("CYCL DEF 11.0\nCYCL DEF 11.1 SCL 0.99\n"),
             "t.h:15:22: error: cycle 11 with a factor other than 1: which axes it acts on depends "
             "on MP7410");
   EXPECT_EQ(refusal_of("TRANS DATUM AXIS X+5\nCYCL DEF 10.0\nCYCL DEF 10.1 ROT+30\n"),
             "t.h:16:4: error: cycle 10 while a datum shift or cycle 8 is active, or may be, is not "
             "covered");
-  EXPECT_EQ(refusal_of("CYCL DEF 8.0\nCYCL DEF 8.1 X\nL Z+0 FMAX M91\n"),
-            "t.h:16:4: error: M91 while cycle 8 or 10 is active: what it does was not found in a "
-            "manual");
+  EXPECT_EQ(
+      refusal_of("CYCL DEF 8.0\nCYCL DEF 8.1 X\nL Z+0 FMAX M91\n"),
+      "t.h:16:4: error: M91 while cycle 8 or 10 is active: no manual found describes its effect");
   EXPECT_EQ(refusal_of("L IX+5 FMAX M91\n"), "t.h:14:6: error: M91 with an incremental coordinate");
 }
 
 TEST(HeidenhainRefusals, OfCircles) {
   EXPECT_EQ(refusal_of("C X+1 Y+1 DR+ F100\n"),
-            "t.h:14:4: error: no CC before the circle, or what it counted from has changed");
+            "t.h:14:4: error: no CC before the circle, or its reference has changed");
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nC X+20 Y+0.006 F100\n"),
-            "t.h:15:4: error: C without DR: which way holds then is not determined");
+            "t.h:15:4: error: C without DR: the direction of rotation is undetermined");
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nC X+20.006 Y+0 DR+ F100\n"),
-            "t.h:15:4: error: the arc begins at a radius of 10.0000 mm and ends at one of 10.0060 "
-            "mm");
+            "t.h:15:4: error: the arc starts at a radius of 10.0000 mm and ends at a radius of "
+            "10.0060 mm");
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nC X+0 Y+0.0001 DR+ F100\n"),
             "t.h:15:4: error: an arc of 359.99943 degrees: rounding decides between a full circle "
-            "and none");
+            "and no motion");
   EXPECT_EQ(refusal_of("CC X+0 Y+0\nC X+1 DR+ F100\n"), "t.h:15:4: error: the circle starts at CC");
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nC X+20 Y+0 Z+1 DR+ F100\n"),
             "t.h:15:15: error: 'Z+1': not in the plane of CC; a helix needs CP");
@@ -191,8 +194,8 @@ TEST(HeidenhainRefusals, OfCircles) {
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nCP IPA+90 DR- F100\n"),
             "t.h:15:4: error: the signs of IPA and DR differ, or IPA is 0");
   EXPECT_EQ(refusal_of("CC X+10 Y+0\nCP PA+180 DR- F100\n"),
-            "t.h:15:4: error: CP PA ends where it starts: a full circle or none");
-  EXPECT_EQ(refusal_of("CC X+10\n"), "t.h:14:4: error: CC takes two of X, Y, Z, or no coordinate");
+            "t.h:15:4: error: CP PA ends at its start: a full circle or no motion");
+  EXPECT_EQ(refusal_of("CC X+10\n"), "t.h:14:4: error: CC needs two of X, Y, Z, or no coordinate");
 }
 
 TEST(HeidenhainRefusals, ByName) {
@@ -205,7 +208,7 @@ TEST(HeidenhainRefusals, ByName) {
         fmt::format("t.h:14:4: error: {}: this block is not covered by the verification", name));
   }
   EXPECT_EQ(refusal_of("Cc X+1 Y+1\n"),
-            "t.h:14:4: error: 'Cc' begins no block; did you mean 'CC'?");
+            "t.h:14:4: error: 'Cc' does not start a block; did you mean 'CC'?");
   EXPECT_EQ(refusal_of("L X+1 RL F100\n"),
             "t.h:14:10: error: 'RL': cutter radius compensation is not covered by the "
             "verification");
@@ -218,13 +221,13 @@ TEST(HeidenhainRefusals, ByName) {
             "machine datum");
   EXPECT_EQ(refusal_of("M128\n"),
             "t.h:14:4: error: M128: motion of the tool tip is not covered by the verification");
-  EXPECT_EQ(refusal_of("M7\n"), "t.h:14:4: error: M7: its meaning is the machine builder's");
+  EXPECT_EQ(refusal_of("M7\n"), "t.h:14:4: error: M7: its meaning is up to the machine builder");
   EXPECT_EQ(refusal_of("M99\n"), "t.h:14:4: error: M99: not covered by the verification");
   EXPECT_EQ(refusal_of("M129\n"),
-            "t.h:14:4: error: M129: a control without the functions for tilting rejects it");
+            "t.h:14:4: error: M129: a control without the tilting option rejects it");
   EXPECT_EQ(refusal_of("PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY\n", tilting()),
-            "t.h:11:4: error: M128 may be active from the program before: write M129 before TOOL "
-            "CALL");
+            "t.h:11:4: error: M128 may be active from the previous program: program M129 before "
+            "TOOL CALL");
   EXPECT_EQ(refusal_at_start("PLANE RESET TURN\n", tilting()),
             "t.h:2:1: error: PLANE: only PLANE RESET STAY, which moves no axis, is covered");
   EXPECT_EQ(refusal_of("FUNCTION TCPM F TCP\n"),
@@ -236,13 +239,14 @@ TEST(HeidenhainRefusals, ByName) {
 }
 
 TEST(HeidenhainRefusals, OfWords) {
-  EXPECT_EQ(refusal_of("L X+1 X+2 FMAX\n"), "t.h:14:10: error: 'X+2': X is in the block already");
+  EXPECT_EQ(refusal_of("L X+1 X+2 FMAX\n"),
+            "t.h:14:10: error: 'X+2': X appears twice in the block");
   EXPECT_EQ(refusal_of("L X FMAX\n"), "t.h:14:6: error: 'X' without a number");
   EXPECT_EQ(refusal_of("L X+1e3 FMAX\n"), "t.h:14:6: error: 'X+1e3': '+1e3' is not a number");
   EXPECT_EQ(refusal_of("L X+1.00001 FMAX\n"),
-            "t.h:14:6: error: 'X+1.00001': the control takes 4 decimals here");
+            "t.h:14:6: error: 'X+1.00001': the control accepts 4 decimals here");
   EXPECT_EQ(refusal_of("L X+100000 FMAX\n"),
-            "t.h:14:6: error: 'X+100000': the control takes up to +-99999.9999 here");
+            "t.h:14:6: error: 'X+100000': the control accepts up to +-99999.9999 here");
   EXPECT_EQ(refusal_of("L X+1 F0\n"), "t.h:14:10: error: 'F0': a feed must be > 0");
   EXPECT_EQ(refusal_of("L X+1 F-5\n"),
             "t.h:14:10: error: 'F-5': '-5' is not a number without a sign");
@@ -250,30 +254,29 @@ TEST(HeidenhainRefusals, OfWords) {
   EXPECT_EQ(refusal_of("L X+1 FMAX M3 M8 M91\n"),
             "t.h:14:21: error: 'M91': a third M function in the block");
   EXPECT_EQ(refusal_of("L X+1 FMAX M3 M5\n"), "t.h:14:18: error: M3 and M5 in one block");
-  EXPECT_EQ(refusal_of("L X+1 U+5 FMAX\n"), "t.h:14:10: error: 'U+5': no word of this block");
+  EXPECT_EQ(refusal_of("L X+1 U+5 FMAX\n"), "t.h:14:10: error: 'U+5': not a word of this block");
   EXPECT_EQ(refusal_of("TOOL CALL 1 X S100\n"),
             "t.h:14:16: error: TOOL CALL: tool axis X; the tool axis is Z");
   EXPECT_EQ(refusal_of("TOOL CALL 1 S100\n"), "t.h:14:4: error: TOOL CALL without the tool axis Z");
   EXPECT_EQ(refusal_of("TOOL CALL \"D10\" Z S100\n"),
             "t.h:14:14: error: TOOL CALL: '\"D10\"' is not covered by the verification");
   EXPECT_EQ(refusal_of("TOOL DEF 1 L+0 R+5\n"),
-            "t.h:14:4: error: TOOL DEF: only a number, which selects a tool in advance, is "
-            "covered");
+            "t.h:14:4: error: TOOL DEF: only a number, which preselects a tool, is covered");
 }
 
 TEST(HeidenhainRefusals, OfCycles) {
   EXPECT_EQ(refusal_of("CYCL DEF 9.0\nL X+1 FMAX\n"),
-            "t.h:15:4: error: cycle 9 has begun and lacks CYCL DEF 9.1");
+            "t.h:15:4: error: cycle 9 is incomplete: CYCL DEF 9.1 is missing");
   EXPECT_EQ(refusal_of("CYCL DEF 9.1 DWELL 1\n"),
             "t.h:14:13: error: CYCL DEF 9.1 does not follow CYCL DEF 9.0");
   EXPECT_EQ(refusal_of("CYCL DEF 9.0\nCYCL DEF 9.1 DWELL 3600.1\n"),
-            "t.h:15:23: error: '3600.1': the control takes up to +-3600 here");
+            "t.h:15:23: error: '3600.1': the control accepts up to +-3600 here");
   EXPECT_EQ(refusal_of("CYCL DEF 7.0\nCYCL DEF 7.2 X+0\n"),
             "t.h:15:13: error: CYCL DEF 7.2 does not follow CYCL DEF 7.1");
   EXPECT_EQ(refusal_of("CYCL DEF 7.0\nCYCL DEF 7.1 #5\n"),
             "t.h:15:17: error: '#5': the datum table is unknown");
   EXPECT_EQ(refusal_of("CYCL DEF 10.0\nCYCL DEF 10.1\n"),
-            "t.h:15:4: error: the cycle takes ROT and a value");
+            "t.h:15:4: error: the cycle needs ROT and a value");
   EXPECT_EQ(refusal_of("CYCL DEF 247 ~\n  Q339=+10\n"),
             "t.h:15:3: error: 'Q339=+10': presets 1 to 9 are covered");
   EXPECT_EQ(refusal_at_start("CYCL DEF 19.0\nCYCL DEF 19.1\n", tilting()),

@@ -31,14 +31,14 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":3:1: error: '$' is a command of a sender to grbl or TinyG, no block; take the line out"},
+       ":3:1: error: '$' is a sender command for grbl or TinyG, not a block; remove the line"},
       {"bcnc_probe.nc",
        {},
        0,
        0,
        0,
-       ":3:1: error: G38.2: what a probe touches is not known here; [touch_probe] of a scenario "
-       "says it"},
+       ":3:1: error: G38.2: the probed surface is unknown here; simulate it with [touch_probe] of "
+       "a scenario"},
       {"camotics_tplang.nc", {5, 6, 12}, 2, 10.0, 0.0},
       {"cncjs_laser.gcode",
        {},
@@ -53,8 +53,8 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":2:1: error: '%x0=' is a variable of the sender cncjs, which replaces it while it streams; "
-       "write its value"},
+       ":2:1: error: '%x0=' is a variable of the sender cncjs, which substitutes it while "
+       "streaming; write its value"},
       {"estlcam_grbl.nc", {}, 3, 10.0, 10.0},
       // X and Y of expressions are rounded to 0.001 mm: 40 sin 300 deg
       {"fanuc_bolt_circle.nc", {3, 8, 11}, 6, 20.0, -34.641},
@@ -79,16 +79,17 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":1:1: error: M104: heats the extruder of a printer; programs for milling are read here"},
+       ":1:1: error: M104: heats the extruder of a 3D printer; only milling programs are "
+       "supported"},
       {"sender_mdi.nc", {1, 8}, 2, 20.0, 10.0},
       {"siemens_sinumerik.mpf",
        {},
        0,
        0,
        0,
-       ":1:1: error: this is a Siemens program; programs in G-code are read here: let the "
-       "post-processor write for Fanuc or LinuxCNC, or, where the program has no word of Siemens' "
-       "own, name the control whose rules it follows with --reader"},
+       ":1:1: error: this is a Siemens program, and only G-code is supported: post-process for "
+       "Fanuc or LinuxCNC, or, if the program has no Siemens-specific words, choose the control "
+       "with --reader"},
       {"smoothieware.nc", {5, 10, 10}, 2, 9.5, 2.5},
       {"vectric_grbl_inch.nc", {1}, 3, 50.8, 38.1},
       {"vectric_mach_mm.txt", {12, 13, 15}, 3, 55.0, 10.0},

@@ -101,44 +101,44 @@ TEST(CannedCycle, TappingOutsideOfG17Warns) {
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(to_string(interpreter.warnings()[0].place), "p.nc:3:1");
   EXPECT_EQ(interpreter.warnings()[0].message,
-            "G84 outside of G17 moves to exchanged coordinates, as LinuxCNC 2.9 does; tap in G17");
+            "G84 outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17");
 }
 
 TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   const auto fault = [](const std::string& block) { return fault_of("F100\nG0 Z10\n" + block); };
-  EXPECT_EQ(fault("G81 X1 Z-1"), "p.nc:3:1: error: G81 needs R; none is kept from a G81 before");
-  EXPECT_EQ(fault("G81 X1 R1"), "p.nc:3:1: error: G81 needs Z; none is kept from a G81 before");
-  EXPECT_EQ(fault("G19 G81 Y1 R1"), "p.nc:3:5: error: G81 needs X; none is kept from a G81 before");
-  EXPECT_EQ(fault("G83 X1 Z-1 R1"), "p.nc:3:1: error: G83 needs Q; none is kept from a G83 before");
+  EXPECT_EQ(fault("G81 X1 Z-1"), "p.nc:3:1: error: G81 needs R; no earlier G81 has set it");
+  EXPECT_EQ(fault("G81 X1 R1"), "p.nc:3:1: error: G81 needs Z; no earlier G81 has set it");
+  EXPECT_EQ(fault("G19 G81 Y1 R1"), "p.nc:3:5: error: G81 needs X; no earlier G81 has set it");
+  EXPECT_EQ(fault("G83 X1 Z-1 R1"), "p.nc:3:1: error: G83 needs Q; no earlier G83 has set it");
   EXPECT_EQ(fault("G81 X1 Z-1 R1\nG82 Z-1 R1"),
-            "p.nc:4:1: error: G82 needs P; none is kept from a G82 before");
+            "p.nc:4:1: error: G82 needs P; no earlier G82 has set it");
   EXPECT_EQ(fault("G87 X1 Z-1 R1 I1 K0"),
-            "p.nc:3:1: error: G87 needs J; none is kept from a G87 before");
+            "p.nc:3:1: error: G87 needs J; no earlier G87 has set it");
   EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:12: error: G81: R = -2 is below Z = -1, the bottom");
   EXPECT_EQ(fault("G83 X1 Z-1 R1 Q0"), "p.nc:3:15: error: Q0; must be > 0");
   EXPECT_EQ(fault("G73 X1 Z-1 R1 Q-2"), "p.nc:3:15: error: Q-2; must be > 0");
   EXPECT_EQ(fault("G82 X1 Z-1 R1 P-2"), "p.nc:3:15: error: P-2; must be >= 0");
-  EXPECT_EQ(fault("G81 X1 Z-1 R1 L0"), "p.nc:3:15: error: L0; a cycle is done at least once");
+  EXPECT_EQ(fault("G81 X1 Z-1 R1 L0"), "p.nc:3:15: error: L0; must be at least 1");
   EXPECT_EQ(fault("G81 X1 Z-1 R1 L1.5"), "p.nc:3:15: error: L1.5; must be an integer");
   EXPECT_EQ(fault("G81 X1 Z-1 R1 C5"),
-            "p.nc:3:15: error: C word with G81; rotary axes stand still in a cycle");
+            "p.nc:3:15: error: C word with G81; rotary axes are not allowed in a cycle");
   EXPECT_EQ(fault("G81 R1"), "p.nc:3:1: error: G81 without an axis word");
   EXPECT_EQ(fault("G93 G81 X1 Z-1 R1 F1"),
             "p.nc:3:5: error: G81 under G93; a cycle needs G94 or G95");
-  EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"), "p.nc:4:1: error: G81 with zero feed; no F is in force");
+  EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"), "p.nc:4:1: error: G81 with zero feed; no F is active");
   EXPECT_EQ(fault("G17.1 G81 X1 Z-1 R1"),
             "p.nc:3:7: error: G81 in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or "
             "G19");
   EXPECT_EQ(fault("G84 X1 Z-1 R1"),
-            "p.nc:3:1: error: G84 while the spindle stands still; start it with M3");
+            "p.nc:3:1: error: G84 with the spindle stopped; start it with M3");
   EXPECT_EQ(fault("G74 X1 Z-1 R1"),
-            "p.nc:3:1: error: G74 while the spindle stands still; start it with M4");
+            "p.nc:3:1: error: G74 with the spindle stopped; start it with M4");
   EXPECT_EQ(fault("M4 G84 X1 Z-1 R1"),
-            "p.nc:3:4: error: G84 with the spindle turning backwards (M4); it needs M3");
+            "p.nc:3:4: error: G84 with the spindle running counter-clockwise (M4); it needs M3");
   EXPECT_EQ(fault("M3 G74 X1 Z-1 R1"),
-            "p.nc:3:4: error: G74 with the spindle turning forwards (M3); it needs M4");
+            "p.nc:3:4: error: G74 with the spindle running clockwise (M3); it needs M4");
   EXPECT_EQ(fault("G86 X1 Z-1 R1 P1"),
-            "p.nc:3:1: error: G86 while the spindle stands still; start it with M3 or M4");
+            "p.nc:3:1: error: G86 with the spindle stopped; start it with M3 or M4");
 }
 
 TEST(CannedCycle, OfEndlessPecksIsRefused) {

@@ -184,11 +184,11 @@ TEST(ClData, WhatIsWrittenIsReadInBothForms) {
 TEST(ClData, WhatIsSkippedIsSaid) {
   EXPECT_EQ(warnings_of(apt("MACHIN/FANUC\nPAINT/PATH\nPAINT/SPEED,10\nPAINT/COLOR,3\n"
                             "COOLNT/ON,THRU\nLOADTL/1,ADJUST,1\nGOTO/0,0,0\nFINI\nGOTO/1,1,1\n")),
-            std::vector<std::string>({"p.cls:1:1: warning: MACHIN is skipped",
-                                      "p.cls:2:1: warning: PAINT is skipped, here and 2 more times",
-                                      "p.cls:5:11: warning: 'THRU' of COOLNT is skipped",
-                                      "p.cls:6:10: warning: 'ADJUST' of LOADTL is skipped",
-                                      "p.cls:6:17: warning: '1' of LOADTL is skipped",
+            std::vector<std::string>({"p.cls:1:1: warning: MACHIN is ignored",
+                                      "p.cls:2:1: warning: PAINT is ignored, here and 2 more times",
+                                      "p.cls:5:11: warning: 'THRU' of COOLNT is ignored",
+                                      "p.cls:6:10: warning: 'ADJUST' of LOADTL is ignored",
+                                      "p.cls:6:17: warning: '1' of LOADTL is ignored",
                                       "p.cls:9:1: warning: text after FINI is ignored"}));
 }
 
@@ -204,55 +204,55 @@ TEST(ClData, FaultsOfApt) {
   EXPECT_EQ(apt_fault("GOTO 1,2,3\n"),
             "p.cls:1:1: error: GOTO must be followed by '/' or the end of the line");
   EXPECT_EQ(apt_fault("  CIRCLE/0,0,0,0,0,1,5\n"),
-            "p.cls:1:3: error: CIRCLE changes where the tool goes and is not supported; write the "
-            "locations out as GOTO");
+            "p.cls:1:3: error: CIRCLE changes the tool path and is not supported; output GOTO "
+            "locations instead");
   for (const std::string word : {"MOVARC/0,0,0,0,0,1,5,ANGLE,90", "GOHOME", "GOFWD/L1"}) {
     const std::string name = word.substr(0, word.find('/'));
-    EXPECT_EQ(apt_fault(word + "\n"), "p.cls:1:1: error: " + name +
-                                          " changes where the tool goes and is not supported; "
-                                          "write the locations out as GOTO");
+    EXPECT_EQ(apt_fault(word + "\n"),
+              "p.cls:1:1: error: " + name +
+                  " changes the tool path and is not supported; output GOTO locations instead");
   }
   EXPECT_EQ(apt_fault("FEDRAT/0,MMPM\n"), "p.cls:1:8: error: a feed must be > 0");
   EXPECT_EQ(apt_fault("FEDRAT/MMPM\n"), "p.cls:1:1: error: FEDRAT needs a number");
   EXPECT_EQ(apt_fault("FEDRAT/10,MPM\n"),
-            "p.cls:1:11: error: unknown unit 'MPM' of FEDRAT; there are: MMPM, IPM, MMPR, IPR, "
+            "p.cls:1:11: error: unknown unit 'MPM' of FEDRAT; must be one of MMPM, IPM, MMPR, IPR, "
             "PERMIN, PERREV");
   EXPECT_EQ(apt_fault("FEDRAT/0.1,MMPR\nGOTO/0,0,0\n"),
-            "p.cls:2:1: error: a feed per revolution needs the speed of the spindle (SPINDL)");
+            "p.cls:2:1: error: a feed per revolution needs a spindle speed (SPINDL)");
   EXPECT_EQ(apt_fault("UNITS/CM\n"), "p.cls:1:1: error: UNITS needs MM or INCH");
   EXPECT_EQ(apt_fault("SPINDL/ON\n"), "p.cls:1:1: error: SPINDL needs a speed");
-  EXPECT_EQ(apt_fault("SPINDL/-5,CLW\n"), "p.cls:1:8: error: the speed of the spindle must be > 0");
+  EXPECT_EQ(apt_fault("SPINDL/-5,CLW\n"), "p.cls:1:8: error: the spindle speed must be > 0");
   EXPECT_EQ(
       apt_fault("SPINDL/100,SMM\n"),
       "p.cls:1:12: error: a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
   EXPECT_EQ(apt_fault("LOADTL/1.5\n"),
-            "p.cls:1:8: error: the number of a tool must be an integer >= 1 and <= 99999");
+            "p.cls:1:8: error: the tool number must be an integer >= 1 and <= 99999");
   EXPECT_EQ(apt_fault("DELAY/-1\n"), "p.cls:1:7: error: DELAY must be >= 0");
-  EXPECT_EQ(apt_fault("RAPID/1\n"), "p.cls:1:1: error: RAPID takes no words");
+  EXPECT_EQ(apt_fault("RAPID/1\n"), "p.cls:1:1: error: RAPID does not accept parameters");
   EXPECT_EQ(apt_fault("/1\n"), "p.cls:1:1: error: a word is missing before '/'");
   EXPECT_EQ(apt_fault("GOTO/0,0,0,$"),
-            "p.cls:1: error: the last line ends with '$', but none follows\n"
+            "p.cls:1: error: the last line ends with the continuation '$', but no line follows\n"
             "p.cls:1:1: error: GOTO needs x,y,z or x,y,z,i,j,k");
   EXPECT_EQ(apt_fault(std::string_view("GOTO/0,\0,0", 10)),
             "p.cls:1:8: error: byte 0x00 is not allowed");
-  EXPECT_EQ(apt_fault("UNITS/MM\n"), "p.cls: error: holds no cutter location");
-  EXPECT_EQ(apt_fault(""), "p.cls: error: holds no cutter location");
+  EXPECT_EQ(apt_fault("UNITS/MM\n"), "p.cls: error: contains no cutter location");
+  EXPECT_EQ(apt_fault(""), "p.cls: error: contains no cutter location");
 }
 
 TEST(ClData, FaultsOfCsv) {
-  EXPECT_EQ(csv_fault("x,y,z,i,j\n"), "p.csv:1:1: error: the header lacks the column k");
-  EXPECT_EQ(csv_fault("x,y,z,i,j,k,f\n"),
-            "p.csv:1:13: error: unknown column 'f'; there are: x, y, z (also x_mm, x_in), i, j, k, "
-            "feed");
-  EXPECT_EQ(csv_fault("x,y,z,x_mm,i,j,k\n"), "p.csv:1:7: error: column x a second time");
-  EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2,3,0,0\n"),
-            "p.csv:2:1: error: 5 values; the header names 6");
+  EXPECT_EQ(csv_fault("x,y,z,i,j\n"), "p.csv:1:1: error: the header lacks column k");
+  EXPECT_EQ(
+      csv_fault("x,y,z,i,j,k,f\n"),
+      "p.csv:1:13: error: unknown column 'f'; must be one of x, y, z (also x_mm, x_in), i, j, k, "
+      "feed");
+  EXPECT_EQ(csv_fault("x,y,z,x_mm,i,j,k\n"), "p.csv:1:7: error: column x appears twice");
+  EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2,3,0,0\n"), "p.csv:2:1: error: 5 values; the header has 6");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2,3,0,0,0\n"),
             "p.csv:2:7: error: tool axis (0, 0, 0) has no direction");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2;5,3,0,0,1\n"), "p.csv:2:3: error: '2;5' is not a number");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k,feed\n1,2,3,0,0,1,0\n"),
             "p.csv:2:13: error: a feed must be > 0");
-  EXPECT_EQ(csv_fault("x,y,z,i,j,k\n"), "p.csv: error: holds no cutter location");
+  EXPECT_EQ(csv_fault("x,y,z,i,j,k\n"), "p.csv: error: contains no cutter location");
 }
 
 TEST(ClData, WhateverIsReadIsALocationOrAFaultWithItsLine) {
@@ -277,7 +277,7 @@ TEST(ClData, WhateverIsReadIsALocationOrAFaultWithItsLine) {
       ++read;
     } catch (const InputError& error) {
       for (const Fault& fault : error.faults()) {
-        const bool of_file = fault.message == "holds no cutter location";
+        const bool of_file = fault.message == "contains no cutter location";
         EXPECT_EQ(fault.place.line > 0, !of_file) << text;
       }
       ++refused;
@@ -299,8 +299,8 @@ TEST(ClApt, EndOfACycleThatNeverWasIsNothing) {
   EXPECT_EQ(data.records.size(), 1u);
   EXPECT_TRUE(data.warnings.empty());
   const std::string refused =
-      "p.cls:1:1: error: CYCLE changes where the tool goes and is not supported; write the "
-      "locations out as GOTO";
+      "p.cls:1:1: error: CYCLE changes the tool path and is not supported; output GOTO locations "
+      "instead";
   EXPECT_EQ(apt_fault("CYCLE/DRILL,10,MMPM,100\nGOTO/1,2,3\n"), refused);
   EXPECT_EQ(apt_fault("CYCLE/ON\nGOTO/1,2,3\n"), refused);
   EXPECT_EQ(apt_fault("CYCLE\nGOTO/1,2,3\n"), refused);

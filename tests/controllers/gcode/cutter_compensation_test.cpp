@@ -158,7 +158,7 @@ TEST(FollowingMove, AToolInsideAnArcMustBeSmaller) {
   const auto fault = [](double R) { return following_move(kLeft, arc({0, 0}, R, 0, 1)).fault; };
   EXPECT_EQ(fault(0.0020001), "");
   EXPECT_EQ(fault(0.002),
-            "the tool does not fit inside the arc: radius 2.0000 mm, that of the arc 2.0000 mm");
+            "the tool does not fit inside the arc: tool radius 2.0000 mm, arc radius 2.0000 mm");
   EXPECT_EQ(following_move(kRight, arc({0, 0}, 0.001, 0, 1)).fault, "");  // outside
 }
 
@@ -172,8 +172,8 @@ TEST(EntryMove, LineEndsBesideTheEnd) {
 TEST(EntryMove, MustBeLongerThanTheRadius) {
   EXPECT_EQ(entry_move(kLeft, line({0, 0}, {0.0020001, 0})).fault, "");
   const std::string wanted =
-      "the first move with cutter compensation is 2.0000 mm long; must be longer than the radius "
-      "of the tool, 2.0000 mm";
+      "the first move with cutter compensation is 2.0000 mm long; must be longer than the tool "
+      "radius, 2.0000 mm";
   EXPECT_EQ(entry_move(kLeft, line({0, 0}, {0.002, 0})).fault, wanted);
   EXPECT_EQ(entry_move(kLeft, arc({0, 0}, 0.1, 0, 0.02)).fault, wanted);
 }
@@ -233,8 +233,9 @@ TEST(MoveEnd, AnArcKeepsItsRadius) {
   held.sweep = 1;
   EXPECT_EQ(move_end(held, std::nullopt, {0.010009, 0}, kEndToleranceMm), "");
   held.end = {0.01, 0};
-  EXPECT_EQ(move_end(held, std::nullopt, {0.010011, 0}, kEndToleranceMm),
-            "the compensated arc would have radius 10.0000 mm, but 10.0110 mm at its end");
+  EXPECT_EQ(
+      move_end(held, std::nullopt, {0.010011, 0}, kEndToleranceMm),
+      "the compensated arc would have radius 10.0000 mm at its start, but 10.0110 mm at its end");
 }
 
 // ------------------------------------------------------------------------------------------- laws

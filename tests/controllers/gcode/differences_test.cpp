@@ -191,7 +191,7 @@ TEST(WordDifferences, AreWarnedOfInOverridesWhichMoveNothing) {
               moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
   }
   EXPECT_EQ(moves_of(program, setup_for(Reader::grbl)),
-            "p.nc:1:1: error: M50: grbl does not have it");
+            "p.nc:1:1: error: M50 is not supported by grbl");
   EXPECT_EQ(warnings_of(program),
             std::vector<std::string>(
                 {"p.nc:1:1: error: " + both_readings(WordDifference::override_codes) +
@@ -211,9 +211,8 @@ TEST(WordDifferences, AreWarnedOfInALoneG53BeforeAMoveWithoutAWorkOffset) {
 
 TEST(WordDifferences, AreRefusedInG53UnderG91) {
   const std::string refusal =
-      "G53 under G91: a place of the machine (LinuxCNC refuses it), or a distance (Mitsubishi "
-      "M700V "
-      "p. 508); write G90";
+      "G53 under G91: a machine position (LinuxCNC refuses it), or a distance (Mitsubishi M700V p. "
+      "508); program G90";
   EXPECT_EQ(moves_of("G91\nG53 G0 Z0\nM2\n", setup_for(Reader::any)),
             "p.nc:2:1: error: " + refusal);
   EXPECT_EQ(moves_of("G91\nG90 G53 G0 Z0.\nM2\n", setup_for(Reader::haas)),
@@ -231,19 +230,17 @@ TEST(MachineFunctions, BecomeCommentsWithAWarning) {
   ASSERT_EQ(interpreter.warnings().size(), 3u);
   EXPECT_EQ(interpreter.warnings()[0].message,
             sentence(ReaderRule::machine_function) +
-                "; M10 becomes a comment, also where the program is written again");
+                "; M10 becomes a comment, also where the program is rewritten");
   EXPECT_EQ(to_string(interpreter.warnings()[1]), "p.nc:2:1: error: M88 becomes a comment, too");
   EXPECT_EQ(to_string(interpreter.warnings()[2]), "p.nc:3:20: error: M11 becomes a comment, too");
 }
 
 TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
-  EXPECT_EQ(
-      moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::any)),
-      "p.nc:1:1: error: unknown M code M82: a function of the machine's builder; some of them "
-      "mirror or move an axis. If M82 does not, name it with --ignore-code M82, or take it "
-      "out");
+  EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::any)),
+            "p.nc:1:1: error: unknown M code M82: a function of the machine builder; some of them "
+            "mirror or move an axis. If M82 does not, pass --ignore-code M82, or remove it");
   EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::grbl)),
-            "p.nc:1:1: error: M82: grbl does not have it");
+            "p.nc:1:1: error: M82 is not supported by grbl");
   ProgramSetup setup = setup_for(Reader::any);
   setup.ignored_codes = {82};
   EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup),
@@ -254,7 +251,7 @@ TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
 
 TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
   constexpr std::string_view kBoth =
-      "G4 S: seconds (Marlin), or turns of the spindle (Siemens); write G4 P";
+      "G4 S: seconds (Marlin), or spindle revolutions (Siemens); use G4 P";
   EXPECT_EQ(moves_of("G4 S4\nM2\n", setup_for(Reader::any)),
             "p.nc:1:4: error: " + std::string(kBoth));
   ProgramSetup setup = setup_for(Reader::any);
@@ -267,7 +264,7 @@ TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
   EXPECT_TRUE(std::isnan(dwell->value));
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(interpreter.warnings()[0].message,
-            std::string(kBoth) + "; how long it dwells is left unknown");
+            std::string(kBoth) + "; the dwell time stays unknown");
 }
 
 // Clamps of the fifth axis on Haas; no control moves an axis by them.
@@ -298,10 +295,10 @@ TEST(CutterCompensation, TellsOfAnEntryThatOtherControlsMakeInAnotherWay) {
       warnings_of(head + "X10.\nG40 Y-10.\nM2\n", setup_for(Reader::any));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0],
-            "p.nc:4:1: error: the entry of cutter compensation is read as LinuxCNC makes it: the "
-            "tool ends line 3 1.4142 mm from where Fanuc and Haas end it, beside the start of the "
-            "next move (or by two moves: parameter 5003, setting 43); an entry that goes on in a "
-            "straight line is the same for all");
+            "p.nc:4:1: error: the entry of cutter compensation follows LinuxCNC: the tool ends "
+            "line 3 1.4142 mm away from where Fanuc and Haas end it, next to the start of the next "
+            "move (or within two moves: parameter 5003, setting 43); an entry followed by a move "
+            "in the same direction is the same for all");
   EXPECT_TRUE(warnings_of(head + "Y10.\nG40 X-10.\nM2\n", setup_for(Reader::any)).empty());
   ProgramSetup strict = setup_for(Reader::linuxcnc);
   Interpreter interpreter(head + "X10.\nG40 Y-10.\nM2\n", "p.nc", strict);
@@ -349,7 +346,7 @@ TEST(WordDifferences, LeaveADwellUnknownThatIsNotNeeded) {
   EXPECT_EQ(dwells[2], 3.0);
   ASSERT_EQ(interpreter.warnings().size(), 2u);
   EXPECT_EQ(interpreter.warnings()[0].message,
-            both_readings(WordDifference::dwell_unit) + "; how long it dwells is left unknown");
+            both_readings(WordDifference::dwell_unit) + "; the dwell time stays unknown");
 }
 
 // From the centre to +X, once round, and back; the motion code in force stays.

@@ -30,37 +30,35 @@ TEST(ErrorGallery, Characters) {
 }
 
 TEST(ErrorGallery, Encodings) {
-  EXPECT_EQ(
-      fault_of("\xFF\xFEG"),
-      "p.nc:1:1: error: byte 0xFF is not allowed outside comments; the file seems to be UTF-16: "
-      "save it as UTF-8");
+  EXPECT_EQ(fault_of("\xFF\xFEG"),
+            "p.nc:1:1: error: byte 0xFF is not allowed outside comments; the file looks like "
+            "UTF-16: save it as UTF-8");
   EXPECT_EQ(fault_of("G0\n\xFF"), "p.nc:2:1: error: byte 0xFF is not allowed outside comments");
   EXPECT_EQ(fault_of("\xEF\xBB\xBFG0 Q"),
-            "p.nc:1:5: error: a value is expected after Q, not the end of the line");
+            "p.nc:1:5: error: expected a value after Q, found the end of the line");
 }
 
 TEST(ErrorGallery, Values) {
   expect_gallery({
-      {"G0 X", "1:5: error: a value is expected after X, not the end of the line"},
-      {"G0 XY1", "1:5: error: a value is expected after X, not the word Y"},
-      {"Y F100", "1:3: error: a value is expected after Y, not the word F"},
-      {"#1=F3", "1:4: error: a value is expected after =, not the word F"},
-      {"X[1+Y2]", "1:5: error: a value is expected after '[' or an operator, not the word Y"},
-      {"G0 X.", "1:5: error: a value is expected after X, not the end of the line"},
+      {"G0 X", "1:5: error: expected a value after X, found the end of the line"},
+      {"G0 XY1", "1:5: error: expected a value after X, found the word Y"},
+      {"Y F100", "1:3: error: expected a value after Y, found the word F"},
+      {"#1=F3", "1:4: error: expected a value after =, found the word F"},
+      {"X[1+Y2]", "1:5: error: expected a value after '[' or an operator, found the word Y"},
+      {"G0 X.", "1:5: error: expected a value after X, found the end of the line"},
       {"G0 X1.2.3", "1:8: error: a second decimal point in one number"},
       {"G0 X[1+2", "1:5: error: '[' is not closed; ']' is missing"},
-      {"G0 X[1 FOO 2]", "1:8: error: operator or ']' expected, not 'F'"},
+      {"G0 X[1 FOO 2]", "1:8: error: expected an operator or ']', found 'F'"},
       {"#1=SINE[3]", "1:4: error: unknown function 'SINE'; did you mean 'SIN'?"},
-      {"#1=SIN 5", "1:8: error: '[' expected after SIN"},
-      {"#1=ATAN[1]", "1:11: error: '/' expected: ATAN takes two arguments, ATAN[y]/[x]"},
-      {"#1=EXISTS[5]", "1:11: error: EXISTS takes a parameter, like EXISTS[#<name>]"},
+      {"#1=SIN 5", "1:8: error: expected '[' after SIN"},
+      {"#1=ATAN[1]", "1:11: error: expected '/': ATAN needs two arguments, ATAN[y]/[x]"},
+      {"#1=EXISTS[5]", "1:11: error: EXISTS needs a parameter, as in EXISTS[#<name>]"},
       {"#1=[1 / 0]", "1:7: error: 1 / 0: division by zero"},
       {"#1=[7 MOD 0]", "1:7: error: 7 MOD 0: division by zero"},
       {"#1=ACOS[1.5]", "1:4: error: ACOS[1.5]: argument must be in -1 ... 1"},
       {"#1=SQRT[-1]", "1:4: error: SQRT[-1]: argument must be >= 0"},
       {"#1=LN[0]", "1:4: error: LN[0]: argument must be > 0"},
-      {"#1=[[-8] ** 0.5]",
-       "1:10: error: -8 ** 0.5: a negative number has no power that is not an integer"},
+      {"#1=[[-8] ** 0.5]", "1:10: error: -8 ** 0.5: a negative number needs an integer exponent"},
       {"#1=EXP[1000]", "1:4: error: the result is not a finite number"},
   });
 }
@@ -71,7 +69,7 @@ TEST(ErrorGallery, Parameters) {
       {"#1.5=1", "1:1: error: parameter number 1.5 is not an integer"},
       {"#5420=1", "1:1: error: parameter #5420 is read-only"},
       {"#<_x>=1", "1:1: error: parameter #<_x> is read-only"},
-      {"#1", "1:3: error: '=' expected after a parameter, not the end of the line"},
+      {"#1", "1:3: error: expected '=' after a parameter, found the end of the line"},
       {"G0 X#<nope>", "1:5: error: parameter #<nope> is not defined"},
       {"G0 X#<nope", "1:6: error: parameter name is not closed; '>' is missing"},
   });
@@ -85,7 +83,7 @@ TEST(ErrorGallery, WordsAndCodes) {
       {"G1.5 X1", "1:1: error: unknown G code G1.5"},
       {"M100", "1:1: error: unknown M code M100"},
       {"G0 o100 if [1]", "1:4: error: an O-word must be the first word of its block"},
-      {"N5.", "1:4: error: a digit is expected behind the point of N"},
+      {"N5.", "1:4: error: expected a digit after the decimal point of N"},
       {"G0 N5", "1:4: error: N is only allowed at the start of a block"},
       {"N-5 G0", "1:1: error: N must be followed by an unsigned number"},
       {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2, G43.4, G43.5)"},
@@ -99,17 +97,17 @@ TEST(ErrorGallery, WordsAndCodes) {
 
 TEST(ErrorGallery, Motion) {
   expect_gallery({
-      {"X1", "1:1: error: axis words, but no G code is in force that uses them"},
+      {"X1", "1:1: error: axis words, but no active G code uses them"},
       {"G80 X1", "1:5: error: axis words with G80"},
       {"G28 G1 X1", "1:5: error: G28 and G1 in one block: both use the axis words"},
-      {"G1 X1", "1:1: error: G1 with zero feed; no F is in force"},
-      {"F9\nG94\nG1 X1", "3:1: error: G1 with zero feed; no F is in force"},
+      {"G1 X1", "1:1: error: G1 with zero feed; no F is active"},
+      {"F9\nG94\nG1 X1", "3:1: error: G1 with zero feed; no F is active"},
       {"G93 F1\nG1 X1", "2:1: error: G1 without F; G93 needs one in every block"},
       {"F-1", "1:1: error: F-1; must be >= 0"},
       {"S-1", "1:1: error: S-1; must be >= 0"},
       {"G4", "1:1: error: G4 needs a P word (seconds)"},
       {"G4 P-1", "1:4: error: G4 P-1; must be >= 0"},
-      {"G53 X1", "1:5: error: axis words, but no G code is in force that uses them"},
+      {"G53 X1", "1:5: error: axis words, but no active G code uses them"},
       {"G53 G2 X1 I1 F1", "1:1: error: G53 needs G0 or G1"},
       {"G91 G53 G0 X1", "1:5: error: G53 with G91; machine coordinates are absolute"},
   });
@@ -133,10 +131,10 @@ TEST(ErrorGallery, Arcs) {
 
 TEST(ErrorGallery, ToolsAndOffsets) {
   expect_gallery({
-      {"T98", "1:1: error: T98: no such tool in the tool table of 2 tools"},
+      {"T98", "1:1: error: T98 is not in the tool table"},
       {"T1.5", "1:1: error: T1.5; must be an integer"},
       {"T-1", "1:1: error: T-1; must be >= 0"},
-      {"G43 H98", "1:5: error: H98: no such tool in the tool table of 2 tools"},
+      {"G43 H98", "1:5: error: H98 is not in the tool table"},
       {"G10 P1 X1", "1:1: error: G10 needs an L word (L0 L1 L2 L10 L11 L20)"},
       {"G10 L3 P1 X1", "1:5: error: G10 L3; must be L0, L1, L2, L10, L11 or L20"},
       {"G10 L2 X1", "1:1: error: G10 L2 needs a P word (0 ... 9)"},
@@ -187,7 +185,7 @@ TEST(ErrorGallery, ToolTable) {
       return error.what();
     }
   };
-  EXPECT_EQ(fault("T1 Z5 ; comment\n\n;\nT1 Z6"), "t.tbl:4:1: error: second tool with number T1");
+  EXPECT_EQ(fault("T1 Z5 ; comment\n\n;\nT1 Z6"), "t.tbl:4:1: error: tool T1 appears twice");
   EXPECT_EQ(fault("P1 Z5"), "t.tbl:1:1: error: tool without a number (T word)");
   EXPECT_EQ(fault("T1 Zx\nT2 W5"),
             "t.tbl:1:4: error: Z must be followed by a number\n"
@@ -201,7 +199,7 @@ TEST(CheckProgram, GivesEverySyntaxFaultAndTheFirstOther) {
   std::string text;
   for (const Fault& fault : faults) text += to_string(fault) + "\n";
   EXPECT_EQ(text,
-            "p.nc:2:1: error: G1 with zero feed; no F is in force\n"
+            "p.nc:2:1: error: G1 with zero feed; no F is active\n"
             "p.nc:3:5: error: comment is not closed; ')' is missing\n"
             "p.nc:4:4: error: G2 and G3 in one block (same modal group)\n"
             "p.nc:6:1: error: unknown G code G99.5\n"

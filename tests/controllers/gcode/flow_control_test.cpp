@@ -108,16 +108,15 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
     return text + "o11 sub\no11 endsub\no1 call";
   }();
   const std::map<std::string, std::string> faults = {
-      {"o1 endsub", "p.nc:1:1: error: no subroutine O<1> is begun here"},
+      {"o1 endsub", "p.nc:1:1: error: no subroutine O<1> starts here"},
       {"o1 sub\no2 sub\no2 endsub\no1 endsub\no1 call",
        "p.nc:2:1: error: a subroutine within the definition of O<1>"},
       {"o1 sub\no1 endsub\no1 sub\no1 endsub",
-       "p.nc:3:1: error: O<1> is defined before, in line 1"},
+       "p.nc:3:1: error: O<1> is already defined in line 1"},
       {"o1 call\no1 sub\no1 endsub",
-       "p.nc:2:1: error: the program runs into O<1>, which it has called before"},
+       "p.nc:2:1: error: the program runs into O<1>, which it has already called"},
       {"o1 sub\no1 endsub x\no1 call",
-       "p.nc:2:11: error: unexpected 'X' after ENDSUB; an O-word stands "
-       "alone in its block"},
+       "p.nc:2:11: error: unexpected 'X' after ENDSUB; an O-word needs a separate block"},
       {"o1 sub\no1 endsub\nM98 P1",
        "p.nc:1:1: error: O<1> is a subroutine; call it with O<1> CALL; in O<1>, called in p.nc:3"},
       {"o<hole> call\nG0 X1",
@@ -127,7 +126,7 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
       {"o1 frob", "p.nc:1:4: error: unknown keyword 'FROB' after an O-word"},
       {"o1 cal", "p.nc:1:4: error: unknown keyword 'CAL' after an O-word; did you mean 'CALL'?"},
       {"o<a", "p.nc:1:2: error: label is not closed; '>' is missing"},
-      {nine, "p.nc:26:1: error: more than 9 subroutines called by each other"},
+      {nine, "p.nc:26:1: error: subroutine calls nested deeper than 9"},
   };
   for (const auto& [text, message] : faults) {
     const std::string found = fault_of(text);
@@ -204,16 +203,17 @@ TEST(Loop, ABreakOutOfWhileCutsTheNextDoShort) {
 
 TEST(Loop, FaultsSayWhatTheLabelIs) {
   const std::map<std::string, std::string> faults = {
-      {"o1 endwhile", "p.nc:1:1: error: O1 is not begun anywhere before"},
-      {"o1 if [1]\no1 endwhile", "p.nc:2:1: error: O1 is no WHILE but if, in line 1"},
+      {"o1 endwhile", "p.nc:1:1: error: O1 has no matching start before this line"},
+      {"o1 if [1]\no1 endwhile", "p.nc:2:1: error: O1 is not WHILE but if, in line 1"},
       {"o1 repeat [2]\no1 break\no1 endrepeat",
-       "p.nc:2:1: error: O1 is no WHILE and no DO but repeat, in line 1"},
-      {"o1 while [0]\no1 endwhile\no1 else", "p.nc:3:1: error: O1 is no IF but while, in line 1"},
+       "p.nc:2:1: error: O1 is neither a WHILE nor a DO but repeat, in line 1"},
+      {"o1 while [0]\no1 endwhile\no1 else",
+       "p.nc:3:1: error: O1 is not an IF but while, in line 1"},
       {"o1 if [1]\no1 endif\no1 if [1]\no1 endif",
-       "p.nc:3:1: error: label used before, in line 1, for if"},
-      {"o1 while", "p.nc:1:9: error: '[' expected after WHILE, not the end of the line"},
+       "p.nc:3:1: error: label already used in line 1 for if"},
+      {"o1 while", "p.nc:1:9: error: expected '[' after WHILE, found the end of the line"},
       {"o1 while [1", "p.nc:1:10: error: '[' is not closed; ']' is missing"},
-      {"o1 if [0]\nG0 X1", "p.nc:3: error: the program ends while it skips to O1 from line 1"},
+      {"o1 if [0]\nG0 X1", "p.nc:3: error: the program ends while skipping to O1 from line 1"},
   };
   for (const auto& [text, message] : faults) EXPECT_EQ(fault_of(text), message) << text;
 }
@@ -241,15 +241,14 @@ TEST(ExecutedBlocks, AreTheLinesInTheOrderOfTheirRun) {
 TEST(Loop, WithoutEndIsStopped) {
   ProgramSetup setup = usual_setup();
   setup.most_jumps = 1000;
-  EXPECT_EQ(
-      fault_of("o1 while [1]\no1 endwhile", setup),
-      "p.nc:2:1: error: 1001 turns of loops and calls of subroutines, 2000 lines; the program "
-      "seems endless");
+  EXPECT_EQ(fault_of("o1 while [1]\no1 endwhile", setup),
+            "p.nc:2:1: error: 1001 loop iterations and subroutine calls, 2000 lines; the program "
+            "looks endless");
   std::string body;
   for (int i = 0; i < 98; ++i) body += "G1 X1 F1\n";
   EXPECT_EQ(fault_of("o1 while [1]\n" + body + "o1 endwhile", setup),
-            "p.nc:100:1: error: 102 turns of loops and calls of subroutines, 10100 lines; the "
-            "program seems endless");
+            "p.nc:100:1: error: 102 loop iterations and subroutine calls, 10100 lines; the program "
+            "looks endless");
 }
 
 }  // namespace

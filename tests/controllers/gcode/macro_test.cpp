@@ -27,12 +27,11 @@ std::string refusal(const std::string& program, Reader reader = Reader::fanuc) {
 }
 
 TEST(Macro, NothingIsReadInSilenceThatIsNoMacroB) {
-  EXPECT_EQ(refusal("#1=2**3\nM2\n"), "1:6: error: a value is expected here");
+  EXPECT_EQ(refusal("#1=2**3\nM2\n"), "1:6: error: expected a value");
   EXPECT_EQ(refusal("#1=5. X1.\nM2\n"),
-            "1:7: error: unexpected 'X' behind a macro statement, which stands in a block of its "
-            "own");
+            "1:7: error: unexpected 'X' after a macro statement, which needs a separate block");
   EXPECT_EQ(refusal("G0 X#1+5.\nM2\n"),
-            "1:7: error: unexpected '+': an expression of several terms stands in brackets, like "
+            "1:7: error: unexpected '+': an expression of several terms must be in brackets, as in "
             "X[#1+5]");
   EXPECT_EQ(refusal("##1=5.\nM2\n"), "1:2: error: ## is not read: write #[#1]");
   EXPECT_EQ(refusal("#1=SINE[5.]\nM2\n"),
@@ -41,18 +40,18 @@ TEST(Macro, NothingIsReadInSilenceThatIsNoMacroB) {
   EXPECT_EQ(refusal("#0=1\nM2\n"), "1:1: error: #0 is always vacant and cannot be set");
   EXPECT_EQ(refusal("#50=1\nM2\n"), "1:1: error: there is no variable #50");
   EXPECT_EQ(refusal("#1=1/#0\nM2\n"), "1:5: error: division by zero");
-  EXPECT_EQ(refusal("N10 IF[#1GT2]X5.\nM2\n"), "1:14: error: GOTO or THEN expected behind IF[...]");
+  EXPECT_EQ(refusal("N10 IF[#1GT2]X5.\nM2\n"), "1:14: error: expected GOTO or THEN after IF[...]");
   EXPECT_EQ(refusal("IF[#1EQ#0]THEN X5.\nM2\n"),
-            "1:16: error: a macro statement is expected behind THEN");
+            "1:16: error: expected a macro statement after THEN");
   EXPECT_EQ(refusal("#1=ADP[5]\nM2\n"),
-            "1:4: error: ADP adds a decimal point by the increments of the control, which are not "
-            "known; write the value with its point");
+            "1:4: error: ADP adds a decimal point by the increments of the control, which are "
+            "unknown; write the value with its decimal point");
 }
 
 TEST(Macro, VacancyIsNotGuessed) {
   const std::string doubt =
-      "error: a vacant variable behind a sign or alone in brackets: no manual says whether it is 0 "
-      "or stays vacant; write it without them, or set it";
+      "error: a vacant variable after a sign or alone in brackets: no manual says whether it is 0 "
+      "or stays vacant; remove the sign or brackets, or set it";
   EXPECT_EQ(refusal("G0 X[#1]\nM2\n"), "1:5: " + doubt);
   EXPECT_EQ(refusal("#2=-#1\nM2\n"), "1:5: " + doubt);
   EXPECT_EQ(run("#2=[#1]*2.\nG0 X#2 Y1.\nM2\n"), "R 0 1 0");
@@ -60,11 +59,11 @@ TEST(Macro, VacancyIsNotGuessed) {
 
 TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
   const std::string order =
-      "error: AND, OR or XOR beside other operators: controls differ in the order; write brackets "
-      "around each part";
+      "error: AND, OR or XOR combined with other operators: the precedence differs between "
+      "controls; put brackets around each part";
   EXPECT_EQ(refusal("IF[#1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas), "1:4: " + order);
   EXPECT_EQ(refusal("IF[#1EQ1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas),
-            "1:14: error: a second comparison; write brackets around each");
+            "1:14: error: a second comparison; put brackets around each");
   EXPECT_EQ(refusal("#1=1+2AND3\nM2\n", Reader::haas), "1:4: " + order);
   // AND binds as * does: 1 + (2 AND 3); Fanuc B-63944EN, priority of operations, from memory
   EXPECT_EQ(run("#1=1+2AND3\nG0 X#1\nM2\n"), "R 3 0 0");
@@ -75,11 +74,11 @@ TEST(Macro, JumpsAndLoopsHaveTheirRules) {
   EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"),
             "1:6: error: there is no block N7 in this program");
   EXPECT_EQ(refusal("GOTO 7\nWHILE[#1LT2]DO1\nN7 G0 X1.\nEND1\nM2\n"),
-            "1:6: error: N7 is within the loop DO1 of line 2: no jump leads into a loop");
+            "1:6: error: N7 is inside the loop DO1 of line 2: jumps into a loop are not allowed");
   EXPECT_EQ(refusal("WHILE[#1LT2]DO4\nEND4\nM2\n"),
             "1:1: error: the number of DO must be 1, 2 or 3");
   EXPECT_EQ(refusal("WHILE[#1LT2]DO1\nM2\n"), "1:1: error: DO1 has no END1");
-  EXPECT_EQ(refusal("#1=0\nEND1\nM2\n"), "2:1: error: END without the DO of its number before it");
+  EXPECT_EQ(refusal("#1=0\nEND1\nM2\n"), "2:1: error: END without a matching DO before it");
   EXPECT_EQ(refusal("WHILE[#1LT2]DO1\nWHILE[#1LT2]DO1\nEND1\nEND1\nM2\n"),
             "2:1: error: DO1 within the loop DO1 of line 1");
 }
@@ -92,27 +91,26 @@ TEST(Macro, AnEndlessProgramIsStopped) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "p.nc:2:1: error: 21 jumps, turns of loops and calls, 40 lines; the program "
-                 "seems endless");
+                 "p.nc:2:1: error: 21 jumps, loop iterations and calls, 40 lines; the program "
+                 "looks endless");
   }
 }
 
 TEST(Macro, CallsAreChecked) {
-  EXPECT_EQ(refusal("#1=1.\nG65 A1.\nM2\n"),
-            "2:1: error: G65 needs a P word, the number of a program");
+  EXPECT_EQ(refusal("#1=1.\nG65 A1.\nM2\n"), "2:1: error: G65 needs a P word (program number)");
   EXPECT_EQ(refusal("G65 P77 A1.\nM2\n"),
             "1:5: error: there is no program O77 in this file, and no file 77.ngc");
   EXPECT_EQ(refusal("#1=1.\nG90 G65 P1 A1.\nM2\nO1\nM99\n"),
-            "2:1: error: G65 stands before its arguments and alone: write G in a block of its own");
+            "2:1: error: G65 must come before its arguments: program G in a separate block");
   EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG65 P1\nM99\n"),
-            "4:5: error: more than 4 macros called by each other; in O1, called in p.nc:4, in O1, "
+            "4:5: error: macro calls nested deeper than 4; in O1, called in p.nc:4, in O1, "
             "called in p.nc:4, in O1, called in p.nc:4, in O1, called in p.nc:1");
   EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG0 X1.\n"),
-            "4: error: a program that is called ends with M99; in O1, called in p.nc:1");
-  EXPECT_EQ(refusal("G65 P1 A1. L2\nM2\nO1\n#1=#1+1.\nM99\n"),
-            "5: error: the program changes its local variables, and L calls it again: whether they "
-            "keep their values differs between controls; write a WHILE loop; in O1, called in "
-            "p.nc:1");
+            "4: error: a called program must end with M99; in O1, called in p.nc:1");
+  EXPECT_EQ(
+      refusal("G65 P1 A1. L2\nM2\nO1\n#1=#1+1.\nM99\n"),
+      "5: error: the program changes its local variables, and L calls it again: whether they keep "
+      "their values differs between controls; use a WHILE loop; in O1, called in p.nc:1");
   EXPECT_EQ(refusal("#1=1.\nG0 X1.\nO2\nM30\n"), "no refusal: R 1 0 0");
 }
 
@@ -122,11 +120,12 @@ TEST(Macro, HaasReturnsAndJumpsOnACondition) {
       "G65 P1 A3.\nG0 Y1.\nM2\nO1\nN10 #1=#1-1\nG0 X#1\nN50 [#1 GT 1] M99 P10\n[#1 EQ 1] M99\n"
       "X9.\nM99\n";
   EXPECT_EQ(run(program, Reader::haas), "R 2 0 0 | R 1 0 0 | R 1 1 0");
-  EXPECT_EQ(refusal(program),
-            "7:5: error: a condition before M99 is one of Haas; write IF[...]GOTO; in O1, called "
-            "in p.nc:1");
+  EXPECT_EQ(
+      refusal(program),
+      "7:5: error: a condition before M99 is specific to Haas; use IF[...]GOTO; in O1, called "
+      "in p.nc:1");
   EXPECT_EQ(refusal("[1 EQ 1] X5.\nM2\n", Reader::haas),
-            "1:1: error: M99, or M99 P and the number of a block, is expected behind a condition");
+            "1:1: error: expected M99, or M99 P with a block number, after a condition");
 }
 
 TEST(Macro, AProgramInAFileOfItsOwnIsCalled) {
@@ -148,7 +147,7 @@ TEST(Macro, AProgramInAFileOfItsOwnIsCalled) {
 TEST(Macro, BracketsAreOnlySoDeep) {
   const std::string open(50, '['), close(50, ']');
   EXPECT_EQ(refusal("#1=" + open + "1" + close + "\nM2\n"),
-            "1:44: error: brackets and signs are nested too deep");
+            "1:44: error: brackets and signs are nested too deeply");
 }
 
 // A fault of the block names the column in the line as written, and the calls.
@@ -159,26 +158,26 @@ TEST(Macro, FaultsOfBlocksAreAtTheirWords) {
 
 TEST(Macro, AnAlarmOfTheProgramStopsIt) {
   EXPECT_EQ(refusal("IF[#1EQ#0]GOTO9\nM2\nN9 #3000=12(NO DEPTH)\n"),
-            "3:4: error: the program stops itself with an alarm (#3000=12): NO DEPTH");
+            "3:4: error: the program raises an alarm (#3000=12): NO DEPTH");
   EXPECT_EQ(run("G0 X1.\n#3006=1(TURN THE PART)\nX2.\nM2\n"), "R 1 0 0 | P0 | R 2 0 0");
 }
 
 TEST(Macro, ValuesThatASimulationCannotKnowAreRefusedByName) {
   EXPECT_EQ(refusal("#1=#500\nM2\n"),
-            "1:4: error: #500 keeps its value from earlier programs, and this one has not set it; "
-            "give it with --parameter '#500=...'");
+            "1:4: error: #500 keeps its value from earlier programs, and this program has not set "
+            "it; set it with --parameter '#500=...'");
   EXPECT_EQ(refusal("IF[#1004EQ1]GOTO9\nN9 M2\n"),
-            "1:4: error: #1004 is an input of the machine: a simulation does not know it; "
-            "or give it with --parameter '#1004=...'");
+            "1:4: error: #1004 is an input of the machine: it is unknown to a simulation; or set "
+            "it with --parameter '#1004=...'");
   EXPECT_EQ(refusal("#1=#3011\nM2\n"),
-            "1:4: error: #3011 is date and time: a simulation does not know it; or give it "
-            "with --parameter '#3011=...'");
+            "1:4: error: #3011 is date and time: it is unknown to a simulation; or set it with "
+            "--parameter '#3011=...'");
   EXPECT_EQ(refusal("#1=#5063\nM2\n"),
-            "1:4: error: #5063 is the position of the skip signal: a simulation does not know "
-            "it; or give it with --parameter '#5063=...'");
+            "1:4: error: #5063 is the position of the skip signal: it is unknown to a simulation; "
+            "or set it with --parameter '#5063=...'");
   EXPECT_EQ(refusal("#2001=5.\nM2\n"),
-            "1:1: error: #2001 is a tool offset and is not set from here: give it in the tool "
-            "table (--tools), and take the line out");
+            "1:1: error: #2001 is a tool offset and is not set from here: put it in the tool table "
+            "(--tools), and remove the line");
   ProgramSetup setup = setup_of({}, Reader::fanuc);
   setup.parameters["#500"] = 12.5;
   const auto moves = interpret("G0 X#500\nM2\n", "p.nc", setup);
@@ -200,19 +199,16 @@ TEST(Macro, LengthsOfToolsAreThoseOfTheToolTable) {
       return std::string(error.what());
     }
   };
-  EXPECT_EQ(
-      fault(Reader::haas, "#1=#2004\nG0 X#1\nM2\n"),
-      "p.nc:1:4: error: #2004 is a tool offset: the length of tool 4 is not known; pass a tool "
-      "table with --tools; or give it with --parameter '#2004=...'");
+  EXPECT_EQ(fault(Reader::haas, "#1=#2004\nG0 X#1\nM2\n"),
+            "p.nc:1:4: error: #2004 is a tool offset: the length of tool 4 is unknown; pass a tool "
+            "table with --tools; or set it with --parameter '#2004=...'");
   // what #2003 is depends on the tool memory (A, B or C), and wear stands in no table
-  EXPECT_EQ(
-      fault(Reader::fanuc, "#1=#2003\nG0 X#1\nM2\n"),
-      "p.nc:1:4: error: #2003 is a tool offset: a simulation does not know it; or give it with "
-      "--parameter '#2003=...'");
-  EXPECT_EQ(
-      fault(Reader::haas, "#1=#2203\nG0 X#1\nM2\n"),
-      "p.nc:1:4: error: #2203 is a tool offset: a simulation does not know it; or give it with "
-      "--parameter '#2203=...'");
+  EXPECT_EQ(fault(Reader::fanuc, "#1=#2003\nG0 X#1\nM2\n"),
+            "p.nc:1:4: error: #2003 is a tool offset: it is unknown to a simulation; or set it "
+            "with --parameter '#2003=...'");
+  EXPECT_EQ(fault(Reader::haas, "#1=#2203\nG0 X#1\nM2\n"),
+            "p.nc:1:4: error: #2203 is a tool offset: it is unknown to a simulation; or set it "
+            "with --parameter '#2203=...'");
 }
 
 TEST(Macro, ArcTangentOfTwoNumbersHasTwoForms) {
@@ -227,19 +223,19 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
                 Reader::fanuc, offsets),
             "R 101 202 303 | R 103 402 600");
   const std::string unknown =
-      "the work offset is not given; --work-offset (other than 0) or --parameter-file names it";
+      "the work offset is unknown; set it with --work-offset (other than 0) or --parameter-file";
   EXPECT_EQ(refusal("G0 X1.\n#1=#5221\nM2\n"), "2:4: error: #5221 is a work offset: " + unknown +
-                                                   "; or give it with --parameter '#5221=...'");
+                                                   "; or set it with --parameter '#5221=...'");
   EXPECT_EQ(refusal("G0 X1.\n#1=#5021\nM2\n"),
             "2:4: error: #5021 is the machine position: " + unknown +
-                "; or give it with --parameter '#5021=...'");
+                "; or set it with --parameter '#5021=...'");
   EXPECT_EQ(run("G10 L2 P2 X5. Y0. Z0.\nG0 X#5241\nM2\n"), "R 5 0 0");
   EXPECT_EQ(run("G91 G20 G1 X1. F10.\n#1=#4001\n#2=#4003\n#3=#4006\nG21 G0 G90\nG#1 X#2 Y#3 "
                 "F#4109\nM2\n"),
             "F 25.4 0 0 f254 | F 91 20 0");
   EXPECT_EQ(refusal("#1=#4014\nM2\n", Reader::haas),
             "1:4: error: #4014 is a mode in force: the work system is #4014 (Fanuc) or #4012 "
-            "(Haas); choose with --reader; or give it with --parameter '#4014=...'");
+            "(Haas); choose with --reader; or set it with --parameter '#4014=...'");
   EXPECT_EQ(run("G55\n#1=#4014\nG54\nG0 X#1\nM2\n"), "R 55 0 0");
 }
 
@@ -248,8 +244,8 @@ TEST(Macro, AComparisonNearerThanControlsCalculateIsWarnedOf) {
   EXPECT_EQ(found.moves, "R 1 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[1]),
-            "p.nc:2:6: error: the values compared, 0.3 and a value 6e-17 beside it, are nearer "
-            "than controls calculate: another control may go the other way; compare with a margin");
+            "p.nc:2:6: error: the compared values, 0.3 and a value 6e-17 away, are closer than "
+            "controls calculate: another control may branch differently; compare with a margin");
 }
 
 // Readings that Fanuc and Haas share count, since no other control reads the program.
@@ -266,9 +262,9 @@ TEST(Macro, AReturnToABlockNeedsNoVariables) {
 
 TEST(Macro, OtherReadersDoNotHaveIt) {
   for (const Reader reader : {Reader::linuxcnc, Reader::mach, Reader::grbl}) {
-    EXPECT_EQ(refusal("#1=1\nIF[#1EQ1]GOTO9\nN9 M2\n", reader),
-              "2:2: error: 'IF' is a statement of Fanuc's macro language; LinuxCNC's O-words are "
-              "read here");
+    EXPECT_EQ(
+        refusal("#1=1\nIF[#1EQ1]GOTO9\nN9 M2\n", reader),
+        "2:2: error: 'IF' is a Fanuc macro statement; only LinuxCNC O-words are supported here");
   }
   // O-words and parameters of LinuxCNC stay what they are
   EXPECT_EQ(run("#1=2\no1 if [#1 gt 1]\nG0 X#1 Y#2\no1 endif\nM2\n", Reader::any), "R 2 0 0");
@@ -284,8 +280,8 @@ TEST(Macro, LogicWhoseReadingsDifferIsRefusedWithBoth) {
             "p.nc:1:6: error: 20 OR 20: 1 as conditions (LinuxCNC), or 20 of their bits (Fanuc, "
             "Haas); choose with --reader");
   EXPECT_EQ(any("G0 X[0.5 XOR 1]\nM2\n"),
-            "p.nc:1:10: error: 0.5 XOR 1: 0 as conditions (LinuxCNC), or nothing, since only whole "
-            "numbers from 0 on have bits (Fanuc, Haas); choose with --reader");
+            "p.nc:1:10: error: 0.5 XOR 1: 0 as conditions (LinuxCNC), or nothing, since only "
+            "integers >= 0 have bits (Fanuc, Haas); choose with --reader");
   EXPECT_EQ(any("G0 X[5 AND 0] Y[1 OR 0] Z[1 XOR 1]\nM2\n"), "R 0 1 0");
   EXPECT_EQ(run("G0 X[1 AND 2]\nM2\n", Reader::linuxcnc), "R 1 0 0");
   EXPECT_EQ(run("#1=12 AND 10\nG0 X#1\nM2\n"), "R 8 0 0");
@@ -296,19 +292,18 @@ TEST(Macro, LogicWhoseReadingsDifferIsRefusedWithBoth) {
 TEST(Macro, WhatStandsBehindThenIsCheckedWhereItDoesNotRun) {
   EXPECT_EQ(refusal("IF[1EQ2]THEN #1=[5.\nM2\n"), "1:17: error: '[' is not closed; ']' is missing");
   EXPECT_EQ(refusal("IF[1EQ2]THEN #1=5.]\nM2\n"), "1:19: error: ']' without a '[' before it");
-  EXPECT_EQ(refusal("IF[1EQ2]THEN #1=5.+\nM2\n"), "1:19: error: a value is expected behind it");
+  EXPECT_EQ(refusal("IF[1EQ2]THEN #1=5.+\nM2\n"), "1:19: error: expected a value after it");
   EXPECT_EQ(refusal("IF[1EQ2]THEN GOTO\nM2\n"),
-            "1:14: error: a macro statement is expected behind THEN");
+            "1:14: error: expected a macro statement after THEN");
   EXPECT_EQ(run("IF[1EQ2]THEN #1=1./0\nG0 X1.\nM2\n"), "R 1 0 0");
 }
 
 // Which of G0 and G1 is in force at power-on is parameter 3402#0.
 TEST(Macro, ModesBeforeTheFirstMotion) {
-  EXPECT_EQ(
-      refusal("#1=#4001\nG0 X1.\nM2\n"),
-      "1:4: error: #4001 is a mode in force: no G0, G1, G2 or G3 stands before it: which is in "
-      "force then is set in the control (Fanuc, parameter 3402#0); write one; or give it with "
-      "--parameter '#4001=...'");
+  EXPECT_EQ(refusal("#1=#4001\nG0 X1.\nM2\n"),
+            "1:4: error: #4001 is a mode in force: no G0, G1, G2 or G3 precedes it: the active one "
+            "is a control setting (Fanuc, parameter 3402#0); program one; or set it with "
+            "--parameter '#4001=...'");
   EXPECT_EQ(run("G1 X1. F100.\n#1=#4001\n#2=#4009\n#3=#4008\nG0 X#1 Y#2 Z#3\nM2\n"),
             "F 1 0 0 f100 | R 1 80 49");
 }
@@ -320,11 +315,11 @@ TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
   EXPECT_EQ(found.moves, "R -2 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[0]),
-            "p.nc:1:4: error: FIX, FUP, ATAN and MOD are read as LinuxCNC has them; Fanuc and Haas "
-            "differ for numbers below 0 and in the range of angles; choose with --reader");
+            "p.nc:1:4: error: FIX, FUP, ATAN and MOD follow LinuxCNC; Fanuc and Haas differ for "
+            "negative numbers and in the range of angles; choose with --reader");
   EXPECT_EQ(to_string(found.warnings[1]),
-            "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, with its word "
-            "left out (Fanuc, Haas); choose with --reader");
+            "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, so that its "
+            "word is omitted (Fanuc, Haas); choose with --reader");
   // O-words are LinuxCNC's
   const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]]\no1 endif\nM2\n", Reader::any, {});
   EXPECT_TRUE(flow.warnings.empty());

@@ -28,9 +28,9 @@ TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
     return std::string();
   };
   const std::string refusal =
-      ":1:1: error: this is a Siemens program; programs in G-code are read here: let the "
-      "post-processor write for Fanuc or LinuxCNC, or, where the program has no word of Siemens' "
-      "own, name the control whose rules it follows with --reader";
+      ":1:1: error: this is a Siemens program, and only G-code is supported: post-process for "
+      "Fanuc or LinuxCNC, or, if the program has no Siemens-specific words, choose the control "
+      "with --reader";
   for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
     EXPECT_EQ(fault("G0 X1\nM2\n", file, Reader::any), file + refusal);
   }
@@ -42,11 +42,11 @@ TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
 
 TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
   EXPECT_EQ(other_language("12 CYCL DEF 200 DRILLING", 1),
-            "'CYCL DEF' is Heidenhain conversational; --reader heidenhain reads it");
+            "'CYCL DEF' is Heidenhain conversational; use --reader heidenhain");
   EXPECT_EQ(other_language("N20 T=\"MILL10\" M6", 6),
-            "'T=' is a word of Siemens' language; programs in G-code are read here");
+            "'T=' is a Siemens word; only G-code is supported");
   EXPECT_EQ(other_language("%x0=posx", 1),
-            "'%x0=' is a variable of the sender cncjs, which replaces it while it streams; write "
+            "'%x0=' is a variable of the sender cncjs, which substitutes it while streaming; write "
             "its value");
   EXPECT_EQ(other_language("%wait", 1), "");
   EXPECT_EQ(other_language("G1 X10. F100.", 1), "");
@@ -54,24 +54,22 @@ TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
 
 TEST(OtherLanguage, TextsAndEngravingAreNamed) {
   EXPECT_EQ(other_language("M118 probing with M463 X-10", 6),
-            "M118 shows a text (Marlin, Duet, Carvera), which is not read without brackets; take "
-            "the line out, or write (MSG, ...)");
+            "M118 displays a text (Marlin, Duet, Carvera), which needs brackets here; remove the "
+            "line, or use (MSG, ...)");
   EXPECT_EQ(other_language("M117 P1", 1), "");
   EXPECT_EQ(other_language("M4005 V\"v0.3.0\"", 7),
-            "a text in quotes is of RepRapFirmware or Siemens; programs in G-code are read here: "
-            "take the line out if it moves nothing");
+            "a string in quotes is RepRapFirmware or Siemens syntax; only G-code is supported: "
+            "remove the line if it causes no motion");
   EXPECT_EQ(other_language("G47 P0 (PART) X1. Y2. E10.", 23),
-            "G47 engraves a text (Haas), whose letters are not in the program; let the CAM system "
-            "write their moves");
+            "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
+            "output the moves");
 }
 
 TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
-  EXPECT_EQ(
-      refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
-      "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; --reader heidenhain reads it");
+  EXPECT_EQ(refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
+            "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; use --reader heidenhain");
   EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
-            "p.nc:1:6: error: 'CYCLE' is a word of Siemens' language; programs in G-code are read "
-            "here");
+            "p.nc:1:6: error: 'CYCLE' is a Siemens word; only G-code is supported");
   EXPECT_EQ(
       refusal("G1 X1 F100 E0.5\nM2\n"),
       "p.nc:1:12: error: an E word feeds the extruder of a printer, sets the generator of wire "
@@ -118,9 +116,9 @@ TEST(OtherLanguage, ALaserIsRefusedByName) {
 
 TEST(OtherLanguage, ATextThatEndsInASubroutineIsNoProgram) {
   EXPECT_EQ(refusal("O1 sub\nG0 X1\n"),
-            "p.nc:2: error: the program ends while it skips to O1 from line 1");
+            "p.nc:2: error: the program ends while skipping to O1 from line 1");
   EXPECT_EQ(refusal("%\nO1 if [0]\nG0 X1\n%\n"),
-            "p.nc:4: error: the program ends while it skips to O1 from line 2");
+            "p.nc:4: error: the program ends while skipping to O1 from line 2");
 }
 
 TEST(OtherLanguage, AnEmptyTextIsNoProgram) {

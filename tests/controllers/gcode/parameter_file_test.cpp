@@ -31,20 +31,17 @@ TEST(ParameterFile, MayHoldRemarks) {
 TEST(ParameterFile, NamesEveryFaultAtItsPlace) {
   EXPECT_EQ(faults_of("150 7\n100 5\n100.5 1\n0 1\n5602 1\n99999999999 1\n160\n170 x\n180 inf\n"
                       "190 5 6\n200 1,5\n5220 12\n5221 5"),
-            "p.var:2:1: error: parameter 100 behind 150; the numbers must increase\n"
-            "p.var:3:1: error: must begin with a parameter number in 1 ... 5601\n"
-            "p.var:4:1: error: parameter number 0; must be in 1 ... 5601\n"
-            "p.var:5:1: error: parameter number 5602; must be in 1 ... 5601\n"
-            "p.var:6:1: error: must begin with a parameter number in 1 ... 5601\n"
-            "p.var:7:4: error: parameter 160 needs a value\n"
-            "p.var:8:5: error: parameter 170 needs a value\n"
-            "p.var:9:5: error: parameter 180 = inf; must be finite\n"
-            "p.var:10:7: error: '6' behind the value of parameter 190\n"
-            "p.var:11:6: error: ',5' behind the value of parameter 200\n"
-            "p.var:12:6: error: parameter 5220 = 12, the work system in force; must be an integer "
-            "in 1 ... 9");
+            "p.var:2:1: error: parameter 100 after 150; the numbers must increase\np.var:3:1: "
+            "error: must start with a parameter number from 1 to 5601\np.var:4:1: error: parameter "
+            "number 0; must be in 1 ... 5601\np.var:5:1: error: parameter number 5602; must be in "
+            "1 ... 5601\np.var:6:1: error: must start with a parameter number from 1 to "
+            "5601\np.var:7:4: error: parameter 160 needs a value\np.var:8:5: error: parameter 170 "
+            "needs a value\np.var:9:5: error: parameter 180 = inf; must be finite\np.var:10:7: "
+            "error: unexpected '6' after the value of parameter 190\np.var:11:6: error: unexpected "
+            "',5' after the value of parameter 200\np.var:12:6: error: parameter 5220 = 12, the "
+            "active work offset; must be an integer from 1 to 9");
   EXPECT_EQ(faults_of("100 1\n100 1"),
-            "p.var:2:1: error: parameter 100 behind 100; the numbers must increase");
+            "p.var:2:1: error: parameter 100 after 100; the numbers must increase");
 }
 
 TEST(ParameterFile, IsWhatAProgramBeginsWith) {

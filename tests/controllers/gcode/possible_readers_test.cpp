@@ -75,12 +75,13 @@ TEST(PossibleReaders, GiveTheReadingOfTheControlThatTheProgramNames) {
   EXPECT_EQ(moves("(Post Processor: linuxcnc_post)\n" + cycle), to_R);
   // the comment counts for more than the number
   EXPECT_EQ(moves("%\nO0042 (FOR LINUXCNC)\n" + cycle), to_R);
-  EXPECT_EQ(warnings_of("%\nO0042 (PLATE)\n" + cycle + "%\n"),
-            std::vector<std::string>(
-                {"p.nc:4:14: error: a canned cycle from above R before any G98 or G99: read as "
-                 "goes back to the initial level (Fanuc, Haas), since the program begins with "
-                 "O0042, as those of Fanuc and Haas; not as goes back to R (LinuxCNC), which "
-                 "--reader chooses"}));
+  EXPECT_EQ(
+      warnings_of("%\nO0042 (PLATE)\n" + cycle + "%\n"),
+      std::vector<std::string>(
+          {"p.nc:4:14: error: a canned cycle from above R before the first G98 or G99: read as "
+           "returns to the initial level (Fanuc, Haas), since the program begins with "
+           "O0042, as those of Fanuc and Haas; not as returns to R (LinuxCNC), which "
+           "--reader chooses"}));
 }
 
 TEST(PossibleReaders, GiveNoneWhereTheProgramNamesNoControlOrTwo) {

@@ -119,8 +119,8 @@ TEST(Post, Faults) {
   EXPECT_EQ(fault_of_post(cl("GOTO/900,0,0\n"), machine(kTableTable)),
             "p.cls:1: error: axis X would move to 930 mm, outside its travel of -500 to 500");
   EXPECT_EQ(fault_of_post(cl("GOTO/0,0,0\nGOTO/0,0,0,0,0,-1\n"), machine(kTableTable)),
-            "p.cls:2: error: the tool axis is reversed (180 deg): no direction of rotation is the "
-            "shorter one");
+            "p.cls:2: error: the tool axis is reversed (180 deg): the direction of rotation is "
+            "undetermined");
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-1,-1\n"), machine(kTableTable)),
       "p.cls:1: error: axis A would move to 135 deg, outside its travel of -114.592 to 114.592");
@@ -138,9 +138,9 @@ TEST(Post, Faults) {
 TEST(Post, ATableThatTiltsToOneSideCannotPassTheVertical) {
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable, 0.0)),
-      "p.cls:2: error: at 50.0 % of the way here axis A comes to the end of its travel at 0 deg, "
-      "and otherwise the axes would have to jump; lead the tool axis past at a distance, retract "
-      "there, or let the axes begin elsewhere (--start)");
+      "p.cls:2: error: at 50.0 % of the move to this location axis A reaches its travel limit at 0 "
+      "deg, and otherwise the axes would have to jump; keep the tool axis away from it, retract "
+      "there, or start the axes elsewhere (--start)");
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable)), "");
 }
@@ -251,10 +251,9 @@ TEST(Post, TurnsTheFreeAxisWithTheTipInPlace) {
   EXPECT_NEAR(turned, 90 * deg, 1e-6);
   EXPECT_NEAR(time, 90 * deg / options.rotary_rate, 1e-6);
   ASSERT_GE(made.warnings.size(), 1u);
-  EXPECT_EQ(
-      to_string(made.warnings.front()),
-      "p.cls:3: warning: C turns by 90 deg with the tip in place before the tool axis leaves a "
-      "singular direction; a retract there would avoid it");
+  EXPECT_EQ(to_string(made.warnings.front()),
+            "p.cls:3: warning: C rotates by 90 deg at a fixed TCP before the tool axis leaves a "
+            "singular direction; a retract there would avoid it");
   // the NC with tip control turns it in one block
   options.mode = PostMode::tip;
   const PostProcessed tip = post(cl(part), "p.cls", inverse, options);

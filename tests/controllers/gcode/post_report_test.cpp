@@ -60,8 +60,8 @@ TEST(PostReport, WhatClassicalPostsBendIsReported) {
   }
   ASSERT_EQ(made.warnings.size(), 1u);
   EXPECT_EQ(to_string(made.warnings.back()),
-            fmt::format("p.cls:2: warning: on the way here the axes lead the tip {:.4g} mm off the "
-                        "straight way; only --classical inserts no points",
+            fmt::format("p.cls:2: warning: between the previous location and this one the TCP "
+                        "leaves the straight line by {:.4g} mm; only --classical inserts no points",
                         bend / mm));
 }
 
@@ -105,7 +105,7 @@ TEST(PostReport, KeepsTheWorstBendAndTheMostSlowedBlock) {
   const std::vector<Warning> warnings = report.conclude(nullptr);
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0].place.line, 5);
-  EXPECT_NE(warnings[0].message.find("0.004 mm off the straight way, and by more than the "
+  EXPECT_NE(warnings[0].message.find("by 0.004 mm, and by more than the "
                                      "tolerance on 2 more"),
             std::string::npos)
       << warnings[0].message;

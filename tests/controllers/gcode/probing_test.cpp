@@ -76,9 +76,9 @@ TEST(Probing, GivesTheProbeWhatItNeedsToKnow) {
 TEST(Probing, ThatMeetsNothingIsAFaultOrGoesOn) {
   const WallRun run;
   EXPECT_EQ(fault_of("G21 F300\nG38.2 X9", run.setup),
-            "p.nc:2:1: error: G38.2: the probe touches nothing on the way to the end of the move");
+            "p.nc:2:1: error: G38.2: the probe touches nothing before the end of the move");
   EXPECT_EQ(fault_of("G21 F300\nG0 X20\nG38.4 X11", run.setup),
-            "p.nc:3:1: error: G38.4: the probe still touches on the way to the end of the move");
+            "p.nc:3:1: error: G38.4: the probe still touches before the end of the move");
   expect_axes(last_move("G21 F300\nG38.3 X9\nG0 Y#5061 Z#5070", run.setup).end, axes(9, 9, 0));
   expect_axes(last_move("G21 F300\nG0 X20\nG38.5 X11\nG0 Y#5061 Z#5070", run.setup).end,
               axes(11, 11, 0));
@@ -103,18 +103,18 @@ TEST(Probing, IsRefusedWhereItMeansNothing) {
     return all.substr(all.find(": error: ") + 9);
   };
   EXPECT_EQ(fault("G38.2 F100"), "G38.2 without an axis word");
-  EXPECT_EQ(fault("G38.2 X20"), "G38.2 with zero feed; no F is in force");
+  EXPECT_EQ(fault("G38.2 X20"), "G38.2 with zero feed; no F is active");
   EXPECT_EQ(fault("G93 G38.2 X20 F2"), "G38.2 with G93; G94 first");
   EXPECT_EQ(fault("G95 F1 S100\nG38.2 X20"), "G38.2 with G95; G94 first");
   EXPECT_EQ(fault("F100 G41.1 D3\nG1 X5\nG38.2 X20"),
-            "G38.2 with cutter compensation on; G40 first");
+            "G38.2 with cutter compensation active; G40 first");
   EXPECT_EQ(fault("F100 G43.4 H1\nG38.2 X20"),
             "G38.2 while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
-  EXPECT_EQ(fault("F100 G0 X20\nG38.2 X20"), "G38.2 without a way to go: it begins where it ends");
+  EXPECT_EQ(fault("F100 G0 X20\nG38.2 X20"), "G38.2 has no travel: start and end coincide");
   EXPECT_EQ(fault("F100 G53 G38.2 X20"), "G53 needs G0 or G1");
   EXPECT_EQ(fault_of("F100 G38.2 X20"),
-            "p.nc:1:6: error: G38.2: what a probe touches is not known here; [touch_probe] of a "
-            "scenario says it");
+            "p.nc:1:6: error: G38.2: the probed surface is unknown here; simulate it with "
+            "[touch_probe] of a scenario");
 }
 
 TEST(Probing, NeedsTheLengthOfTheProbe) {
@@ -139,7 +139,7 @@ TEST(Probing, IsWarnedOfOnceWhereTheContactIsAssumed) {
   ASSERT_EQ(interpreter.warnings().size(), 1U);
   EXPECT_EQ(
       interpreter.warnings()[0].message,
-      "G38.2: taken to touch at the end of the move; what a probe measures is not known here");
+      "G38.2: assumed to touch at the end of the move; the measured position is unknown here");
   expect_axes(moves[1].end, axes(20 - 0.254, 20, 0));
   expect_axes(moves[2].end, axes(20 - 0.254, 20 - 0.254, 1));
   setup.reader = Reader::linuxcnc;  // rs274 leaves #5070 at 0

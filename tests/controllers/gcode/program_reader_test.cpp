@@ -302,21 +302,21 @@ TEST(Reader, ProgramsForLinuxCncAreReadAlikeByDefault) {
 }
 
 TEST(Reader, RefusesWhatItsControlDoesNotHave) {
-  const auto lacking = [](Reader reader, const std::string& text) { return refusal(text, reader); };
-  EXPECT_EQ(lacking(Reader::grbl, "O100 sub\nO100 endsub\nM2\n"),
-            "p.nc:1:1: error: O-words with keywords: grbl does not have them");
-  EXPECT_EQ(lacking(Reader::grbl, "G99 G81 X1. Z-2. R1. F100.\nM2\n"),
-            "p.nc:1:1: error: G99: grbl does not have it");
-  EXPECT_EQ(lacking(Reader::fanuc, "G64 P.01\nM2\n"),
-            "p.nc:1:1: error: G64 with P or Q: fanuc does not have it");
-  EXPECT_EQ(lacking(Reader::haas, "G91.1\nM2\n"), "p.nc:1:1: error: G91.1: haas does not have it");
-  EXPECT_EQ(lacking(Reader::mach, "G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n"), "");
+  const auto lacks = [](Reader reader, const std::string& text) { return refusal(text, reader); };
+  EXPECT_EQ(lacks(Reader::grbl, "O100 sub\nO100 endsub\nM2\n"),
+            "p.nc:1:1: error: O-words with keywords are not supported by grbl");
+  EXPECT_EQ(lacks(Reader::grbl, "G99 G81 X1. Z-2. R1. F100.\nM2\n"),
+            "p.nc:1:1: error: G99 is not supported by grbl");
+  EXPECT_EQ(lacks(Reader::fanuc, "G64 P.01\nM2\n"),
+            "p.nc:1:1: error: G64 with P or Q is not supported by fanuc");
+  EXPECT_EQ(lacks(Reader::haas, "G91.1\nM2\n"), "p.nc:1:1: error: G91.1 is not supported by haas");
+  EXPECT_EQ(lacks(Reader::mach, "G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n"), "");
 }
 
 TEST(Reader, TwoReadingsAreRefused) {
   EXPECT_EQ(refusal("G0 X1\n%\nG0 X2\nM2\n"),
-            "p.nc:2:1: error: Fanuc ends the program at this '%', other controls go on behind it; "
-            "choose with --reader");
+            "p.nc:2:1: error: Fanuc ends the program at this '%', other controls continue after "
+            "it; choose with --reader");
   EXPECT_EQ(refusal("G0 X1\n%\nG0 X2\nM2\n", Reader::fanuc), "");
   // a control that ends the comment at its first ')' would go to X10
   EXPECT_EQ(refusal("G0 (a (b) X10)\nM2\n"), "p.nc:1:7: error: comment within a comment");
@@ -324,8 +324,8 @@ TEST(Reader, TwoReadingsAreRefused) {
   EXPECT_EQ(refusal("G0 X1. (a (b); X10 (c))\nM2\n"), "");
   // a control with block skip off would move
   EXPECT_EQ(refusal("// G0 X1\nM2\n"),
-            "p.nc:1:2: error: '//' before words: a comment for some controls, a block that the "
-            "operator may skip for others; write ( ) or ;");
+            "p.nc:1:2: error: '//' before words: a comment on some controls, an optional block on "
+            "others; use ( ) or ;");
 }
 
 TEST(Reader, FaultsKeepTheirColumns) {
@@ -367,9 +367,9 @@ TEST(Reader, WhatDependsOnAnUnknownLengthIsNull) {
                        rapid(5, "[2,0,null,0,0,0]", "[2,0,null,0,0,0]") +
                        rapid(7, "[3,0,null,0,0,0]", "[3,0,null,0,0,0]") +
                        rapid(8, "[3,0,7,0,0,0]", "[3,0,7,0,0,0]") + "{\"t\":\"end\",\"line\":9}\n");
-  EXPECT_EQ(read("G43 H1\nG0 X#5422\nM2\n", Reader::any, with_unknown_lengths()).refusal,
-            "p.nc:2: error: #5422: Z depends on the length of the tool, which is unknown; pass a "
-            "tool table with --tools");
+  EXPECT_EQ(
+      read("G43 H1\nG0 X#5422\nM2\n", Reader::any, with_unknown_lengths()).refusal,
+      "p.nc:2: error: #5422: Z depends on the unknown tool length; pass a tool table with --tools");
 }
 
 TEST(Reader, ATableThatLacksTheNumberShowsASlip) {
@@ -380,7 +380,7 @@ TEST(Reader, ATableThatLacksTheNumberShowsASlip) {
     interpret("T5 M6\nM2\n", "p.nc", setup);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "p.nc:1:1: error: T5: no such tool in the tool table of 1 tools");
+    EXPECT_STREQ(error.what(), "p.nc:1:1: error: T5 is not in the tool table");
   }
 }
 

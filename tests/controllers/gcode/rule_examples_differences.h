@@ -33,8 +33,7 @@ inline std::vector<DifferenceExample> difference_examples() {
       {stored_home, 0, Reader::grbl, "G0 X5\nG28.1\nX0\nG28\nM2\n", "R 5 0 0 | R 0 0 0 | R 5 0 0",
        "grbl 1.1, gcode.c"},
       {stored_home, 1, Reader::mach, "G28.1\nM2\n",
-       "p.nc:1:1: error: G28.1: the search for the switches is not simulated; G53 names a place "
-       "of the machine",
+       "p.nc:1:1: error: G28.1: homing is not simulated; use G53 for a machine position",
        "from memory"},
       {retract_level, 0, Reader::linuxcnc, "G0 Z5\nG81 X1 Z-2 R1 F100\nM2\n", drilled,
        linuxcnc + "rs274"},

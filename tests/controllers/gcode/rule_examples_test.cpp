@@ -99,37 +99,38 @@ TEST(DifferenceExamples, CoverEveryReading) {
 
 // Fanuc 11600#5 decides where the axis that is not named goes, from memory.
 TEST(RuleExamples, ALoneAxisBehindARotationIsRefusedWhereItMatters) {
-  EXPECT_EQ(read("G0 X5. Y0.\nG68 X0. Y0. R90.\nX10.\nM2\n", Reader::fanuc, {}).moves,
-            "p.nc:3:1: error: X alone behind G68: whether Y stays where it is or keeps its "
-            "coordinate from before G68 is a parameter of the control (Fanuc 11600#5); name both");
+  EXPECT_EQ(
+      read("G0 X5. Y0.\nG68 X0. Y0. R90.\nX10.\nM2\n", Reader::fanuc, {}).moves,
+      "p.nc:3:1: error: X alone after G68: whether Y keeps its machine position or its coordinate "
+      "from before G68 is a parameter of the control (Fanuc 11600#5); program both");
   EXPECT_EQ(read("G68 X0. Y0. R90.\nG0 X10.\nY5.\nM2\n", Reader::fanuc, {}).moves,
             "R 0 10 0 | R -5 10 0");
 }
 
 TEST(RuleExamples, WordsOfG15G51AndG68ThatTwoControlsHaveAreRefused) {
   EXPECT_EQ(read("G15 H1\nG0 X1.\nM2\n", Reader::any, {}).moves,
-            "p.nc:1:5: error: H beside G15 or G16 is a work system of Okuma");
+            "p.nc:1:5: error: H with G15 or G16 is a work coordinate system on Okuma");
   EXPECT_EQ(read("G51 X2. Y2. P3.\nM2\n", Reader::mach, {}).moves,
-            "p.nc:1:13: error: P beside G51: the factors of Mach are X, Y and Z");
+            "p.nc:1:13: error: P with G51: the factors on Mach are X, Y and Z");
   EXPECT_EQ(read("G68 X1. Y2. R90.\nM2\n", Reader::mach, {}).moves,
-            "p.nc:1:5: error: X beside G68: the centre of Mach is A and B");
+            "p.nc:1:5: error: X with G68: the centre on Mach is A and B");
   EXPECT_EQ(read("G68 A1. B2. R90.\nM2\n", Reader::haas, {}).moves,
             "p.nc:1:5: error: A beside G68: the X of the centre for Mach, in G17 and G90, a rotary "
             "axis for others");
 }
 
 TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
-  const std::string siemens = "is a word of Siemens' language; programs in G-code are read here";
+  const std::string siemens = "is a Siemens word; only G-code is supported";
   EXPECT_EQ(read("N10 T=\"MILL\"\nM2\n", Reader::any, {}).moves,
             "p.nc:1:6: error: 'T=' " + siemens);
   EXPECT_EQ(read("G3 X1. Y2. CR=4. F100.\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:1:13: error: 'CR=' " + siemens);
   EXPECT_EQ(read("GROUP_BEGIN(0,\"TOP\")\nM2\n", Reader::any, {}).moves,
-            "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens' language or of a machine's "
-            "builder; programs in G-code are read here");
+            "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens or of the machine builder; "
+            "only G-code is supported");
   EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::grbl, {}).moves,
             "p.nc:1:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not "
-            "read; write the arc");
+            "supported; program the arc");
 }
 
 TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
@@ -138,38 +139,37 @@ TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
     const std::string before = "p.nc:1:9: error: ";
     return said.starts_with(before) ? said.substr(before.size()) : said;
   };
-  EXPECT_EQ(refusal("G1 X10. ,R1. F100."), "',R' needs a line in the next block, of plain numbers");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100."),
+            "',R' needs a line with plain numbers in the next block");
   EXPECT_EQ(refusal("G1 X10. ,C1. F100.\nY#1"),
-            "',C' needs a line in the next block, of plain numbers");
+            "',C' needs a line with plain numbers in the next block");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG0 Y5."),
-            "',R' is read between lines only (G1), not beside G0; write the corner");
+            "',R' is supported only between lines (G1), not next to G0; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG2 X12. Y2. R2."),
-            "',R' is read between lines only (G1), not beside G2; write the corner");
+            "',R' is supported only between lines (G1), not next to G2; program the corner");
   EXPECT_EQ(refusal("G0 X10. ,R1. F100.\nG1 Y2."),
-            "',R' is read between lines only (G1), not beside G0; write the corner");
+            "',R' is supported only between lines (G1), not next to G0; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nY5. Z-1."),
-            "',R' with Z in this or the next block; write the corner");
+            "',R' with Z in this or the next block; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG91 Y5."),
-            "',R' with G91 in the next block; write the corner");
-  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX20."), "',R1': the lines make no corner");
-  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX5."), "',R1': the lines make no corner");
-  EXPECT_EQ(refusal("G1 X10. ,R0. F100.\nY5."), "',R0': the lines make no corner");
-  EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."),
-            "',R6' takes 6 of each line; the shorter one has 5");
+            "',R' with G91 in the next block; program the corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX20."), "',R1': the lines form no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX5."), "',R1': the lines form no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R0. F100.\nY5."), "',R0': the lines form no corner");
+  EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."), "',R6' takes 6 of each line; the shorter one is 5");
   EXPECT_EQ(read("G93\nG1 X10. ,C2. F100.\nY5. F100.\nM2\n", Reader::any, {}).moves,
-            "p.nc:2:9: error: ',C' is read in G94 only, without G16, G51, G54.1 and G68; write the "
-            "corner");
+            "p.nc:2:9: error: ',C' is supported only in G94, without G16, G51, G54.1 and G68; "
+            "program the corner");
   EXPECT_EQ(read("(TITLE)\nG0 X1.\n,R5.\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:3:1: error: ',R' needs a line in its block");
 }
 
 // The comma is missing: an alarm, or a corner where the control is so set.
 TEST(RuleExamples, ARadiusBesideALineIsRefusedByName) {
-  EXPECT_EQ(
-      read("G1 X30. R5. F100.\nY20.\nM2\n", Reader::any, {}).moves,
-      "p.nc:1:9: error: R beside G1: it rounds the corner to the next line on lathes and where "
-      "the control is so set (Fanuc, parameter 3405#4), and is an alarm on others; write ,R5 "
-      "behind G1, or the arc");
+  EXPECT_EQ(read("G1 X30. R5. F100.\nY20.\nM2\n", Reader::any, {}).moves,
+            "p.nc:1:9: error: R beside G1: it rounds the corner to the next line on lathes and "
+            "where the control is set so (Fanuc, parameter 3405#4), and is an alarm on others; "
+            "program ,R5 after G1, or the arc");
   EXPECT_EQ(read("G2 X2. R1. F100.\nG1 X5.\nM2\n", Reader::any, {}).moves,
             "CW 2 0 0 o 1 0 0 f100 | F 5 0 0");
 }

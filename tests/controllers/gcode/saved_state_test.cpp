@@ -32,15 +32,15 @@ TEST(SavedState, DropsWhatStandsBesideARestoringM72AndWarns) {
   expect_axes(moves[1].end, axes(6, 0, 0));  // the second one has nothing to restore
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(to_string(interpreter.warnings()[0]),
-            "p.nc:4:1: error: M72 restores something: what stands beside it and is done later in a "
-            "block is dropped, as LinuxCNC does");
+            "p.nc:4:1: error: M72 restores modal state: words in the same block that act later are "
+            "dropped, as in LinuxCNC");
 }
 
 TEST(SavedState, FaultsNameTheRule) {
   EXPECT_EQ(fault_of("M72"),
-            "p.nc:1:1: error: M72 without an M70 or M73 before it at this level of calls");
+            "p.nc:1:1: error: M72 without an M70 or M73 before it at this call level");
   EXPECT_EQ(fault_of("M70\nM71\nM72"),
-            "p.nc:3:1: error: M72 without an M70 or M73 before it at this level of calls");
+            "p.nc:3:1: error: M72 without an M70 or M73 before it at this call level");
   EXPECT_EQ(fault_of("M3 M70"), "p.nc:1:4: error: M3 and M70 in one block (same modal group)");
   EXPECT_EQ(fault_of("M70\nG43.4 H1\nM72"),
             "p.nc:3:1: error: M72 cannot switch tool-centre-point control or a tilted work plane");
@@ -76,22 +76,21 @@ TEST(RefusedCodes, HaveAReasonEach) {
     return text.substr(text.find(": error: ") + 9);
   };
   EXPECT_EQ(fault("G5.2"),
-            "G5.2: splines are not interpolated here; post them as short lines or arcs");
+            "G5.2: splines are not interpolated here; post-process them to short lines or arcs");
   EXPECT_EQ(fault("G7"),
-            "G7: diameter and radius mode belong to turning, and the machines here mill");
+            "G7: diameter and radius mode are for turning; this is a milling simulator");
   EXPECT_EQ(fault("G33.1"),
-            "G33.1: the axes cannot follow the angle of a spindle, which is not simulated");
+            "G33.1: the spindle angle is not simulated, so the axes cannot follow it");
   EXPECT_EQ(fault("G38.3"), "G38.3 without an axis word");
-  EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles belong to lathes, and the machines here mill");
-  EXPECT_EQ(fault("G76"), "G76: threading belongs to lathes, and the machines here mill");
+  EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles are for lathes; this is a milling simulator");
+  EXPECT_EQ(fault("G76"), "G76: threading is for lathes; this is a milling simulator");
   EXPECT_EQ(fault("G96"),
-            "G96: constant surface speed belongs to turning; give the speed with G97 S");
-  EXPECT_EQ(fault("M19"),
-            "M19: the angle of the spindle is not simulated, so it cannot be oriented");
+            "G96: constant surface speed is for turning; program the speed with G97 S");
+  EXPECT_EQ(fault("M19"), "M19: the spindle angle is not simulated, so it cannot be oriented");
   EXPECT_EQ(fault("M61"), "M61: renames the tool in the spindle by hand; use T and M6");
-  EXPECT_EQ(fault("M64"), "M64: switches outputs of the control, and none are simulated");
-  EXPECT_EQ(fault("M66"), "M66: waits for an input of the control, and none are simulated");
-  EXPECT_EQ(fault("M68"), "M68: sets analog outputs of the control, and none are simulated");
+  EXPECT_EQ(fault("M64"), "M64: switches outputs of the control, which are not simulated");
+  EXPECT_EQ(fault("M66"), "M66: waits for an input of the control, which is not simulated");
+  EXPECT_EQ(fault("M68"), "M68: sets analog outputs of the control, which are not simulated");
 }
 
 }  // namespace

@@ -161,8 +161,7 @@ TEST(TiltedPlane, ACutWithoutG53_1IsToldOnceAPlane) {
   using Texts = std::vector<std::string>;
   const ProgramSetup table = table_machine().setup();
   const Texts expected = {
-      "p.nc:4:1 the tool stands 35.0000 deg off Z of the tilted work plane; G53.1 "
-      "turns it there"};
+      "p.nc:4:1 the tool axis is 35.0000 deg off Z of the tilted work plane; G53.1 aligns it"};
   EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG1 X1 Y0 F100\nG2 X5 I2\nG69\nG1 X3"), expected);
   EXPECT_EQ(warnings(usual_setup(), "G68.2 I25 J35\nG0 X0 Y0\nG2 X5 I2.5 F100"), expected);
   EXPECT_EQ(warnings(table, "G68.2 I25 J35\nG0 X0\nG53.1\nG1 X1 F100"), Texts{});
@@ -173,7 +172,7 @@ TEST(TiltedPlane, ACutWithoutG53_1IsToldOnceAPlane) {
   TipMachine three = table_machine();
   three.chain = plant::make_chain(plant::parse_structure("[w X' b Y Z t]"));
   EXPECT_EQ(warnings(three.setup(), "G68.2 J35\nG1 X1 F1"),
-            Texts{"p.nc:3:1 the tool stands 35.0000 deg off Z of the tilted work plane"});
+            Texts{"p.nc:3:1 the tool axis is 35.0000 deg off Z of the tilted work plane"});
 }
 
 TEST(TiltedPlane, EndsWhereTheAxesStand) {
@@ -225,7 +224,7 @@ TEST(TipControlErrors, Vectors) {
           {"G43.5 H1\nG0 X1 K1\nG2 X5 I2 F1",
            "3:1: error: G2 under G43.5, where I J K are the tool axis; use G1 or G43.4"},
           {"G43.5 H1\nG0 X1 K1\nG1 X2 K-1 F1",
-           "3:1: error: the tool axis turns by 180 deg, so that no great circle is given"},
+           "3:1: error: the tool axis rotates by 180 deg, so the great circle is undefined"},
           {"G43.5 H1\nG0 X1 K1\nG1 X2 I1 K-0.5 F1",
            "3:1: error: the tool axis (0.894427, 0.000000, -0.447214) needs B = 116.5651 deg; must "
            "be <= 110.0000"},
@@ -234,8 +233,8 @@ TEST(TipControlErrors, Vectors) {
            "3:1: error: G28 under tool-centre-point control; G49 first"},
           {"G43.4 H1\nG53 G0 X1", "2:1: error: G53 under tool-centre-point control; G49 first"},
           {"G43.4 G43.5 H1", "1:7: error: G43.4 and G43.5 in one block (same modal group)"},
-          {"G43.4 H9", "1:7: error: H9: no such tool in the tool table of 1 tools"},
-          {"G41 G43.4 H1", "1:5: error: G43.4 with cutter compensation on; G40 first"},
+          {"G43.4 H9", "1:7: error: H9 is not in the tool table"},
+          {"G41 G43.4 H1", "1:5: error: G43.4 with cutter compensation active; G40 first"},
       });
 }
 
@@ -245,13 +244,13 @@ TEST(TipControlErrors, Planes) {
       {
           {"G68.2 J10\nG68.2 J20", "2:1: error: G68.2 in a tilted work plane; G69 first"},
           {"G53.1", "1:1: error: G53.1 without a tilted work plane; G68.2 first"},
-          {"G68.2 J10\nG0 G53.1 X1", "2:1: error: G53.1 must stand without motion in its block"},
+          {"G68.2 J10\nG0 G53.1 X1", "2:1: error: G53.1 must be in a block without motion"},
           {"G68.2 J130\nG53.1",
            "2:1: error: G53.1: the tool axis (0.000000, -0.766044, -0.642788) needs A = 130.0000 "
            "deg; must be <= 120.0000"},
           {"G68.2 J10 A5", "1:11: error: A word with G68.2; its angles are I J K"},
           {"G68.2 J10\nG0 A5",
-           "2:4: error: A word in a tilted work plane; G53.1 turns the tool, G43.4 moves rotary "
+           "2:4: error: A word in a tilted work plane; G53.1 orients the tool, G43.4 moves rotary "
            "axes"},
           {"G68.2 J10\nG92 X0", "2:1: error: G92 in a tilted work plane; G69 first"},
           {"G68.2 J10\nG53 G0 X0", "2:1: error: G53 in a tilted work plane; G69 first"},
@@ -279,20 +278,18 @@ TEST(TipControlErrors, MachinesThatCannotTurn) {
 
 TEST(TipControlErrors, WithoutAMachine) {
   const auto message = [](const char* text) { return fault_of(text, usual_setup()); };
-  EXPECT_EQ(
-      message("G0 B30\nG43.4 H1"),
-      "p.nc:2:1: error: B stands at 30 deg: where the tip is depends on the machine, and none "
-      "is given");
-  EXPECT_EQ(
-      message("G43.4 H1\nG0 C-5\nG49"),
-      "p.nc:3:1: error: C stands at -5 deg: where the tip is depends on the machine, and none "
-      "is given");
+  EXPECT_EQ(message("G0 B30\nG43.4 H1"),
+            "p.nc:2:1: error: B is at 30 deg: the TCP position depends on the machine; pass it "
+            "with --machine");
+  EXPECT_EQ(message("G43.4 H1\nG0 C-5\nG49"),
+            "p.nc:3:1: error: C is at -5 deg: the TCP position depends on the machine; pass it "
+            "with --machine");
   EXPECT_EQ(message("G43.5 H1"),
-            "p.nc:1:1: error: G43.5: where the rotary axes go depends on the machine, and none is "
-            "given (--machine)");
+            "p.nc:1:1: error: G43.5: the rotary axis positions depend on the machine; pass it with "
+            "--machine");
   EXPECT_EQ(message("G68.2 J10\nG53.1"),
-            "p.nc:2:1: error: G53.1: where the rotary axes go depends on the machine, and none is "
-            "given (--machine)");
+            "p.nc:2:1: error: G53.1: the rotary axis positions depend on the machine; pass it with "
+            "--machine");
 }
 
 TEST(TipControlErrors, ABlockWithAnErrorChangesNothing) {

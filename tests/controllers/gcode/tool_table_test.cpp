@@ -37,17 +37,17 @@ TEST(ToolTable, NamesEveryFaultOfEveryLine) {
                       "T2.5 P-1 Q10\n"
                       "T4 U3 Znan\n"
                       "hello T5\n"),
-            "t.tbl:2:1: error: second tool with number T1\n"
+            "t.tbl:2:1: error: tool T1 appears twice\n"
             "t.tbl:3:1: error: tool without a number (T word)\n"
             "t.tbl:4:4: error: Z must be followed by a number\n"
-            "t.tbl:4:7: error: unknown word 'K'; a tool has T P X Y Z A B C D I J Q\n"
+            "t.tbl:4:7: error: unknown word 'K'; allowed are T P X Y Z A B C D I J Q\n"
             "t.tbl:4:13: error: second D word of a tool\n"
             "t.tbl:5:1: error: T2.5; must be an integer in 0 ... 1000000\n"
             "t.tbl:5:6: error: P-1; must be an integer in 0 ... 1000000\n"
             "t.tbl:5:10: error: Q10; must be an integer in 0 ... 9\n"
             "t.tbl:6:4: error: U3; must be 0: no axis U\n"
             "t.tbl:6:7: error: Z must be followed by a number\n"
-            "t.tbl:7:1: error: unknown word 'h'; a tool has T P X Y Z A B C D I J Q");
+            "t.tbl:7:1: error: unknown word 'h'; allowed are T P X Y Z A B C D I J Q");
 }
 
 TEST(ToolTable, ChangesWhileTheProgramRuns) {
@@ -65,8 +65,7 @@ TEST(ToolTable, FaultsOfG10NameTheWord) {
   EXPECT_EQ(fault_of("G10 L1 X1"), "p.nc:1:1: error: G10 L1 needs a P word (tool number)");
   EXPECT_EQ(fault_of("G10 L1 P1.5 X1"), "p.nc:1:8: error: P1.5; must be an integer");
   EXPECT_EQ(fault_of("G10 L11 P0 X1"), "p.nc:1:9: error: G10 L11 P0; must be a tool number >= 1");
-  EXPECT_EQ(fault_of("G10 L10 P5 X1"),
-            "p.nc:1:9: error: P5: no such tool in the tool table of 2 tools");
+  EXPECT_EQ(fault_of("G10 L10 P5 X1"), "p.nc:1:9: error: P5 is not in the tool table");
   EXPECT_EQ(fault_of("G10 L1 P1"),
             "p.nc:1:1: error: G10 L1 without a word to set (X Y Z A B C R I J Q)");
   EXPECT_EQ(fault_of("G10 L1 P1 Q-1"),
@@ -76,7 +75,7 @@ TEST(ToolTable, FaultsOfG10NameTheWord) {
             "p.nc:2:5: error: G10 L0 with tool T1 in the spindle; unload it (T0 M6) first");
   EXPECT_EQ(fault_of("G10 L1 P1 Z50\nG43.4 H1"),
             "p.nc:2:1: error: G43.4: G10 has changed T1; tool-centre-point control and tilted "
-            "planes need the offset of the tool table");
+            "planes need the offset from the tool table");
 }
 
 }  // namespace

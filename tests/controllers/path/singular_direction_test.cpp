@@ -82,7 +82,7 @@ TEST(SingularDirection, IsSaidInOneSentence) {
       "the programmed feed needs X at 2000 mm/s^2; it can do 1000: the feed falls to about 70.7 %, "
       "and in one more block, too");
   EXPECT_EQ(to_string({7, 4, 1e6, 20.0, 0.0}, layout),
-            "in a singular direction of the tool axis the tip waits while C turns");
+            "in a singular direction of the tool axis the TCP waits while C turns");
 }
 
 // Half a turn of C in the time that the tip takes for 0.1 um is no matter of the tool axis.
@@ -91,7 +91,7 @@ TEST(TcpMotion, ATurnThatIsTooFastIsNoSingularDirection) {
     const Planned p(table_machine(), "G43.4 H1\nG0 " + tilt + "\nG1 X0.0001 C180 F1000\n");
     ASSERT_EQ(p.tip.slowed.size(), 1U);
     EXPECT_EQ(to_string(p.tip.slowed.front(), p.machine.chain.layout),
-              "the tip waits while C turns");
+              "the TCP waits while C turns");
   }
 }
 

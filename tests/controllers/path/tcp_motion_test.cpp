@@ -296,14 +296,14 @@ TEST(TcpMotion, AnAxisAtItsEndCannotGoOn) {
     }
   };
   const std::string round = "G43.5 H1\nG0 X0 I0.342 J0.94 K2\nG1 I-0.342 J0.94 K2 F100\n";
-  EXPECT_EQ(message(0.0, round),
-            "p.nc:3:1: error: on the way, the tool axis (0.000000, 0.425361, 0.905024) needs C = "
-            "180.0000 deg; must be <= 170.0000");
-  EXPECT_EQ(message(-120 * deg, round), "") << "A goes the other way from the begin";
   EXPECT_EQ(
-      message(-120 * deg, "G0 A26 C160\nG43.5 H1\nG1 I-0.342 J0.94 K2 F100\n"),
-      "p.nc:3:1: error: C comes to the end of its travel at 170.0000 deg, and otherwise would "
-      "have to jump from 170.0000 to -10.0000 deg");
+      message(0.0, round),
+      "p.nc:3:1: error: during the move, the tool axis (0.000000, 0.425361, 0.905024) needs C = "
+      "180.0000 deg; must be <= 170.0000");
+  EXPECT_EQ(message(-120 * deg, round), "") << "A goes the other way from the begin";
+  EXPECT_EQ(message(-120 * deg, "G0 A26 C160\nG43.5 H1\nG1 I-0.342 J0.94 K2 F100\n"),
+            "p.nc:3:1: error: C reaches its travel limit at 170.0000 deg, and otherwise would have "
+            "to jump from 170.0000 to -10.0000 deg");
 }
 
 // Through the vertical A would go to the other side, but ends before.
@@ -315,8 +315,8 @@ TEST(TcpMotion, TheAxisThatIsAtItsEndIsNamed) {
     FAIL() << "A would have to pass its end, or C to jump";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "p.nc:3:1: error: A comes to the end of its travel at -10.0000 deg, and otherwise C "
-              "would have to jump from 0.0000 to -180.0000 deg");
+              "p.nc:3:1: error: A reaches its travel limit at -10.0000 deg, and otherwise C would "
+              "have to jump from 0.0000 to -180.0000 deg");
   }
 }
 
@@ -328,7 +328,7 @@ TEST(TcpMotion, WhatLinearAxesCannotReachIsSaidWithTheLine) {
     FAIL() << "there is no Y";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "p.nc:3: error: the linear axes cannot bring the tip there");
+              "p.nc:3: error: the linear axes cannot reach this TCP position");
   }
 }
 

@@ -30,15 +30,15 @@ std::string linuxcnc_fault(const std::string& text) {
 
 TEST(ControlTableRefusals, LinuxcncRefusesWhatItDoesNotLoad) {
   EXPECT_EQ(linuxcnc_fault("0 0 0\n1 1 x\n2 2 2\n"),
-            "joint_0_x.comp:2: error: is not three numbers; LinuxCNC reads no further");
+            "joint_0_x.comp:2: error: is not three numbers; LinuxCNC stops reading here");
   EXPECT_EQ(linuxcnc_fault("0 0 0\n0 0 0\n"),
-            "joint_0_x.comp:2: error: position does not exceed that of the point before");
+            "joint_0_x.comp:2: error: position does not exceed that of the previous point");
   EXPECT_EQ(linuxcnc_fault("0 0 0\n"), "joint_0_x.comp: error: 1 points; must be >= 2");
   std::string many;
   for (int i = 0; i < 257; ++i) many += std::to_string(i) + " 0 0\n";
-  EXPECT_EQ(linuxcnc_fault(many), "joint_0_x.comp:257: error: 257 points; the control takes 256");
+  EXPECT_EQ(linuxcnc_fault(many), "joint_0_x.comp:257: error: 257 points; the control accepts 256");
   EXPECT_EQ(fault_of([] { linuxcnc("[JOINT_0]\nCOMP_FILE = y.comp\n", "0 0 0\n1 0 0\n"); }),
-            "mill.ini:1: error: there is no file y.comp");
+            "mill.ini:1: error: file y.comp does not exist");
   EXPECT_EQ(fault_of([] { linuxcnc("[JOINT_7]\nCOMP_FILE = c.comp\n", "0 0 0\n1 0 0\n"); }),
             "mill.ini:1: error: the machine has no joint 7");
 }
@@ -62,7 +62,7 @@ TEST(ControlTableRefusals, SiemensRefusesWhatItWouldTakeOtherwise) {
             "A.INI:4: error: the table ends with point 2");
   EXPECT_EQ(siemens_fault(points + step +
                           "$AA_ENC_COMP_MAX[0,X1]=2\n$AA_ENC_COMP_IS_MODULO[0,X1]=1\nM17\n"),
-            "A.INI:3: error: a table that repeats must end with its first value");
+            "A.INI:3: error: a periodic table must end with its first value");
   EXPECT_EQ(siemens_fault("$MN_X[0]=1\nM17\n"), "A.INI:1: error: unknown variable $MN_X");
 }
 
@@ -122,11 +122,11 @@ TEST(ControlTableRefusals, HeidenhainRefusesRowsAndColumnsThatDoNotFit) {
     });
   };
   EXPECT_EQ(fault("AXISPOS X\n0 0\n1 0 0\n"), "X.COM.txt:3: error: 3 values for 2 columns");
-  EXPECT_EQ(fault("AXISPOS Q\n0 0\n1 0\n"), "X.COM.txt:1: error: 'Q' is no axis");
+  EXPECT_EQ(fault("AXISPOS Q\n0 0\n1 0\n"), "X.COM.txt:1: error: 'Q' is not an axis");
   EXPECT_EQ(fault("AXISPOS BACKLASH Z\n0 0 0\n1 0 0\n"),
             "X.COM.txt:1: error: BACKLASH without a column X");
   EXPECT_EQ(fault("AXISPOS X\n1 0\n0 0\n"),
-            "X.COM.txt:3: error: position does not exceed that of the point before");
+            "X.COM.txt:3: error: position does not exceed that of the previous point");
 }
 
 }  // namespace

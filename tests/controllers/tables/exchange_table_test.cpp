@@ -69,42 +69,42 @@ TEST(IsgTable, ListsTheKinematicsThatItDoesNotRead) {
 
 TEST(IsgTable, RefusesByNameWhatItDoesNotHold) {
   EXPECT_EQ(isg_fault("Z X EXX\n0 0 0.02\n0 10 0.01\n100 0 0.03\n100 10 0.01\n"),
-            "v.csv:1: error: a table over 2 arguments; only tables over one axis are read");
+            "v.csv:1: error: a table over 2 arguments; only tables over one axis are supported");
   EXPECT_EQ(isg_fault("Z EXX\n0 0\n1 0\n"),
             "v.csv:1: error: EXX is not a function of X; only component errors over their own axis "
-            "are read");
+            "are supported");
   EXPECT_EQ(isg_fault("EXX\n0.1\n"),
             "v.csv:1: error: EXX is not a function of X; only component errors over their own axis "
-            "are read");
+            "are supported");
   EXPECT_EQ(isg_fault("X C0Y\n0 1e-5\n10 1e-5\n"),
-            "v.csv:1: error: C0Y is a function of X; only constant position errors are read");
+            "v.csv:1: error: C0Y is a function of X; only constant position errors are supported");
   EXPECT_EQ(isg_fault("C0Y\n1e-5\n1e-5\n"),
-            "v.csv:3: error: C0Y: 2 records of a position error; there must be one");
+            "v.csv:3: error: C0Y: 2 records of a position error; must be one");
   EXPECT_EQ(isg_fault("VXC VYC VZC C0Y\n0 0.7 0.7 1e-5\n"),
-            "v.csv:2: error: VYC is not 0; axes of modified orientation are not read");
+            "v.csv:2: error: VYC is not 0; axes of modified orientation are not supported");
   EXPECT_EQ(isg_fault("IDX C0Y\n5 1e-5\n"),
-            "v.csv:2: error: IDX is not 0; offsets of the programmed values are not read");
+            "v.csv:2: error: IDX is not 0; offsets of the programmed values are not supported");
 }
 
 TEST(IsgTable, RefusesWhatIsNoTable) {
   EXPECT_EQ(isg_fault("X,EXX\n0,0\n1,0\n"),
-            "v.csv:1: error: holds a comma or a semicolon; the document separates columns by "
-            "blanks and writes decimal points");
+            "v.csv:1: error: contains a comma or a semicolon; the format separates columns by "
+            "blanks and uses decimal points");
   EXPECT_EQ(isg_fault("X EXX\n0 0,1\n"),
-            "v.csv:2: error: holds a comma or a semicolon; the document separates columns by "
-            "blanks and writes decimal points");
+            "v.csv:2: error: contains a comma or a semicolon; the format separates columns by "
+            "blanks and uses decimal points");
   EXPECT_EQ(isg_fault("X EXX EYX\n0 0\n"), "v.csv:2: error: 2 values for 3 columns");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n"), "v.csv:1: error: EXX: 1 points; must be >= 2");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n0 0\n"),
-            "v.csv:3: error: EXX: position does not exceed that of the point before");
+            "v.csv:3: error: EXX: position does not exceed that of the previous point");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n1 nan\n"), "v.csv:3: error: 'nan' must be a number");
-  EXPECT_EQ(isg_fault("X EXX EXX\n0 0 0\n1 0 0\n"), "v.csv:1: error: EXX is given twice");
+  EXPECT_EQ(isg_fault("X EXX EXX\n0 0 0\n1 0 0\n"), "v.csv:1: error: EXX appears twice");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n1 0\n#\nX EXX\n0 0\n1 0\n"),
-            "v.csv:5: error: EXX is given twice");
-  EXPECT_EQ(isg_fault("X EXQ\n0 0\n1 0\n"), "v.csv:1: error: 'EXQ' is no parameter of TF5280");
-  EXPECT_EQ(isg_fault("U EXX\n0 0\n1 0\n"), "v.csv:1: error: 'U' is no axis");
+            "v.csv:5: error: EXX appears twice");
+  EXPECT_EQ(isg_fault("X EXQ\n0 0\n1 0\n"), "v.csv:1: error: 'EXQ' is not a parameter of TF5280");
+  EXPECT_EQ(isg_fault("U EXX\n0 0\n1 0\n"), "v.csv:1: error: 'U' is not an axis");
   EXPECT_EQ(isg_fault("C0Y\n#\n"), "v.csv:1: error: a header without a record");
-  EXPECT_EQ(isg_fault("// nothing\n"), "v.csv: error: holds no geometric error");
+  EXPECT_EQ(isg_fault("// nothing\n"), "v.csv: error: contains no geometric error");
 }
 
 // The examples of the document (296430091.html).
@@ -125,23 +125,23 @@ TEST(EtalonTable, ReadsTheExamplesOfTheDocument) {
 
 TEST(EtalonTable, RefusesWhatTheDocumentDoesNotHave) {
   EXPECT_EQ(etalon_fault("[General]\nUnit = mm\n"),
-            "v.exc:1: error: [General] is no geometric error");
+            "v.exc:1: error: [General] is not a geometric error");
   EXPECT_EQ(etalon_fault("[C0B]\n[A0B]\nVALUE = 0\n"), "v.exc:1: error: [C0B] has no value");
   EXPECT_EQ(etalon_fault("[C0B]\nValue = 0\n"),
-            "v.exc:2: error: 'Value' is not read in [C0B]; it must be VALUE = number");
+            "v.exc:2: error: 'Value' is not supported in [C0B]; must be VALUE = number");
   EXPECT_EQ(etalon_fault("[EXY]\nVALUE = 0\n"),
-            "v.exc:2: error: 'VALUE' is not read in [EXY]; it must be Gridpoints = {");
-  EXPECT_EQ(etalon_fault("VALUE = 0\n"), "v.exc:1: error: VALUE stands in no block");
+            "v.exc:2: error: 'VALUE' is not supported in [EXY]; must be Gridpoints = {");
+  EXPECT_EQ(etalon_fault("VALUE = 0\n"), "v.exc:1: error: VALUE is outside any block");
   EXPECT_EQ(etalon_fault("[EXY]\nGridpoints = {\n0 0\n1 0\n"),
             "v.exc:4: error: the file ends within Gridpoints");
   EXPECT_EQ(etalon_fault("[EXY]\nGridpoints = {\n0 0 0\n"),
-            "v.exc:3: error: 3 values; a grid point has two");
+            "v.exc:3: error: 3 values; a grid point needs two");
   EXPECT_EQ(etalon_fault("[C0B]\nVALUE = 0\nVALUE = 1\n"),
-            "v.exc:3: error: the block has a value already");
+            "v.exc:3: error: the block already has a value");
   EXPECT_EQ(etalon_fault("[C0B]\nVALUE = 0\n[C0B]\nVALUE = 1\n"),
-            "v.exc:4: error: EC0B is given twice");
+            "v.exc:4: error: EC0B appears twice");
   EXPECT_EQ(etalon_fault("[C0B\nVALUE = 0\n"), "v.exc:1: error: ']' is missing");
-  EXPECT_EQ(etalon_fault("[C0B]\nVALUE\n"), "v.exc:2: error: 'VALUE' is no assignment");
+  EXPECT_EQ(etalon_fault("[C0B]\nVALUE\n"), "v.exc:2: error: 'VALUE' is not an assignment");
 }
 
 }  // namespace

@@ -52,27 +52,28 @@ TEST(SkewTable, ReprapfirmwareAdds) {
 }
 
 TEST(SkewTable, RefusesWhatTheFirmwareWouldTakeOtherwise) {
-  EXPECT_EQ(fault_of(marlin, "M852 S0.1 J0 K0\n"), "s.gcode:1: error: 'S0.1' is not read in M852");
+  EXPECT_EQ(fault_of(marlin, "M852 S0.1 J0 K0\n"),
+            "s.gcode:1: error: 'S0.1' is not supported in M852");
   EXPECT_EQ(fault_of(marlin, "M852 I0.1 J0\n"), "s.gcode:1: error: K is missing in M852");
   EXPECT_EQ(fault_of(marlin, "M852 I2 J0 K0\n"), "s.gcode:1: error: I = 2; must be from -1 to 1");
   EXPECT_EQ(fault_of(marlin, "G20\nM852 I0 J0 K0\n"),
-            "s.gcode:2: error: a second command; one is read");
+            "s.gcode:2: error: a second command; only one is supported");
   EXPECT_EQ(fault_of(marlin, "M556 S100 X0 Y0 Z0\n"),
-            "s.gcode:1: error: 'M556 S100 X0 Y0 Z0' is not read; only M852");
-  EXPECT_EQ(fault_of(marlin, "\n"), "s.gcode: error: holds no skew setting");
+            "s.gcode:1: error: 'M556 S100 X0 Y0 Z0' is not supported; only M852");
+  EXPECT_EQ(fault_of(marlin, "\n"), "s.gcode: error: contains no skew setting");
   EXPECT_EQ(fault_of(reprapfirmware, "M556 S1 X0 Y0 Z0\n"), "s.g:1: error: S = 1; must be >= 10");
   EXPECT_EQ(fault_of(reprapfirmware, "M556 S100 X0 Y0 Z0 P1\n"),
-            "s.g:1: error: 'P1' is not read in M556");
-  EXPECT_EQ(fault_of(reprapfirmware, "M556 S100 X0 X0 Y0 Z0\n"), "s.g:1: error: X is given twice");
+            "s.g:1: error: 'P1' is not supported in M556");
+  EXPECT_EQ(fault_of(reprapfirmware, "M556 S100 X0 X0 Y0 Z0\n"), "s.g:1: error: X appears twice");
   EXPECT_EQ(fault_of(klipper, "[skew_correction]\n"),
-            "s.cfg: error: holds no profile [skew_correction NAME]");
+            "s.cfg: error: contains no profile [skew_correction NAME]");
   EXPECT_EQ(fault_of(klipper, "[skew_correction a]\nxy_skew = 0\n"),
             "s.cfg: error: [skew_correction] is missing");
   EXPECT_EQ(fault_of(klipper, "[skew_correction]\n[skew_correction a]\nxy_skew = 0\n"),
             "s.cfg:2: error: xz_skew is missing");
   EXPECT_EQ(fault_of(klipper, "[skew_correction]\n[skew_correction a]\nxy = 0\n"),
-            "s.cfg:3: error: 'xy' is not read");
-  EXPECT_EQ(fault_of(klipper, "[printer]\n"), "s.cfg:1: error: '[printer]' is not read");
+            "s.cfg:3: error: 'xy' is not supported");
+  EXPECT_EQ(fault_of(klipper, "[printer]\n"), "s.cfg:1: error: '[printer]' is not supported");
 }
 
 }  // namespace

@@ -15,11 +15,11 @@ TEST(DriveRates, WhatCannotBeRepresentedIsRefusedWithTheRate) {
   FeedDriveParams p = x_axis_with(FrictionKind::regularised);
   EXPECT_TRUE(unrepresentable(p, kTick).empty());
   p.friction.v0 = 1e-9;
-  EXPECT_EQ(unrepresentable(p, kTick),
-            std::vector<std::string>{
-                "the slope of the regularised friction, breakaway / "
-                "(regularisation_velocity mass), makes a rate of 7.47e+08 1/s; the exact step "
-                "resolves up to 1e+08 1/s"});
+  EXPECT_EQ(
+      unrepresentable(p, kTick),
+      std::vector<std::string>{
+          "the slope of the regularised friction, breakaway / (regularisation_velocity mass), "
+          "gives a rate of 7.47e+08 1/s; the exact integrator resolves up to 1e+08 1/s"});
   p = x_axis_with(FrictionKind::set_valued);
   p.k = 1e20;
   EXPECT_EQ(unrepresentable(p, kTick).size(), 1U);

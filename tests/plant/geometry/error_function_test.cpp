@@ -107,9 +107,10 @@ TEST(ErrorFunction, IsZeroOnlyIfAllItsNumbersAre) {
 TEST(ErrorFunction, FaultsOfATableAreNamed) {
   EXPECT_EQ(table_fault({0.0, 1.0}, {0.0, 1.0}), std::nullopt);
   EXPECT_EQ(table_fault({}, {}), "has no points; must have at least 1");
-  EXPECT_EQ(table_fault({0.0, 1.0}, {0.0}), "has 2 positions and 1 errors; must have as many");
+  EXPECT_EQ(table_fault({0.0, 1.0}, {0.0}),
+            "has 2 positions and 1 errors; the numbers must be equal");
   EXPECT_EQ(table_fault({0.0, 0.5, 0.5}, {0.0, 1.0, 2.0}),
-            "has 0.5 after 0.5 at point 3; positions must increase");
+            "0.5 follows 0.5 at point 3; positions must increase");
   EXPECT_EQ(table_fault({0.0, 1.0}, {0.0, std::numeric_limits<double>::infinity()}),
             "has (1, inf) at point 2; must be finite");
 }

@@ -66,22 +66,24 @@ TEST(ErrorName, FiveAxisMachineHas30ComponentAnd14LocationErrors) {
 TEST(ErrorName, FaultsSayWhatIsWrong) {
   EXPECT_EQ(message("EYX"), "accepted");
   EXPECT_EQ(message("EY X"),
-            "m.toml:7:1: error: 'EY X' is no error of ISO 230-1; must be like EYX or EC0Y; did you "
+            "m.toml:7:1: error: 'EY X' is not an error of ISO 230-1; expected a name such as EYX "
+            "or EC0Y; did you "
             "mean 'EYX'?");
   EXPECT_EQ(message("straightness"),
-            "m.toml:7:1: error: 'straightness' is no error of ISO 230-1; must be like EYX or EC0Y");
+            "m.toml:7:1: error: 'straightness' is not an error of ISO 230-1; expected a name such "
+            "as EYX or EC0Y");
   EXPECT_EQ(message("EXA"),
             "m.toml:7:1: error: EXA is an error of axis A; the machine has X Y Z B C");
   EXPECT_EQ(message("EXB", kThreeAxis),
             "m.toml:7:1: error: EXB is an error of axis B; the machine has X Y Z");
-  EXPECT_EQ(message("EX0Y"), "m.toml:7:1: error: EX0Y leaves the motion of Y as it is");
-  EXPECT_EQ(message("EB0Y"), "m.toml:7:1: error: EB0Y leaves the motion of Y as it is");
-  EXPECT_EQ(message("EZ0C"), "m.toml:7:1: error: EZ0C leaves the motion of C as it is");
+  EXPECT_EQ(message("EX0Y"), "m.toml:7:1: error: EX0Y has no effect on the motion of Y");
+  EXPECT_EQ(message("EB0Y"), "m.toml:7:1: error: EB0Y has no effect on the motion of Y");
+  EXPECT_EQ(message("EZ0C"), "m.toml:7:1: error: EZ0C has no effect on the motion of C");
   EXPECT_EQ(message("EX0X"),
-            "m.toml:7:1: error: EX0X leaves the motion of X as it is; a zero position is a "
+            "m.toml:7:1: error: EX0X has no effect on the motion of X; a zero position is a "
             "constant EXX");
   EXPECT_EQ(message("EC0C"),
-            "m.toml:7:1: error: EC0C leaves the motion of C as it is; a zero position is a "
+            "m.toml:7:1: error: EC0C has no effect on the motion of C; a zero position is a "
             "constant ECC");
 }
 

@@ -58,23 +58,23 @@ TEST(Structure, EveryOneIsReadAsItIsPrinted) {
 
 TEST(Structure, FaultsAreNamedWithTheirColumn) {
   EXPECT_EQ(message(""),
-            "structure:1:1: error: structure '': must begin with '['\n"
+            "structure:1:1: error: structure '': must start with '['\n"
             "structure:1:1: error: structure '': must end with ']'\n"
             "structure:1:1: error: structure '': w (workpiece) is missing\n"
             "structure:1:1: error: structure '': b (bed) is missing\n"
             "structure:1:1: error: structure '': t (tool) is missing");
   EXPECT_EQ(message("w X b Y Z t]"),
-            "structure:1:1: error: structure 'w X b Y Z t]': must begin with '['");
+            "structure:1:1: error: structure 'w X b Y Z t]': must start with '['");
   EXPECT_EQ(message("[w X b Y Z t"),
             "structure:1:13: error: structure '[w X b Y Z t': must end with ']'");
   EXPECT_EQ(message("[w X b Y U t]"),
-            "structure:1:10: error: structure '[w X b Y U t]': 'U' is no axis; must be one of "
+            "structure:1:10: error: structure '[w X b Y U t]': 'U' is not an axis; must be one of "
             "X Y Z A B C");
   EXPECT_EQ(message("[w x b Y t]"),
-            "structure:1:4: error: structure '[w x b Y t]': 'x' is no axis; must be one of "
+            "structure:1:4: error: structure '[w x b Y t]': 'x' is not an axis; must be one of "
             "X Y Z A B C");
   EXPECT_EQ(message("[w X b Y X t]"),
-            "structure:1:10: error: structure '[w X b Y X t]': axis X stands twice");
+            "structure:1:10: error: structure '[w X b Y X t]': axis X appears twice");
   EXPECT_EQ(message("[X b Y t]"),
             "structure:1:2: error: structure '[X b Y t]': w (workpiece) is missing");
   EXPECT_EQ(message("[w X Y t]"),
@@ -82,17 +82,17 @@ TEST(Structure, FaultsAreNamedWithTheirColumn) {
   EXPECT_EQ(message("[w X b Y]"),
             "structure:1:9: error: structure '[w X b Y]': t (tool) is missing");
   EXPECT_EQ(message("[w X b b Y t]"),
-            "structure:1:8: error: structure '[w X b b Y t]': b (bed) stands twice");
+            "structure:1:8: error: structure '[w X b b Y t]': b (bed) appears twice");
   EXPECT_EQ(message("[X w b Y t]"),
-            "structure:1:4: error: structure '[X w b Y t]': w (workpiece) must stand first");
+            "structure:1:4: error: structure '[X w b Y t]': w (workpiece) must come first");
   EXPECT_EQ(message("[w X b t Y]"),
-            "structure:1:8: error: structure '[w X b t Y]': t (tool) must stand last");
+            "structure:1:8: error: structure '[w X b t Y]': t (tool) must come last");
   EXPECT_EQ(message("[w A B b C X t]"),
             "structure:1:10: error: structure '[w A B b C X t]': C is rotary axis number 3; at "
             "most 2 are allowed");
   EXPECT_EQ(message("[w X' b Y' t]"),
-            "structure:1:9: error: structure '[w X' b Y' t]': Y' has a prime but stands on the "
-            "tool side of b");
+            "structure:1:9: error: structure '[w X' b Y' t]': Y' has a prime but is on the tool "
+            "side of b");
   EXPECT_EQ(message("[w' X b Y t]"),
             "structure:1:3: error: structure '[w' X b Y t]': a prime must follow an axis");
   EXPECT_EQ(message("[w X'' b t]"),
@@ -101,17 +101,16 @@ TEST(Structure, FaultsAreNamedWithTheirColumn) {
             "structure:1:8: error: structure '[w X b (C2) t]': a spindle must be written (A1), "
             "(B1) or (C1)");
   EXPECT_EQ(message("[w X (C1) b Y t]"),
-            "structure:1:6: error: structure '[w X (C1) b Y t]': spindle (C1) must stand directly "
+            "structure:1:6: error: structure '[w X (C1) b Y t]': spindle (C1) must come directly "
             "before t");
 }
 
 TEST(Structure, AllFaultsOfAStringAreReportedInOrderOfColumn) {
-  EXPECT_EQ(message("[w Q X b X' t]"),
-            "structure:1:4: error: structure '[w Q X b X' t]': 'Q' is no axis; must be one of "
-            "X Y Z A B C\n"
-            "structure:1:10: error: structure '[w Q X b X' t]': X' has a prime but stands on the "
-            "tool side of b\n"
-            "structure:1:10: error: structure '[w Q X b X' t]': axis X stands twice");
+  EXPECT_EQ(
+      message("[w Q X b X' t]"),
+      "structure:1:4: error: structure '[w Q X b X' t]': 'Q' is not an axis; must be one of X Y Z "
+      "A B C\nstructure:1:10: error: structure '[w Q X b X' t]': X' has a prime but is on the tool "
+      "side of b\nstructure:1:10: error: structure '[w Q X b X' t]': axis X appears twice");
 }
 
 TEST(Structure, FaultsCountColumnsFromThePlaceOfTheString) {

@@ -312,7 +312,7 @@ TEST(Implausible, NamesWhatNoEncoderCanBe) {
   EXPECT_EQ(fault(&EncoderParams::position_noise, -1e-9), "position_noise must be >= 0");
   EXPECT_EQ(fault(&EncoderParams::frequency_limit, 0.0), "frequency_limit must be > 0");
   const char* kSignal =
-      "offsets, imbalance and quadrature_error must leave a signal all around the period";
+      "offsets, imbalance and quadrature_error must leave a non-zero signal over the whole period";
   EXPECT_EQ(fault(&EncoderParams::sine_offset, 1.0), kSignal);
   EXPECT_EQ(fault(&EncoderParams::sine_offset, 0.999), "0 faults");
   EXPECT_EQ(fault(&EncoderParams::imbalance, 2.0), kSignal);

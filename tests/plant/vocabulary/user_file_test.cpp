@@ -43,9 +43,9 @@ TEST_F(UserFile, IsReadWhole) {
 
 TEST_F(UserFile, IsRefusedIfItHasNoEndThatIsKnown) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  EXPECT_EQ(why_not(path("pipe")), "is a pipe, not a file of known size");
-  EXPECT_EQ(why_not("/dev/zero"), "is a device, not a file of known size");
-  EXPECT_EQ(why_not("/dev/random"), "is a device, not a file of known size");
+  EXPECT_EQ(why_not(path("pipe")), "is a pipe, not a regular file");
+  EXPECT_EQ(why_not("/dev/zero"), "is a device, not a regular file");
+  EXPECT_EQ(why_not("/dev/random"), "is a device, not a regular file");
   EXPECT_EQ(why_not(folder_.string()), "is a folder");
   EXPECT_EQ(why_not(path("none")), "No such file or directory");
 }
@@ -53,11 +53,10 @@ TEST_F(UserFile, IsRefusedIfItHasNoEndThatIsKnown) {
 TEST_F(UserFile, IsRefusedBeyondItsLimitBeforeItIsRead) {
   const std::string large = file("large", "");
   fs::resize_file(large, 3'000'000'000);  // takes no room on the disk, and nobody reads it
-  EXPECT_EQ(why_not(large), "holds 3 GB, more than the 2 GB that may be read");
-  EXPECT_EQ(why_not(file("small", "12345"), 4),
-            "holds 5e-06 MB, more than the 4e-06 MB that may be read");
+  EXPECT_EQ(why_not(large), "is 3 GB, larger than the limit of 2 GB");
+  EXPECT_EQ(why_not(file("small", "12345"), 4), "is 5e-06 MB, larger than the limit of 4e-06 MB");
   // what says that it is empty, and is not
-  EXPECT_EQ(why_not("/proc/self/status", 10), "holds more than the 1e-05 MB that may be read");
+  EXPECT_EQ(why_not("/proc/self/status", 10), "is larger than the limit of 1e-05 MB");
 }
 
 TEST_F(UserFile, IsAnInputUnderEveryNameWhileACommandRuns) {

@@ -44,10 +44,12 @@ std::string refused_level(std::string_view name) {
 
 TEST(SimdLevel, RefusesNamesThatAreNone) {
   EXPECT_EQ(refused_level("avx3"),
-            "SERVOMILL_SIMD: error: 'avx3' is no level; must be one of baseline, avx2, avx512; did "
+            "SERVOMILL_SIMD: error: 'avx3' is not a SIMD level; must be one of baseline, avx2, "
+            "avx512; did "
             "you mean 'avx2'?");
   EXPECT_EQ(refused_level("AVX-512"),
-            "SERVOMILL_SIMD: error: 'AVX-512' is no level; must be one of baseline, avx2, avx512");
+            "SERVOMILL_SIMD: error: 'AVX-512' is not a SIMD level; must be one of baseline, avx2, "
+            "avx512");
 }
 
 TEST(SimdLevel, RefusesWhatTheMachineLacks) {
@@ -56,7 +58,7 @@ TEST(SimdLevel, RefusesWhatTheMachineLacks) {
   const std::string first_lacking(name_of(kSimdLevels[there.size()]));
   EXPECT_EQ(refused_level(first_lacking)
                 .find("SERVOMILL_SIMD: error: " + first_lacking +
-                      " is beyond this machine or binary; there are: base"),
+                      " is not supported by this processor or binary; supported are: base"),
             0U);
 }
 

@@ -172,8 +172,8 @@ TEST_F(Probing, PreTravelThatNothingAllowsForGoesIntoTheAxes) {
 TEST_F(Probing, WantsThreeTouchesAPose) {
   touch(0, Joints::Zero(), Vector3d::UnitZ());
   EXPECT_EQ(fault_messages([&] { adjusted(); }),
-            "sphere outer is touched once at these angles of the rotary axes; at "
-            "least three touches are needed\n");
+            "sphere outer is touched once at these angles of the rotary axes; at least three "
+            "touches are required\n");
 }
 
 // To second order in what shifts the stylus, over the radius: (20 um)^2 / 30 mm.

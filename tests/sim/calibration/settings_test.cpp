@@ -54,16 +54,13 @@ TEST_F(Settings, NameAllThatIsWrong) {
       faults("[adjustment]\nerrors = [\"EXX\", \"EQX\"]\nframe = \"XX\"\n[adjustment.form]\n"
              "EC0Y = { polynomial = 1 }\nEXX = { knots = 1 }\n"
              "EYX = { knots_mm = [3, 3] }\nEZX = { polynomal = 3 }\n"),
-      "adjustment.errors = [\"EXX\", \"EQX\"]; 'EQX' is no error of ISO 230-1; must be like EYX or "
-      "EC0Y; "
-      "did you mean 'EXX'?\n"
-      "adjustment.frame = \"XX\"; must be two linear axes of the machine, such as \"XY\": the "
-      "first one is straight by convention, the second lies in their plane\n"
-      "adjustment.form.EC0Y.polynomial is not known\n"
-      "adjustment.form.EXX.knots = 1; must be 0 or at least 2\n"
-      "adjustment.form.EYX.knots_mm = [3, 3]; must be two places at least, in ascending "
-      "order\n"
-      "adjustment.form.EZX.polynomal is not known; did you mean 'polynomial'?\n");
+      "adjustment.errors = [\"EXX\", \"EQX\"]; 'EQX' is not an error of ISO 230-1; expected a name "
+      "such as EYX or EC0Y; did you mean 'EXX'?\nadjustment.frame = \"XX\"; must be two linear "
+      "axes of the machine, such as \"XY\": the first one is straight by convention, the second is "
+      "in their plane\nadjustment.form.EC0Y.polynomial is not known\nadjustment.form.EXX.knots = "
+      "1; must be 0 or at least 2\nadjustment.form.EYX.knots_mm = [3, 3]; must be at least two "
+      "positions, in ascending order\nadjustment.form.EZX.polynomal is not known; did you mean "
+      "'polynomial'?\n");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(Suggestions, NameWhatNoSingleSetUpTells) {
   circle.groups = {candidate_of("circle XY at X 500, Y 500, Z 500, tool 100 mm (")};
   const std::vector<std::string> sentences = suggestions(calibrated(circle), gantry_machine());
   ASSERT_FALSE(sentences.empty());
-  EXPECT_TRUE(sentences.back().ends_with("servomill plan-calibration finds what to combine"))
+  EXPECT_TRUE(sentences.back().ends_with("servomill plan-calibration finds a combination"))
       << sentences.back();
 }
 

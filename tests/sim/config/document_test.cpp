@@ -163,20 +163,20 @@ TEST(Set, FollowsDottedPathsListsAndQuotedNames) {
 TEST(Set, SaysWhatIsWrongWithTheKey) {
   EXPECT_EQ(set_message("title"), "--set title: error: no '='; write KEY=VALUE");
   EXPECT_EQ(set_message("title="),
-            "--set title=: error: no value after '='; an empty text is \"\"");
+            "--set title=: error: no value after '='; an empty string is \"\"");
   EXPECT_EQ(set_message("=1"), "--set =1: error: a name is missing in the key");
   EXPECT_EQ(set_message("a..b=1"), "--set a..b=1: error: a name is missing in the key");
   EXPECT_EQ(set_message("a.\"b=1"), "--set a.\"b=1: error: a quote in the key is not closed");
   EXPECT_EQ(set_message("case[0=1"), "--set case[0=1: error: ']' is missing in the key");
   EXPECT_EQ(set_message("case[x]=1"),
-            "--set case[x]=1: error: '[x]' is no place in a list; use a number");
+            "--set case[x]=1: error: '[x]' is not a list index; use a number");
   EXPECT_EQ(set_message("case[0]name=1"), "--set case[0]name=1: error: unexpected 'n' after '0'");
   EXPECT_EQ(set_message("case.first.name=1"),
-            "--set case.first.name=1: error: case is a list; 'first' is no place in it");
-  EXPECT_EQ(set_message("case[2].name=x"),
-            "--set case[2].name=x: error: case[2] is beyond the list, which has 2 items counted "
-            "from 0");
-  EXPECT_EQ(set_message("title.x=1"), "--set title.x=1: error: title is a text; it has no 'x'");
+            "--set case.first.name=1: error: case is a list without an item 'first'");
+  EXPECT_EQ(
+      set_message("case[2].name=x"),
+      "--set case[2].name=x: error: case[2] is out of range; the list has 2 items, counted from 0");
+  EXPECT_EQ(set_message("title.x=1"), "--set title.x=1: error: title is a string; it has no 'x'");
   EXPECT_EQ(set_message("program[0]=1"),
             "--set program[0]=1: error: program is a table; it has no '[0]'");
 }

@@ -168,35 +168,34 @@ TEST(Gallery, Units) {
             "s.toml:1:11: error: lead_mm = '20 mmm'; unknown unit 'mmm'; a length is in m, mm, um, "
             "nm, inch; did you mean 'mm'?");
   EXPECT_EQ(faults("lead_mm = '20 ms'", lead),
-            "s.toml:1:11: error: lead_mm = '20 ms'; 'ms' is the unit of a time; must be a length "
+            "s.toml:1:11: error: lead_mm = '20 ms'; 'ms' is a unit of time; must be a length "
             "such as \"3 mm\"");
   EXPECT_EQ(faults("lead_mm = '20'", lead),
             "s.toml:1:11: error: lead_mm = '20'; has no unit; must be a length such as \"3 mm\"");
   EXPECT_EQ(faults("Kv = 'fast'", gain),
             "s.toml:1:6: error: Kv = 'fast'; must be a rate such as \"3 1/s\"");
   EXPECT_EQ(faults("Kv = '60 rad/s'", gain),
-            "s.toml:1:6: error: Kv = '60 rad/s'; 'rad/s' is the unit of an angular velocity; must "
+            "s.toml:1:6: error: Kv = '60 rad/s'; 'rad/s' is a unit of angular velocity; must "
             "be a rate such as \"3 1/s\"");
 }
 
 TEST(Gallery, WrongTypes) {
   EXPECT_EQ(faults("lead_mm = true", [](Reader& r) { r.real("lead_mm", kLength); }),
-            "s.toml:1:11: error: lead_mm = true; must be a number or a text such as \"3 mm\"");
+            "s.toml:1:11: error: lead_mm = true; must be a number or a string such as \"3 mm\"");
   EXPECT_EQ(faults("ratio = '2'", [](Reader& r) { r.real("ratio", kNumber); }),
             "s.toml:1:9: error: ratio = '2'; must be a number");
   EXPECT_EQ(faults("points = 2.0", [](Reader& r) { r.integer("points"); }),
-            "s.toml:1:10: error: points = 2.0; must be a whole number");
+            "s.toml:1:10: error: points = 2.0; must be an integer");
   EXPECT_EQ(faults("on = 1", [](Reader& r) { r.boolean("on"); }),
-            "s.toml:1:6: error: on = 1; must be a truth value");
+            "s.toml:1:6: error: on = 1; must be a boolean");
   EXPECT_EQ(faults("title = 2025-05-27", [](Reader& r) { r.text("title"); }),
-            "s.toml:1:9: error: title = 2025-05-27; must be a text");
+            "s.toml:1:9: error: title = 2025-05-27; must be a string");
   EXPECT_EQ(faults("nc = 3", [](Reader& r) { r.table("nc").real("Kv", kRate); }),
             "s.toml:1:6: error: nc = 3; must be a table");
   EXPECT_EQ(faults("nc = 3", [](Reader& r) { r.table_or_empty("nc").real("Kv", kRate); }),
             "s.toml:1:6: error: nc = 3; must be a table");
   EXPECT_EQ(faults("[case]\nname = 'x'", [](Reader& r) { r.tables("case"); }),
-            "s.toml:1:1: error: case = {...}; must be a list; write [[case]] for an item that is a "
-            "table");
+            "s.toml:1:1: error: case = {...}; must be a list; write [[case]] for each table");
   EXPECT_EQ(faults("case = []", [](Reader& r) { r.tables("case"); }),
             "s.toml:1:8: error: case = []; must have at least one item");
   EXPECT_EQ(faults("case = [{ name = 'x' }, 2]",
@@ -211,13 +210,13 @@ TEST(Gallery, WrongTypes) {
   const auto read_rows = [](Reader& r) { r.rows("a"); };
   EXPECT_EQ(faults("a = [[1, 'x'], 3, [nan, {}], []]", read_rows),
             "s.toml:1:10: error: a[0][1] = 'x'; must be a finite number\n"
-            "s.toml:1:16: error: a[1] = 3; must be a list of numbers, one row\n"
+            "s.toml:1:16: error: a[1] = 3; must be a list of numbers\n"
             "s.toml:1:20: error: a[2][0] = nan; must be a finite number\n"
             "s.toml:1:25: error: a[2][1] = {...}; must be a finite number");
   EXPECT_EQ(faults("a = 3", read_rows), "s.toml:1:5: error: a = 3; must be a list");
   EXPECT_EQ(faults("", read_rows), "s.toml: error: a is missing");
   EXPECT_EQ(faults("cases = ['a', 3]", [](Reader& r) { r.texts("cases"); }),
-            "s.toml:1:15: error: cases[1] = 3; must be a text");
+            "s.toml:1:15: error: cases[1] = 3; must be a string");
 }
 
 TEST(Gallery, NamesOutOfAList) {
@@ -262,12 +261,12 @@ TEST(Gallery, UnknownKeys) {
                    }),
             "s.toml:2:1: error: nc.kv is not known; did you mean 'Kv'?\n"
             "s.toml:3:1: error: nc.preset is not known");
-  EXPECT_EQ(faults("case = [{ name = 'x', nmae = 'y' }]",
-                   [](Reader& r) {
-                     for (Reader& c : r.tables("case")) c.text("name");
-                   }),
-            "s.toml:1:23: error: case[0].nmae is not known; did you mean 'name', which is "
-            "given, too?");
+  EXPECT_EQ(
+      faults("case = [{ name = 'x', nmae = 'y' }]",
+             [](Reader& r) {
+               for (Reader& c : r.tables("case")) c.text("name");
+             }),
+      "s.toml:1:23: error: case[0].nmae is not known; did you mean 'name', which is also given?");
   EXPECT_EQ(faults("lead_m = 1", [](Reader& r) { r.real("lead_mm", kLength); }),
             "s.toml: error: lead_mm is missing\n"
             "s.toml:1:1: error: lead_m is not known; did you mean 'lead_mm'?");
@@ -327,7 +326,7 @@ TEST(Gallery, AllFaultsAtOnceInOrderOfPlaceAndFile) {
 
 TEST(Gallery, LongValuesAreShortened) {
   EXPECT_EQ(faults("x = '" + std::string(80, 'y') + "'", [](Reader& r) { r.boolean("x"); }),
-            "s.toml:1:5: error: x = \"...\"; must be a truth value");
+            "s.toml:1:5: error: x = \"...\"; must be a boolean");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(RecordedSignals, HaveAColumnForEachAxisOfTheMachine) {
 TEST(RecordedSignals, HaveTheNamesOfAPartOnlyWhereTheCaseHasIt) {
   const auto plain = signals_on("hsm600u.toml");
   for (const char* name :
-       {"imposed_linear", "uncorrectable_tip", "cutting_force", "programmed_linear"}) {
+       {"imposed_linear", "uncorrectable_tcp", "cutting_force", "programmed_linear"}) {
     EXPECT_EQ(find(plain, name), nullptr) << name;
   }
   EXPECT_NE(find(signals_on("hsm600u.toml", {.imposed = true}), "imposed_linear"), nullptr);

@@ -1,4 +1,4 @@
-/// A probed part laid on the mesh of the nominal one: from the scenario to the result file.
+/// A probed part aligned with the mesh of the nominal one: from the scenario to the result file.
 #include "sim/evaluation/nominal_part.h"
 
 #include <fmt/format.h>
@@ -151,12 +151,12 @@ TEST(NominalPart, MustHaveTheProbesOnIt) {
             std::string::npos)
       << found;
   EXPECT_EQ(faults("", part(just)), "no error");
-  EXPECT_NE(
-      faults("",
-             part(the_block()) + "[[probe]]\nname = \"in\"\npoints_mm = [[50, 20, 0, 0, 0, -1]]\n")
-          .find("probe 'in': 1 of 1 points do not face as the part 'block.stl' does, the first "
-                "at X50 Y20 Z0, where it faces (0, 0, 1); normals must point out of it"),
-      std::string::npos);
+  EXPECT_NE(faults("", part(the_block()) +
+                           "[[probe]]\nname = \"in\"\npoints_mm = [[50, 20, 0, 0, 0, -1]]\n")
+                .find("probe 'in': 1 of 1 points have normals that disagree with the part "
+                      "'block.stl', the first at X50 Y20 Z0, where its normal is (0, 0, 1); "
+                      "normals must point out of the part"),
+            std::string::npos);
 }
 
 TEST(NominalPart, MustFaceAsTheProbesDo) {
@@ -164,11 +164,11 @@ TEST(NominalPart, MustFaceAsTheProbesDo) {
     return faults("", part(the_block()) + "[[probe]]\nname = \"p\"\npoints_mm = [" + point + "]\n");
   };
   EXPECT_EQ(found("[100, 20, -5, 1, 0, 0]"), "no error");
-  EXPECT_NE(found("[100, 20, -5, 0, 1, 0]").find("do not face as the part"), std::string::npos);
+  EXPECT_NE(found("[100, 20, -5, 0, 1, 0]").find("disagree with the part"), std::string::npos);
   // on the edge between two faces either of them, but not into the body
   EXPECT_EQ(found("[100, 0, -5, 1, 0, 0]"), "no error");
   EXPECT_EQ(found("[100, 0, -5, 0, -1, 0]"), "no error");
-  EXPECT_NE(found("[100, 0, -5, -1, 0, 0]").find("do not face as the part"), std::string::npos);
+  EXPECT_NE(found("[100, 0, -5, -1, 0, 0]").find("disagree with the part"), std::string::npos);
 }
 
 // Chords in place of arcs are as good as their distance.
@@ -179,8 +179,8 @@ TEST(NominalPart, NeedsAProbeToBeOfAnyUse) {
   } catch (const InputError& error) {
     const std::string all = error.what();
     EXPECT_EQ(all.substr(all.find(": error: ")),
-              ": error: part.stl = \"block.stl\"; is what probed points are laid on: it needs a "
-              "[[probe]]");
+              ": error: part.stl = \"block.stl\"; is the reference for the alignment of probed "
+              "points: it needs a [[probe]]");
   }
 }
 
@@ -191,8 +191,8 @@ TEST(NominalPart, SaysHowFarItsFacetsAreOff) {
   ASSERT_FALSE(output.cases[0].notes.empty());
   EXPECT_EQ(
       output.cases[0].notes.back(),
-      "warning: case one: nominal points of the probes are up to 5 um off 'block.stl' "
-      "(facets in place of curved faces, or another part); distances after best fit hold that");
+      "warning: case one: nominal points of the probes are up to 5 um off 'block.stl' (facets in "
+      "place of curved faces, or another part); distances after best fit include this");
 }
 
 TEST(NominalPart, SaysWhatLeavesItFree) {
@@ -203,8 +203,8 @@ TEST(NominalPart, SaysWhatLeavesItFree) {
   EXPECT_FALSE(output.cases[0].part_fit);
   ASSERT_FALSE(output.cases[0].notes.empty());
   EXPECT_TRUE(output.cases[0].notes.back().starts_with(
-      "warning: case one: best fit to 'block.stl': the points do not determine where the part "
-      "lies: nothing would notice "))
+      "warning: case one: best fit to 'block.stl': the points do not determine the position of the "
+      "part: it is insensitive to "))
       << output.cases[0].notes.back();
 }
 

@@ -150,7 +150,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
   EXPECT_EQ(output.comparison[0].note, "3 of 5 points of 'beyond'");
   EXPECT_LT(output.comparison[0].value, kPerfect);
   const std::string none =
-      "no point of 'inside' met a cut surface: does the tool of case one come there?";
+      "no point of 'inside' met a cut surface: does the tool of case one get there?";
   for (const std::size_t i : {1U, 2U}) {
     EXPECT_TRUE(std::isnan(output.comparison[i].value));
     EXPECT_EQ(output.comparison[i].note, none);
@@ -161,14 +161,14 @@ TEST(ProbedPart, TellsWhatIsMissed) {
   }
   EXPECT_EQ(notes,
             "warning: case one: 2 of 5 points of probe 'beyond' met no cut surface, first at X120 "
-            "Y0 Z-5: no cutter came there\n"
+            "Y0 Z-5: no cutter reached this point\n"
             "warning: case one: 1 of 2 points of probe 'inside' met no cut surface, first at X50 "
-            "Y30 Z-5: no cutter came there\n"
+            "Y30 Z-5: no cutter reached this point\n"
             "warning: case one: 1 of 2 points of probe 'inside' met no cut surface, first at X50 "
-            "Y-4 Z-5: the cutter took away all down to 1 mm (cmm.search_mm) below it\n");
+            "Y-4 Z-5: the cutter removed everything down to 1 mm (cmm.search_mm) below it\n");
 }
 
-// Material that no cutter removed is no part outside of the raw part.
+// Material that no cutter removed is no part outside of the stock.
 TEST(ProbedPart, EndsWhereTheRawPartDoes) {
   const std::string stock =
       "[[part.stock]]\nbox = { from_mm = [0.0, 0.0, -20.0], to_mm = [61.0, 60.0, 5.0] }\n";
@@ -178,7 +178,7 @@ TEST(ProbedPart, EndsWhereTheRawPartDoes) {
   const std::string& note = output.cases[0].notes.at(0);
   EXPECT_EQ(note.substr(note.find("warning")),
             "warning: case one: 20 of 51 points of probe 'flank' met no cut surface, first at X62 "
-            "Y0 Z-5: the raw part ([[part.stock]]) does not reach there");
+            "Y0 Z-5: the stock ([[part.stock]]) does not extend to there");
 }
 
 // The errors of the place where the tool stood that cut the point, not where the first one works.
@@ -205,7 +205,7 @@ TEST(ProbedPart, HasNoPositionAlongAnAxisThatNoNormalPointsAlong) {
   const run::RunOutput output =
       run(asking({kFlank, quantity("probed_position", "probe = \"flank\"\naxis = \"X\""), "", ""}));
   EXPECT_TRUE(std::isnan(output.comparison[0].value));
-  EXPECT_EQ(output.comparison[0].note, "no normal of its points has a component along X");
+  EXPECT_EQ(output.comparison[0].note, "none of its normals has a component along X");
 }
 
 // Relative to a base case, point by point, also less what the imposed errors ask for.

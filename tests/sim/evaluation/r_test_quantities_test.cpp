@@ -113,11 +113,11 @@ TEST(BallQuantities, SayWhySectionsAreNoSuchTest) {
     return rows.at(0).note;
   };
   EXPECT_EQ(note("radial_ball_deviation", "sections = [\"both\"]"),
-            "not one rotary axis turns alone");
+            "not exactly one rotary axis moves");
   EXPECT_EQ(note("location_error", "sections = [\"C\", \"away\"]\nerror = \"EX0C\""),
-            "the tip does not stand in its sections");
+            "the TCP does not stay at rest in its sections");
   EXPECT_EQ(note("ball_bar_deviation", "bar = [{ section = \"away\", centre_mm = [0, 0, 120] }]"),
-            "the tip does not keep its distance to the centre of the bar");
+            "the TCP does not keep its distance from the centre of the bar");
 }
 
 // The centre of the bar lies 50 mm below the circle: a machine that drifts 10 um along X while C
@@ -138,8 +138,8 @@ TEST(BallQuantities, OfABarAreItsChangeOfLength) {
 TEST(BallQuantities, MustBeNamedAsMeant) {
   const std::string C = "sections = [\"C\"]\n";
   EXPECT_EQ(faults_of(quantity("location_error", C + "error = \"EX0D\"")),
-            "quantity[0].error = \"EX0D\"; 'EX0D' is no error of ISO 230-1; must be like EYX or "
-            "EC0Y; did you mean 'EX0B'?\n");
+            "quantity[0].error = \"EX0D\"; 'EX0D' is not an error of ISO 230-1; expected a name "
+            "such as EYX or EC0Y; did you mean 'EX0B'?\n");
   EXPECT_EQ(faults_of(quantity("location_error", C + "error = \"EXC\"")),
             "quantity[0].error = \"EXC\"; must be a location error, like EX0C\n");
   EXPECT_EQ(faults_of(quantity("location_error", "sections = []")),
@@ -163,8 +163,8 @@ TEST(BallQuantities, AreFaultyAtALineAndColumn) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()), SERVOMILL_SOURCE_DIR
-              "/scenarios/small.toml:15:9: error: quantity[0].error = \"EX0D\"; 'EX0D' is no "
-              "error of ISO 230-1; must be like EYX or EC0Y; did you mean 'EX0B'?");
+              "/scenarios/small.toml:15:9: error: quantity[0].error = \"EX0D\"; 'EX0D' is not an "
+              "error of ISO 230-1; expected a name such as EYX or EC0Y; did you mean 'EX0B'?");
   }
 }
 

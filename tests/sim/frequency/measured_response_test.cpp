@@ -156,7 +156,7 @@ TEST(MeasuredResponse, SaysWhenTheStepDoesNotResolveTheFriction) {
     step.duration = 0.05;
     return step_response(machine, kX, 0, step).fault;
   };
-  constexpr auto kWhy = "friction too stiff for the exact step; use integrator = \"cvode\"";
+  constexpr auto kWhy = "friction too stiff for the exact integrator; use integrator = \"cvode\"";
   EXPECT_EQ(measured(), kWhy);
   EXPECT_EQ(stepped(), kWhy);
   machine.drives[kX].friction.vs = 1e-3;

@@ -182,9 +182,8 @@ TEST(Tune, RefusesWhatNoGainHas) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "axis Y: error: no velocity_bandwidth above 20 rad/s has a phase margin of 85 deg "
-                 "together with a gain margin of 8 dB; lower the margins or raise "
-                 "--reset-ratio");
+                 "axis Y: error: no velocity_bandwidth above 20 rad/s gives both a phase margin of "
+                 "85 deg and a gain margin of 8 dB; lower the margins or raise --reset-ratio");
   }
 }
 

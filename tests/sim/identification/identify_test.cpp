@@ -149,9 +149,10 @@ key = "axis.Y.moving_mass"
   const Identification& found = result.found;
   EXPECT_TRUE(found.uncertainty.identifiable[0]);
   EXPECT_FALSE(found.uncertainty.identifiable[1]);
-  EXPECT_EQ(unidentifiable_sentences(found),
-            (std::vector<std::string>{"axis.Y.moving_mass: the recordings do not depend on it; its "
-                                      "value is the one that was started from"}));
+  EXPECT_EQ(
+      unidentifiable_sentences(found),
+      (std::vector<std::string>{
+          "axis.Y.moving_mass: the recordings do not depend on it; it keeps its start value"}));
 }
 
 TEST(Identify, AForeignLoopShowsInTheResidual) {
@@ -211,7 +212,7 @@ TEST(Identify, AMachineInTheExperimentCannotBeLaidOver) {
   experiment.machine_path.clear();
   EXPECT_EQ(fault_messages([&] { identified_machine(experiment, {}, "out.toml"); }),
             "describes the machine itself; name a machine file (machine = \"FILE\") so that the "
-            "identified values can be laid over it\n");
+            "identified values can override it\n");
 }
 
 }  // namespace

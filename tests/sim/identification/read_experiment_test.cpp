@@ -44,7 +44,7 @@ TEST_F(ReadExperiment, RefusesChannelsThatAreNotThereWithTheNearest) {
   const std::string other =
       "[[recording]]\nfile = \"recording.csv\"\naxis.X = { command = \"q\", "
       "feedback = \"yy\" }\n";
-  EXPECT_EQ(faults(other + kMass), "recording[1].axis.X.feedback = \"yy\"; is no channel of " +
+  EXPECT_EQ(faults(other + kMass), "recording[1].axis.X.feedback = \"yy\"; is not a channel of " +
                                        files_.path("recording.csv") +
                                        "; did you mean 'y'?; it has q, y, F\n");
 }
@@ -54,8 +54,8 @@ TEST_F(ReadExperiment, RefusesUnitsOfAnotherQuantity) {
       "[[recording]]\nfile = \"recording.csv\"\naxis.X = { command = \"q\", "
       "feedback = \"F\" }\n";
   EXPECT_EQ(faults(other + kMass),
-            "recording[1].axis.X.feedback = \"F\"; has the unit 'N' in the file, which is not that "
-            "of a length; say { channel = \"F\", unit = \"...\", factor = ... }\n");
+            "recording[1].axis.X.feedback = \"F\"; has the unit 'N' in the file, which is not a "
+            "unit of length; write { channel = \"F\", unit = \"...\", factor = ... }\n");
 }
 
 TEST_F(ReadExperiment, RefusesAFeedbackOfTheWrongSign) {
@@ -97,7 +97,7 @@ axis.X = { command = "q", feedback = "y" }
 key = "axis.X.moving_mass"
 )";
   EXPECT_EQ(fault_messages([&] { read_experiment(files_.path("only.toml")); }),
-            "every recording is for validation; none to estimate from\n");
+            "all recordings are for validation; none is left for estimation\n");
 }
 
 TEST_F(ReadExperiment, GapsAreLeftOutAndSaid) {

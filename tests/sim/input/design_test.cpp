@@ -210,23 +210,21 @@ TEST(ReadSweep, RefusesWhatIsNoDesign) {
   EXPECT_EQ(refusal("a = {}\n"), "s.toml:2:5: error: sweep.a = {...}" + kForm);
   EXPECT_EQ(refusal("a = [1]\n[[sweep.zip]]\na = [2]\n"),
             "s.toml:4:5: error: sweep.zip[0].a = [2]; is varied twice");
-  EXPECT_EQ(
-      refusal("\"sweep.a\" = [1]\n"),
-      "s.toml:2:13: error: sweep.\"sweep.a\" = [1]; is the same at all points; sweep cannot be "
-      "swept");
-  EXPECT_EQ(
-      refusal("quantity = [[]]\n"),
-      "s.toml:2:12: error: sweep.quantity = [[]]; is the same at all points; quantity cannot be "
-      "swept");
+  EXPECT_EQ(refusal("\"sweep.a\" = [1]\n"),
+            "s.toml:2:13: error: sweep.\"sweep.a\" = [1]; is common to all points; sweep cannot be "
+            "swept");
+  EXPECT_EQ(refusal("quantity = [[]]\n"),
+            "s.toml:2:12: error: sweep.quantity = [[]]; is common to all points; quantity cannot "
+            "be swept");
 }
 
 TEST(ReadSweep, RefusesListsThatCannotGoTogether) {
   EXPECT_EQ(refusal("[[sweep.zip]]\na = [1, 2]\nb = [1, 2, 3]\n"),
-            "s.toml:4:5: error: sweep.zip[0].b = [1, 2, 3]; has 3 values, a has 2: lists that go "
-            "together must be as long as each other");
+            "s.toml:4:5: error: sweep.zip[0].b = [1, 2, 3]; has 3 values, a has 2: zipped lists "
+            "must have equal length");
   EXPECT_EQ(refusal("[[sweep.zip]]\na = 1\n"),
             "s.toml:3:5: error: sweep.zip[0].a = 1; must be a list of at least one value");
-  EXPECT_EQ(refusal("[[sweep.zip]]\n"), "s.toml:2:1: error: sweep.zip[0]: names no key");
+  EXPECT_EQ(refusal("[[sweep.zip]]\n"), "s.toml:2:1: error: sweep.zip[0]: does not name a key");
 }
 
 TEST(ReadSweep, RefusesRangesThatAreNone) {
@@ -236,7 +234,7 @@ TEST(ReadSweep, RefusesRangesThatAreNone) {
   EXPECT_EQ(refusal("a = { linear = [\"1 mm\", \"2 m\"], count = 3 }\n"),
             "s.toml:2:16: error: sweep.a.linear = [\"1 mm\", \"2 m\"]" + two);
   EXPECT_EQ(refusal("a = { linear = [1, 1], count = 3 }\n"),
-            "s.toml:2:16: error: sweep.a.linear = [1, 1]; must have two numbers that differ");
+            "s.toml:2:16: error: sweep.a.linear = [1, 1]; must be two different numbers");
   EXPECT_EQ(refusal("a = { log = [0, 1], count = 3 }\n"),
             "s.toml:2:13: error: sweep.a.log = [0, 1]; must have numbers > 0");
   EXPECT_EQ(refusal("a = { linear = [1, 2] }\n"), "s.toml:2:5: error: sweep.a.count is missing");
@@ -254,19 +252,18 @@ TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
   }
   EXPECT_EQ(design_of(toml).sampled_dimensions, model::kMostDimensions);
   for (const std::string form : {"{ choice = [1] }", "{ uniform = [0, 1] }"}) {
-    EXPECT_EQ(
-        refusal(toml + "b = " + form + "\n"),
-        "s.toml:3670:5: error: sweep.b = {...}; is one key too many to sample; there may be 3667");
+    EXPECT_EQ(refusal(toml + "b = " + form + "\n"),
+              "s.toml:3670:5: error: sweep.b = {...}; exceeds the limit of 3667 sampled keys");
   }
 }
 
 TEST(ReadSweep, RefusesDistributionsThatAreNone) {
   const std::string samples = "samples = { design = \"random\", count = 3 }\n";
   EXPECT_EQ(refusal(samples + "a = { normal = [1.0, 0.0] }\n"),
-            "s.toml:3:16: error: sweep.a.normal = [1.0, 0.0]; must have a deviation > 0");
+            "s.toml:3:16: error: sweep.a.normal = [1.0, 0.0]; must have a standard deviation > 0");
   EXPECT_EQ(
       refusal(samples + "a = { uniform = [2, 1] }\n"),
-      "s.toml:3:17: error: sweep.a.uniform = [2, 1]; must have a first number below the second");
+      "s.toml:3:17: error: sweep.a.uniform = [2, 1]; must be [lower, upper] with lower < upper");
   EXPECT_EQ(refusal(samples + "a = { log_uniform = [-1, 1] }\n"),
             "s.toml:3:21: error: sweep.a.log_uniform = [-1, 1]; must have numbers > 0");
   EXPECT_EQ(refusal(samples + "a = { choice = [] }\n"),
@@ -278,10 +275,9 @@ TEST(ReadSweep, RefusesDistributionsThatAreNone) {
 }
 
 TEST(ReadSweep, RefusesSamplesWithoutDistributionAndTheOtherWayRound) {
-  EXPECT_EQ(
-      refusal("a = { normal = [1.0, 0.1] }\n"),
-      "s.toml:1:1: error: sweep: samples is missing: keys with a distribution need one such as "
-      "samples = { design = \"latin_hypercube\", count = 100 }");
+  EXPECT_EQ(refusal("a = { normal = [1.0, 0.1] }\n"),
+            "s.toml:1:1: error: sweep: samples is missing: keys with a distribution need, for "
+            "example, samples = { design = \"latin_hypercube\", count = 100 }");
   EXPECT_EQ(refusal("samples = { design = \"sobol\", count = 3 }\na = [1]\n"),
             "s.toml:2:11: error: sweep.samples = {...}; has nothing to "
             "sample: no key has a distribution");

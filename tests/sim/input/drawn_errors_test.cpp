@@ -85,17 +85,17 @@ TEST_F(DrawnErrors, AreStillThereInACompleteDocument) {
 
 TEST_F(DrawnErrors, AreRefusedWhereNoErrorIsIdentified) {
   EXPECT_EQ(refusal("from = \"identified.toml\", into = \"identified\""),
-            "machine_errors = \"drawn\"; no such error model; there are: identified\n"
-            "sweep.samples.into = \"identified\"; must be a new name of letters, digits, '_': "
-            "identified is what is identified\n");
+            "machine_errors = \"drawn\"; no such error model; known are: "
+            "identified\nsweep.samples.into = \"identified\"; must be a new name of letters, "
+            "digits and '_'; identified is the identified model\n");
   write("mass.toml",
         "based_on = \"machine.toml\"\n[axis.X]\nmoving_mass = 700\n[identified]\n"
         "keys = [\"axis.X.moving_mass\"]\nunits = [\"kg\"]\nvalues = [700]\n"
         "covariance = [[100.0]]\n");
-  EXPECT_EQ(refusal("from = \"mass.toml\", into = \"drawn\""),
-            "machine_errors = \"drawn\"; no such error model; there are: identified\n"
-            "sweep.samples.into = \"drawn\"; has nothing to hold: no identified key is of an "
-            "error\n");
+  EXPECT_EQ(
+      refusal("from = \"mass.toml\", into = \"drawn\""),
+      "machine_errors = \"drawn\"; no such error model; known are: identified\nsweep.samples.into "
+      "= \"drawn\"; has no effect: no identified key belongs to an error model\n");
 }
 
 TEST(KeyInModel, RenamesErrorsOnly) {

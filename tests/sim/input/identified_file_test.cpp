@@ -1,4 +1,4 @@
-/// Machine files with identified values: laid over another machine, read, written.
+/// Machine files with identified values: based on another machine, read, written.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -148,9 +148,10 @@ TEST_F(IdentifiedFileTest, IsNamedWhereItIsTakenForAScenario) {
     read_scenario(write("identified.toml", kExample));
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), path("identified.toml") +
-                                ": error: is a machine, not a scenario; name it in a scenario: "
-                                "machine = \"FILE\"");
+    EXPECT_EQ(
+        error.what(),
+        path("identified.toml") +
+            ": error: is a machine, not a scenario; use it in a scenario as machine = \"FILE\"");
   }
 }
 
@@ -171,8 +172,8 @@ TEST_F(IdentifiedFileTest, RefusesWrongBasesAsScenariosDo) {
   EXPECT_EQ(refusal_of("start_machine", "gone"),
             "identified.toml:1:12: error: based_on = \"gone.toml\"; no such file");
   EXPECT_EQ(refusal_of("start_machine", "identified"),
-            "identified.toml:1:12: error: based_on: more than 8 machine files stand on each other; "
-            "is one of them based on itself?");
+            "identified.toml:1:12: error: based_on nested deeper than 8; is one of the machine "
+            "files based on itself?");
   write("scenario.toml", "machine = \"start_machine.toml\"\n[[case]]\nname = \"one\"\n");
   EXPECT_EQ(refusal_of("start_machine", "scenario"),
             "identified.toml:1:12: error: based_on must be the name of a machine file; this is a "
@@ -182,50 +183,50 @@ TEST_F(IdentifiedFileTest, RefusesWrongBasesAsScenariosDo) {
 TEST_F(IdentifiedFileTest, RefusesListsThatDoNotFit) {
   EXPECT_EQ(refusal_of("units = [\"kg\", \"N\"]", "units = [\"kg\"]"),
             "identified.toml:8:9: error: identified.units = [\"kg\"]; has 1 items; must have 2, "
-            "one a key");
+            "one per key");
   EXPECT_EQ(refusal_of("values = [95.11, 19.98]", "values = [95.11, 19.98, 1.0]"),
             "identified.toml:9:10: error: identified.values = [95.11, 19.98, 1.0]; has 3 items; "
-            "must have 2, one a key");
+            "must have 2, one per key");
   EXPECT_EQ(refusal_of("covariance = [[0.36, 0.01], [0.01, 0.04]]\n", ""),
             "identified.toml:6:1: error: identified.covariance is missing");
   EXPECT_EQ(refusal_of("[0.01, 0.04]]", "[0.01]]"),
             "identified.toml:10:14: error: identified.covariance = [[0.36, 0.01], [0.01]]; must be "
-            "2 rows of 2 numbers, one a key");
-  EXPECT_EQ(refusal_of("[0.01, 0.04]]", "0.04]"),
-            "identified.toml:10:29: error: identified.covariance[1] = 0.04; must be a list of "
-            "numbers, one row");
+            "2 rows of 2 numbers, one per key");
+  EXPECT_EQ(
+      refusal_of("[0.01, 0.04]]", "0.04]"),
+      "identified.toml:10:29: error: identified.covariance[1] = 0.04; must be a list of numbers");
   EXPECT_EQ(refusal_of("[0.01, 0.04]]", "[0.01, inf]]"),
             "identified.toml:10:36: error: identified.covariance[1][1] = inf; must be a finite "
             "number");
   EXPECT_EQ(refusal_of("\"axis.X.friction.coulomb\"]", "\"axis.X.moving_mass\"]"),
             "identified.toml:7:8: error: identified.keys = [\"axis.X.moving_mass\", "
-            "\"axis.X.moving_mass\"]; names axis.X.moving_mass twice");
+            "\"axis.X.moving_mass\"]; lists axis.X.moving_mass twice");
   EXPECT_EQ(refusal_of("axis.X.gravity_load", "axis.X.moving_mass"),
             "identified.toml:11:18: error: identified.unidentifiable = [\"axis.X.moving_mass\"]; "
-            "names axis.X.moving_mass, which is one of keys: its value is either identified or the "
-            "one that was started from");
+            "lists axis.X.moving_mass, which is also one of keys; a key is either identified or "
+            "unidentifiable");
   EXPECT_EQ(refusal("based_on = \"start_machine.toml\"\n[identified]\nkeys = []\nunits = []\n"
                     "values = []\ncovariance = []\n"),
-            "identified.toml:3:8: error: identified.keys = []; must name at least one key");
+            "identified.toml:3:8: error: identified.keys = []; must list at least one key");
   EXPECT_EQ(refusal_of("[identified]\n", "[identified]\ncovarianse = 3\n"),
             "identified.toml:7:1: error: identified.covarianse is not known; did you mean "
-            "'covariance', which is given, too?");
+            "'covariance', which is also given?");
 }
 
 TEST_F(IdentifiedFileTest, RefusesValuesThatAreNotThoseOfTheMachine) {
   EXPECT_EQ(refusal_of("values = [95.11", "values = [96.11"),
             "identified.toml:9:10: error: identified.values = [96.11, 19.98]; gives "
             "axis.X.moving_mass the value 96.11 kg; line 3 sets \"95.11 kg\"");
-  EXPECT_EQ(refusal_of("coulomb = \"19.98 N\"", "breakaway = \"19.98 N\""),
-            "identified.toml:7:8: error: identified.keys = [\"axis.X.moving_mass\", "
-            "\"axis.X.friction.coulomb\"]; names axis.X.friction.coulomb, which this file does not "
-            "set");
+  EXPECT_EQ(
+      refusal_of("coulomb = \"19.98 N\"", "breakaway = \"19.98 N\""),
+      "identified.toml:7:8: error: identified.keys = [\"axis.X.moving_mass\", "
+      "\"axis.X.friction.coulomb\"]; lists axis.X.friction.coulomb, which this file does not set");
   EXPECT_EQ(refusal_of("units = [\"kg\", \"N\"]", "units = [\"kg\", \"kN\"]"),
             "identified.toml:9:10: error: identified.values = [95.11, 19.98]; gives "
             "axis.X.friction.coulomb the value 19.98 kN; line 5 sets \"19.98 N\"");
   EXPECT_EQ(refusal_of("units = [\"kg\", \"N\"]", "units = [\"kgs\", \"N\"]"),
             "identified.toml:8:9: error: identified.units = [\"kgs\", \"N\"]; unknown unit 'kgs'; "
-            "did you mean 'kg'?; a number without unit has \"1\"");
+            "did you mean 'kg'?; use \"1\" for a dimensionless number");
   EXPECT_EQ(refusal_of("\"95.11 kg\"", "\"95.11 N\""),
             "identified.toml:9:10: error: identified.values = [95.11, 19.98]; gives "
             "axis.X.moving_mass the value 95.11 kg; line 3 sets \"95.11 N\"");
@@ -238,10 +239,10 @@ TEST_F(IdentifiedFileTest, RefusesMatricesThatAreNoCovariance) {
   EXPECT_EQ(refusal_of("[[0.36, 0.01], [0.01, 0.04]]", "[[0.36, 0.01], [0.01, -0.04]]"),
             "identified.toml:10:14: error: identified.covariance = [[0.36, 0.01], [0.01, -0.04]]; "
             "must have variances >= 0; [1][1] is -0.04");
-  EXPECT_EQ(refusal_of("[[0.36, 0.01], [0.01, 0.04]]", "[[0.36, 0.13], [0.13, 0.04]]"),
-            "identified.toml:10:14: error: identified.covariance = [[0.36, 0.13], [0.13, 0.04]]; "
-            "must be positive semi-definite; [0][1] = 0.13 is larger than the product 0.12 of the "
-            "standard deviations of both");
+  EXPECT_EQ(
+      refusal_of("[[0.36, 0.01], [0.01, 0.04]]", "[[0.36, 0.13], [0.13, 0.04]]"),
+      "identified.toml:10:14: error: identified.covariance = [[0.36, 0.13], [0.13, 0.04]]; must be "
+      "positive semi-definite; [0][1] = 0.13 exceeds the product 0.12 of both standard deviations");
 }
 
 // Three numbers that are pairwise possible, but not together.
@@ -254,15 +255,15 @@ TEST_F(IdentifiedFileTest, RefusesAnIndefiniteMatrix) {
       "covariance = [[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]]\n";
   EXPECT_EQ(refusal(text),
             "identified.toml:12:14: error: identified.covariance = [[1, 0.9, -0.9], [0.9, 1, 0.9], "
-            "[-0.9, 0.9, 1]]; must be positive semi-definite; the least eigenvalue of the "
-            "correlations is -0.8");
+            "[-0.9, 0.9, 1]]; must be positive semi-definite; the smallest eigenvalue of the "
+            "correlation matrix is -0.8");
 }
 
 TEST_F(IdentifiedFileTest, RefusesWhatTheMachineRefuses) {
   EXPECT_EQ(refusal_of("[axis.X]\nmoving_mass = \"95.11 kg\"",
                        "[axis.X]\nmoving_mass = \"95.11 kg\"\nmoving_mas = 3"),
             "identified.toml:4:1: error: axis.X.moving_mas is not known; did you mean "
-            "'moving_mass', which is given, too?");
+            "'moving_mass', which is also given?");
 }
 
 IdentifiedFile example_file() {

@@ -204,18 +204,19 @@ TEST_F(IdentifiedSamplesOfFiles, NeedNoFileOnceTheScenarioIsRead) {
 TEST_F(IdentifiedSamplesOfFiles, RefuseFilesWithoutThem) {
   EXPECT_EQ(refusal("identified.toml", "samples = { from = \"machine.toml\", count = 5 }\n"),
             "scenario.toml:7:20: error: sweep.samples.from = \"machine.toml\"; has no table "
-            "[identified]: there are no values to draw samples of");
-  EXPECT_EQ(refusal("identified.toml",
-                    "samples = { from = [\"identified.toml\", \"machine.toml\"], count = 5 }\n"),
-            "scenario.toml:7:20: error: sweep.samples.from = [\"identified.toml\", "
-            "\"machine.toml\"]; has no table [identified]: there are no values to draw samples of "
-            "in machine.toml");
+            "[identified]: there are no identified values to sample");
+  EXPECT_EQ(
+      refusal("identified.toml",
+              "samples = { from = [\"identified.toml\", \"machine.toml\"], count = 5 }\n"),
+      "scenario.toml:7:20: error: sweep.samples.from = [\"identified.toml\", "
+      "\"machine.toml\"]; has no table [identified]: there are no identified values to sample "
+      "in machine.toml");
   EXPECT_EQ(refusal("identified.toml", "samples = { from = \"gone.toml\", count = 5 }\n"),
             "scenario.toml:7:20: error: machine 'gone.toml' cannot be read: No such file or "
             "directory");
   EXPECT_EQ(refusal("identified.toml", "samples = { from = 3, count = 5 }\n"),
-            "scenario.toml:7:20: error: sweep.samples.from = 3; must be the name of a file, or "
-            "a list of names");
+            "scenario.toml:7:20: error: sweep.samples.from = 3; must be a file name, or a list of "
+            "file names");
 }
 
 TEST_F(IdentifiedSamplesOfFiles, RefuseKeysThatVaryTwice) {
@@ -236,10 +237,9 @@ TEST_F(IdentifiedSamplesOfFiles, RefuseAnotherMachine) {
   const std::string sweep = "samples = { from = \"identified.toml\", count = 5 }\n";
   EXPECT_EQ(refusal("machine.toml", sweep), "accepted");
   const std::string path = (folder_ / "scenario.toml").string();
-  EXPECT_EQ(
-      fault_messages([&] { sweep::Sweep(path, {}); }),
-      "sweep.samples: the mean of machine.axis.X.moving_mass is 700 kg, the machine has \"750 "
-      "kg\"; run the identified machine: machine = \"FILE\"\n");
+  EXPECT_EQ(fault_messages([&] { sweep::Sweep(path, {}); }),
+            "sweep.samples: the mean of machine.axis.X.moving_mass is 700 kg, but the machine has "
+            "\"750 kg\"; run the identified machine: machine = \"FILE\"\n");
   const std::string identified = (folder_ / "identified.toml").string();
   EXPECT_EQ(fault_messages([&] { sweep::Sweep(path, {"machine=" + identified}); }), "");
 }

@@ -38,7 +38,7 @@ TEST_F(Files, AreRefusedWhenForgottenAndChanged) {
     files.text(path_, {"scenario.toml", 3}, "program");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), path_ + ": error: has changed since it was read first");
+    EXPECT_EQ(error.what(), path_ + ": error: has changed since it was first read");
   }
 }
 

@@ -72,9 +72,9 @@ TEST(KeyList, PrintsNoNumberForADefaultThatFollowsFromOtherKeys) {
                                      {"probe.circle", "to_deg"},
                                      {"case", "wear"},
                                      {"case", "cutting"}}) {
-    EXPECT_EQ(entry(section, key).presence, "default follows from other keys") << key;
+    EXPECT_EQ(entry(section, key).presence, "default depends on other keys") << key;
   }
-  EXPECT_EQ(entry("program.tool", "corner_radius_mm").range, "bounds follow from other keys");
+  EXPECT_EQ(entry("program.tool", "corner_radius_mm").range, "bounds depend on other keys");
 }
 
 TEST(KeyList, GivesASectionWithThoseBelowIt) {

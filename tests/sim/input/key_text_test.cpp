@@ -14,13 +14,11 @@ const std::vector<KeyEntry>& hardware() {
 
 TEST(KeyText, HasOneLineAKey) {
   EXPECT_EQ(as_text(hardware()),
-            "[feedback_hardware]\n"
-            "  connected                hardware in the signal path also of cases that do not use "
-            "it [true | false; default false]\n"
-            "  signal_delay_us          delay from the scale to the reading of the NC "
-            "[number in us, >= 0 and <= 6e+07; default 10]\n"
-            "  model_period_us          period of the error model; its value acts one period later "
-            "[number in us, > 0 and <= 6e+07; default 60]\n");
+            "[feedback_hardware]\n  connected                also puts the hardware in the signal "
+            "path of cases that do not use it [true | false; default false]\n  signal_delay_us     "
+            "     delay from the scale to the reading of the NC [number in us, >= 0 and <= 6e+07; "
+            "default 10]\n  model_period_us          period of the error model; its value acts one "
+            "period later [number in us, > 0 and <= 6e+07; default 60]\n");
   EXPECT_TRUE(as_text(keys_of("top")).starts_with("[top]\n  based_on "));
   EXPECT_NE(as_text(keys_of("machine.axis.X")).find("\n\n[machine.axis.X.friction]\n"),
             std::string::npos);
@@ -49,11 +47,11 @@ TEST(KeyText, HasOneJsonObjectAKey) {
                       "\n"))
       << lines;
   const std::vector<KeyEntry> follows = {
-      {"", "title", "text", "", "default follows from other keys", "title of the experiment"}};
+      {"", "title", "string", "", "default depends on other keys", "title of the experiment"}};
   EXPECT_EQ(
       as_json(follows),
-      R"({"section": null, "key": "title", "help": "title of the experiment", "type": "text", )"
-      R"("unit": null, "range": null, "presence": "default follows from other keys", )"
+      R"({"section": null, "key": "title", "help": "title of the experiment", "type": "string", )"
+      R"("unit": null, "range": null, "presence": "default depends on other keys", )"
       R"("default": null})"
       "\n");
 }

@@ -91,17 +91,16 @@ TEST(MachineOverride, IsReadLikeAMachine) {
   EXPECT_EQ(message("machine_override = 3\n"),
             "6: case[1].machine_override = 3; must be a table\n");
   EXPECT_EQ(message("machine_override.nc.Kv = -1.0\nmachine_override.axis.X.moving_mas = 3.0\n"),
-            "6: machine.nc.Kv = -1.0; must be > 0\n"
-            "7: machine.axis.X.moving_mas is not known; did you mean 'moving_mass', which is "
-            "given, too?\n");
+            "6: machine.nc.Kv = -1.0; must be > 0\n7: machine.axis.X.moving_mas is not known; did "
+            "you mean 'moving_mass', which is also given?\n");
   EXPECT_EQ(message("machine_override.nc.Kv = \"40 m/min/mm\"\n").substr(0, 55),
             "6: case second: axis X: the servo loop is unstable with");
 }
 
 TEST(MachineOverride, LeavesAloneWhatAllCasesShare) {
   EXPECT_EQ(message("machine_override.structure = \"[w Y b X Z t]\"\n"),
-            "6: case[1].machine_override = {...}; has the key structure, "
-            "which is common to all cases\n");
+            "6: case[1].machine_override = {...}; must not change the structure, which is common "
+            "to all cases\n");
   for (const char* key : {"nc.preset = \"CC422\"", "nc.scale_delay_us = 10.0"}) {
     EXPECT_EQ(message(std::string("machine_override.") + key + "\n"),
               "6: case second: machine_override changes the periods of the loops or "

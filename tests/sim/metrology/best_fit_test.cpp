@@ -106,7 +106,7 @@ TEST(BestFitOfPairs, SaysWhatALineLeavesFree) {
   ASSERT_TRUE(std::holds_alternative<NoFit>(fit));
   EXPECT_EQ(
       std::get<NoFit>(fit).why,
-      "the points do not determine where the part lies: nothing would notice a rotation about "
+      "the points do not determine the position of the part: it is insensitive to a rotation about "
       "(1, 0, 0) through (100, 0, 0) mm");
 }
 
@@ -184,7 +184,7 @@ TEST(BestFitToMesh, SaysWhatAPlaneLeavesFree) {
   ASSERT_TRUE(std::holds_alternative<NoFit>(fit));
   EXPECT_EQ(
       std::get<NoFit>(fit).why,
-      "the points do not determine where the part lies: nothing would notice a shift along "
+      "the points do not determine the position of the part: it is insensitive to a shift along "
       "(1, 0, 0), a shift along (0, 1, 0) and a rotation about (0, 0, 1) through (0, 0, 0) mm");
 }
 
@@ -200,7 +200,7 @@ TEST(BestFitToMesh, SaysWhatABossLeavesFree) {
   const auto fit = best_fit(points, m1_part());
   ASSERT_TRUE(std::holds_alternative<NoFit>(fit));
   EXPECT_TRUE(std::get<NoFit>(fit).why.starts_with(
-      "the points do not determine where the part lies: nothing would notice a rotation about "
+      "the points do not determine the position of the part: it is insensitive to a rotation about "
       "(0, 0, 1) through ("))
       << std::get<NoFit>(fit).why;
 }
@@ -227,9 +227,10 @@ TEST(BestFitToTargets, ReturnsTheMotionFromSixPoints) {
   const auto five = best_fit(std::span(nominal).first(5), std::span(nominal).first(5),
                              std::span(normals).first(5));
   ASSERT_TRUE(std::holds_alternative<NoFit>(five));
-  EXPECT_EQ(std::get<NoFit>(five).why,
-            "the points do not determine where the part lies: nothing would notice a shift along "
-            "(1, 0, 0)");
+  EXPECT_EQ(
+      std::get<NoFit>(five).why,
+      "the points do not determine the position of the part: it is insensitive to a shift along "
+      "(1, 0, 0)");
 }
 
 TEST(Quiver, ShowsDeviationsAtNominalPlaces) {

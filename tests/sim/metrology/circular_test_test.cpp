@@ -220,12 +220,13 @@ TEST(CircularTest, WantsOneTurn) {
   EXPECT_EQ(why_no_turn(radial_turn(circle, Sense::clockwise, 358.2), kNominal), std::nullopt);
   EXPECT_EQ(why_no_turn(radial_turn(circle, Sense::clockwise, 362.0), kNominal), std::nullopt);
   EXPECT_EQ(why_no_turn(radial_turn(circle, Sense::clockwise, 358.0), kNominal),
-            "covers 357.9 deg of the circle; must be one turn, 360 deg");
+            "covers 357.9 deg of the circle; must be a full circle, 360 deg");
   EXPECT_EQ(why_no_turn(radial_turn(circle, Sense::clockwise, 180.1), kNominal),
-            "covers 180 deg of the circle; must be one turn, 360 deg");
+            "covers 180 deg of the circle; must be a full circle, 360 deg");
   EXPECT_EQ(why_no_turn(radial_turn(circle, Sense::counter_clockwise, 720.1), kNominal),
-            "covers 720 deg of the circle; must be one turn, 360 deg");
-  EXPECT_EQ(why_no_turn({}, kNominal), "covers 0 deg of the circle; must be one turn, 360 deg");
+            "covers 720 deg of the circle; must be a full circle, 360 deg");
+  EXPECT_EQ(why_no_turn({}, kNominal),
+            "covers 0 deg of the circle; must be a full circle, 360 deg");
 }
 
 TEST(CircularTest, WantsPointsCloseTogetherAndOnTheCircle) {

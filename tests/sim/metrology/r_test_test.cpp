@@ -157,11 +157,10 @@ TEST(NestOfSensors, NeedsOneAxisThatTurnsAndABallBesideIt) {
     return nest_deviation(chain, standing(chain, p, B_C), NestDirection::radial).why_not;
   };
   EXPECT_EQ(why_not(kBall, C_turns()), "");
-  EXPECT_EQ(why_not(kBall, {{0.0, 0.0}, {0.1, 0.2}}), "not one rotary axis turns alone");
-  EXPECT_EQ(why_not(kBall, {{0.1, 0.2}, {0.1, 0.2}}), "not one rotary axis turns alone");
-  EXPECT_EQ(why_not(kBall, {}), "not one rotary axis turns alone");
-  EXPECT_EQ(why_not({0.0, 0.0, 80.0 * mm}, C_turns()),
-            "the ball lies on the rotary axis that turns");
+  EXPECT_EQ(why_not(kBall, {{0.0, 0.0}, {0.1, 0.2}}), "not exactly one rotary axis moves");
+  EXPECT_EQ(why_not(kBall, {{0.1, 0.2}, {0.1, 0.2}}), "not exactly one rotary axis moves");
+  EXPECT_EQ(why_not(kBall, {}), "not exactly one rotary axis moves");
+  EXPECT_EQ(why_not({0.0, 0.0, 80.0 * mm}, C_turns()), "the ball is on the moving rotary axis");
 }
 
 // Tips on a sphere around a centre, as a bar allows them.
@@ -199,11 +198,11 @@ TEST(BallBar, NeedsATipThatKeepsItsDistance) {
   EXPECT_EQ(bar_deviation(path, centre).why_not, "");
   path.nominal[3] = centre + 1.000002 * (path.nominal[3] - centre);  // by 1.1 um
   EXPECT_EQ(bar_deviation(path, centre).why_not,
-            "the tip does not keep its distance to the centre of the bar");
+            "the TCP does not keep its distance from the centre of the bar");
   EXPECT_EQ(bar_readings(hsm(), path, centre, 5).why_not,
-            "the tip does not keep its distance to the centre of the bar");
+            "the TCP does not keep its distance from the centre of the bar");
   EXPECT_EQ(bar_deviation(on_sphere(centre, 0.1 * mm), centre).why_not,
-            "the tip comes to the centre of the bar");
+            "the TCP passes through the centre of the bar");
   EXPECT_EQ(bar_deviation({}, centre).why_not, "there are no samples");
 }
 
@@ -225,7 +224,7 @@ TEST(Readings, OfANestAreThreeASampleWithASetUpForEachPlace) {
     EXPECT_EQ(one.set_up, i < found.readings.size() / 2 ? 0 : 1);
     EXPECT_NEAR((one.p_ST - kTip).norm(), 0.0, kRounding);
   }
-  EXPECT_EQ(nest_readings(chain, path, 1).why_not, "the tip does not stand in its sections");
+  EXPECT_EQ(nest_readings(chain, path, 1).why_not, "the TCP does not stay at rest in its sections");
   EXPECT_EQ(nest_readings(chain, {}, 1).why_not, "there are no samples");
 }
 

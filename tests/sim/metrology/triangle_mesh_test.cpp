@@ -188,17 +188,17 @@ TEST(Stl, AsciiMayBeInUpperCaseBehindBlankLines) {
 TEST(Stl, FaultsOfTextHavePlaces) {
   std::string text = kTetrahedron;
   text.replace(text.find("1e1"), 3, "ten");
-  EXPECT_EQ(fault_of(text), "part.stl:5:16: error: a number expected, found 'ten'");
+  EXPECT_EQ(fault_of(text), "part.stl:5:16: error: expected a number, found 'ten'");
   text = kTetrahedron;
   text.replace(text.find("1e1"), 3, "nan");
-  EXPECT_EQ(fault_of(text), "part.stl:5:16: error: a finite number expected, found 'nan'");
+  EXPECT_EQ(fault_of(text), "part.stl:5:16: error: expected a finite number, found 'nan'");
   text = kTetrahedron;
   text.replace(text.find("vertex"), 6, "vertx");
-  EXPECT_EQ(fault_of(text), "part.stl:4:7: error: 'vertex' expected, found 'vertx'");
+  EXPECT_EQ(fault_of(text), "part.stl:4:7: error: expected 'vertex', found 'vertx'");
   EXPECT_EQ(fault_of(kTetrahedron.substr(0, 200)),
-            "part.stl:12:4: error: 'vertex' expected, but the file ends here");
+            "part.stl:12:4: error: expected 'vertex', but the file ends here");
   EXPECT_EQ(fault_of(kTetrahedron.substr(0, kTetrahedron.find("endsolid"))),
-            "part.stl:30:1: error: 'facet' or 'endsolid' expected, but the file ends here");
+            "part.stl:30:1: error: expected 'facet' or 'endsolid', but the file ends here");
   EXPECT_EQ(fault_of(std::string("solid nothing\nendsolid nothing\n")),
             "part.stl: error: the mesh has no triangles");
   EXPECT_EQ(
@@ -210,10 +210,10 @@ TEST(Stl, FaultsOfBinaryFilesNameTrianglesAndBytes) {
   const std::string whole = binary_stl(cuboid(Vector3d(0.08, 0.03, 0.01)));
   EXPECT_EQ(fault_of(whole.substr(0, 84 + 3 * 50 + 20)),
             "part.stl: error: binary STL with 12 triangles has 684 bytes, but the file has 254: it "
-            "breaks off in triangle 4");
+            "is truncated in triangle 4");
   EXPECT_EQ(fault_of(whole + "x"),
             "part.stl: error: binary STL with 12 triangles has 684 bytes, but the file has 685: it "
-            "goes on behind them");
+            "continues after them");
   std::string bytes = whole;
   bytes.replace(84 + 50 + 24, 4, std::string("\0\0\xc0\x7f", 4));  // NaN as X of corner 2
   EXPECT_EQ(fault_of(bytes).substr(0, 66),
@@ -234,14 +234,13 @@ TEST(TriangleMesh, RefusesWhatBoundsNoBody) {
   std::swap(t.triangles[0][0], t.triangles[0][1]);
   EXPECT_EQ(
       fault_of(t),
-      "part.stl: error: neighbours at an edge of triangle 1 from (-80, -30, -10) to "
-      "(80, -30, -10) mm face different ways: the order of corners of one of them is reversed");
+      "part.stl: error: neighbours at an edge of triangle 1 from (-80, -30, -10) to (80, -30, -10) "
+      "mm have inconsistent orientation: the vertex order of one of them is reversed");
   t = whole;
   for (auto& c : t.triangles) std::swap(c[0], c[1]);
-  EXPECT_EQ(
-      fault_of(t),
-      "part.stl: error: the mesh is inside out: the corners of its triangles go clockwise seen "
-      "from outside");
+  EXPECT_EQ(fault_of(t),
+            "part.stl: error: the mesh is inside out: the vertices of its triangles are clockwise "
+            "seen from outside");
   t = whole;
   t.triangles.push_back({0, 1, 0});
   EXPECT_EQ(fault_of(t), "part.stl: error: triangle 13 at (-80, -30, -10) mm has no area");

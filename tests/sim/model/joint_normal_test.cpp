@@ -109,8 +109,8 @@ TEST(CovarianceFault, RefusesACorrelationWithWhatDoesNotScatter) {
   Eigen::Matrix2d covariance;
   covariance << 0.0, 0.1, 0.1, 1.0;
   EXPECT_EQ(covariance_fault(covariance),
-            "must be positive semi-definite; [0][1] = 0.1 is larger than the product 0 of the "
-            "standard deviations of both");
+            "must be positive semi-definite; [0][1] = 0.1 exceeds the product 0 of both standard "
+            "deviations");
 }
 
 }  // namespace

@@ -98,10 +98,10 @@ TEST(ReadScenario, RefusesPeriodsThatHardlyEverMeet) {
     small_scenario("G1 X1 F600\nM30\n", "[record]\nperiod_ms = 999.99\n[[case]]\nname = \"one\"\n");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), SERVOMILL_SOURCE_DIR
-                 "/scenarios/small.toml:2:1: error: record: the periods of the loops, of the error "
-                 "model and of the recorder meet again only after more than 10 s; make them "
-                 "multiples of each other");
+    EXPECT_STREQ(
+        error.what(), SERVOMILL_SOURCE_DIR
+        "/scenarios/small.toml:2:1: error: record: the common period of the loops, the error model "
+        "and the recorder exceeds 10 s; make the periods multiples of each other");
   }
   EXPECT_NO_THROW(small_scenario("G1 X1 F600\nM30\n",
                                  "[record]\nperiod_ms = 1000.0\n[[case]]\nname = \"one\"\n"));

@@ -55,11 +55,11 @@ TEST(CircularSections, MustBeNamedAsMeant) {
   EXPECT_EQ(faults_of(quantity("reversal_spike", "axis = \"Z\"\nsections = [\"zx\"]")), "");
   EXPECT_EQ(faults_of(quantity("circular_error", "")), "quantity[0].sections is missing\n");
   EXPECT_EQ(faults_of(quantity("circular_error", "sections = []")),
-            "quantity[0].sections = []; must name at least one turn of a circle\n");
+            "quantity[0].sections = []; must name at least one full circle\n");
   EXPECT_EQ(
       faults_of(quantity("bidirectional_circular_error", "sections = [\"ccw\", \"cw\", \"ccw\"]")),
-      "quantity[0].sections = [\"ccw\", \"cw\", \"ccw\"]; must name pairs of turns of a "
-      "circle, one in each direction\n");
+      "quantity[0].sections = [\"ccw\", \"cw\", \"ccw\"]; must name pairs of full circles, one in "
+      "each direction\n");
 }
 
 TEST(CircularSections, MustBeTurnsOfOneCircle) {
@@ -67,17 +67,16 @@ TEST(CircularSections, MustBeTurnsOfOneCircle) {
     return faults_of(quantity(name, rest));
   };
   EXPECT_EQ(said("circular_error", "sections = [\"half\", \"ccw\", \"square\", \"line\"]"),
-            "circular_error: small.ngc: section 'half' covers 180 deg of the circle; must be one "
-            "turn, 360 deg\n"
-            "circular_error: small.ngc: section 'square' is no circle\n"
-            "circular_error: small.ngc: section 'line' is no circle\n");
+            "circular_error: small.ngc: section 'half' covers 180 deg of the circle; must be a "
+            "full circle, 360 deg\ncircular_error: small.ngc: section 'square' is not a "
+            "circle\ncircular_error: small.ngc: section 'line' is not a circle\n");
   EXPECT_EQ(said("radial_error_max", "sections = [\"skew\"]"),
-            "radial_error_max: small.ngc: section 'skew' lies in none of XY, YZ, ZX\n");
+            "radial_error_max: small.ngc: section 'skew' is in none of XY, YZ, ZX\n");
   EXPECT_EQ(said("reversal_spike", "axis = \"Z\"\nsections = [\"ccw\"]"),
             "reversal_spike: small.ngc: section 'ccw' is a circle in XY, where Z does not move\n");
   EXPECT_EQ(said("circle_squareness", "sections = [\"ccw\", \"ccw\"]"),
-            "circle_squareness: small.ngc: sections 'ccw' and 'ccw' turn in one direction; must be "
-            "one clockwise, one counter-clockwise\n");
+            "circle_squareness: small.ngc: sections 'ccw' and 'ccw' have the same direction; must "
+            "be one clockwise and one counter-clockwise\n");
   EXPECT_EQ(said("mean_bidirectional_radial_error", "sections = [\"ccw\", \"small\"]"),
             "mean_bidirectional_radial_error: small.ngc: sections 'ccw' and 'small' are not the "
             "same circle\n");

@@ -86,13 +86,12 @@ TEST(PlanCutting, shanks_that_rub_are_reported_with_their_depth) {
   };
   EXPECT_EQ(notes_of(slots({2.0}), tool), Notes{});
   EXPECT_EQ(notes_of(slots({2.0, 4.0}), tool), Notes{}) << "the shank is in the first slot";
-  EXPECT_EQ(
-      notes_of(slots({2.5}), tool),
-      Notes{"small.ngc:6: warning: case cut: tool 1 cuts 2.5 mm deep with flutes of 2 mm, here "
-            "the most: its shank rubs, and no force of that is computed"});
+  EXPECT_EQ(notes_of(slots({2.5}), tool),
+            Notes{"small.ngc:6: warning: case cut: tool 1 cuts 2.5 mm deep, at most here, with "
+                  "flutes of 2 mm: its shank rubs, and that force is not computed"});
   EXPECT_EQ(notes_of(slots({2.0, 5.0}), tool),
-            Notes{"small.ngc:9: warning: case cut: tool 1 cuts 3 mm deep with flutes of 2 mm, here "
-                  "the most: its shank rubs, and no force of that is computed"});
+            Notes{"small.ngc:9: warning: case cut: tool 1 cuts 3 mm deep, at most here, with "
+                  "flutes of 2 mm: its shank rubs, and that force is not computed"});
 }
 
 // The tip is programmed in the workpiece as it stands with the table at zero.
@@ -102,11 +101,11 @@ TEST(CuttingErrors, tell_of_stock_that_turns_without_its_program) {
   const auto message = [&](const std::string& keys) {
     return message_of(program, kTool + kBlock + kSteel + one_case("cut", keys));
   };
-  EXPECT_NE(message(turned).find(
-                ": case cut: a part is cut from [[part.stock]] in the coordinates of its program; "
-                "with tool-centre-point control (small.ngc:4) these do not turn with the "
-                "work_offset of a rotary axis: leave that at 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      message(turned).find(": case cut: a part is cut from [[part.stock]] in the coordinates of "
+                           "its program; under tool-centre-point control (small.ngc:4) these do "
+                           "not rotate with the work_offset of a rotary axis: set that to 0\n"),
+      std::string::npos)
       << message(turned);
   EXPECT_EQ(message(turned + "cutting = false\n"), "") << "in air";
   EXPECT_EQ(message("work_offset = { X_mm = 5.0 }\n"), "");
@@ -115,18 +114,18 @@ TEST(CuttingErrors, tell_of_stock_that_turns_without_its_program) {
 TEST(CuttingErrors, tell_what_is_missing) {
   const std::string all = kTool + kBlock + kSteel + one_case("cut");
   EXPECT_EQ(message_of("T1 M6\nG43 H1\nG0 X-30\nZ-2\nG1 X30 F100\nM30\n", all),
-            "5: cuts while the spindle stands still; start it (M3 S...)\n");
+            "5: cuts with the spindle stopped; start it (M3 S...)\n");
   EXPECT_EQ(message_of("T2 M6\nG43 H2\nM3 S1000\nG0 X-30\nZ-2\nG1 X30 F100\nM30\n",
                        "[[program.tool]]\nnumber = 2\nlength_mm = 110.0\n" + kBlock + kSteel +
                            one_case("cut")),
             "6: tool 2 is in the stock; program.tool must give it a diameter_mm above 0\n");
-  EXPECT_NE(message_of("T1 M6\nG43 H1\nM3 S1000\nG0 X-30\nZ2\nG1 X30 F100\nM30\n", all)
-                .find("small.ngc never touches the stock: tips are fed within X-30 Y0 Z2 to X30 "
-                      "Y0 Z2, the stock is within X-20 Y-20 Z-20 to X20 Y20 Z0 (mm, work "
-                      "coordinates)\n"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of("T1 M6\nG43 H1\nM3 S1000\nG0 X-30\nZ2\nG1 X30 F100\nM30\n", all)
+          .find("small.ngc never touches the stock: the tools feed within X-30 Y0 Z2 to X30 Y0 Z2, "
+                "the stock is within X-20 Y-20 Z-20 to X20 Y20 Z0 (mm, work coordinates)\n"),
+      std::string::npos);
   EXPECT_NE(message_of(kSlot, kTool + kSteel + one_case("cut"))
-                .find("cutting: needs the raw part: [[part.stock]] with a box or a cylinder\n"),
+                .find("cutting: needs stock: [[part.stock]] with a box or a cylinder\n"),
             std::string::npos);
   EXPECT_NE(
       message_of(kSlot, kTool + kBlock + "[cutting]\nmaterial = \"42CrMo\"\n" + one_case("cut"))
@@ -134,7 +133,7 @@ TEST(CuttingErrors, tell_what_is_missing) {
                 "'42CrMo4'?\n"),
       std::string::npos);
   EXPECT_NE(message_of(kSlot, kTool + one_case("cut", "cutting = true\n"))
-                .find("case[0].cutting = true; needs a table [cutting] of the scenario\n"),
+                .find("case[0].cutting = true; needs the table [cutting]\n"),
             std::string::npos);
   EXPECT_NE(
       message_of(kSlot, kTool + kBlock + kSteel + one_case("cut", "cutting = false\nwear = 2.0\n"))

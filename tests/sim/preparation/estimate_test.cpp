@@ -45,10 +45,9 @@ TEST(RunEstimate, TakesFourFifthsOfTheMemoryAndNoMore) {
   RunEstimate takes = two_hours(of);
   takes.memory = 8e9;
   EXPECT_EQ(refusal([&] { refuse_too_large(of, takes, 10.001e9); }), "");
-  EXPECT_EQ(
-      refusal([&] { refuse_too_large(of, takes, 9.999e9); }),
-      "small.ngc: error: takes 2 h in 2 cases and 7.2e+06 rows: 8 GB of memory; must be <= the "
-      "8 GB that there are; run fewer cases, or record fewer rows: record.period_ms = 1");
+  EXPECT_EQ(refusal([&] { refuse_too_large(of, takes, 9.999e9); }),
+            "small.ngc: error: takes 2 h in 2 cases and 7.2e+06 rows: 8 GB of memory; must be <= "
+            "the 8 GB available; run fewer cases, or record fewer rows: record.period_ms = 1");
 }
 
 TEST(RunEstimate, KeepsToTheSizeThatTheScenarioAllows) {
@@ -70,11 +69,11 @@ TEST(RunEstimate, TakesTwiceTheFileOfTheDisk) {
   takes.file = 1e9;
   EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", kCopiesOfRun, 2.0e9); }), "");
   EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", kCopiesOfRun, 1.99e9); }),
-            "small.ngc: error: takes 2 GB of the disk while it runs; out has 2 GB: lower "
-            "record.max_size_GB = 8 or name another file (--output)");
+            "small.ngc: error: takes 2 GB of disk space while running; out has 2 GB free: lower "
+            "record.max_size_GB = 8 or choose another file (--output)");
   EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", 5.0, 4.9e9); }),
-            "small.ngc: error: takes 5 GB of the disk while it runs; out has 4.9 GB: lower "
-            "record.max_size_GB = 8 or name another file (--output)");
+            "small.ngc: error: takes 5 GB of disk space while running; out has 4.9 GB free: lower "
+            "record.max_size_GB = 8 or choose another file (--output)");
 }
 
 // The path of the cutters is held as far as it comes near probes.

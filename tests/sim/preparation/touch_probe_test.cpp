@@ -124,7 +124,7 @@ TEST(TouchProbe, OfAStrategyThatRewritesIsRefused) {
                      "[errors.e]\nEC0Y = \"10 urad\"\n[[case]]\nname = \"g\"\n[[case.strategy]]\n"
                      "type = \"gcode\"\nmodel = \"e\"\n"),
             "touch.toml:7:8: error: case g: strategy gcode rewrites the program, which has probing "
-            "moves (line 5); measure with another strategy");
+            "moves (line 5); use another strategy for measuring");
 }
 
 TEST(TouchProbe, SwitchesBehindTheContactByPreTravelAndLobes) {
@@ -233,12 +233,11 @@ TEST(TouchProbe, KnowsALengthToTheEndOfTheBallAndAStylusThatLeans) {
 
 TEST(TouchProbe, ThatCannotBeginIsRefusedWhereItStands) {
   EXPECT_EQ(fault_of("G0 Z0\nG0 X-15\nG38.2 X0\n", kSphere),
-            "touch.ngc:6:1: error: G38.2: the probe touches before the move begins");
+            "touch.ngc:6:1: error: G38.2: the probe is in contact before the move starts");
   EXPECT_EQ(fault_of("G0 Z0\nG38.4 X0\n", kSphere),
-            "touch.ngc:5:1: error: G38.4: the probe touches nothing where the move begins");
+            "touch.ngc:5:1: error: G38.4: the probe is not in contact where the move starts");
   EXPECT_EQ(fault_of("G0 Z30\nG38.2 X40\n", kSphere),
-            "touch.ngc:5:1: error: G38.2: the probe touches nothing on the way to the end "
-            "of the move");
+            "touch.ngc:5:1: error: G38.2: the probe touches nothing before the end of the move");
 }
 
 TEST(TouchProbe, ThatIsDescribedWronglyIsRefused) {
@@ -248,7 +247,7 @@ TEST(TouchProbe, ThatIsDescribedWronglyIsRefused) {
     return text.substr(text.find(": error: ") + 9);
   };
   EXPECT_EQ(message(""),
-            "touch_probe: meets nothing: give a [[touch_probe.sphere]], plane or bore, a "
+            "touch_probe: has nothing to meet: add a [[touch_probe.sphere]], plane or bore, a "
             "[[part.stock]] or part.stl");
   EXPECT_EQ(message("workpiece = \"stock\"\n" + kSphere),
             "touch_probe.workpiece = \"stock\"; needs a [[part.stock]]");

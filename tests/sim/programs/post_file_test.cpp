@@ -46,8 +46,8 @@ TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
   EXPECT_EQ(post_processed.warnings[0].message,
             "tool axis has length 1.00199; taken as a unit vector");
   EXPECT_EQ(post_processed.warnings[1].message,
-            "on the way here the axes lead the tip 0.156 mm off the straight way; only --classical "
-            "inserts no points");
+            "between the previous location and this one the TCP leaves the straight line by 0.156 "
+            "mm; only --classical inserts no points");
 
   PostRequest table32 = request_of("table32.csv");
   table32.options.feed = 300 * mm_per_min;
@@ -98,8 +98,8 @@ TEST(PostFile, HeaderSaysWhatTheNcMustKnow) {
   const std::string program = post_file(request).program;
   EXPECT_TRUE(program.starts_with(
       "(servomill post: table32.csv for dual rotary table C' A' after Li 2024)\n"
-      "(tip within 2.5 um, tool axis within 50 urad of the straight way)\n"
-      "(part zero [G55]: X10 Y-20 Z30.5 in the machine, rotary axes at zero)\n"
+      "(TCP within 2.5 um, tool axis within 50 urad of the straight path)\n"
+      "(work offset [G55]: X10 Y-20 Z30.5 in the machine, rotary axes at zero)\n"
       "(tool 1: length 110 mm)\n"
       "G21 G90 G91.1 G94 G17 G40 G80 G92.1\nT1 M6\nG55\nG43 H1\nG64 P0.00125\nG0 X"))
       << program.substr(0, 400);
@@ -142,13 +142,12 @@ class Locations {
 
 const std::string kTilted = "FEDRAT/600\nRAPID\nGOTO/0,0,50,0,0.6,0.8\nGOTO/5,0,50\n";
 const std::string kNoTool =
-    "no tool is loaded before this location, and neither its number nor its length is assumed; add "
-    "LOADTL/N before it or --tool N, and --tool-length or --tools (a spindle without tool: --tool "
-    "0 --tool-length 0)";
+    "no tool is loaded before this location; add LOADTL/N before it or --tool N, and --tool-length "
+    "or --tools (an empty spindle: --tool 0 --tool-length 0)";
 std::string no_length_of(int tool) {
   return fmt::format(
-      "the length of tool {} is not given; add --tool-length \"110 mm\" or --tools TABLE (0 is a "
-      "length, too)",
+      "the length of tool {} is unknown; add --tool-length \"110 mm\" or --tools TABLE (0 is "
+      "allowed)",
       tool);
 }
 
@@ -156,8 +155,8 @@ std::string no_length_of(int tool) {
 // table turns.
 TEST(PostFile, PlaceOfThePartIsNotAssumed) {
   const std::string no_place =
-      ": error: the place of the part is not given, and the rotary axes of this machine turn about "
-      "points of their own; add --work-offset X,Y,Z (0,0,0 is a place, too)";
+      ": error: the work offset is unknown, and the rotary axes of this machine rotate about fixed "
+      "points; add --work-offset X,Y,Z (0,0,0 is allowed)";
   for (const char* machine :
        {"generic_head_table_bc", "generic_trunnion_ac", "generic_head_head_ca"}) {
     Locations locations("LOADTL/1\n" + kTilted, machine);
@@ -193,9 +192,9 @@ TEST(PostFile, LengthOfTheToolIsNotAssumed) {
       request.has_no_tool = true;
       EXPECT_EQ(fault_of(request), locations.at(3) + kNoTool) << machine;
       request.tool_length = 0.1;
-      EXPECT_EQ(fault_of(request),
-                "--tool 0: error: without a tool there is no length; add --tool N, or "
-                "--tool-length 0");
+      EXPECT_EQ(
+          fault_of(request),
+          "--tool 0: error: an empty spindle has no tool length; use --tool N, or --tool-length 0");
       request.tool_length = 0.0;  // said on purpose
       EXPECT_EQ(fault_of(request), "post_processed") << machine;
       request.has_no_tool = false;

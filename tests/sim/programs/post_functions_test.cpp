@@ -47,12 +47,12 @@ TEST(PostFunctions, ToolsComeInTheirOrderAtTheHeightToRetractTo) {
   EXPECT_TRUE(functions.changes_tool());
   PostState now = retracted();
   EXPECT_EQ(functions.act(block(MoveKind::tool, 2), now, false),
-            "tool 2 is loaded, which the cutter locations do not call for");
+            "tool 2 is loaded, which the cutter locations do not call");
   EXPECT_EQ(functions.act(block(MoveKind::tool, 1), now, false), "");
   EXPECT_EQ(functions.arrive(now), "tool 2 is not loaded");
   now.Q[2] -= 1e-6;
   EXPECT_EQ(functions.act(block(MoveKind::tool, 2), now, false),
-            "a tool is changed below the height to retract to");
+            "the tool is changed below the retract height");
 }
 
 TEST(PostFunctions, ABlockThatStopsTheSpindleAndChangesTheToolIsRefused) {
@@ -63,7 +63,7 @@ TEST(PostFunctions, ABlockThatStopsTheSpindleAndChangesTheToolIsRefused) {
   EXPECT_EQ(functions.act(block(MoveKind::spindle, 0, 60.0, 1), now, false), "");
   EXPECT_EQ(functions.act(block(MoveKind::spindle), now, false), "");
   EXPECT_EQ(functions.act(block(MoveKind::tool, 1), now, false),
-            "a tool is changed while the spindle or the coolant is on");
+            "the tool is changed while the spindle or the coolant is on");
   EXPECT_EQ(functions.act(block(MoveKind::end), now, false),
             "the program ends with the spindle on");
 }

@@ -250,9 +250,9 @@ TEST(VerifyPost, DangerousWaysToTheSamePlacesAreFound) {
   EXPECT_EQ(edited([&](auto& lines) {
               lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 X")));
             }),
-            "p.cls:6: error: not as verified: line 12 of the program, 'G0 X32.9588272 "
-            "Y10.9862757 Z34.3696194 A-18.4111219 C-71.5650512': the tool moves below the "
-            "height to retract to, but not along its axis");
+            "p.cls:6: error: not as verified: line 12 of the program, 'G0 X32.9588272 Y10.9862757 "
+            "Z34.3696194 A-18.4111219 C-71.5650512': the tool moves below the retract height, but "
+            "not along its axis");
   // rotary axes after the descent
   EXPECT_NE(edited([&](auto& lines) {
               lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 A")));
@@ -303,8 +303,7 @@ TEST(VerifyPost, DescentUnderTipControlMovesNeitherXNorY) {
   ASSERT_NE(at, lines.end());
   lines.erase(at);
   const std::string fault = fault_of(w, joined(lines));
-  EXPECT_TRUE(
-      fault.ends_with("the tool moves below the height to retract to, but not along its axis"))
+  EXPECT_TRUE(fault.ends_with("the tool moves below the retract height, but not along its axis"))
       << fault;
 }
 
@@ -322,7 +321,7 @@ TEST(VerifyPost, RotaryAxesAtZeroAreNotAssumed) {
   mutant.erase(mutant.find("G54 G0 A0 C0\n"), 13);
   EXPECT_EQ(fault_of(w, mutant),
             "p.cls:3: error: not as verified: line 8 of the program, 'G0 X0 Y0 Z30 A0 C0': a "
-            "rotary axis moves below the height to retract to");
+            "rotary axis moves below the retract height");
 }
 
 TEST(VerifyPost, SaysWhatWasCompared) {

@@ -52,10 +52,9 @@ TEST_F(Columns, ReadsHeadingsAsLogsHaveThem) {
 }
 
 TEST_F(Columns, SaysWhereATitleStandsInFrontOfTheNames) {
-  EXPECT_EQ(
-      faults("ISO 230-2, axis Y\nX_mm;deviation_um\n1;2\n3;4\n"),
-      "no row has the 2 fields of the line of names \"ISO 230-2 axis Y\"; lines in front of the "
-      "names begin with #\n");
+  EXPECT_EQ(faults("ISO 230-2, axis Y\nX_mm;deviation_um\n1;2\n3;4\n"),
+            "no row has the 2 fields of the header \"ISO 230-2 axis Y\"; lines before the "
+            "the header must start with #\n");
 }
 
 TEST_F(Columns, NamesLineAndColumnOfTextAmongNumbers) {
@@ -70,10 +69,10 @@ TEST_F(Columns, NamesLineAndColumnOfTextAmongNumbers) {
 TEST_F(Columns, RefusesRowsOfAnotherLengthAndNamesThatAppearTwice) {
   EXPECT_EQ(faults("X_mm,X_um,deviation_um\n1,2\n1,2,3,4\n"),
             "column X_um appears twice\n"
-            "has 2 fields; the line of names has 3\n"
-            "has 4 fields; the line of names has 3\n");
-  EXPECT_EQ(faults("# nothing\n"), "is empty; a line of names is expected\n");
-  EXPECT_EQ(faults("X_mm,deviation_um\n"), "has no readings under its line of names\n");
+            "has 2 fields; the header has 3\n"
+            "has 4 fields; the header has 3\n");
+  EXPECT_EQ(faults("# nothing\n"), "is empty; expected a header line\n");
+  EXPECT_EQ(faults("X_mm,deviation_um\n"), "has no readings after its header\n");
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST_F(ReadReadings, ReadsTheSurfaceOfAPart) {
   EXPECT_FALSE(group.is_surface);
   EXPECT_NEAR((group.rows.at(0).normal - Eigen::Vector3d(0.0, 0.6, 0.8)).norm(), 0.0, 1e-15);
   files_.write("p.csv", "X_mm,Y_mm,Z_mm,nx,ny,nz,deviation_um\n1,2,3,0,0.6,0.6,4\n");
-  EXPECT_EQ(faults(text), "nx, ny, nz have the length 0.849; a normal has 1\n");
+  EXPECT_EQ(faults(text), "nx, ny, nz have length 0.849; a normal must have length 1\n");
 }
 
 TEST_F(ReadReadings, DeadPathsAreThoseOfLasers) {
@@ -163,7 +163,7 @@ TEST_F(ReadReadings, DeadPathsAreThoseOfLasers) {
   angle.replace(angle.find("positioning"), 11, "straightness");
   angle += "direction = \"Y\"\n";
   EXPECT_EQ(faults(angle),
-            "group[0].dead_path = {...}; must be one of a laser that measures positions\n");
+            "group[0].dead_path = {...}; must be a group of a laser that measures positions\n");
 }
 
 TEST_F(ReadReadings, WantsToKnowWhereEveryAxisStood) {
@@ -190,7 +190,7 @@ TEST_F(ReadReadings, NamesAllThatIsWrongWithRowsAtOnce) {
             "X = 1500 mm is outside the travel of the machine, 0 to 1000 mm\n"
             "deviation of 7 mm; must be at most 5 mm: check unit and sign of target and position\n"
             "deviation_um is empty\n"
-            "temperature_degC = 68; must lie between -10 and 50 degC (is it in Fahrenheit?)\n");
+            "temperature_degC = 68; must be between -10 and 50 degC (is it in Fahrenheit?)\n");
 }
 
 TEST_F(ReadReadings, RefusesColumnsThatAKindDoesNotHaveAndUnitsOfAnotherQuantity) {
@@ -208,8 +208,8 @@ TEST_F(ReadReadings, RefusesColumnsThatAKindDoesNotHaveAndUnitsOfAnotherQuantity
 TEST_F(ReadReadings, RefusesATargetTwiceInARun) {
   files_.write("x.csv", "target_mm,run,deviation_um\n0,1,1\n100,1,2\n0,1,1\n0,2,1\n");
   EXPECT_EQ(faults(kLaser),
-            "stands at the target of line 2 again, in run 1 and the same direction; number the "
-            "runs, or leave one of the two out\n");
+            "repeats the target of line 2, run 1 and direction; number the runs, or remove one of "
+            "the two\n");
   files_.write("x.csv", "target_mm,deviation_um\n0,1\n100,2\n0,1\n");
   EXPECT_EQ(read(kLaser).groups.at(0).rows.size(), 3u);
 }
@@ -217,8 +217,8 @@ TEST_F(ReadReadings, RefusesATargetTwiceInARun) {
 TEST_F(ReadReadings, NamesTheRunThatIsMissing) {
   files_.write("x.csv", "direction,target_mm,p1,p2\nforward,10,10.001,\n");
   EXPECT_EQ(faults(kLaser),
-            "run 2 is missing at this target; a row for each reading (columns target, run, "
-            "position) may leave readings out\n");
+            "run 2 is missing at this target; use one row per reading (columns target, run, "
+            "position) to omit readings\n");
 }
 
 TEST_F(ReadReadings, SharesTheScaleOfAnInstrument) {
@@ -248,7 +248,7 @@ TEST_F(ReadReadings, RefusesAxesThatTheMachineLacksAndDirectionsOfTheAxisItself)
             "group[0].direction = \"X\"; is that of the axis itself: kind = \"positioning\"\n");
   EXPECT_EQ(faults("[[group]]\nkind = \"angle\"\naxis = \"C\"\ndirection = \"A\"\n"
                    "readings = \"x.csv\"\npoint_mm = [0, 0, 0]\nuncertainty_urad = 1\n"),
-            "group[0].axis = \"C\"; is an axis that the machine lacks\n");
+            "group[0].axis = \"C\"; is not an axis of the machine\n");
 }
 
 }  // namespace

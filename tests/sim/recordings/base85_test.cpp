@@ -44,7 +44,7 @@ TEST(Base85, RefusesWhatIsNone) {
   EXPECT_TRUE(base85_doubles("~~~~~00000", why).empty());
   EXPECT_EQ(why, "five digits of base 85 exceed four bytes");
   EXPECT_TRUE(base85_doubles("0000\"", why).empty());
-  EXPECT_EQ(why, "byte 34 is no digit of base 85");
+  EXPECT_EQ(why, "byte 34 is not a base-85 digit");
 }
 
 }  // namespace

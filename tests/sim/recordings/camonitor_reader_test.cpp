@@ -46,7 +46,7 @@ TEST(Camonitor, WhatIsNoNumberOrHasNoTimeIsNoted) {
   EXPECT_EQ(recording.channels[0].samples, (Values{1.5}));
   EXPECT_EQ(recording.notes,
             (std::vector<std::string>{
-                "'new': 1 line without a time: left out", "'ax:pos': 1 line repeated",
+                "'new': 1 line without a time: skipped", "'ax:pos': 1 line repeated",
                 "'mode': a text or an array: skipped", "'wave': a text or an array: skipped",
                 "2 messages of lost or missing connections (***): values may be missing there",
                 "time 0 is 2024-02-29 23:59:59.500000"}));
@@ -56,18 +56,18 @@ TEST(Camonitor, BadInput) {
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-02-29 23:59:58.500000 1\n"),
             "a.txt:2: error: time runs backwards: -1 s after 0 s");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-02-29 23:59:59.500000 2\n"),
-            "a.txt:2: error: time 0 s comes twice");
+            "a.txt:2: error: time 0 s appears twice");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-02-30 00:00:00 2\n"),
-            "a.txt:2:8: error: '2024-02-30 00:00:00' is no date and time");
+            "a.txt:2:8: error: '2024-02-30 00:00:00' is not a date and time");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-03-01 00:00:00 off\n"),
-            "a.txt:2:28: error: 'off' is no number");
+            "a.txt:2:28: error: 'off' is not a number");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-03-01 00:00:00 1 2\n"),
-            "a.txt:2:30: error: '2' behind the value is no status with severity");
+            "a.txt:2:30: error: '2' after the value is not a status with severity");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-03-01\n"),
-            "a.txt:2: error: is no line of variable, date, time and value");
+            "a.txt:2: error: is not a line of variable, date, time and value");
   EXPECT_EQ(refusal(kFirst + "ax:pos 2024-03-01 00:00:00 1"),
-            "a.txt:2: error: the file ends within a line: it is cut off");
-  EXPECT_EQ(refusal("mode 2024-03-01 00:00:00 Idle\n"), "a.txt: error: holds no channel");
+            "a.txt:2: error: the file ends within a line: it is truncated");
+  EXPECT_EQ(refusal("mode 2024-03-01 00:00:00 Idle\n"), "a.txt: error: contains no channel");
 }
 
 TEST(Camonitor, OtherTextsAreNone) {

@@ -24,7 +24,7 @@ TEST(CheckedRows, EqualTimesAreOneBase) {
   append_time(base, 1.0, {"a", 3});
   EXPECT_EQ(shared_base(recording, base), 1u);
   EXPECT_EQ(recording.bases[1].name, "time 2");
-  EXPECT_EQ(fault_messages([&] { append_time(base, 1.0, {"a", 4}); }), "time 1 s comes twice\n");
+  EXPECT_EQ(fault_messages([&] { append_time(base, 1.0, {"a", 4}); }), "time 1 s appears twice\n");
 }
 
 }  // namespace

@@ -77,18 +77,18 @@ TEST(CsvReader, RefusesWithLineAndColumn) {
   EXPECT_EQ(refusal("t,x\n0,1\n1,2,3\n2,3\n"), "a.csv:3: error: 3 fields in a table of 2 columns");
   EXPECT_EQ(
       refusal("t,x,y\n0,1,2\n1,2,3\n2,"),
-      "a.csv:4: error: 2 fields in a table of 3 columns, and the file ends here: it is cut off");
-  EXPECT_EQ(refusal("t,x\n0,1\n1,abc\n2,3\n"), "a.csv:3:3: error: 'abc' is no number");
-  EXPECT_EQ(refusal("t,x\n0,abc\n1,2\n2,3\n"), "a.csv:2:3: error: 'abc' is no number");
+      "a.csv:4: error: 2 fields in a table of 3 columns, and the file ends here: it is truncated");
+  EXPECT_EQ(refusal("t,x\n0,1\n1,abc\n2,3\n"), "a.csv:3:3: error: 'abc' is not a number");
+  EXPECT_EQ(refusal("t,x\n0,abc\n1,2\n2,3\n"), "a.csv:2:3: error: 'abc' is not a number");
   EXPECT_EQ(refusal("t,x\n0,1\n2,2\n1,3\n"), "a.csv:4: error: time runs backwards: 1 s after 2 s");
-  EXPECT_EQ(refusal("t,x\n0,1\n1,2\n1,3\n"), "a.csv:4: error: time 1 s comes twice");
+  EXPECT_EQ(refusal("t,x\n0,1\n1,2\n1,3\n"), "a.csv:4: error: time 1 s appears twice");
   EXPECT_EQ(refusal("t,x\n0,1\n,2\n1,3\n"), "a.csv:3: error: has no time");
   EXPECT_EQ(refusal("t,x,x\n0,1,2\n"), "a.csv:1:5: error: columns 2 and 3 are both called 'x'");
   EXPECT_EQ(refusal("t,x\n0,1\n1,1e400\n"), "a.csv:3:3: error: '1e400' is infinite");
   EXPECT_EQ(refusal("t [mm],x\n0,1\n"),
-            "a.csv:1:1: error: 'mm' is no unit of time; known are s, ms, us, ns, min and h");
-  EXPECT_EQ(refusal("hello\nworld\n"), "a.csv: error: holds no row of numbers");
-  EXPECT_EQ(refusal("t\n1\n2\n"), "a.csv: error: holds no channel");
+            "a.csv:1:1: error: 'mm' is not a unit of time; known are s, ms, us, ns, min and h");
+  EXPECT_EQ(refusal("hello\nworld\n"), "a.csv: error: contains no row of numbers");
+  EXPECT_EQ(refusal("t\n1\n2\n"), "a.csv: error: contains no channel");
 }
 
 }  // namespace

@@ -54,20 +54,20 @@ TEST(Halscope, DecimalCommaAndOtherUnit) {
 TEST(Halscope, BadInput) {
   const std::string head = "Sampling period is 1000 nSec\n";
   EXPECT_EQ(scope_refusal("Sampling period is 1000"),
-            "a.log:1: error: the sampling period is cut off");
+            "a.log:1: error: the sampling period is truncated");
   EXPECT_EQ(scope_refusal("Sampling period is 0 nSec\nx 1\n"),
             "a.log:1:20: error: the sampling period must be > 0");
   EXPECT_EQ(scope_refusal("Sampling period is 9 mm\nx 1\n"),
-            "a.log:1:22: error: 'mm' is no unit of time; known are s, ms, us, ns, min and h");
-  EXPECT_EQ(scope_refusal(head), "a.log: error: holds no channel");
+            "a.log:1:22: error: 'mm' is not a unit of time; known are s, ms, us, ns, min and h");
+  EXPECT_EQ(scope_refusal(head), "a.log: error: contains no channel");
   EXPECT_EQ(scope_refusal(head + "x\n"), "a.log:2: error: a pin without its value");
   EXPECT_EQ(scope_refusal(head + "x 1 y 2\nx 1\nx 1 y 2\n"),
             "a.log:3: error: 2 fields in a line, the first one has 4");
   EXPECT_EQ(scope_refusal(head + "x 1 y 2\nx 1 y"),
             "a.log:3: error: 3 fields in a line, the first one has 4, and the file ends here: it "
-            "is cut off");
+            "is truncated");
   EXPECT_EQ(scope_refusal(head + "x 1\ny 1\n"), "a.log:3:1: error: pin 'y' in place of 'x'");
-  EXPECT_EQ(scope_refusal(head + "x 1\nx on\n"), "a.log:3:3: error: 'on' is no number");
+  EXPECT_EQ(scope_refusal(head + "x 1\nx on\n"), "a.log:3:3: error: 'on' is not a number");
   EXPECT_EQ(scope_refusal(head + "x 1\nx inf\n"), "a.log:3:3: error: 'inf' is infinite");
   EXPECT_EQ(scope_refusal(head + "x 1 x 2\n"),
             "a.log: error: channels 1 and 2 are both called 'x'");
@@ -92,14 +92,14 @@ TEST(Halsampler, TablesWithHeadingsAndPlainColumnsAreOthers) {
 
 TEST(Halsampler, BadInput) {
   EXPECT_EQ(sampler_refusal("0 1\n1 2\n1 3\n"),
-            "a.txt:3: error: sample number 1 after 1; must ascend");
+            "a.txt:3: error: sample number 1 after 1; must increase");
   EXPECT_EQ(sampler_refusal("0 1\n1 2\n2\n3 4\n5 6\n"),
             "a.txt:3: error: 1 field in a line, the "
             "first one has 2");
   EXPECT_EQ(sampler_refusal("0.5 1\noverrun\n0.25 2\n"),
             "a.txt:2: error: samples were lost here, and rows without sample numbers do not say "
             "how many: record with halsampler -t");
-  EXPECT_EQ(sampler_refusal("0 1\n1 2\n2 on\n"), "a.txt:3:3: error: 'on' is no number");
+  EXPECT_EQ(sampler_refusal("0 1\n1 2\n2 on\n"), "a.txt:3:3: error: 'on' is not a number");
 }
 
 }  // namespace

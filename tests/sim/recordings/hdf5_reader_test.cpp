@@ -61,7 +61,7 @@ TEST_F(Hdf5Reader, FileWithoutSignalsIsRefused) {
     file.commit();
   }
   EXPECT_EQ(fault_messages([&] { read_hdf5(path("a.h5")); }),
-            "holds no group with a dataset 'time' or 'frequency': no signals\n");
+            "contains no group with a dataset 'time' or 'frequency': no signals\n");
 }
 
 TEST_F(Hdf5Reader, RecordingWithAChannelOfAnotherLengthIsRefused) {

@@ -75,7 +75,7 @@ TEST_F(MatReader, ArraysOfAnyNumbersAreChannels) {
             (std::vector<std::string>{
                 "'kp' = 160.25", "'word' is a text: skipped",
                 "'other' has 2 values, the time 't' has 3: skipped",
-                "the file has no unit of its time: taken for s; --time-unit says otherwise"}));
+                "the file has no unit of its time: taken as s; set another with --time-unit"}));
   EXPECT_EQ(read_recording(path("a.mat"), "ms").bases.at(0).values[1], 0.5e-3);
 }
 
@@ -94,7 +94,7 @@ TEST_F(MatReader, TimeThatRunsBackwardsIsRefused) {
   write("x", MAT_C_DOUBLE, MAT_T_DOUBLE, std::array{1.0, 2.0, 3.0});
   close();
   EXPECT_EQ(fault_messages([&] { read_recording(path("a.mat")); }),
-            "time: value 3 is 0.5 s after 1 s; must ascend\n");
+            "time: value 3 is 0.5 s after 1 s; must increase\n");
 }
 
 TEST_F(MatReader, CutFilesAreRefused) {
@@ -111,7 +111,7 @@ TEST_F(MatReader, CutFilesAreRefused) {
       fs::resize_file(path("b.mat"),
                       static_cast<std::uintmax_t>(static_cast<double>(size) * share));
       EXPECT_EQ(fault_messages([&] { read_recording(path("b.mat")); }),
-                "is cut off: the array at byte 128 is longer than the file\n");
+                "is truncated: the array at byte 128 is longer than the file\n");
     }
   }
 }

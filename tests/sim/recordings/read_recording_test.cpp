@@ -36,11 +36,11 @@ TEST_F(ReadRecording, ContentDecidesNotTheName) {
 TEST_F(ReadRecording, OtherKindsAreNamed) {
   EXPECT_EQ(refusal(""), "is empty\n");
   EXPECT_EQ(refusal("PK\x03\x04zip"),
-            "is no recording that can be read: it is a zip archive or a spreadsheet; export it as "
+            "cannot be read as a recording: it is a zip archive or a spreadsheet; export it as "
             "CSV\n");
   EXPECT_EQ(refusal("\xFF\xFEt"),
-            "is no recording that can be read: it is a text in UTF-16; save it as UTF-8\n");
-  EXPECT_TRUE(refusal("only words\n").starts_with("is no recording of a known kind ("));
+            "cannot be read as a recording: it is a text in UTF-16; save it as UTF-8\n");
+  EXPECT_TRUE(refusal("only words\n").starts_with("is not a recording of a known format ("));
 }
 
 }  // namespace

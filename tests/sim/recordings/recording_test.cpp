@@ -27,13 +27,13 @@ TEST(Check, LawsOfARecording) {
   EXPECT_EQ(refusal(wrong), "channel 'x' is infinite at time 0.5 s\n");
   wrong = right();
   wrong.bases[0].values[2] = 0.25;
-  EXPECT_EQ(refusal(wrong), "time: value 3 is 0.25 s after 0.5 s; must ascend\n");
+  EXPECT_EQ(refusal(wrong), "time: value 3 is 0.25 s after 0.5 s; must increase\n");
   wrong = right();
   wrong.channels.push_back(wrong.channels[0]);
   EXPECT_EQ(refusal(wrong), "channels 1 and 2 are both called 'x'\n");
   wrong = right();
   wrong.channels.clear();
-  EXPECT_EQ(refusal(wrong), "holds no channel\n");
+  EXPECT_EQ(refusal(wrong), "contains no channel\n");
   wrong = right();
   wrong.bases[0].values[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal(wrong), "time: value 1 is not finite\n");
@@ -42,10 +42,10 @@ TEST(Check, LawsOfARecording) {
 TEST(TimeUnit, IsForTimesWithoutOneOnly) {
   Recording recording = right();
   EXPECT_EQ(fault_messages([&] { set_time_unit(recording, "us"); }),
-            "has no time without a unit; --time-unit is not for it\n");
+            "has a unit for every time; --time-unit does not apply\n");
   recording.bases[0].unit_known = false;
   EXPECT_EQ(fault_messages([&] { set_time_unit(recording, "mm"); }),
-            "'mm' is no unit of time; known are s, ms, us, ns, min and h\n");
+            "'mm' is not a unit of time; known are s, ms, us, ns, min and h\n");
   set_time_unit(recording, "ms");
   EXPECT_EQ(recording.bases[0].values[1], 0.5e-3);
   recording = right();
@@ -53,7 +53,7 @@ TEST(TimeUnit, IsForTimesWithoutOneOnly) {
   set_time_unit(recording, "");
   EXPECT_EQ(recording.bases[0].values, right().bases[0].values);
   EXPECT_EQ(recording.notes.at(0),
-            "the file has no unit of its time: taken for s; --time-unit says otherwise");
+            "the file has no unit of its time: taken as s; set another with --time-unit");
 }
 
 }  // namespace

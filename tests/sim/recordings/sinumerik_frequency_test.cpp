@@ -91,7 +91,7 @@ TEST_F(SinumerikFile, FilesThatAreCutOrDamagedAreRefused) {
     const auto size = static_cast<std::size_t>(share * static_cast<double>(text.size()));
     EXPECT_TRUE(fault_messages([&] {
                   parse_sinumerik_frequency(text.substr(0, size), "a.xml");
-                }).starts_with("is no complete XML: "))
+                }).starts_with("is not complete XML: "))
         << share;
   }
   std::string shorter = text;
@@ -105,7 +105,7 @@ TEST(SinumerikFrequency, WithoutSeriesHoldsNoChannel) {
   EXPECT_TRUE(is_sinumerik_frequency(text));
   EXPECT_FALSE(is_sinumerik_frequency("<traceData/>"));
   EXPECT_EQ(fault_messages([&] { parse_sinumerik_frequency(text, "a.xml"); }),
-            "holds no channel\n");
+            "contains no channel\n");
 }
 
 }  // namespace

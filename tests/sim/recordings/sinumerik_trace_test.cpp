@@ -60,8 +60,8 @@ TEST(SinumerikTrace, EqualDescriptionsGiveWayToNames) {
 
 TEST(SinumerikTrace, BadInput) {
   const std::string first = kHead + "<rec time=\"0.002\" f1=\"1\"/>\n";
-  EXPECT_EQ(refusal(first), "a.xml:5: error: is no complete XML: Start-end tags mismatch");
-  EXPECT_EQ(refusal("<a><traceData/></a>"), "a.xml: error: holds no channel");
+  EXPECT_EQ(refusal(first), "a.xml:5: error: is not complete XML: Start-end tags mismatch");
+  EXPECT_EQ(refusal("<a><traceData/></a>"), "a.xml: error: contains no channel");
   EXPECT_EQ(refusal("<traceData><dataFrame/></traceData>"),
             "a.xml:1: error: <dataFrame>: has no dataSignal");
   EXPECT_EQ(refusal(kHead + kTail), "a.xml:2: error: <dataFrame>: has no rec");
@@ -69,9 +69,9 @@ TEST(SinumerikTrace, BadInput) {
   EXPECT_EQ(refusal(first + "<rec time=\"0.001\"/>" + kTail),
             "a.xml:6: error: <rec>: time runs backwards: 0.001 s after 0.002 s");
   EXPECT_EQ(refusal(first + "<rec time=\"0.002\"/>" + kTail),
-            "a.xml:6: error: <rec>: time 0.002 s comes twice");
+            "a.xml:6: error: <rec>: time 0.002 s appears twice");
   EXPECT_EQ(refusal(first + "<rec time=\"0.004\" f2=\"on\"/>" + kTail),
-            "a.xml:6: error: <rec>: 'f2' is 'on', which is no number");
+            "a.xml:6: error: <rec>: 'f2' is 'on', which is not a number");
   EXPECT_EQ(refusal(first + "<rec time=\"0.004\" f3=\"1\"/>" + kTail),
             "a.xml:6: error: <rec>: 'f3' in a frame of 2 signals");
 }

@@ -52,24 +52,24 @@ TEST(Tncscope, SlowerCurvesHaveABaseOfTheirOwn) {
 
 TEST(Tncscope, BadInput) {
   EXPECT_EQ(refusal(kHead),
-            "a.sco: error: has no section %[DATA]: it is cut off or of another kind");
-  EXPECT_EQ(refusal(kHead + "%[DATA]\n"), "a.sco: error: holds no channel");
-  EXPECT_EQ(refusal(kOne + "0;1\n"),
-            "a.sco:3: error: channel 's actual X' has 1 sample, its %COUNT is 2: the file is cut "
-            "off");
+            "a.sco: error: has no section %[DATA]: it is truncated or of another kind");
+  EXPECT_EQ(refusal(kHead + "%[DATA]\n"), "a.sco: error: contains no channel");
+  EXPECT_EQ(
+      refusal(kOne + "0;1\n"),
+      "a.sco:3: error: channel 's actual X' has 1 sample, its %COUNT is 2: the file is truncated");
   EXPECT_EQ(refusal(kOne + "0;1\n3000;2\n6000;3\n"),
             "a.sco:3: error: channel 's actual X' has 3 samples, its %COUNT is 2");
-  EXPECT_EQ(refusal(kOne + "0;1\n3000"),
-            "a.sco:11: error: 1 field for a time and 1 curve, and the file ends here: it is cut "
-            "off");
+  EXPECT_EQ(
+      refusal(kOne + "0;1\n3000"),
+      "a.sco:11: error: 1 field for a time and 1 curve, and the file ends here: it is truncated");
   EXPECT_EQ(refusal(kOne + "0;1;2\n3000;2\n"), "a.sco:10: error: 3 fields for a time and 1 curve");
-  EXPECT_EQ(refusal(kOne + "0;1\n3000;on\n"), "a.sco:11:6: error: 'on' is no number");
+  EXPECT_EQ(refusal(kOne + "0;1\n3000;on\n"), "a.sco:11:6: error: 'on' is not a number");
   EXPECT_EQ(refusal(kOne + "3000000;1\n0;2\n"),
             "a.sco:11: error: time runs backwards: 0 s after 3 s");
-  EXPECT_EQ(refusal(kOne + "0;1\n0;2\n"), "a.sco:11: error: time 0 s comes twice");
+  EXPECT_EQ(refusal(kOne + "0;1\n0;2\n"), "a.sco:11: error: time 0 s appears twice");
   EXPECT_EQ(refusal(kOne + "0;1\n;2\n"), "a.sco:11: error: has no time");
   EXPECT_EQ(refusal(kHead + "%[CURVE1]\n%COUNT=two\n%[DATA]\n0;1\n"),
-            "a.sco:3: error: %COUNT is 'two', which is no number");
+            "a.sco:3: error: %COUNT is 'two', which is not a number");
 }
 
 TEST(TncscopeCsv, TimeIsInMicroseconds) {

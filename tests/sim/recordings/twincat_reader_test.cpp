@@ -69,15 +69,15 @@ TEST(Twincat, TimeThatIsNotTheSampleTimeIsNoted) {
 
 TEST(Twincat, BadInput) {
   const std::string row = "0\t0,5\t1\t0\t7\n";
-  EXPECT_EQ(refusal(kHead), "a.csv: error: holds no row of numbers under a line 'Name'");
+  EXPECT_EQ(refusal(kHead), "a.csv: error: contains no row of numbers under a line 'Name'");
   EXPECT_EQ(refusal(kHead + row + "2\t0,5\n"),
-            "a.csv:11: error: 2 fields in a table of 5 columns: the row is cut off");
+            "a.csv:11: error: 2 fields in a table of 5 columns: the row is truncated");
   EXPECT_EQ(refusal(kHead + row + "2\t0,5\t1\t4\t8\t9\n"),
             "a.csv:11: error: 6 fields in a table of 5 columns");
-  EXPECT_EQ(refusal(kHead + row + "2\ton\t1\t4\t8\n"), "a.csv:11:3: error: 'on' is no number");
+  EXPECT_EQ(refusal(kHead + row + "2\ton\t1\t4\t8\n"), "a.csv:11:3: error: 'on' is not a number");
   EXPECT_EQ(refusal(kHead + row + "2\t1\t1\t-4\t8\n"),
             "a.csv:11:7: error: time runs backwards: -0.004 s after 0 s");
-  EXPECT_EQ(refusal(kHead + row + "2\t1\t1\t0\t8\n"), "a.csv:11:7: error: time 0 s comes twice");
+  EXPECT_EQ(refusal(kHead + row + "2\t1\t1\t0\t8\n"), "a.csv:11:7: error: time 0 s appears twice");
   EXPECT_EQ(refusal(kHead + row + "\t1\t1\t4\t8\n"), "a.csv:11:1: error: has no time");
 }
 

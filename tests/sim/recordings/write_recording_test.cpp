@@ -67,7 +67,7 @@ TEST_F(WriteRecording, Hdf5RestoresEveryBitAndSeveralBases) {
   write_recording(two, path("a.h5"), false);
   expect_equal(read_recording(path("a.h5")), two);
   EXPECT_EQ(fault_messages([&] { to_csv(two); }),
-            "has 2 bases of time or frequency, a table has one; write .h5\n");
+            "has 2 time or frequency bases, a table has one; write .h5\n");
 }
 
 TEST_F(WriteRecording, ReplacesNothingUnforced) {

@@ -15,7 +15,7 @@ TEST(XmlDocument, FaultsHaveTheirLine) {
     document.number(root.child("c"), "c");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "a.xml:3: error: <c>: 'c' is 'x', which is no number");
+    EXPECT_STREQ(error.what(), "a.xml:3: error: <c>: 'c' is 'x', which is not a number");
   }
   EXPECT_THROW(document.number(root.child("d"), "d"), InputError);
 }
@@ -25,7 +25,7 @@ TEST(XmlDocument, CutOneIsRefused) {
     const XmlDocument document("<a>\n <b>12", "a.xml");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find("a.xml:2: error: is no complete XML: "), 0u)
+    EXPECT_EQ(std::string(error.what()).find("a.xml:2: error: is not complete XML: "), 0u)
         << error.what();
   }
 }

@@ -121,8 +121,7 @@ TEST_F(Hdf5File, IsNotOverwrittenWithoutForce) {
 TEST_F(Hdf5File, KeepsWhatAnEndedRunLeft) {
   { const OutputFile out(path("out.h5"), false); }
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), false); }),
-            "out.h5.partial: error: exists, left by a run that did not end; use --force to "
-            "overwrite");
+            "out.h5.partial: error: exists, left by an unfinished run; use --force to overwrite");
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }), "no error");
 }
 
@@ -136,10 +135,10 @@ TEST_F(Hdf5File, IsNotOverwrittenIfItAppearsDuringTheRun) {
 
 TEST_F(Hdf5File, SaysWhyItCannotBeMade) {
   EXPECT_EQ(message([&] { OutputFile(path("no/out.h5"), false); }),
-            "no/out.h5: error: there is no folder 'no'");
+            "no/out.h5: error: folder 'no' does not exist");
   fs::create_directory(path("out.h5.partial"));
   EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }),
-            "out.h5.partial: error: cannot be made: Is a directory");
+            "out.h5.partial: error: cannot be created: Is a directory");
   EXPECT_THROW(OutputFile(path("out.h5"), true), system::SystemError);
 }
 
@@ -161,7 +160,7 @@ TEST_F(Hdf5File, SaysWhatItLacks) {
   EXPECT_EQ(message([&] { in.text("/g", "program"); }),
             "out.h5: error: '/g' has no attribute 'program'");
   EXPECT_EQ(message([&] { in.text("/g", "many"); }),
-            "out.h5: error: attribute 'many' of '/g' is not a text");
+            "out.h5: error: attribute 'many' of '/g' is not a string");
   EXPECT_EQ(message([&] { in.number("/g/x", "units"); }),
             "out.h5: error: attribute 'units' of '/g/x' is not a number");
   EXPECT_EQ(message([&] { in.number("/g", "many"); }),

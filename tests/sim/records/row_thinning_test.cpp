@@ -109,15 +109,15 @@ TEST_F(Thinned, EveryRowStaysWhereAllMay) {
   const Series series = thin(1e9);
   ASSERT_EQ(series.rows(), kRows);
   for (const double samples : column(series, kSamples)) EXPECT_EQ(samples, 1.0);
-  EXPECT_EQ(column(series, "contour_error"), column(series, "contour_error_greatest"));
+  EXPECT_EQ(column(series, "contour_error"), column(series, "contour_error_max"));
 }
 
 TEST_F(Thinned, RowsTellOfAllThatAreLeftOut) {
   const Series series = thin(400.0 * row_bytes() / 4.0);
   ASSERT_LT(series.rows(), kRows / 20);
   const auto samples = column(series, kSamples);
-  const auto least = column(series, "contour_error_least");
-  const auto greatest = column(series, "contour_error_greatest");
+  const auto least = column(series, "contour_error_min");
+  const auto greatest = column(series, "contour_error_max");
   const auto mean = column(series, "contour_error_mean");
   const auto rms = column(series, "contour_error_rms");
   double count = 0.0, sum = 0.0, squares = 0.0;
@@ -143,8 +143,8 @@ TEST_F(Thinned, RowsTellOfAllThatAreLeftOut) {
 
 TEST_F(Thinned, DistanceAndAngleOfTheToolAreToldToo) {
   const Series series = thin(400.0 * row_bytes() / 4.0);
-  const auto tip = column(series, "tcp_deviation_greatest");
-  const auto axis = column(series, "tool_axis_deviation_greatest");
+  const auto tip = column(series, "tcp_deviation_max");
+  const auto axis = column(series, "tool_axis_deviation_max");
   double largest_tip = 0.0, largest_axis = 0.0;
   for (std::size_t n = 0; n < kRows; ++n) {
     largest_tip = std::max(largest_tip, contour_error_at(n));  // along X

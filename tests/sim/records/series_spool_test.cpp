@@ -125,7 +125,7 @@ TEST(SeriesSpool, SaysWhichFolderItCannotWrite) {
     FAIL();
   } catch (const system::SystemError& error) {
     EXPECT_STREQ(error.what(),
-                 "/nowhere/at/all: error: recorded signals cannot be kept there: No such file or "
+                 "/nowhere/at/all: error: recorded signals cannot be stored there: No such file or "
                  "directory");
   }
 }

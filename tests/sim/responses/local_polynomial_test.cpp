@@ -142,7 +142,7 @@ TEST(LocalPolynomial, RefusesAMultisineWhosePeriodIsNotGiven) {
 TEST(LocalPolynomial, RefusesShortAndUnexcitedRecords) {
   const std::vector<double> nothing(1000, 2.0), little(20, 1.0);
   EXPECT_EQ(fault_messages([&] { local_polynomial(nothing, nothing, settings(), "a.csv"); }),
-            "has an input without any excitation\n");
+            "has an input without excitation\n");
   EXPECT_EQ(fault_messages([&] { local_polynomial(little, little, settings(), "a.csv"); }),
             "holds 20 samples; the local polynomial method needs at least 52\n");
 }

@@ -83,11 +83,11 @@ TEST(PeriodResponse, CirclesHoldTheTruthAsOftenAsTheyClaim) {
 TEST(PeriodResponse, RefusesTooFewPeriodsAndNoExcitation) {
   const Signals s = measured(2, 0.0, 1);
   EXPECT_EQ(fault_messages([&] { maximum_likelihood(s.u, s.y, kSettings, "x"); }),
-            "holds 2 whole periods of 200 samples; at least 3 are needed: two after the 1 skipped "
+            "has 2 full periods of 200 samples; at least 3 are required: two after the 1 skipped "
             "for the transient\n");
   const std::vector<double> still(4 * kSamples, 0.5);
   EXPECT_EQ(fault_messages([&] { maximum_likelihood(still, still, kSettings, "x"); }),
-            "has an input without any excitation\n");
+            "has an input without excitation\n");
 }
 
 TEST(PeriodResponse, ExtremesAreRefinedBetweenLines) {

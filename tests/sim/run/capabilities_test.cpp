@@ -116,11 +116,11 @@ TEST(UnknownFeedbackStrategy, HasTheSameBudget) {
 
 TEST(UnknownFeedbackStrategy, IsCalledByItsNameInMessages) {
   EXPECT_EQ(refusal("stranger", "feedback_hardware = false\n"),
-            ": error: case[1].feedback_hardware = false; a case with the strategy stranger needs "
-            "its hardware");
+            ": error: case[1].feedback_hardware = false; must not be false: the case has the "
+            "strategy stranger");
   EXPECT_EQ(refusal("stranger", "[[case.strategy]]\ntype = \"feedback\"\nmodel = \"imposed\"\n"),
-            ": error: case[1].strategy[1].type = \"stranger\"; a case has one feedback hardware: "
-            "this is the second");
+            ": error: case[1].strategy[1].type = \"stranger\"; a case has only one feedback "
+            "hardware: this is the second strategy that uses it");
   const auto notes = run(scenario("stranger")).cases.at(1).notes;
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].find("case one: strategy stranger: rate of the virtual displacement of Y "
@@ -153,13 +153,13 @@ TEST(FeedbackHardware, ThatSomeCasesLackIsReported) {
   EXPECT_FALSE(uneven.cases[0].feedback_hardware);
   const RunOutput out = run(uneven);
   EXPECT_EQ(out.comparison.at(0).note,
-            "feedback hardware delays readings by 10 us, those of nominal by 0 us");
-  EXPECT_EQ(out.cases[0].notes,
-            std::vector<std::string>{
-                "warning: the feedback hardware is connected in case 'one' but not in case "
-                "'nominal': readings of the latter lack its delay of 10 us, which is 0.4 um at "
-                "the largest feed of 2.4 m/min; feedback_hardware.connected = true connects it in "
-                "all cases"});
+            "the feedback hardware delays readings by 10 us, those of nominal by 0 us");
+  EXPECT_EQ(
+      out.cases[0].notes,
+      std::vector<std::string>{
+          "warning: the feedback hardware is connected in case 'one' but not in case 'nominal': "
+          "readings of the latter lack its delay of 10 us, which is 0.4 um at the largest feed of "
+          "2.4 m/min; set feedback_hardware.connected = true to connect it in all cases"});
 }
 
 TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {

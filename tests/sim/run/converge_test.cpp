@@ -199,7 +199,7 @@ TEST_F(Converging, SaysWhatCannotBeHalved) {
                                      {Refinement::recording});
   EXPECT_EQ(
       found.why_not[0],
-      "record.period_ms = \"5e-06 s\"; must be a whole multiple of base_period_us = 10 of the "
+      "record.period_ms = \"5e-06 s\"; must be an integer multiple of base_period_us = 10 of the "
       "machine");
   EXPECT_TRUE(std::isnan(change(found, Refinement::recording)));
   EXPECT_EQ(found.rows.at(0).digits(), 0);

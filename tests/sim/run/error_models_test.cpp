@@ -55,10 +55,10 @@ TEST(ErrorModels, MayHaveAnErrorOfScale) {
 TEST(ErrorModels, RefuseALocationWhoseUnitWasForgotten) {
   EXPECT_EQ(faults_of("[errors.skew]\nEC0Y = 0.1\n"), "");
   EXPECT_EQ(faults_of("[errors.skew]\nEC0Y = -250.0\nEX0C = 8\n"),
-            "errors.skew.EC0Y = -250.0; is beyond 0.1 rad, more than any machine has; a number "
-            "without a unit is in rad: write \"50 urad\" or { um_per_m = 50.0 }\n"
-            "errors.skew.EX0C = 8; is beyond 0.1 m, more than any machine has; a number without a "
-            "unit is in m: write \"8 um\" or { constant_um = 8.0 }\n");
+            "errors.skew.EC0Y = -250.0; exceeds 0.1 rad, which is implausible; a number without a "
+            "unit is in rad: write \"50 urad\" or { um_per_m = 50.0 }\nerrors.skew.EX0C = 8; "
+            "exceeds 0.1 m, which is implausible; a number without a unit is in m: write \"8 um\" "
+            "or { constant_um = 8.0 }\n");
 }
 
 TEST(ErrorModels, ThatDifferByNothingAreTheSame) {
@@ -79,11 +79,10 @@ TEST(ErrorModels, DifferFromAnotherThatIsComplete) {
   EXPECT_EQ(
       faults_of(differing("\"identified\"")),
       "errors.identified.relative_to = \"identified\"; must be the name of another error model\n");
-  EXPECT_EQ(faults_of(differing("1")), "errors.identified.relative_to = 1; must be a text\n");
-  EXPECT_EQ(
-      faults_of(differing("\"other\"") + "[errors.other]\nrelative_to = \"machine\"\n"),
-      "errors.identified.relative_to = \"other\"; must name a model that differs from no other "
-      "itself\n");
+  EXPECT_EQ(faults_of(differing("1")), "errors.identified.relative_to = 1; must be a string\n");
+  EXPECT_EQ(faults_of(differing("\"other\"") + "[errors.other]\nrelative_to = \"machine\"\n"),
+            "errors.identified.relative_to = \"other\"; must name a model that is not itself "
+            "relative to another\n");
 }
 
 // With an identified model that is off by 2 um along X the tip ends up 2 um off, and nowhere else:

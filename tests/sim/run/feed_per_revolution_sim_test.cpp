@@ -22,8 +22,8 @@ TEST(FeedPerRevolution, OfASpindleThatStandsStillIsRefused) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "small.ngc:3: error: feed per revolution (G95) while the spindle stands still; it "
-                 "would never end: start the spindle (M3 S...) or use G94");
+                 "small.ngc:3: error: feed per revolution (G95) with the spindle stopped would "
+                 "never end: start the spindle (M3 S...) or use G94");
   }
 }
 

@@ -182,7 +182,7 @@ TEST(FiveAxes, FeedbackRefusesAScaleThatIsNotRead) {
     EXPECT_NE(
         std::string(error.what())
             .find("case one: strategy feedback: displaces the scale of axis B, whose position loop "
-                  "reads the motor (position_feedback = \"motor\")"),
+                  "is closed on the motor encoder (position_feedback = \"motor\")"),
         std::string::npos)
         << error.what();
   }

@@ -55,7 +55,7 @@ TEST(DirectionOfAnAxis, MayHaveAnyLength) {
 }
 
 TEST(DirectionOfAnAxis, ThatIsNoneIsRefused) {
-  const std::string rule = "must be [x, y, z], not all 0; any length means the same";
+  const std::string rule = "must be [x, y, z], not all 0; the length is irrelevant";
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, 0, 0]"),
             "68:13: error: axis.B.direction = [0, 0, 0]; " + rule);
   EXPECT_EQ(message_with("[0, 1, 1]", "[0, 1]"),

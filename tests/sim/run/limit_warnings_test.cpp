@@ -102,13 +102,13 @@ TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
   ASSERT_EQ(one.notes.size(), 1U);  // points every 10 mm: the last one at 60
   EXPECT_TRUE(one.notes[0].ends_with(
       "small.ngc:7: warning: case short: strategy table: the table over X ends at 60.0000 mm, the "
-      "program goes on to 150.0000 mm; from there on the last value is held"))
+      "program continues to 150.0000 mm; beyond the end the last value is used"))
       << one.notes[0];
   EXPECT_TRUE(
       note_of(run_named_case(scenario, "both"))
-          .ends_with("small.ngc:5: warning: case both: strategy table: the table over X ends "
-                     "at -15.0000 mm, the program goes on to -20.0000 mm; from there on the "
-                     "last value is held"))
+          .ends_with(
+              "small.ngc:5: warning: case both: strategy table: the table over X ends at -15.0000 "
+              "mm, the program continues to -20.0000 mm; beyond the end the last value is used"))
       << note_of(run_named_case(scenario, "both"));
 }
 

@@ -195,7 +195,8 @@ TEST(PositionLoop, AbsurdValuesEndTheCase) {
   const RunOutput out = run_scenario(scenario, {});
   const auto reason = [&](std::size_t k) { return out.cases[k].result.outcome.reason; };
   EXPECT_EQ(reason(0),
-            "strategy not_finite: position_loop returned what is not finite at 0.1002 s, line 1 of "
+            "strategy not_finite: position_loop returned a value that is not finite at 0.1002 s, "
+            "line 1 of "
             "the program");
   EXPECT_EQ(
       reason(1),

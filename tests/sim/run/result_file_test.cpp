@@ -53,7 +53,7 @@ TEST_F(ResultFile, IsReplacedOnlyWithForceAndOthersNever) {
   EXPECT_EQ(writable_name(path("new.h5"), false), path("new.h5"));
   EXPECT_EQ(writable_name(path("a.h5"), true), path("a.h5"));
   EXPECT_EQ(fault_messages([&] { writable_name(path("b.txt"), true); }),
-            "exists and is no result file; --force does not overwrite others\n");
+            "exists and is not a result file; --force does not overwrite other files\n");
 }
 
 TEST(SplitLines, GivesOneLineMoreThanThereAreBreaks) {

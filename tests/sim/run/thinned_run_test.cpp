@@ -87,7 +87,7 @@ TEST_F(ThinnedRun, ComparesAsAllRowsDo) {
     SCOPED_TRACE(wanted.case_name + " " + wanted.quantity + " " + wanted.statistic);
     if (evaluation::quantity_entry(wanted.quantity).needs_baseline) {
       EXPECT_NEAR(found.value, wanted.value, kBetween);
-      EXPECT_EQ(found.note, "at the rows that are recorded (record.period_ms)");
+      EXPECT_EQ(found.note, "at the recorded rows (record.period_ms)");
     } else if (wanted.statistic == "max" || wanted.statistic == "range") {
       EXPECT_EQ(found.value, wanted.value);
       EXPECT_EQ(found.note, "");

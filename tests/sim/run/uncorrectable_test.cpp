@@ -27,9 +27,9 @@ TEST(Uncorrectable, IsToldWithItsSizeAndLine) {
                                    one_case("generates", "action = \"impose\"\n"));
   const std::vector<std::string> notes = run_named_case(scenario, "linear").notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_TRUE(notes[0].ends_with(
-      "small.ngc:3: warning: case linear: strategy feedback cannot correct 18.0 urad of the tool "
-      "axis here, the most found"))
+  EXPECT_TRUE(
+      notes[0].ends_with("small.ngc:3: warning: case linear: strategy feedback cannot correct 18.0 "
+                         "urad of the tool axis here, the largest found"))
       << notes[0];
   EXPECT_TRUE(run_named_case(scenario, "all").notes.empty());
   EXPECT_TRUE(run_named_case(scenario, "generates").notes.empty());
@@ -42,7 +42,7 @@ TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
                                    one_case("all", "action = \"compensate\"\naxes = \"all\"\n") +
                                    one_case("generates", "action = \"impose\"\n"));
   const records::Series linear = run_named_case(scenario, "linear").result.servo;
-  const auto tip = linear.column("uncorrectable_tip"), axis = linear.column("uncorrectable_axis");
+  const auto tip = linear.column("uncorrectable_tcp"), axis = linear.column("uncorrectable_axis");
   ASSERT_TRUE(tip && axis);
   const std::size_t x = linear.column("ref_linear", 'X').value();
   constexpr double kTol = 1e-4;  // urad, of slopes of 2e-4 m/m
@@ -57,7 +57,7 @@ TEST(Uncorrectable, IsRecordedWhereTheScenarioAsksForIt) {
       EXPECT_NEAR(all.at(n, all.column("uncorrectable_axis").value()), 0.0, kTol) << B;
     }
   }
-  EXPECT_FALSE(run_named_case(scenario, "generates").result.servo.column("uncorrectable_tip"));
+  EXPECT_FALSE(run_named_case(scenario, "generates").result.servo.column("uncorrectable_tcp"));
 }
 
 }  // namespace

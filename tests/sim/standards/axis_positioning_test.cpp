@@ -69,9 +69,9 @@ TEST(Positioning, OneDirectionGivesOnlyItsOwnParameters) {
   EXPECT_NEAR(value(test, Positioning::E_up), 5.0 * um, kRounding);
   const auto notes = departures(test);
   ASSERT_FALSE(notes.empty());
-  EXPECT_EQ(notes[0],
-            "readings are given upwards only: bi-directional parameters (B, R, M, E, A) need the "
-            "other direction");
+  EXPECT_EQ(
+      notes[0],
+      "readings are upwards only: bi-directional parameters (B, R, M, E, A) need both directions");
 }
 
 TEST(Positioning, OneRunGivesNoRepeatability) {

@@ -120,12 +120,12 @@ TEST(CircleTest, WrongTurns) {
     if (k < 200) arc += fmt::format("ccw,{},0\n", k);
     wrong_way += fmt::format("cw,{},0\n", k);
   }
-  EXPECT_EQ(message(arc),
-            "readings.csv: error: the turn ccw covers 199 deg of the circle; must be one turn, 360 "
-            "deg; leave out arcs on which feed is reached and lost, and check the radius and its "
-            "unit");
+  EXPECT_EQ(
+      message(arc),
+      "readings.csv: error: the ccw circle covers 199 deg of the circle; must be a full circle, "
+      "360 deg; remove the feed-in and feed-out arcs, and check the radius and its unit");
   EXPECT_EQ(message(wrong_way),
-            "readings.csv: error: the turn cw goes around the other way; put its rows in the order "
+            "readings.csv: error: the cw circle runs the other way; put its rows in the order "
             "of the motion, or correct the direction");
   EXPECT_EQ(message("direction,angle_deg,deviation_um\nccw,0,100003\nleft,1,0\n"),
             "readings.csv:2:7: error: deviation of 100.003 mm; must be at most 5 mm: check the "

@@ -94,9 +94,9 @@ TEST(ErrorMotion, FilesThatAreNoRevolutions) {
   const auto message = [](const std::string& text, double distance) {
     return message_of(text, [&](const std::string& path) { return read_rotation(path, distance); });
   };
-  EXPECT_EQ(message(rows(2), 0.0),
-            "--distance: error: must be given with x2_um and y2_um: how far they are from x_um and "
-            "y_um");
+  EXPECT_EQ(
+      message(rows(2), 0.0),
+      "--distance: error: is required with x2_um and y2_um: their distance from x_um and y_um");
   EXPECT_EQ(message(rows(2, 1.0), 0.05),
             "readings.csv:38:3: error: angle 1.000000 is 1 deg off that of the first revolution; "
             "readings must be triggered at the same angles");
@@ -104,10 +104,10 @@ TEST(ErrorMotion, FilesThatAreNoRevolutions) {
   text.erase(text.rfind("2,350"));
   EXPECT_EQ(message(text, 0.05),
             "readings.csv:72: error: revolution 2 has 35 angles, the first 36: every revolution "
-            "needs the same");
+            "needs the same number");
   EXPECT_EQ(message("angle_deg,force\n0,1\n", 0.0),
             "readings.csv: error: has no sensor: columns x_um, y_um (radial), z_um (axial), x2_um, "
-            "y2_um (radial at a second place)");
+            "y2_um (radial at a second position)");
 }
 
 }  // namespace servomill::sim::standards::error_motion_test

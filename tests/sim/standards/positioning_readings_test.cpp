@@ -99,24 +99,24 @@ TEST(PositioningReadings, MissingReadings) {
 
 TEST(PositioningReadings, TargetsTwiceAndOutOfOrder) {
   EXPECT_EQ(message(kGood + "backward,100,100.002,100.001\n"),
-            "readings.csv:6:14: error: target 100 mm, backward, run 1 is there twice, first in "
-            "line 5; number the runs, or remove one of them");
+            "readings.csv:6:14: error: target 100 mm, backward, run 1 appears twice, first on line "
+            "5; number the runs, or remove one of them");
   EXPECT_EQ(message("direction,target_mm,p1\nforward,0,0\nforward,20,20\nforward,10,10\n"),
             "readings.csv:4:12: error: target 10 mm after 20 mm (line 3), forward: targets of a "
-            "run must rise throughout; put the rows in the order of the approaches");
+            "run must rise; put the rows in the order of the approaches");
 }
 
 TEST(PositioningReadings, UnitsThatAreMixed) {
-  EXPECT_EQ(message("direction,target_mm,position_mm\nforward,10,10001\nforward,20,20003\n"),
-            "readings.csv:2:12: error: position_mm = 10001 at target 10 deviates by 9991 mm; must "
-            "be at most 5 mm; it is 1000 times the target: columns of different units name each "
-            "in its name, such as target_mm, position_um\n"
-            "readings.csv:3:12: error: position_mm = 20003 at target 20 deviates by 19983 mm; "
-            "must be at most 5 mm; it is 1000 times the target: columns of different units name "
-            "each in its name, such as target_mm, position_um");
+  EXPECT_EQ(
+      message("direction,target_mm,position_mm\nforward,10,10001\nforward,20,20003\n"),
+      "readings.csv:2:12: error: position_mm = 10001 at target 10 deviates by 9991 mm; must be at "
+      "most 5 mm; it is 1000 times the target: if columns have different units, put each unit in "
+      "its name, such as target_mm, position_um\nreadings.csv:3:12: error: position_mm = 20003 at "
+      "target 20 deviates by 19983 mm; must be at most 5 mm; it is 1000 times the target: if "
+      "columns have different units, put each unit in its name, such as target_mm, position_um");
   EXPECT_EQ(message("direction,target_deg,position_mm\nforward,10,10\n"),
-            "readings.csv: error: column position_mm is in mm, the targets are in deg; give both "
-            "in units of one quantity");
+            "readings.csv: error: column position_mm is in mm, the targets are in deg; use units "
+            "of the same quantity");
 }
 
 TEST(PositioningReadings, WordsThatAreNoNumbers) {

@@ -64,9 +64,8 @@ std::string refusal(const std::string& range, const std::string& shard) {
 
 TEST(ReadSelection, SaysWhatIsWrong) {
   for (const std::string wrong : {"0-5", "5", "5-4", "-3", "a-b", "1-2-3", "1.5-2"}) {
-    EXPECT_EQ(refusal(wrong, ""), "--points " + wrong +
-                                      ": error: must be A-B, the first and the last point, counted "
-                                      "from 1");
+    EXPECT_EQ(refusal(wrong, ""),
+              "--points " + wrong + ": error: must be A-B (first and last point), counted from 1");
   }
   EXPECT_EQ(refusal("1-101", ""), "--points 1-101: error: the sweep has 100 points");
   for (const std::string wrong : {"0/4", "5/4", "4", "1/0", "1/9999999", "-1/4", "1/4/8"}) {
@@ -75,7 +74,7 @@ TEST(ReadSelection, SaysWhatIsWrong) {
                                       "1000000");
   }
   EXPECT_EQ(refusal("", "1/101"),
-            "--shard 1/101: error: there are 100 points: too few for so many shards");
+            "--shard 1/101: error: the sweep has only 100 points: too few for so many shards");
 }
 
 TEST(ShardName, StandsBeforeTheEnding) {

@@ -132,7 +132,7 @@ TEST(Sweep, RefusesPointsThatAskForSomethingElse) {
       sweep_of("\"case[0].name\"=[\"nominal\",\"ideal\"]", {"quantity=[{name=\"cycle_time\"}]"}));
   EXPECT_EQ(others.at(1).status, run::PointStatus::refused);
   EXPECT_EQ(others.at(1).reason,
-            "asks for other quantities or cases than the scenario without its sweep");
+            "has other quantities or cases than the scenario without its sweep");
 }
 
 TEST(Sweep, GivesUpWhenItsResultsCannotBeWritten) {
@@ -204,12 +204,11 @@ TEST(RefuseHopeless, NamesAKeyThatThereIsNot) {
   EXPECT_EQ(refusal("program.feed_overide=[0.5,1.0]"),
             begin +
                 "sweep.\"program.feed_overide\": program.feed_overide is not known; did you mean "
-                "'feed_override', which is given, too?");
-  EXPECT_EQ(
-      refusal("case.tabel.strategy.time_constant_ms=[1,2]"),
-      "--set sweep={case.tabel.strategy.time_constant_ms=[1,2]}: error: "
-      "sweep.\"case.tabel.strategy.time_constant_ms\": case is a list; 'tabel' is no place in "
-      "it; did you mean 'table'?");
+                "'feed_override', which is also given?");
+  EXPECT_EQ(refusal("case.tabel.strategy.time_constant_ms=[1,2]"),
+            "--set sweep={case.tabel.strategy.time_constant_ms=[1,2]}: error: "
+            "sweep.\"case.tabel.strategy.time_constant_ms\": case is a list without an item "
+            "'tabel'; did you mean 'table'?");
   EXPECT_EQ(
       refusal("case.table.strategy.time_constan_ms=[1,2]"),
       "--set sweep={case.table.strategy.time_constan_ms=[1,2]}: error: "
@@ -221,7 +220,7 @@ TEST(RefuseHopeless, TellsAFaultOfAllOfManyPoints) {
   EXPECT_EQ(refusal("program.feed_overide={linear=[0.5,1.0],count=1000}"),
             "--set sweep={program.feed_overide={linear=[0.5,1.0],count=1000}}: error: "
             "sweep.\"program.feed_overide\": program.feed_overide is not known; did you mean "
-            "'feed_override', which is given, too?");
+            "'feed_override', which is also given?");
 }
 
 }  // namespace

@@ -93,25 +93,25 @@ TEST(ErrorImport, AxesThatCarryTheWorkpieceAreConverted) {
   EXPECT_NEAR(eyx.value(50.0 * mm), 3.0 * um - 2e-5 * 0.05, 2e-9);
   ASSERT_EQ(made.notes.size(), 2U);
   EXPECT_EQ(made.notes[0],
-            "converted: the errors of X, which carries the workpiece and counts in the file as if "
-            "it carried the tool");
+            "converted: the errors of X, which carries the workpiece, but is treated in the file "
+            "as carrying the tool");
 }
 
 TEST(ErrorImport, NothingIsDroppedSilently) {
   const ErrorImport made = imported("P0Z PXC C0Y\n-100 1 0.0001\n#\nC ECC EXC\n0 0 0\n90 0 0\n");
   EXPECT_EQ(made.errors.component("ECC"_err), plant::ErrorFunction{});
-  EXPECT_EQ(made.notes.at(0), "not taken over: ECC, which is 0 everywhere");
-  EXPECT_EQ(made.notes.back(), "not taken over: P0Z, PXC; the machine file holds the kinematics");
+  EXPECT_EQ(made.notes.at(0), "not imported: ECC, which is 0 everywhere");
+  EXPECT_EQ(made.notes.back(), "not imported: P0Z, PXC; the machine file has the kinematics");
 }
 
 TEST(ErrorImport, RefusesErrorsThatTheMachineCannotHave) {
   EXPECT_NE(fault_of("C ECC\n0 1e-5\n90 2e-5\n").find("v.csv:2: error: ECC "), std::string::npos);
-  EXPECT_EQ(fault_of("X0Y\n0.1\n"), "v.csv:2: error: EX0Y leaves the motion of Y as it is");
+  EXPECT_EQ(fault_of("X0Y\n0.1\n"), "v.csv:2: error: EX0Y has no effect on the motion of Y");
   EXPECT_EQ(
       fault_of("C0Y\n0.2\n"),
-      "v.csv:2: error: EC0Y is 0.2 rad, more than any machine has; angles are in rad, not in deg");
+      "v.csv:2: error: EC0Y is 0.2 rad, implausible for a machine; angles are in rad, not in deg");
   EXPECT_EQ(fault_of("X EXX\n0 0\n100 101\n"),
-            "v.csv:3: error: EXX is 101 mm, more than any machine has");
+            "v.csv:3: error: EXX is 101 mm, implausible for a machine");
 }
 
 TEST(ErrorImport, ErrorsByDirectionOfTravelAreRefused) {
@@ -122,8 +122,8 @@ TEST(ErrorImport, ErrorsByDirectionOfTravelAreRefused) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "x.csv:2: error: EXX depends on the direction of travel; the length of a reversal "
-                 "is in no table, so that only means are imported");
+                 "x.csv:2: error: EXX depends on the direction of travel; tables do not contain "
+                 "reversal distances, so only means are imported");
   }
 }
 
@@ -133,8 +133,8 @@ TEST(ErrorImport, ADisplacementOfAnAxisIsNoError) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.faults().front().message,
-              "siemens holds displacements of axes, from which errors do not follow; csv, isg and "
-              "etalon hold errors");
+              "siemens contains axis displacements, from which errors cannot be derived; csv, isg "
+              "and etalon contain errors");
   }
 }
 

@@ -155,14 +155,16 @@ TEST(ExchangeFiles, AxesThatNoDocumentDefinesAreRefusedByName) {
   errors.component("EXX"_err) = plant::polynomial({0.0, 1e-4});
   EXPECT_EQ(refusal(errors, machine), "exported");
   errors.location("EX0C"_err) = 5.0 * um;
-  EXPECT_EQ(refusal(errors, machine),
-            "isg holds no errors of the rotary axis C: it counts as its table turns, and no "
-            "document found defines the signs of the errors of workpiece_axes");
+  EXPECT_EQ(
+      refusal(errors, machine),
+      "isg cannot represent errors of the rotary axis C: it counts as its table turns, and no "
+      "document found defines the signs of the errors of workpiece_axes");
   plant::incline(machine.chain.at(Axis::C), {0.0, 1.0, 1.0});
   machine.chain.at(Axis::C).sense = plant::Sense::tool;
-  EXPECT_EQ(refusal(errors, machine),
-            "isg holds no errors of the inclined axis C: no document found defines the frame of "
-            "its errors");
+  EXPECT_EQ(
+      refusal(errors, machine),
+      "isg cannot represent errors of the inclined axis C: no document found defines the frame of "
+      "its errors");
 }
 
 TEST(ExchangeFiles, ReportsTheMeanOfReversals) {
@@ -175,7 +177,7 @@ TEST(ExchangeFiles, ReportsTheMeanOfReversals) {
   EXPECT_TRUE(has("position errors: C0Y; the others of the redundant set are 0"));
   EXPECT_TRUE(
       has("note: EYX depends on the direction of travel, by 4.000 um at the ends of the "
-          "travel; the tables hold the mean"));
+          "travel; the tables contain the mean"));
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST(Linuxcnc, SaysThatATableIsNotRepeated) {
       export_tables(machine_of("[w C' X b Y Z t]"), errors, request_of(TableFormat::linuxcnc)));
   const std::string note =
       "note: C over C: the control does not repeat the table: beyond 0 and 360 deg the end values "
-      "hold";
+      "apply";
   EXPECT_EQ(std::count(lines.begin(), lines.end(), note), 1);
 }
 

@@ -104,10 +104,10 @@ TEST(MeshSettings, ReadersRefuseWhatTheyDoNotKnow) {
     return fault_messages([&] { controllers::read_mesh_table({"m", text}, firmware); });
   };
   EXPECT_EQ(faults("M421 I0 J0 Z0.1\nG29\n", SkewFirmware::marlin),
-            "'G29' is not read; only M421 I J Z\n");
+            "'G29' is not supported; only M421 I J Z\n");
   EXPECT_EQ(faults("M421 I0 J0 Z0.1\nM421 I1 J1 Z0.1\n", SkewFirmware::marlin),
             "2 heights in a mesh of 2 x 2\n");
-  EXPECT_EQ(faults("min_x = 3\n", SkewFirmware::klipper), "'min_x = 3' is not read\n");
+  EXPECT_EQ(faults("min_x = 3\n", SkewFirmware::klipper), "'min_x = 3' is not supported\n");
   EXPECT_EQ(faults("RepRapFirmware height map file v2\n"
                    "axis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
                    "X,Y,0,10,0,10,-1,10,10,2,2\n0.001, 0\n0.001, 0.002\n",

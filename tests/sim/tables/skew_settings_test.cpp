@@ -145,8 +145,8 @@ TEST(SkewSettings, ReportsWhatItDoesNotHold) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.faults().front().message,
-              "klipper can hold nothing of this error model: X, Y and Z are at right angles; it "
-              "holds EC0Y, EB0Z, EA0Z and the like");
+              "klipper cannot represent any part of this error model: X, Y and Z are at right "
+              "angles; it represents EC0Y, EB0Z, EA0Z and the like");
   }
 }
 

@@ -276,8 +276,8 @@ TEST(TableExport, RefusesMorePointsThanTheControlTakes) {
   EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), without_angles(), request), "");
   request.spacing = 200.0 * mm / 256.0;
   EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), without_angles(), request),
-            "table over X: 257 points, 0.78125 mm apart, from -100 to 100 mm; at most 256 "
-            "points are taken; the smallest spacing that fits is 0.7844 mm");
+            "table over X: 257 points, 0.78125 mm apart, from -100 to 100 mm; at most 256 points "
+            "are allowed; the smallest spacing that fits is 0.7844 mm");
 }
 
 TEST(TableExport, RefusesAnEndlessLinearAxis) {
@@ -285,7 +285,7 @@ TEST(TableExport, RefusesAnEndlessLinearAxis) {
   machine.nc.upper[1] = std::numeric_limits<double>::infinity();
   TableRequest request = request_of(TableFormat::linuxcnc);
   EXPECT_EQ(refusal(machine, without_angles(), request),
-            "axis Y has no travel; give --travel Y=FROM:TO");
+            "axis Y has no travel; set --travel Y=FROM:TO");
   request.axes[1].from = -50.0 * mm;
   request.axes[1].to = 150.0 * mm;
   EXPECT_EQ(refusal(machine, without_angles(), request), "");
@@ -294,9 +294,9 @@ TEST(TableExport, RefusesAnEndlessLinearAxis) {
 TEST(TableExport, RefusesAModelOfWhichTheFormatHoldsNothing) {
   plant::ErrorModel errors;
   errors.component("EYX"_err) = plant::harmonic(10.0 * um, 120.0 * mm);
-  EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), errors, request_of(TableFormat::linuxcnc)),
-            "linuxcnc tables over the chosen axes can hold nothing of the error "
-            "model 'test'");
+  EXPECT_EQ(
+      refusal(machine_of("[w X b Y Z t]"), errors, request_of(TableFormat::linuxcnc)),
+      "linuxcnc tables over the selected axes cannot represent any part of the error model 'test'");
   EXPECT_EQ(refusal(machine_of("[w X b Y Z t]"), errors, request_of(TableFormat::siemens)), "");
 }
 

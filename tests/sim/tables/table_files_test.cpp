@@ -47,15 +47,15 @@ TEST(TableFiles, Linuxcnc) {
 --- compensation.ini
 # compensation tables of error model 'test' on small machine
 # document: LinuxCNC, INI Configuration, [JOINT_N]: COMP_FILE, COMP_FILE_TYPE, as read by usrmotLoadComp (src/emc/motion/usrmotintf.cc) and EMCMOT_SET_JOINT_COMP (src/emc/motion/command.c)
-# reference: each table holds the line along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
-# zero: the tables are 0 at the reference; the error there stays for the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
+# reference: each table contains the errors along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
+# zero: the tables are 0 at the reference; the error there is left to the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
 # tables:
 #   X over X: 3 points, 10 mm apart from 0 mm, up to 1.000 um; linear interpolation and rounding leave up to 0.000 um
-# not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
+# not in these tables, or only on their lines (largest value; its residual within the travel, relative to the reference):
 #   EYX   8.000 um; tip 6.000 um
 #   EAX   20.000 urad; tip 1.140 um, tool axis 20.000 urad
 #   EC0Y  50.000 urad; tip 0.500 um
-# tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 7.123 um with
+# TCP at poses all over the travel, relative to the reference: off by up to 7.257 um without these tables, 7.123 um with
 # each line of a file: nominal position, position reached moving up, moving down
 # units: mm and deg, as LINEAR_UNITS = mm and ANGULAR_UNITS = degree; up and down are equal: no positioning depends on the direction of travel
 # joints: X, Y, Z and the rotary axes in alphabetical order; COMP_FILE excludes BACKLASH
@@ -93,8 +93,8 @@ ACTIVE        X        Y
 --- notes.txt
 compensation tables of error model 'test' on small machine
 document: HEIDENHAIN, Technical Manual MANUALplus 620 (2012), pages 716 to 718 (columns of *.COM and *.CMA); Technical Manual TNC 407/415/425 (1998), pages 151 to 156 and 622 (sign, limits)
-reference: each table holds the line along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
-zero: the tables are 0 at the reference; the error there stays for the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
+reference: each table contains the errors along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
+zero: the tables are 0 at the reference; the error there is left to the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
 tables:
   X over X: 3 points, 10 mm apart from 0 mm, up to 1.000 um; linear interpolation and rounding leave up to 0.000 um
   Y over X: 3 points, 10 mm apart from 0 mm, up to 6.900 um; linear interpolation and rounding leave up to 0.500 um
@@ -103,13 +103,13 @@ tables:
   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 note: X: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm
 note: Y: controls without the column AXISPOS need a spacing of 2^n x 0.0001 mm
-not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
+not in these tables, or only on their lines (largest value; its residual within the travel, relative to the reference):
   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
-tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.651 um with
+TCP at poses all over the travel, relative to the reference: off by up to 7.257 um without these tables, 0.651 um with
 values: error in mm or deg, positive where the axis travels too far, entered with its sign
 columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from the machine datum; BACKLASH stays empty: no positioning depends on the direction
 these are listings for the table editor of the control: the documents give the columns, not the text of the files
-check the sign with one point before you rely on it
+check the sign at one point before relying on it
 )");
 }
 
@@ -120,17 +120,17 @@ TEST(TableFiles, Siemens) {
 CHANDATA(1)
 ; compensation tables of error model 'test' on small machine
 ; document: Siemens, SINUMERIK 840D sl/828D Function Manual Extended Functions (03/2013), 6FC5397-1BP40-3BA1, K3 Compensations, pages 237 to 268
-; reference: each table holds the line along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
-; zero: the tables are 0 at the reference; the error there stays for the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
+; reference: each table contains the errors along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
+; zero: the tables are 0 at the reference; the error there is left to the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
 ; tables:
 ;   X over X: 3 points, 10 mm apart from 0 mm, up to 1.000 um; linear interpolation and rounding leave up to 0.000 um
 ;   Y over X: 3 points, 10 mm apart from 0 mm, up to 6.899 um; linear interpolation and rounding leave up to 0.500 um
 ;   Z over X: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 ;   X over Y: 3 points, 10 mm apart from 0 mm, up to 0.500 um; linear interpolation and rounding leave up to 0.000 um
 ;   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
-; not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
+; not in these tables, or only on their lines (largest value; its residual within the travel, relative to the reference):
 ;   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
-; tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.650 um with
+; TCP at poses all over the travel, relative to the reference: off by up to 7.257 um without these tables, 0.650 um with
 ; axes: machine axes are taken to be called X1, Y1, ...; first measuring system
 ; sign: error, actual minus nominal; a positive value moves the axis in the negative direction (SINUMERIK 808D Function Manual, 01/2017, page 106)
 ; load with MD32700 $MA_ENC_COMP_ENABLE = 0
@@ -148,17 +148,17 @@ M17
 CHANDATA(1)
 ; compensation tables of error model 'test' on small machine
 ; document: Siemens, SINUMERIK 840D sl/828D Function Manual Extended Functions (03/2013), 6FC5397-1BP40-3BA1, K3 Compensations, pages 237 to 268
-; reference: each table holds the line along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
-; zero: the tables are 0 at the reference; the error there stays for the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
+; reference: each table contains the errors along its axis through X = 10 mm, Y = 10 mm, Z = 10 mm, tool 100 mm
+; zero: the tables are 0 at the reference; the error there is left to the work offset: X 0.500 um, Y 2.900 um, Z 0.100 um
 ; tables:
 ;   X over X: 3 points, 10 mm apart from 0 mm, up to 1.000 um; linear interpolation and rounding leave up to 0.000 um
 ;   Y over X: 3 points, 10 mm apart from 0 mm, up to 6.899 um; linear interpolation and rounding leave up to 0.500 um
 ;   Z over X: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
 ;   X over Y: 3 points, 10 mm apart from 0 mm, up to 0.500 um; linear interpolation and rounding leave up to 0.000 um
 ;   Z over Y: 3 points, 10 mm apart from 0 mm, up to 0.100 um; linear interpolation and rounding leave up to 0.000 um
-; not in these tables, or only on their lines (largest size; what it alone leaves within the travel, beside that of the reference):
+; not in these tables, or only on their lines (largest value; its residual within the travel, relative to the reference):
 ;   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
-; tip at poses all over the travel, beside that of the reference: off by up to 7.257 um without these tables, 0.650 um with
+; TCP at poses all over the travel, relative to the reference: off by up to 7.257 um without these tables, 0.650 um with
 ; axes: machine axes are taken to be called X1, Y1, ...; first measuring system
 ; sign: correction, added to the setpoint of the compensation axis; check it with one table before you enable all
 ; load with MD32710 $MA_CEC_ENABLE = 0, then enable SD41300 $SN_CEC_TABLE_ENABLE
@@ -232,7 +232,7 @@ tables:
   EYX over X: 3 points, 10 mm apart from 0 mm, up to 8.000 um; linear interpolation and rounding leave up to 0.500 um
   EAX over X: 3 points, 10 mm apart from 0 mm, up to 20.000 urad; linear interpolation and rounding leave up to 0.000 urad
 not in these tables: nothing
-sign: deviation of the tool side as seen from the workpiece side, along X, Y, Z and about A, B, C right-handed; the columns are functions of the first one
+sign: deviation of the tool side relative to the workpiece side, along X, Y, Z and about A, B, C right-handed; the columns are functions of the first one
 )");
 }
 

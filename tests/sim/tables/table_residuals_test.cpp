@@ -26,14 +26,14 @@ TEST(TableResiduals, WhatAControlCannotHoldIsReported) {
   EXPECT_EQ(
       notes(TableFormat::heidenhain, errors),
       (std::vector<std::string>{"note: EXX depends on the direction of travel, by 4.000 um at "
-                                "the ends of the travel; both directions are held by X over "
+                                "the ends of the travel; both directions are contained in X over "
                                 "X; the mean by Y over X",
                                 "note: EYX depends on the direction of travel, by 2.000 um at "
-                                "the ends of the travel; both directions are held by X over "
+                                "the ends of the travel; both directions are contained in X over "
                                 "X; the mean by Y over X"}));
   EXPECT_EQ(notes(TableFormat::siemens, errors)[1],
             "note: EYX depends on the direction of travel, by 2.000 um at the ends of the travel; "
-            "both directions are held by X over X, Y over X");
+            "both directions are contained in X over X, Y over X");
 }
 
 // An error of 5 mm period between points 7 mm apart.
@@ -93,7 +93,7 @@ TEST(TableResiduals, ReversalWithoutATableIsReportedAsLost) {
     EXPECT_EQ(notes(format, errors),
               (std::vector<std::string>{
                   "note: EXX depends on the direction of travel, by 4.000 um at the ends of the "
-                  "travel; both directions are held by X over X",
+                  "travel; both directions are contained in X over X",
                   "note: EYX depends on the direction of travel, by 2.000 um at the ends of the "
                   "travel; there is no table Y over X: half of it, 1.000 um, stays in each "
                   "direction"}));

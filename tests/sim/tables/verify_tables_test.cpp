@@ -101,8 +101,8 @@ TEST(VerifyTables, AnErrorThatDoesNotRepeatIsRefusedForATableThatDoes) {
       FAIL() << name_of(format);
     } catch (const InputError& error) {
       EXPECT_EQ(error.faults()[0].message,
-                "the error of C after one turn differs by 62.83 urad from that at the start, and "
-                "the table repeats; give --travel C=FROM:TO, or an error that repeats, too");
+                "the error of C after one revolution differs by 62.83 urad from that at the start, "
+                "but the table is periodic; set --travel C=FROM:TO, or use a periodic error");
     }
     TableRequest limited = request_of(format);
     limited.axes[4].from = 0.0;

@@ -136,7 +136,7 @@ TEST(Compensate, ExpressionsBecomeNumbersAndItSaysSo) {
   const Compensated done =
       with_errors("#100=3 #<deep>=[#100+1] (values)\n" + kStart + "G1 Z-#100 F[#100*100]\nM2\n",
                   "EXX = { constant_um = 0.0 }\n");
-  EXPECT_NE(done.program.find("(expressions became numbers)"), std::string::npos);
+  EXPECT_NE(done.program.find("(expressions are replaced by numbers)"), std::string::npos);
   EXPECT_NE(done.program.find("#100=3 #<deep>=1 (values)\n"), std::string::npos);
   EXPECT_NE(done.program.find("\nG1 Z-3 F300\n"), std::string::npos) << done.program;
 }
@@ -207,7 +207,7 @@ TEST(Compensate, WarnsOfWhatItTakesForGranted) {
   const Compensated done = trial.run();
   ASSERT_GE(done.warnings.size(), 1U);
   EXPECT_EQ(done.warnings[0].message,
-            "this program has been corrected before; it is corrected again");
+            "this program was corrected before and is now corrected again");
 }
 
 Trial for_linuxcnc(const std::string& program) {
@@ -218,21 +218,19 @@ Trial for_linuxcnc(const std::string& program) {
 
 TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
   EXPECT_EQ(refusal(Trial("o1 sub\nM73\nG91\no1 endsub\no1 call\nM2\n")),
-            "part.ngc:2:1: error: M73 in a subroutine: what it saves belongs to the call, and "
+            "part.ngc:2:1: error: M73 in a subroutine: the saved state belongs to the call, and "
             "subroutines are unrolled");
   EXPECT_EQ(refusal(for_linuxcnc("G0 X0 Y0 Z0\nG28.1\nM2\n")),
-            "part.ngc:2:1: error: G28.1 would store the corrected place as that of the machine");
+            "part.ngc:2:1: error: G28.1 would store the corrected position as a machine position");
   EXPECT_EQ(refusal(for_linuxcnc("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
-            "part.ngc:2:1: error: G10 L20 P2 of a work system that is not in force cannot be "
-            "corrected");
+            "part.ngc:2:1: error: G10 L20 P2 of an inactive work offset cannot be corrected");
 }
 
 TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {
   Trial trial("G21 G90\nG0 X0 Z5\nG1 Z-1 F100\nM2\n");
-  EXPECT_EQ(
-      refusal(trial),
-      "part.ngc:3: error: feeds while the position of Y is not known, and with it the errors: "
-      "no block before this names it; --start Y=... says where the machine stands");
+  EXPECT_EQ(refusal(trial),
+            "part.ngc:3: error: feeds while the position of Y is unknown, so the errors are "
+            "unknown: no earlier block programs it; set the start position with --start Y=...");
   trial.request.start = "Y=10";
   EXPECT_EQ(refusal(trial), "taken");
 }
@@ -240,15 +238,15 @@ TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {
 TEST(Compensate, RefusesWorkSystemsThatNobodySaidThePlaceOf) {
   Trial trial("G21 G90\nG53 G0 Z0\nG0 X0 Y0 Z0\nG55 G1 X1 F100\nM2\n");
   trial.request.inputs.parameter_file.clear();
-  EXPECT_EQ(refusal(trial),
-            "part.ngc:3: error: where G54 lies in the machine is not known, and with it the "
-            "errors; --work-offset G54:X=...,Y=...,Z=... or --parameter-file names it (0 may be "
-            "given, it is not assumed)");
+  EXPECT_EQ(
+      refusal(trial),
+      "part.ngc:3: error: the work offset G54 is unknown, so the errors are unknown; set it with "
+      "--work-offset G54:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)");
   trial.request.work_offsets = {"X=0,Y=0,Z=0"};
-  EXPECT_EQ(refusal(trial),
-            "part.ngc:4:1: error: where G55 lies in the machine is not known, and with it the "
-            "errors; --work-offset G55:X=...,Y=...,Z=... or --parameter-file names it (0 may be "
-            "given, it is not assumed)");
+  EXPECT_EQ(
+      refusal(trial),
+      "part.ngc:4:1: error: the work offset G55 is unknown, so the errors are unknown; set it with "
+      "--work-offset G55:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)");
   trial.request.work_offsets = {"X=200,Y=200", "G55:X=200,Y=300,R=10"};
   EXPECT_EQ(refusal(trial), "taken");
 }
@@ -279,7 +277,7 @@ TEST(Compensate, AddsWorkOffsetsOfOneSystemUpAndRefusesContradictions) {
     trial.run();
     ADD_FAILURE() << "taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "--work-offset X=3: error: X of G54 is 3 here and 200 before");
+    EXPECT_STREQ(error.what(), "--work-offset X=3: error: X of G54 is 3 here, but was 200 before");
   }
 }
 
@@ -365,14 +363,14 @@ TEST(Compensate, ReversalBeforeAnAxisHasMovedIsReported) {
   const Compensated done = trial.run();
   EXPECT_EQ(done.report[2],
             "the direction of travel is not known from line 3 on until each axis has moved: the "
-            "mean of both is taken there, up to 5.0 um remain");
+            "mean of both is used there, up to 5.0 um remain");
 }
 
 // The machine is known, turned or not: what is missing are positions of its axes.
 TEST(Compensate, RefusesMovesOfTheTip) {
   const std::string program =
       "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X10 Y10 A10 C0\nG43.4 H1 Z20\nG1 Z5 F300\nM2\n";
-  const std::string remedy = "let the CAM system, or servomill post, write positions of the axes";
+  const std::string remedy = "have the CAM system, or servomill post, output axis positions";
   Trial trial(program);
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/generic_trunnion_ac.toml";
   trial.request.error_file = written("none.toml", kNoErrors);
@@ -387,7 +385,7 @@ TEST(Compensate, RefusesMovesOfTheTip) {
   for (const Dialect dialect : {Dialect::fanuc, Dialect::siemens, Dialect::heidenhain}) {
     trial.request.dialect = dialect;
     EXPECT_EQ(refusal(trial),
-              fmt::format("part.ngc:5:1: error: G43.4 cannot be expressed for {}; {}",
+              fmt::format("part.ngc:5:1: error: G43.4 cannot be expressed in {}; {}",
                           kDialects[static_cast<std::size_t>(dialect)], remedy));
   }
 }

@@ -89,9 +89,9 @@ TEST(DialectMotion, ArcsOfSiemensInOtherPlanesGoThroughAPoint) {
   EXPECT_EQ(text.find("G18"), std::string::npos);
   EXPECT_EQ(text.find("G19"), std::string::npos);
   EXPECT_EQ(warnings_about_arcs(trial),
-            std::vector<std::string>{"arcs in G18 and G19 written as lines: 1; G18 may give the "
-                                     "tool length to another axis (SD42940), and CIP makes no "
-                                     "helix"});
+            std::vector<std::string>{
+                "arcs in G18 and G19 written as lines: 1; G18 may assign the tool length to "
+                "another axis (SD42940), and CIP cannot describe a helix"});
 }
 
 TEST(DialectMotion, ArcsInOtherPlanesAreLinesWhereTheLengthMayFollow) {
@@ -100,9 +100,8 @@ TEST(DialectMotion, ArcsInOtherPlanesAreLinesWhereTheLengthMayFollow) {
                                      "follow a change of the plane (No. 5001#1, TLB, may be 1; "
                                      "--without length-b)"});
   EXPECT_EQ(warnings_about_arcs(dialect_trial(Dialect::heidenhain, kArcsInAllPlanes)),
-            std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; circles lie in the "
-                                     "plane that the tool axis determines (TNC 407 manual p. "
-                                     "5-20)"});
+            std::vector<std::string>{"arcs in G18 and G19 written as lines: 4; circles are in the "
+                                     "plane normal to the tool axis (TNC 407 manual p. 5-20)"});
   EXPECT_TRUE(
       warnings_about_arcs(dialect_trial(Dialect::fanuc, kDialectStart + "G0 X1 Y1 Z5\nM2\n"))
           .empty());
@@ -166,8 +165,8 @@ TEST(DialectMotion, EndlessAxesOfFanucTurnByLessThanHalfATurn) {
   trial.request.program_file = written("plate.ngc", start + "C100\nM2\n");
   EXPECT_EQ(refusal(trial),
             "plate.ngc:4: error: rotates C by 250 deg in one block, for which a control whose axes "
-            "roll over (No. 1008#0, ROA, is 1) takes the shorter way; divide it, or give --without "
-            "rollover if ROA is 0; that cannot be expressed for fanuc");
+            "roll over (No. 1008#0, ROA, is 1) takes the shorter direction; split it, or pass "
+            "--without rollover if ROA is 0; it cannot be expressed in fanuc");
   trial.request.without = {"rollover"};
   EXPECT_NE(body(trial).find("C350.\nC100.\n"), std::string::npos) << body(trial);
 }
@@ -211,7 +210,7 @@ TEST(DialectMotion, RapidsThatMayLeaveTheirLineAreTheUsersWord) {
         dialect_trial(dialect, kDialectStart + moves + "M2\n").run().program;
     std::string text;
     for (const char c : written) text += static_cast<char>(std::tolower(c));
-    return text.find("rapids of several axes meet nothing, also off their line") !=
+    return text.find("rapids of several axes are collision-free off their line") !=
            std::string::npos;
   };
   for (const Dialect dialect : {Dialect::fanuc, Dialect::heidenhain}) {

@@ -59,7 +59,7 @@ TEST(DialectSettings, CodesThatTheControlDoesNotHaveAreLeftOut) {
             std::string::npos)
       << text;
   EXPECT_NE(trial.run().program.find("(ASSUMED: NO G92 HAS SHIFTED THE WORK SYSTEMS, SO THAT G92.1 "
-                                     "IS LEFT OUT)\n"),
+                                     "IS OMITTED)\n"),
             std::string::npos);
   trial.request.dialect = Dialect::siemens;
   EXPECT_THROW(trial.run(), InputError);
@@ -116,9 +116,10 @@ TEST(DialectSettings, RetractsFromTheirOwnHeightAreWrittenAndVerified) {
 TEST(DialectSettings, TheStartOfZIsUnknownBehindTheRetract) {
   Trial trial = dialect_trial(Dialect::fanuc, "G21 G90\nG1 X1 F100\nM2\n");
   trial.request.start = "X=0,Y=0,Z=0";
-  EXPECT_EQ(refusal(trial),
-            "plate.ngc:2: error: feeds while the position of Z is not known: no block since the "
-            "start, the last tool change or the last stop names it; name it in a rapid");
+  EXPECT_EQ(
+      refusal(trial),
+      "plate.ngc:2: error: feeds while the position of Z is unknown: no block since the start, the "
+      "last tool change or the last stop programs it; program it in a rapid first");
   trial.request.dialect = Dialect::linuxcnc;
   EXPECT_EQ(refusal(trial), "taken");
 }
@@ -148,9 +149,8 @@ TEST(DialectSettings, RetractsThatGoDownAreRefused) {
   Trial trial = with_errors(Dialect::siemens, program);
   trial.request.retract_Z = -60 * mm;
   EXPECT_EQ(refusal(trial),
-            "plate.ngc:6: error: goes to Z-5.000 of the machine, above the height "
-            "to retract to, Z-60; give a higher --retract, or check --work-offset "
-            "and the tool length");
+            "plate.ngc:6: error: goes to machine Z-5.000, above the retract height Z-60; raise "
+            "--retract, or check --work-offset and the tool length");
 }
 
 }  // namespace

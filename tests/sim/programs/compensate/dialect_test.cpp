@@ -164,23 +164,21 @@ TEST(Dialect, ShiftsRotationsInchesAndIncrementsAreInTheNumbers) {
 TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
   const std::string start = "G21 G90\nT1 M6 G43 H1\nS1000 M3\nG0 X0 Y0 Z5\n";
   EXPECT_EQ(refusal(Dialect::heidenhain, start + "G55 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: selects a work system other than G54; write a program for each, "
-            "with its --preset; that cannot be expressed for heidenhain");
+            "plate.ngc:5: error: selects a work offset other than G54; write one program per "
+            "offset, with its --preset; it cannot be expressed in heidenhain");
   EXPECT_EQ(refusal(Dialect::siemens, start + "G61 G1 X1 F100\nM2\n"),
-            "plate.ngc:5: error: needs the exact path of LinuxCNC's G61; write G61.1 (stops at "
-            "each end) or G64; that cannot be expressed for siemens");
+            "plate.ngc:5: error: needs the exact path of LinuxCNC's G61; use G61.1 (exact stop) or "
+            "G64; it cannot be expressed in siemens");
   EXPECT_EQ(
       refusal(Dialect::siemens, start + "G10 L1 P1 Z3\nM2\n"),
-      "plate.ngc:5:1: error: G10 cannot be expressed for siemens; enter tools and their lengths at "
+      "plate.ngc:5:1: error: G10 cannot be expressed in siemens; enter tools and their lengths at "
       "the control");
   EXPECT_EQ(refusal(Dialect::heidenhain, start + "M7\nM2\n"),
-            "plate.ngc:5: error: switches mist (M7), which is the machine builder's; write M8, or "
-            "take it "
-            "out; that cannot be expressed for heidenhain");
-  EXPECT_EQ(
-      refusal(linuxcnc_trial(Dialect::fanuc, start + "M52 P1\nM2\n")),
-      "plate.ngc:5:1: error: M52 cannot be expressed for fanuc; adaptive feed and feed stop are "
-      "inputs of LinuxCNC; take it out");
+            "plate.ngc:5: error: switches mist (M7), which is up to the machine builder; use M8, "
+            "or remove it; it cannot be expressed in heidenhain");
+  EXPECT_EQ(refusal(linuxcnc_trial(Dialect::fanuc, start + "M52 P1\nM2\n")),
+            "plate.ngc:5:1: error: M52 cannot be expressed in fanuc; adaptive feed and feed stop "
+            "are inputs of LinuxCNC; remove it");
 }
 
 }  // namespace

@@ -73,9 +73,9 @@ TEST(LostPositions, RotaryAxesAreRestatedFirst) {
 TEST(LostPositions, ZBehindAToolChangeNeedsAxesThatAreNamed) {
   const std::string home = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS1000 M3\nG0 X1\n";
   EXPECT_EQ(refusal(Dialect::fanuc, home + "Z5\nM2\n"),
-            "plate.ngc:6: error: moves Z while the position of Y is not known: the tool change or "
-            "stop may have moved it, and no block names it; name Y in a rapid between it and this "
-            "line, or the start with --start");
+            "plate.ngc:6: error: moves Z while the position of Y is unknown: the tool change or "
+            "stop may have moved it, and no block programs it; program Y in a rapid between it and "
+            "this line, or set the start position with --start");
   EXPECT_EQ(refusal(Dialect::fanuc, home + "G53 G0 Z-3\nM2\n"), "taken");
   Trial trial = dialect_trial(Dialect::fanuc, home + "Z5\nM2\n");
   trial.request.start = "X=0,Y=7";

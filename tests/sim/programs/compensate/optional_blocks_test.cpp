@@ -82,11 +82,10 @@ TEST(OptionalBlocks, RestateTheirCoolantWithTheSlash) {
 }
 
 TEST(OptionalBlocks, MustNotStopACoolantThatGoesOnBehindAToolChange) {
-  EXPECT_EQ(
-      refusal(Dialect::fanuc,
-              kStart + "M8\n/M9\nG0 X20\nT2 M6\nS800 M3\nG0 X30 Y30\nG43 H2 Z20\nM2\n"),
-      "plate.ngc:11: error: needs the coolant that a block with '/' has switched off; take the "
-      "slash away; that cannot be expressed for fanuc");
+  EXPECT_EQ(refusal(Dialect::fanuc,
+                    kStart + "M8\n/M9\nG0 X20\nT2 M6\nS800 M3\nG0 X30 Y30\nG43 H2 Z20\nM2\n"),
+            "plate.ngc:11: error: needs the coolant that a block with '/' has switched off; remove "
+            "the slash; it cannot be expressed in fanuc");
 }
 
 // The switch may be in either position: a slash that is lost, or one too many, is found.
@@ -115,30 +114,28 @@ std::string why(Dialect dialect, const std::string& program) {
 }
 
 const std::string kRemedy =
-    "take the slash away where they shall run, or leave them out by --block-delete";
+    "remove the slash where they must run, or omit these blocks with --block-delete";
 
 TEST(OptionalBlocks, AreRefusedWhereTheRestDependsOnThem) {
   const std::string slash =
-      "plate.ngc:6:1: error: the operator decides about blocks with '/', and what follows depends "
-      "on them; take the slash away, or leave them out by --block-delete";
+      "plate.ngc:6:1: error: the rest of the program depends on whether the operator skips blocks "
+      "with '/'; remove the slash, or omit these blocks with --block-delete";
   for (const Dialect dialect : {Dialect::linuxcnc, Dialect::fanuc, Dialect::siemens}) {
     EXPECT_EQ(why(dialect, "/T2 M6\nG0 X20\nM2\n"), slash);
     EXPECT_EQ(why(dialect, "/#1 = 5\nG0 X20\nM2\n"), slash);
     EXPECT_EQ(why(dialect, "/M30\nG0 X20\nM2\n"), slash);
   }
-  EXPECT_EQ(
-      why(Dialect::heidenhain, "/G0 X20\nG0 X30 Y30\nM2\n"),
-      "plate.ngc:6:1: error: no manual was found that says how the control writes blocks with "
-      "'/'; take the slash away, or leave them out by --block-delete");
+  EXPECT_EQ(why(Dialect::heidenhain, "/G0 X20\nG0 X30 Y30\nM2\n"),
+            "plate.ngc:6:1: error: no manual found specifies blocks with '/' for this control; "
+            "remove the slash, or omit these blocks with --block-delete");
 }
 
 TEST(OptionalBlocks, AreRefusedWhereTheyLeaveAnotherState) {
-  EXPECT_EQ(
-      why(Dialect::fanuc, "/G91\nG0 X30\nG90\nM2\n"),
-      "plate.ngc:7: error: the program written for fanuc would do something else than \"G0 "
-      "X30\": X must end at 230.00000 of the machine, and ends at 240.00000 (its line 26, \"N16 "
-      "X40.\"; EVO=0 TOS=0 LRP=0 TLB=0 IS-B); that is with the blocks with '/' left out: " +
-          kRemedy);
+  EXPECT_EQ(why(Dialect::fanuc, "/G91\nG0 X30\nG90\nM2\n"),
+            "plate.ngc:7: error: the program written for fanuc differs in effect from \"G0 X30\": "
+            "X must end at machine position 230.00000, but ends at 240.00000 (its line 26, \"N16 "
+            "X40.\"; EVO=0 TOS=0 LRP=0 TLB=0 IS-B); that is with the blocks with '/' left out: " +
+                kRemedy);
   for (const std::string block :
        {"/M5\nG1 X30 F100", "/G43 H2\nG0 Z30", "G1 X12 F100\n/G0 X14\nX20",
         "G1 X12 F100\n/G1 X14 F500\nX20 Y20"}) {
@@ -155,12 +152,11 @@ TEST(OptionalBlocks, DoNotCallSubroutines) {
 
 // G1 without F has no meaning where the block that gives F is left out.
 TEST(OptionalBlocks, AreRefusedWhereTheProgramCannotRunWithoutThem) {
-  EXPECT_EQ(
-      why(Dialect::linuxcnc, "/F100\nG1 X20\nM2\n"),
-      "plate.ngc:7:1: error: G1 before any F: Mach goes on with the feed that it had last, other "
-      "controls refuse it; write F, or give the feed with --feed or as program.first_feed of a "
-      "scenario; that is with the blocks with '/' left out: " +
-          kRemedy);
+  EXPECT_EQ(why(Dialect::linuxcnc, "/F100\nG1 X20\nM2\n"),
+            "plate.ngc:7:1: error: G1 before the first F: Mach keeps the last feed, other controls "
+            "raise an alarm; program F, or set the feed with --feed or program.first_feed of a "
+            "scenario; that is with the blocks with '/' left out: " +
+                kRemedy);
 }
 
 // Behind a stop X and Y are where the operator has left them. Blocks with '/' that name them have
@@ -181,11 +177,9 @@ TEST(OptionalBlocks, NameLostAxesForTheBlocksWithASlashBehindThem) {
 
 TEST(OptionalBlocks, MustNotBeAloneInNamingLostAxes) {
   const std::string why_not =
-      "moves Z behind a tool change or stop that may have moved X, Y, and the operator decides "
-      "about "
-      "the blocks with '/' between them; name X, Y in a rapid without '/' between it and this "
-      "line; "
-      "that cannot be expressed for siemens";
+      "moves Z after a tool change or stop that may have moved X, Y, and the blocks between them "
+      "depend on '/'; program X, Y in a rapid without '/' between it and this line; it cannot be "
+      "expressed in siemens";
   EXPECT_EQ(why(Dialect::siemens, "M0\n/G0 X40 Y20\nG0 Z10\nM2\n"),
             "plate.ngc:8: error: " + why_not);
   // Z comes down from 30 or goes up from 20
@@ -201,11 +195,9 @@ TEST(OptionalBlocks, BringBackWhatAStopWithASlashHasLost) {
 
 // Up first, or down last: which, the operator decides.
 TEST(OptionalBlocks, MustNotDecideAboutTheOrderOfARapid) {
-  EXPECT_EQ(
-      why(Dialect::fanuc, "G1 Z-5 F100\n/G0 Z30\nG0 X30 Y30 Z20\nM2\n"),
-      "plate.ngc:8: error: moves Z and other axes by rapid, up or down as the operator decides "
-      "about blocks with '/'; name Z in a rapid of its own before; that cannot be expressed for "
-      "fanuc");
+  EXPECT_EQ(why(Dialect::fanuc, "G1 Z-5 F100\n/G0 Z30\nG0 X30 Y30 Z20\nM2\n"),
+            "plate.ngc:8: error: moves Z and other axes by rapid, up or down depending on blocks "
+            "with '/'; program Z in a separate rapid before; it cannot be expressed in fanuc");
   EXPECT_NE(written_for(Dialect::fanuc, "G1 Z-5 F100\n/G0 Z10\nG0 X30 Y30 Z20\nM2\n")
                 .find("Z20.\nX30. Y30.\n"),
             std::string::npos);

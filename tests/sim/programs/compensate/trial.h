@@ -63,7 +63,7 @@ inline std::string without_header(const std::string& text) {
         in_header &&
         (line.starts_with("(servomill compensate") || line.starts_with("(path within") ||
          line.starts_with("(assumed") || line.find("unrolled)") != std::string::npos ||
-         line.find("became") != std::string::npos);
+         line.find("replaced by") != std::string::npos);
     if (!is_header && line != "%") in_header = false;
     if (!is_header) out += line + "\n";
     from = end + 1;

@@ -48,7 +48,7 @@ TEST(WrittenPathMode, ThatNobodyHasNamedIsAssumedBehindACycle) {
   EXPECT_NE(done.program.find("\nG64\nG80\n"), std::string::npos) << done.program;
   const std::string assumed =
       "assumes that G64 without a tolerance is in force at the start (no other path mode in "
-      "RS274NGC_STARTUP_CODE): it is restored behind canned cycles";
+      "RS274NGC_STARTUP_CODE): it is restored after canned cycles";
   EXPECT_TRUE(std::any_of(done.warnings.begin(), done.warnings.end(),
                           [&](const Fault& one) { return one.message == assumed; }));
 }
@@ -56,8 +56,8 @@ TEST(WrittenPathMode, ThatNobodyHasNamedIsAssumedBehindACycle) {
 TEST(WrittenPathMode, BesideACycleIsRefused) {
   Trial trial(kStart + "G64 G99 G81 X30 Z-2 R2 F200\nM2\n", "plate.ngc");
   EXPECT_EQ(refusal(trial),
-            "plate.ngc:6:1: error: G64 beside a canned cycle, which runs under G61: write it in a "
-            "block of its own");
+            "plate.ngc:6:1: error: G64 with a canned cycle, which runs under G61: program it in a "
+            "separate block");
 }
 
 // A helix of Heidenhain's ends where its angle about the written centre leads it, beside the grid:
@@ -106,8 +106,8 @@ TEST(WrittenTurns, OfAnEndlessAxisThatNoWordSaysAreRefused) {
   Trial trial = dialect_trial(Dialect::siemens, start + "G53 G0 C20\nM2\n");
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
   const std::string keep =
-      ", while it may be a modulo axis, whose absolute positions are from 0 to 360 deg; keep to "
-      "those there; that cannot be expressed for siemens";
+      ", while it may be a modulo axis, whose absolute positions are from 0 to 360 deg; stay "
+      "within that range; it cannot be expressed in siemens";
   EXPECT_EQ(refusal(trial), "plate.ngc:4: error: rotates C from -40 to 20 of the machine" + keep);
   trial = dialect_trial(Dialect::siemens, start + "G55 C20\nM2\n");
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
@@ -115,7 +115,7 @@ TEST(WrittenTurns, OfAnEndlessAxisThatNoWordSaysAreRefused) {
   trial.request.work_offsets = {"X=0,Y=0,Z=0,B=0,C=0", "G55:X=0,Y=0,Z=0,B=0,C=10"};
   EXPECT_EQ(
       refusal(trial),
-      "plate.ngc:4: error: rotates C from -50 to 20 behind a change of its work offset" + keep);
+      "plate.ngc:4: error: rotates C from -50 to 20 after a change of its work offset" + keep);
 }
 
 }  // namespace

@@ -32,40 +32,40 @@ std::string verified(const std::string& program, const std::string& from, const 
 TEST(UnsafeOrder, AcrossBeforeUpBehindAStop) {
   const std::string program = kStart + "G1 Z-5 F200\nX60\nM1\nG0 X10 Y60 Z20\nM2\n";
   const std::string safe = "G0 Z20\nX10 Y60\n";
-  EXPECT_EQ(verified(program, safe, "G0 X10 Y60\nZ20\n"), "moves the other axes before it goes up");
+  EXPECT_EQ(verified(program, safe, "G0 X10 Y60\nZ20\n"), "moves the other axes before moving up");
   EXPECT_EQ(verified(program, safe, "G0 Z20\nX10 Y60\n"), "taken");
 }
 
 TEST(UnsafeOrder, DownBeforeAcrossBehindAStop) {
   const std::string program = kStart + "M0\nG0 X30 Y30 Z-4\nM2\n";
   EXPECT_EQ(verified(program, "X30 Y30\nZ-4\n", "Z-4\nX30 Y30\n"),
-            "moves Z where the tool change or stop has left X, which the original knows");
+            "moves Z where a tool change or stop has moved X, which is known in the original");
 }
 
 TEST(UnsafeOrder, ZWhereAToolChangeHasLeftOtherAxes) {
   const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 Z-4\nX20 Y15\nM2\n";
   const std::string safe = "G0 X20 Y10\nD1 Z-4\nY15\n";
   EXPECT_EQ(verified(program, safe, "G0 D1 Z-4\nX20 Y15\n"),
-            "moves Z where the tool change or stop has left X, which the original knows");
+            "moves Z where a tool change or stop has moved X, which is known in the original");
   EXPECT_EQ(verified(program, safe, "G0 X20\nD1 Z-4\nY15\n"),
-            "moves Z where the tool change or stop has left Y, which the original knows");
+            "moves Z where a tool change or stop has moved Y, which is known in the original");
 }
 
 TEST(UnsafeOrder, ZBetweenTheAxesThatItNeedsBehindAToolChange) {
   const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 X30 Z5\nG0 Y15\nM2\n";
   EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30\nD1 Z5\n"),
-            "moves Z where the tool change or stop has left Y, which the original knows");
+            "moves Z where a tool change or stop has moved Y, which is known in the original");
   EXPECT_EQ(verified(program, "G0 Y10\nX30\nD1 Z5\n", "G0 X30 Y10\nD1 Z5\n"), "taken");
 }
 
 TEST(UnsafeOrder, AxesRestatedElsewhereThanTheOriginalHasThem) {
   const std::string program = kStart + "X20 Z20\nT2 M6\nG43 H2\nS800 M3\nG0 Z-4\nX20 Y15\nM2\n";
   EXPECT_EQ(verified(program, "G0 X20 Y10\n", "G0 X20.01 Y10\n"),
-            "X must end at 220.00000 of the machine, and ends at 220.01000");
+            "X must end at machine position 220.00000, but ends at 220.01000");
   // nothing has left an axis unknown
   const std::string known = kStart + "X20 Y20\nZ-4\nM2\n";
   EXPECT_EQ(verified(known, "X20 Y20\nZ-4\n", "X20 Y20\nX10 Y10\nZ-4\n"),
-            "moves X, which the original leaves where it is");
+            "moves X, which is at rest in the original");
 }
 
 // The second moves nothing; without the first Z stays down.
@@ -75,7 +75,7 @@ TEST(UnsafeOrder, ReferenceMovesWhereZIsThereAlready) {
   EXPECT_EQ(verified(program, twice, twice), "taken");
   EXPECT_EQ(verified(program, twice, "SUPA G0 Z-2 D0\n"), "taken");
   EXPECT_EQ(verified(program, twice, ""),
-            "a return to the reference position must come here, and another action comes");
+            "expected a return to the reference position, found another action");
 }
 
 // Nothing moves between them: the next motion brings the coolant back.

@@ -63,18 +63,17 @@ TEST(Verification, TakesWhatIsWritten) {
 
 TEST(Verification, ShowsBothLines) {
   EXPECT_EQ(refusal(Dialect::fanuc, "X50.", "X51."),
-            "plate.ngc:9: error: the program written for fanuc would do something else than "
-            "\"G1 X50\": goes beyond X250 Y260 Z-51, where the original ends (its line 27, "
-            "\"N18 X51.\"; EVO=0 TOS=0 LRP=0 TLB=0 IS-B)");
+            "plate.ngc:9: error: the program written for fanuc differs in effect from \"G1 X50\": "
+            "moves beyond X250 Y260 Z-51, where the original ends (its line 27, \"N18 X51.\"; "
+            "EVO=0 TOS=0 LRP=0 TLB=0 IS-B)");
   EXPECT_EQ(
       refusal(Dialect::fanuc, "G43 H1 Z5.", "Z5."),
       "plate.ngc: error: the program written for fanuc cannot be verified (EVO=0 TOS=0 LRP=0 TLB=0 "
-      "IS-B): its line 24, \"N15 Z5.\": Z while none of G43, G44 and G49 is known to be in "
-      "force");
+      "IS-B): its line 24, \"N15 Z5.\": Z while none of G43, G44 and G49 is known to be active");
   EXPECT_EQ(refusal(Dialect::siemens, "M8", "M9"),
-            "plate.ngc:8: error: the program written for siemens would do something else than "
-            "\"G1 Z-1 F200\": coolant must be on, and is off (its line 20, \"N120 G1 Z-1 F200\"; "
-            "MD20270=1 MD10760=1 MD22550=1 SD42940=0 M6 a macro)");
+            "plate.ngc:8: error: the program written for siemens differs in effect from \"G1 Z-1 "
+            "F200\": coolant must be on, but is off (its line 20, \"N120 G1 Z-1 F200\"; MD20270=1 "
+            "MD10760=1 MD22550=1 SD42940=0 M6 a macro)");
 }
 
 // X and Y of a rapid before Z is known are not corrected: the next feed begins beside its path, and
@@ -96,10 +95,10 @@ TEST(Verification, TakesShortFeedsThatBeginBesideTheirPath) {
 }
 
 TEST(Verification, ReplaysLinuxCncFromTwoStarts) {
-  EXPECT_EQ(refusal(Dialect::linuxcnc, "G0 X10 Y10", "G0 X10"),
-            "plate.ngc:5: error: the program written for linuxcnc would do something else than "
-            "\"G0 X10 Y10\": moves Z, which the original leaves where it is (its line 10, \"G0 "
-            "Z5\"; the start at zero)");
+  EXPECT_EQ(
+      refusal(Dialect::linuxcnc, "G0 X10 Y10", "G0 X10"),
+      "plate.ngc:5: error: the program written for linuxcnc differs in effect from \"G0 X10 Y10\": "
+      "moves Z, which is at rest in the original (its line 10, \"G0 Z5\"; the start at zero)");
 }
 
 }  // namespace
