@@ -143,7 +143,7 @@ std::vector<std::string> notes_of_uncorrectable(const preparation::PreparedParts
     const bool is_near =
         strategy.displaces_rotary() && found->singular_angle < controllers::kNearSingular;
     out.push_back(fmt::format(
-        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the most found",
+        "{}:{}: warning: case {}: strategy {} cannot correct {} here{}, the largest found",
         one.scenario.program.file, found->line, one.spec.name, one.spec.strategies[k].entry->name,
         fmt::join(left, " and "),
         is_near ? fmt::format(", {:.2f} deg from a singular direction", found->singular_angle / deg)

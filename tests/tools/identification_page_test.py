@@ -145,14 +145,14 @@ class Page(unittest.TestCase):
         self.run_tool(other)
         self.assertIn("record1.csv", self.text())
         self.assertIn("bench.mat", self.text())
-        self.assertIn("is the input", self.run_tool(other, "-o", other, "--force", status=2).stderr)
+        self.assertIn("is an input of this command", self.run_tool(other, "-o", other, "--force", status=2).stderr)
 
     def test_pages_are_not_overwritten_unasked(self):
         write(self.file)
         self.run_tool()
         self.assertIn("exists; use --force", self.run_tool(status=2).stderr)
         self.run_tool("--force")
-        self.assertIn("is the input", self.run_tool("-o", self.file, "--force", status=2).stderr)
+        self.assertIn("is an input of this command", self.run_tool("-o", self.file, "--force", status=2).stderr)
 
     def test_other_files_are_refused(self):
         write(self.file, kind="run")

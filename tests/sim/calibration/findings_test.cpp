@@ -172,7 +172,7 @@ TEST(Findings, NamesABallBarThatIsAMillimetreLonger) {
   settings.errors = {"EC0Y"_err};
   const auto found = warnings(calibrated(all, settings));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_TRUE(found[0].starts_with("radius of \"bar\" comes out ")) << found[0];
+  EXPECT_TRUE(found[0].starts_with("radius of \"bar\" is estimated ")) << found[0];
   EXPECT_TRUE(found[0].ends_with(" mm larger than stated: check it")) << found[0];
   all.groups[0].size_uncertainty = 2e-6;
   const auto known = warnings(calibrated(all, settings));

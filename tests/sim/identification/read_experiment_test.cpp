@@ -115,7 +115,7 @@ TEST_F(ReadExperiment, GapsAreLeftOutAndSaid) {
   ASSERT_EQ(e.records[0].record.omitted.size(), 1u);
   EXPECT_EQ(e.records[0].record.omitted[0].end - e.records[0].record.omitted[0].begin, 30u);
   ASSERT_EQ(e.records[0].notes.size(), 1u);
-  EXPECT_NE(e.records[0].notes[0].find("gap at 0.2 s, left out"), std::string::npos);
+  EXPECT_NE(e.records[0].notes[0].find("gap at 0.2 s, excluded"), std::string::npos);
 }
 
 TEST_F(ReadExperiment, ClippedCurrentIsSaidWithItsChannelAndTime) {

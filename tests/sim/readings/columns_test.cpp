@@ -53,7 +53,7 @@ TEST_F(Columns, ReadsHeadingsAsLogsHaveThem) {
 
 TEST_F(Columns, SaysWhereATitleStandsInFrontOfTheNames) {
   EXPECT_EQ(faults("ISO 230-2, axis Y\nX_mm;deviation_um\n1;2\n3;4\n"),
-            "no row has the 2 fields of the header \"ISO 230-2 axis Y\"; lines before the "
+            "no row has the 2 fields of the header \"ISO 230-2 axis Y\"; lines before "
             "the header must start with #\n");
 }
 

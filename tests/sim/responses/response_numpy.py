@@ -84,7 +84,7 @@ def chirp(servomill, folder):
     y += 1e-3 * rng.standard_normal(len(y))
     np.savetxt(folder / "chirp.csv", np.column_stack([t, u, y]), "%.17g", ",", header="time [s],u,y", comments="")
     out = folder / "chirp_response.csv"
-    printed = run(servomill, "response", folder / "chirp.csv", "--input", "u", "--output", "y", "--from", 20, "--to", 150, "--table", out,
+    printed = run(servomill, "response", folder / "chirp.csv", "--input", "u", "--output", "y", "--f-min", 20, "--f-max", 150, "--table", out,
                   "--fit", "2/2+delay")
     found, wanted = np.loadtxt(out, delimiter=",", skiprows=1), local_polynomial(u, y)
     lines = np.rint(found[:, 0] * 4).astype(int)

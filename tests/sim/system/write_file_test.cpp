@@ -38,7 +38,7 @@ TEST(WriteTextFile, SaysWhyItFails) {
     FAIL();
   } catch (const InputError& error) {
     const std::string folder = testing::TempDir() + "no_such_folder";
-    EXPECT_EQ(std::string(error.what()), path + ": error: there is not a folder '" + folder + "'");
+    EXPECT_EQ(std::string(error.what()), path + ": error: folder '" + folder + "' does not exist");
   }
 }
 

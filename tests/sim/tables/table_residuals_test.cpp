@@ -47,7 +47,7 @@ TEST(TableResiduals, TablesThatMakeTheMachineWorseAreRefused) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_NE(what.find("these tables would make the machine worse: tip off by up to "),
+    EXPECT_NE(what.find("these tables would make the machine worse: TCP off by up to "),
               std::string::npos)
         << what;
     EXPECT_NE(what.find("; Y over Y: points 7 mm apart leave "), std::string::npos) << what;
@@ -77,7 +77,7 @@ TEST(TableResiduals, PointsThatSeeNothingOfAnErrorAreReported) {
     export_tables(machine_of("[w X b Y Z t]"), errors, request);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("can hold nothing of the error model"),
+    EXPECT_NE(std::string(error.what()).find("cannot represent any part of the error model"),
               std::string::npos);
     EXPECT_NE(std::string(error.what()).find("; Y over Y: points 5 mm apart leave 12.000 um"),
               std::string::npos)
