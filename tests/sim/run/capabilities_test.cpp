@@ -180,7 +180,7 @@ TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
   EXPECT_NE(note_of(faster, 0.5).find("10 us, which is 0.5 um at the largest feed of 3 m/min;"),
             std::string::npos)
       << note_of(faster, 0.5);
-  EXPECT_NE(note_of("G0 X20\nM2\n", 1.0).find("delay of 10 us; feedback"), std::string::npos)
+  EXPECT_NE(note_of("G0 X20\nM2\n", 1.0).find("delay of 10 us; set"), std::string::npos)
       << note_of("G0 X20\nM2\n", 1.0);
 }
 
