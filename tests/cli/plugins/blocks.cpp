@@ -1,5 +1,5 @@
-// The example of strategies/README.md, "Strategies out of the tree": blocks that are displaced by the errors
-// of the identified model.
+// The example of strategies/README.md, "Strategies out of the tree": blocks that are displaced by
+// the errors of the identified model.
 #include <algorithm>
 #include <cmath>
 
