@@ -65,21 +65,7 @@ class Fitter {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), best = x;
     double least = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kRounds; ++round) {
-      Eigen::MatrixXd K =
-          Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(2 * weight.size()), size());
-      Eigen::MatrixXd y(K.rows(), 1);
-      for (std::size_t n = 0; n < weight.size(); ++n) {
-        const ResponseLine& line = response_.lines[n];
-        const Complex p(0.0, kTurn * line.frequency / w0_);
-        Complex power = weight[n] / of_last[n];
-        for (int k = 0; k <= order_.denominator; ++k, power *= p) {
-          if (k <= order_.numerator) put(K, n, k, power);
-          if (k < order_.denominator) put(K, n, order_.numerator + 1 + k, -line.value * power);
-          if (k == order_.denominator) put(y, n, 0, line.value * power);
-        }
-      }
-      x.head(K.cols() - (order_.with_dead_time ? 1 : 0)) =
-          K.leftCols(K.cols() - (order_.with_dead_time ? 1 : 0)).colPivHouseholderQr().solve(y);
+      solve_linear(weight, of_last, x);
       const Rational m = model(x);
       for (std::size_t n = 0; n < weight.size(); ++n) {
         of_last[n] = std::max(
@@ -93,6 +79,25 @@ class Fitter {
       }
     }
     return best;
+  }
+
+  // One of these iterations: the coefficients by least squares, the dead time as it is.
+  void solve_linear(const std::vector<double>& weight, const std::vector<double>& of_last,
+                    Eigen::VectorXd& x) const {
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(2 * weight.size()), size());
+    Eigen::MatrixXd y(K.rows(), 1);
+    for (std::size_t n = 0; n < weight.size(); ++n) {
+      const ResponseLine& line = response_.lines[n];
+      const Complex p(0.0, kTurn * line.frequency / w0_);
+      Complex power = weight[n] / of_last[n];
+      for (int k = 0; k <= order_.denominator; ++k, power *= p) {
+        if (k <= order_.numerator) put(K, n, k, power);
+        if (k < order_.denominator) put(K, n, order_.numerator + 1 + k, -line.value * power);
+        if (k == order_.denominator) put(y, n, 0, line.value * power);
+      }
+    }
+    const Eigen::Index coefficients = K.cols() - (order_.with_dead_time ? 1 : 0);
+    x.head(coefficients) = K.leftCols(coefficients).colPivHouseholderQr().solve(y);
   }
 
   Eigen::VectorXd residual(const Eigen::VectorXd& x, const std::vector<double>& weight) const {
