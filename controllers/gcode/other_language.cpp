@@ -172,6 +172,26 @@ std::string siemens_program(ProgramText& text) {
          "--reader";
 }
 
+namespace {
+
+// An E word at the column where the line was not understood; empty: there is none.
+std::string e_word_refusal(std::string_view line, int column) {
+  const auto at = static_cast<std::size_t>(column - 1);
+  const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
+  if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
+      (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
+    if (is_engraving(line)) {
+      return "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
+             "output the moves";
+    }
+    return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
+           "work offset (Fadal); programs for milling are read here, with G54 ... G59";
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string other_language(std::string_view line, int column) {
   if (line.starts_with("//")) return {};  // a comment, or a block that may be skipped
   if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
@@ -213,18 +233,7 @@ std::string other_language(std::string_view line, int column) {
   }
   if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;
   if (std::string text = text_refusal(line); !text.empty()) return text;
-  const auto at = static_cast<std::size_t>(column - 1);
-  const bool is_smoothness = line.find("G187") != line.npos || line.find("g187") != line.npos;
-  if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
-      (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
-    if (is_engraving(line)) {
-      return "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
-             "output the moves";
-    }
-    return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
-           "work offset (Fadal); programs for milling are read here, with G54 ... G59";
-  }
-  return {};
+  return e_word_refusal(line, column);
 }
 
 }  // namespace servomill::controllers

@@ -44,6 +44,7 @@ class ReadingStep {
   bool is_polar_angle(char letter) const;
   void unit_codes();
   void feed_beside_unit();
+  void refuse_distances_of_home(const BlockWord& word);
   void repeated_groups();
   void machine_functions();
   void leave_out(ReaderRule rule, BlockWord& word);

@@ -182,6 +182,13 @@ void ReadingStep::feed_beside_unit() {
   words.erase(*code);
 }
 
+void ReadingStep::refuse_distances_of_home(const BlockWord& word) {
+  if (!words.has_code('G', 280) && !words.has_code('G', 300)) return;
+  fail(word.column,
+       "G90 and G91 with G28 or G30: no control documents which one applies to the intermediate "
+       "point; use two blocks");
+}
+
 // The last of several G codes of one group counts.
 void ReadingStep::repeated_groups() {
   constexpr std::array kGroups = {Group::g_plane,       Group::g_units,   Group::g_feed_mode,
@@ -195,11 +202,7 @@ void ReadingStep::repeated_groups() {
       const bool has_g80 = group == Group::g_motion && last != nullptr &&
                            (code->tenths == 800 || tenths_of(last->value) == 800);
       if (last != nullptr && !has_g80) {
-        if (group == Group::g_distance && (words.has_code('G', 280) || words.has_code('G', 300))) {
-          fail(word.column,
-               "G90 and G91 with G28 or G30: no control documents which one applies to the "
-               "intermediate point; use two blocks");
-        }
+        if (group == Group::g_distance) refuse_distances_of_home(word);
         if (tenths_of(last->value) != code->tenths) need(ReaderRule::repeated_group, word.column);
         words.erase(*last);
       }
