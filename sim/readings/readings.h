@@ -112,7 +112,7 @@ struct Group {
   Eigen::Vector3d ball_W = Eigen::Vector3d::Zero();  // m, nominal, on the table
   std::array<double, 2> legs{};                      // m, lengths of the lines of a squareness
   int targets = 0;                                   // on each of these lines
-  bool tool_is_known = false;      // the ball or stylus stands at p_ST, adjusted to the spindle
+  bool tool_is_known = false;      // the ball or stylus is at p_ST, adjusted to the spindle
   bool directions_unused = false;  // rows have a direction of travel that says nothing here
   bool drifts = false;             // linearly in time; without times: from row to row
   std::optional<Expansion> expansion;

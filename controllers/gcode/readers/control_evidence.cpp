@@ -35,7 +35,7 @@ constexpr int kHeadLines = 40;  // posts name their control in the first few lin
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// True if the text has the word, and no letter before or behind it.
+// True if the text has the word, and no letter next to it.
 bool has_word(std::string_view text, std::string_view word) {
   for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -55,7 +55,7 @@ std::string comments_of(std::string_view line) {
   return out;
 }
 
-// "O0994" or ":994" at the begin, without a keyword of LinuxCNC's O-words behind it.
+// "O0994" or ":994" at the start, not followed by a keyword of LinuxCNC's O-words.
 std::string program_number(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == line.npos || std::string_view("Oo:").find(line[first]) == std::string_view::npos) {
