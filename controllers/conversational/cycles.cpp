@@ -10,43 +10,73 @@
 namespace servomill::controllers::conversational {
 namespace {
 
+// Reaction of a survey to a cycle that cannot be simulated.
+enum class Survey {
+  refused,
+  called,  // its moves are unknown, and so are the positions after its call
+  data     // it moves nothing where it is defined
+};
+
 struct Refusal {
   int first, last;
   std::string_view why;
+  Survey survey = Survey::refused;
 };
 
 constexpr auto kRefusals = std::to_array<Refusal>({
-    {4, 6, "pockets and contour cycles are not supported; have the CAM system output the moves"},
+    {3, 6,
+     "pockets, slots and contour cycles are not supported; have the CAM system output the moves",
+     Survey::called},
     {12, 12, "write CALL PGM"},
     {13, 13, "orientation of the spindle"},
-    {14, 16, "SL cycles are not supported; have the CAM system output the moves"},
-    {19, 19, "cycle 19 leaves positioning of the rotary axes to the program; use PLANE SPATIAL"},
-    {20, 25, "SL cycles are not supported; have the CAM system output the moves"},
-    {27, 30, "cylinder surfaces and digitized data are not supported"},
-    {39, 39, "cylinder surfaces are not supported"},
+    {14, 14, "SL cycles are not supported; have the CAM system output the moves", Survey::data},
+    {15, 16, "SL cycles are not supported; have the CAM system output the moves", Survey::called},
+    {18, 18, "thread cutting needs a spindle under position control; use cycle 207"},
+    {20, 20, "SL cycles are not supported; have the CAM system output the moves", Survey::data},
+    {21, 25, "SL cycles are not supported; have the CAM system output the moves", Survey::called},
+    {27, 30, "cylinder surfaces and digitized data are not supported", Survey::called},
+    {39, 39, "cylinder surfaces are not supported", Survey::called},
     {204, 204,
-     "back boring: no manual found gives the feed of the tool displacement; program the moves"},
+     "back boring: no manual found gives the feed of the tool displacement; program the moves",
+     Survey::called},
     {208, 208,
      "bore milling: the approach path to the wall is internal to the control; program it with CC "
-     "and CP IPA"},
-    {210, 219, "pockets, slots and studs are not supported; have the CAM system output the moves"},
-    {220, 221, "patterns are not supported; program the positions with M99"},
-    {230, 233, "face milling is not supported; have the CAM system output the moves"},
-    {241, 241, "single-lip drilling is not supported"},
+     "and CP IPA",
+     Survey::called},
+    {210, 215, "pockets, slots and studs are not supported; have the CAM system output the moves",
+     Survey::called},
+    {230, 233, "face milling is not supported; have the CAM system output the moves",
+     Survey::called},
+    {241, 241, "single-lip drilling is not supported", Survey::called},
     {253, 254,
-     "slots: the roughing path is internal to the control; have the CAM system output the moves"},
-    {251, 279,
-     "pockets, slots, studs and threads are not supported; have the CAM system output the moves"},
+     "slots: the roughing path is internal to the control; have the CAM system output the moves",
+     Survey::called},
+    {251, 267,
+     "pockets, slots, studs and threads are not supported; have the CAM system output the moves",
+     Survey::called},
+    {268, 269, "unknown cycle"},
+    {270, 279, "contour cycles are not supported; have the CAM system output the moves"},
     {400, 499, "touch probe cycles are not supported: the measured values are unknown"},
 });
 
 constexpr long kApplicationTuning = 392;  // ATC, of machines of DMG MORI
 
-constexpr auto kDrilling = std::to_array<int>({1, 200, 201, 202, 203, 205, 206, 207, 209, 240});
+// Cycles with Q parameters; 247 sets the preset.
+constexpr auto kOfParameters =
+    std::to_array<int>({200, 201, 202, 203, 205, 206, 207, 209, 220, 221, 240, 247});
 
-bool is_drilling(int number) {
-  return std::find(kDrilling.begin(), kDrilling.end(), number) != kDrilling.end();
+// Cycles in the form CYCL DEF 7.0, CYCL DEF 7.1; those before 3 and 17 make holes.
+constexpr auto kOfSteps = std::to_array<int>({1, 2, 7, 8, 9, 10, 11, 17, 19, 26, 32});
+
+bool is_one_of(std::span<const int> cycles, long number) {
+  return std::find(cycles.begin(), cycles.end(), number) != cycles.end();
 }
+
+// Values of an old drilling cycle: 1 has set-up clearance, depth, pecking depth, dwell, F; 2 has no
+// pecking depth; 17 has set-up clearance, depth, pitch. [407] p. 8-5, 8-7; 17 from memory
+std::size_t values_of(int number) { return number == 1 ? 5 : number == 2 ? 4 : 3; }
+
+bool is_old_drilling(int number) { return number == 1 || number == 2 || number == 17; }
 
 // The number at the end of the words: their names are those of the control's language ("SET UP 2",
 // "ABST 2", "TIEFE-15").
@@ -71,12 +101,15 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   const auto step =
       dot == std::string::npos ? std::optional<long>(-1) : integer_of(head.substr(dot + 1));
   if (!number || !step) fail(words[2].place, fmt::format("'{}' is not a cycle number", head));
+  if (*number == 13) {
+    return warn_once("cycle 13", "CYCL DEF 13: spindle orientation is ignored");
+  }
   for (const Refusal& refusal : kRefusals) {
     if (*number < refusal.first || *number > refusal.last) continue;
-    if (*number == 13) {
-      return warn_once("cycle 13", "CYCL DEF 13: spindle orientation is ignored");
-    }
-    fail(words[2].place, fmt::format("CYCL DEF {}: {}", *number, refusal.why));
+    const bool can_go_on = setup_.accepts_unknown_positions && refusal.survey != Survey::refused;
+    if (!can_go_on) fail(words[2].place, fmt::format("CYCL DEF {}: {}", *number, refusal.why));
+    return survey_cycle(static_cast<int>(*number), refusal.why, refusal.survey == Survey::called,
+                        words.subspan(3));
   }
   if (*number == kApplicationTuning) {
     return warn_once("cycle 392", "CYCL DEF 392: adapts the drives to the load; ignored");
@@ -84,13 +117,34 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);
   }
-  const bool is_known = is_drilling(static_cast<int>(*number)) || *number == 247;
-  if (!is_known || *number == 1) {
+  if (!is_one_of(kOfParameters, *number)) {
     fail(words[2].place, fmt::format("CYCL DEF {}: unknown cycle", *number));
   }
-  cycle_ = Cycle{static_cast<int>(*number), {}, true, place_};
-  is_modal_call_ = false;
   Words values(words.subspan(3));
+  if (*number == 220 || *number == 221) {
+    assign_words(values);
+    return call_hole_pattern(*number == 220);
+  }
+  cycle_ = Cycle{static_cast<int>(*number), {}, 0, {}};
+  is_modal_call_ = false;
+  assign_words(values);
+}
+
+// A survey goes on after a cycle whose path is the control's own: where it is called, positions are
+// unknown.
+void Translator::survey_cycle(int number, std::string_view why, bool is_called,
+                              std::span<const HeidenhainWord> words) {
+  if (is_called) {
+    cycle_ = Cycle{number, {}, 0, std::string(why)};
+    is_modal_call_ = false;
+  }
+  open_cycle_ = number;
+  const bool has_parameters =
+      !words.empty() && std::any_of(words.begin(), words.end(), [](const HeidenhainWord& word) {
+        return word.address == "Q" && word.text.find('=') != std::string::npos;
+      });
+  if (!has_parameters) return;
+  Words values(words);
   assign_words(values);
 }
 
@@ -100,15 +154,12 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   const auto rest = all.subspan(3);
   if (step == 0) {
     open_cycle_ = number;
-    if (number == 1) cycle_ = Cycle{1, {}, false, place_}, is_modal_call_ = false;
-    if (number == 7 || number == 8 || number == 9 || number == 10 || number == 11 || number == 26 ||
-        number == 32 || number == 1) {
-      return;
+    if (is_old_drilling(number)) {
+      cycle_ = Cycle{number, {}, values_of(number), {}};
+      is_modal_call_ = false;
     }
-    const bool is_old = number == 2 || number == 17 || number == 18 || number == 3;
-    fail(all[2].place, fmt::format("CYCL DEF {}: {}", number,
-                                   is_old ? "this legacy cycle is not supported; use 206, 207 or CP"
-                                          : "unknown cycle"));
+    if (is_one_of(kOfSteps, number)) return;
+    fail(all[2].place, fmt::format("CYCL DEF {}: unknown cycle", number));
   }
   if (open_cycle_ != number) {
     fail(all[2].place,
@@ -124,6 +175,8 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
       return rotate(words);
     case 11:
       return scale(words);
+    case 19:
+      return working_plane(words);
     case 26:
       return scale_axes(words);
     default:
@@ -140,12 +193,13 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
     const double tolerance = T ? length(*T) : 0.0;
     return note(tolerance > 0.0 ? "G64 " + word('P', tolerance) : "G64");
   }
-  if (!text) fail("cycle 1: expected a number");
+  if (!text) fail(fmt::format("cycle {}: expected a number", number));
   std::string number_text = *text;
   if (rest.back().address == "F") number_text = rest.back().rest;
-  if (number_text == "MAX") fail("cycle 1: F MAX is not allowed for drilling");
+  if (number_text == "MAX") {
+    fail(fmt::format("cycle {}: F MAX is not allowed for drilling", number));
+  }
   cycle_->values.push_back(value(operand_of(number_text, rest.back().place)));
-  cycle_->is_complete = cycle_->values.size() == 5;
 }
 
 // CYCL CALL, CYCL CALL POS X Y Z; with M functions.

@@ -62,14 +62,37 @@ void Translator::leave_hole(const Hole& hole) {
 
 void Translator::drill() {
   if (!cycle_ || cycle_->number == 247 || cycle_->number == 32) fail("no cycle is defined");
-  if (!cycle_->is_complete) fail("cycle 1 is incomplete; CYCL DEF 1.1 to 1.5 are required");
+  if (cycle_->values.size() != cycle_->value_count) {
+    fail(fmt::format("cycle {0} is incomplete; CYCL DEF {0}.1 to {0}.{1} are required",
+                     cycle_->number, cycle_->value_count));
+  }
   require_no_compensation("a drilling cycle");
   if (is_tcp_) fail("a drilling cycle with M128; end it with M129");
+  if (!cycle_->why_unknown.empty()) return leave_positions_unknown();
   if (frame_.scale != 1.0) fail("a drilling cycle while cycle 11 is active");
   last_element_.reset();
+  run_drilling_cycle();
+  was_rapid_ = true;
+}
+
+// The call of a cycle that a survey cannot follow. Surveys take the second home of G30 for a
+// position that is not known.
+void Translator::leave_positions_unknown() {
+  warn_once(fmt::format("cycle {}", cycle_->number),
+            fmt::format("CYCL DEF {}: {}; extent and cycle time are without its moves",
+                        cycle_->number, cycle_->why_unknown));
+  for (const char* text : {"G91 G30 X0 Y0 Z0", "G90"}) note(text);
+  forget_linear_positions();
+}
+
+void Translator::run_drilling_cycle() {
   switch (cycle_->number) {
     case 1:
       drill_old();
+      break;
+    case 2:
+    case 17:
+      tap_old(cycle_->number == 17);
       break;
     case 200:
       drill_200();
@@ -96,7 +119,6 @@ void Translator::drill() {
     default:
       centre_240();
   }
-  was_rapid_ = true;
 }
 
 // Pecking: values are set-up clearance, depth, pecking depth, dwell, F. It begins where the tool
@@ -123,6 +145,40 @@ void Translator::drill_old() {
   }
   cycle_dwell(dwell);
   cycle_move({}, start);
+}
+
+// Tapping, which begins where the tool is. Cycle 2, with a floating holder: set-up clearance,
+// depth, dwell, F; at the depth the spindle reverses, the tool returns after the dwell, and there
+// the spindle reverses again: [407] p. 8-7. Cycle 17, rigid: set-up clearance, depth, pitch, whose
+// sign is the hand of the thread; the spindle stops at the start (from memory).
+void Translator::tap_old(bool is_rigid) {
+  const int number = is_rigid ? 17 : 2;
+  if (!work_[2]) {
+    fail(fmt::format("cycle {} starts at the current Z, which is unknown here; program Z first",
+                     number));
+  }
+  if (!speed_ || *speed_ == 0.0) fail("tapping: no S since the last TOOL CALL");
+  if (!is_rigid && spindle_ == 0) fail("cycle 2: M3 or M4 must be active");
+  const std::vector<double>& values = cycle_->values;
+  const double start = frame_.to_program(2, *work_[2]);
+  const double depth = values[1] * unit();
+  if (depth >= 0.0) fail(fmt::format("cycle {}: the depth must be negative", number));
+  const double pitch = is_rigid ? values[2] * unit() : 0.0;
+  if (is_rigid && pitch == 0.0) fail("cycle 17: the pitch must not be 0");
+  const bool is_left = is_rigid ? pitch < 0.0 : spindle_ < 0;
+  const Feed feed =
+      is_rigid ? Feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_} : cycle_feed(values[3]);
+  if (is_rigid) note(is_left ? "M4" : "M3");
+  cycle_move(feed, start - std::abs(values[0]) * unit() + depth);
+  note(is_left ? "M3" : "M4");
+  if (!is_rigid) cycle_dwell(values[2]);
+  cycle_move(feed, start);
+  if (is_rigid) {
+    note("M5");
+    spindle_ = 0;
+  } else {
+    note(is_left ? "M4" : "M3");
+  }
 }
 
 // To the set-up clearance at rapid; infeeds of Q202 at Q206, between them to the set-up clearance

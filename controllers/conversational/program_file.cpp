@@ -64,6 +64,24 @@ void ProgramFile::take_number_with_N(HeidenhainBlock& block) {
   has_numbers_with_N_ = true;
 }
 
+// "L X+10 (SIDE 1)": the comments of simulators and posts. Blocks with formulas and patterns have
+// brackets of their own.
+void ProgramFile::drop_bracket_comment(HeidenhainBlock& block) {
+  auto& words = block.words;
+  if (words.empty() || words.back().text.back() != ')') return;
+  const std::string& address = words.front().address;
+  const bool has_brackets =
+      address == "PATTERN" || address == "FN" || address.starts_with('Q') || address == "CYCL";
+  if (has_brackets && words.front().text.front() != '(') return;
+  const auto begin = std::find_if(words.begin(), words.end(), [](const HeidenhainWord& word) {
+    return word.text.front() == '(';
+  });
+  const auto closes = [](const HeidenhainWord& word) { return word.text.back() == ')'; };
+  if (begin == words.end() || std::find_if(begin, words.end(), closes) != words.end() - 1) return;
+  words.erase(begin, words.end());
+  has_bracket_comments_ = true;
+}
+
 namespace {
 
 bool are_digits(std::string_view text) {
@@ -104,6 +122,7 @@ std::optional<HeidenhainBlock> ProgramFile::next() {
     advance();
     if (!block) return block;
     take_number_with_N(*block);
+    drop_bracket_comment(*block);
     set_blanks_of_definition(*block);
     return block;
   } catch (const InputError&) {

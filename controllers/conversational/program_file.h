@@ -42,19 +42,22 @@ class ProgramFile {
   int lines_before_begin() const { return lines_before_begin_; }
   /// True if block numbers are written with N.
   bool has_numbers_with_N() const { return has_numbers_with_N_; }
+  /// True if blocks end with a comment in brackets.
+  bool has_bracket_comments() const { return has_bracket_comments_; }
   /// Programs that it calls, by the names written in the blocks.
   const std::vector<std::string>& called_programs() const { return called_; }
 
  private:
   void blank_title();
   void take_number_with_N(HeidenhainBlock& block);
+  void drop_bracket_comment(HeidenhainBlock& block);
   void index();
   void index(const HeidenhainBlock& block);
 
   std::string text_, file_;
   BlockMark at_;
   int lines_before_begin_ = 0;
-  bool has_numbers_with_N_ = false;
+  bool has_numbers_with_N_ = false, has_bracket_comments_ = false;
   std::map<std::string, BlockMark> labels_;
   std::vector<Fault> faults_;
   std::vector<HeidenhainBlock> tool_definitions_;

@@ -127,6 +127,26 @@ void Translator::scale_axes(Words& words) {
   words.refuse_rest("cycle 26");
 }
 
+// CYCL DEF 19.1 A+0 B+0 C+0, or without angles: ends the tilting, and no axis moves. Other angles
+// are spatial angles or those of the rotary axes, as MP7500 of the iTNC 530 has it (from memory).
+void Translator::working_plane(Words& words) {
+  for (const std::string_view axis : {"A", "B", "C"}) {
+    const auto angle = words.take_number(axis);
+    if (!angle || value(*angle) == 0.0) continue;
+    fail(angle->place,
+         fmt::format("cycle 19 with {}: a spatial angle, or the position of a rotary axis, by a "
+                     "machine parameter (MP7500); use PLANE SPATIAL",
+                     axis));
+  }
+  while (words.peek() != nullptr &&
+         (words.peek()->address == "F" || words.peek()->address == "ABST" ||
+          words.peek()->address == "SETUP")) {
+    words.take_next();
+  }
+  words.refuse_rest("cycle 19");
+  reset_plane("STAY");
+}
+
 // Presets 1 to 9 are the work systems G54 to G59.3.
 void Translator::set_preset(double number) {
   if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {

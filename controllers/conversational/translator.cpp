@@ -126,6 +126,9 @@ void Translator::begin_program() {
   if (program().has_numbers_with_N()) {
     warn_once("N", "block numbers with N: accepted, although controls write them without N");
   }
+  if (program().has_bracket_comments()) {
+    warn_once("bracket", "words in brackets at the end of a block: a comment; controls take ';'");
+  }
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},
          "a conversational program starts with BEGIN PGM");

@@ -59,9 +59,9 @@ struct Positioning {
 /// Drilling cycle in force, by number; its values are Q parameters or, in the old form, `values`.
 struct Cycle {
   int number = 0;
-  std::vector<double> values;  // of CYCL DEF 1.1, 1.2, ...
-  bool is_complete = true;
-  Place place;
+  std::vector<double> values;   // of CYCL DEF 1.1, 1.2, ...
+  std::size_t value_count = 0;  // that the old form needs
+  std::string why_unknown;      // in surveys: the reason why its moves are unknown
 };
 
 class Translator {
@@ -178,6 +178,7 @@ class Translator {
   void rotate(Words& words);
   void scale(Words& words);
   void scale_axes(Words& words);
+  void working_plane(Words& words);
   void set_preset(double number);
   void set_frame(const Frame& frame);
   void tcp_control(bool is_on);
@@ -207,9 +208,14 @@ class Translator {
   // cycles.cpp
   void define_cycle(const HeidenhainBlock& block);
   void define_old_cycle(int number, int step, const HeidenhainBlock& block);
+  void survey_cycle(int number, std::string_view why, bool is_called,
+                    std::span<const HeidenhainWord> words);
   void call_cycle(const HeidenhainBlock& block);
   void drill();
+  void run_drilling_cycle();
+  void leave_positions_unknown();
   void drill_old();
+  void tap_old(bool is_rigid);
   void drill_200();
   void ream_201();
   void bore_202();
@@ -218,6 +224,12 @@ class Translator {
   void tap(bool is_rigid);
   void tap_209();
   void centre_240();
+
+  // hole_patterns.cpp: cycles 220 and 221
+  void call_hole_pattern(bool is_circle);
+  std::vector<Point> points_on_circle() const;
+  std::vector<Point> points_on_lines() const;
+  void drill_points(const std::vector<Point>& points);
   double q(int number) const;
   struct Hole;
   Hole hole() const;

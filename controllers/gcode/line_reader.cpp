@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "controllers/gcode/other_language.h"
+#include "controllers/gcode/repeated_words.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
@@ -209,7 +210,7 @@ class LexicalRules {
       skip_bracketed();
     } else if (upper(c) == 'N' && is_digit(at(at_ + 1))) {
       block_number();
-    } else if (is_fan_code()) {
+    } else if (is_code('M', "106") || is_code('M', "107")) {
       fan_code();
     } else if (is_code('G', "187")) {
       smoothness();
@@ -274,8 +275,6 @@ class LexicalRules {
     blank(at_, end);
     at_ = end;
   }
-
-  bool is_fan_code() const { return is_code('M', "106") || is_code('M', "107"); }
 
   // With its S or P word, which would set the speed of the spindle.
   void fan_code() {
@@ -343,11 +342,10 @@ class LexicalRules {
   TolerantLine line_;
   Reader reader_;
   std::size_t at_ = 0;
-  bool seen_ = false;      // anything but a block number
-  bool is_dwell_ = false;  // G4 in the line
+  bool seen_ = false, is_dwell_ = false;  // anything but a block number; G4
 };
 
-// Codes that the parser takes and no table holds.
+// M106 and M107.
 bool has_fan_code(const Block& block) {
   return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
     return word.letter == 'M' && word.value.is_constant() &&
@@ -355,7 +353,7 @@ bool has_fan_code(const Block& block) {
   });
 }
 
-// A line that is skipped is looked at for its label only, and no fault shows that it has one.
+// A line that is skipped is read for its label only.
 bool begins_with_colon(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   return first != std::string_view::npos && line[first] == ':';
@@ -364,7 +362,9 @@ bool begins_with_colon(std::string_view line) {
 }  // namespace
 
 TolerantLine tolerant_line(std::string_view line, Reader reader) {
-  return LexicalRules(line, reader).result();
+  TolerantLine out = LexicalRules(line, reader).result();
+  drop_repeated_words(out, reader);
+  return out;
 }
 
 void LineReader::parse(std::string_view& line, const std::string& file, int number, Block& block,

@@ -201,7 +201,17 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
   const double least = std::min(r_start, r_end);
   const bool is_near =
       least > tolerance.radius && difference <= kSpiralLimit && difference <= kSpiralShare * least;
-  if (!is_near) return found;
+  if (!is_near) {
+    // the other kind of I and J may be meant
+    const double sign = state_.is_centre_absolute ? 1.0 : -1.0;
+    if (centre_format(start, end, centre + sign * start, tolerance).fault.empty()) {
+      found.fault += state_.is_centre_absolute
+                         ? "; as distances from the start (G91.1) I, J and K fit"
+                         : "; as positions of the centre I, J and K fit: if they are meant so, "
+                           "program G90.1 at the start";
+    }
+    return found;
+  }
   const std::string detail = fmt::format("; here by {:.4f} mm", difference / mm);
   if (tolerates(ReaderRule::arc_radii, request().motion.column, detail)) found.fault.clear();
   return found;

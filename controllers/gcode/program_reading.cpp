@@ -256,7 +256,12 @@ bool Interpreter::Machine::has_more_words() {
 // Checks that the reader has the rule, and reports its first use.
 bool Interpreter::Machine::tolerates(ReaderRule rule, int column, const std::string& detail) {
   if (!has_rule(setup_.reader, rule)) return false;
-  if (tolerated_.insert(rule).second) warn(column, sentence(rule) + detail);
+  if (!tolerated_.insert(rule).second) return true;
+  const ReaderRuleEntry& entry = reader_rules()[static_cast<std::size_t>(rule)];
+  // what LinuxCNC takes does not matter to a program in another language
+  warn(column, (is_of_other_language() ? fmt::format("{}: {}", entry.found, entry.reading)
+                                       : sentence(rule)) +
+                   detail);
   return true;
 }
 

@@ -93,6 +93,8 @@ enum class ReaderRule : std::uint8_t {
   arc_without_axes,
   home_under_tip_control,
   subprogram_behind_end,
+  repeated_word,
+  haas_tip_control,
   count
 };
 

@@ -1,5 +1,7 @@
 #include "sim/programs/program_survey.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -112,7 +114,7 @@ class Surveyor {
     out_.extent.add(move, known);
     if (duration_) duration_->add(move, known);
     if (known.is_place) return;
-    note_first(out_.work_systems, work_system_name(known.work_system),
+    note_first(out_.work_systems, system_name(out_, known.work_system),
                work_system_lines_[known.work_system]);
     if (!block.frame->is_translation_known) {
       out_.unknown_systems.insert(block.frame->additional_system);
@@ -128,7 +130,12 @@ class Surveyor {
     if (block.request == nullptr) return;
     const auto& words = *block.request;
     const int units = words.code(Group::g_units);
-    if (units >= 0) note_first(out_.units, controllers::code_name('G', units), block.line);
+    if (units >= 0) {
+      const std::string of_conversation = units == 200 ? "BEGIN PGM INCH" : "BEGIN PGM MM";
+      note_first(out_.units,
+                 is_conversational_ ? of_conversation : controllers::code_name('G', units),
+                 block.line);
+    }
     const int code = words.code(Group::g_non_modal);
     if (code == 100 || code == 520 || code == 920) {
       note_first(out_.shifts, controllers::code_name('G', code), block.line);
@@ -216,10 +223,15 @@ ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::
 
 }  // namespace
 
+std::string system_name(const ProgramSurvey& survey, int system) {
+  return survey.is_conversational ? fmt::format("preset {}", system) : work_system_name(system);
+}
+
 ProgramSurvey survey_program(const SurveyRequest& request) {
   SurveyInputs inputs = read_inputs(request);
   ProgramSurvey out;
   out.file = request.program_file;
+  out.is_conversational = inputs.is_conversational;
   out.has_tool_table = !inputs.setup.tools.empty();
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();

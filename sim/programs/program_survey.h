@@ -55,6 +55,7 @@ struct CycleTime {
 
 struct ProgramSurvey {
   std::string file;
+  bool is_conversational = false;      // words are those of Heidenhain
   std::vector<FirstUse> units;         // G20, G21; empty: no word names one
   std::vector<FirstUse> work_systems;  // that motion uses: G54 ...
   std::vector<FirstUse> shifts;        // G10, G52, G92
@@ -75,6 +76,9 @@ struct ProgramSurvey {
 /// depend on them are unknown.
 /// @throws InputError for inputs other than the program
 ProgramSurvey survey_program(const SurveyRequest& request);
+
+/// The work coordinate system as the program names it: "G54", "G54.1 P3", or "preset 1".
+std::string system_name(const ProgramSurvey& survey, int system);
 
 /// The survey as indented lines.
 std::string to_text(const ProgramSurvey& survey);

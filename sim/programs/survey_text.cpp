@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controllers/gcode/reader.h"
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/program_survey.h"
@@ -70,7 +71,8 @@ class Text {
 };
 
 std::string unit_sentence(const FirstUse& use) {
-  return fmt::format("{}, {}", use.word == "G20" ? "inch" : "mm", use_text(use));
+  const bool is_inch = use.word == "G20" || use.word == "BEGIN PGM INCH";
+  return fmt::format("{}, {}", is_inch ? "inch" : "mm", use_text(use));
 }
 
 void add_units(const ProgramSurvey& survey, Text& text) {
@@ -90,15 +92,16 @@ void add_work_offsets(const ProgramSurvey& survey, Text& text) {
   }
 }
 
-std::string tool_text(const SurveyedTool& tool, bool has_table) {
+std::string tool_text(const SurveyedTool& tool, const ProgramSurvey& survey) {
   std::vector<std::string> parts;
   if (tool.length) parts.push_back(fmt::format("length {:g} mm", *tool.length / mm));
   if (tool.diameter) parts.push_back(fmt::format("diameter {:g} mm", *tool.diameter / mm));
   if (!tool.is_in_table) {
-    parts.push_back(has_table ? "unknown: not in the tool table" : "unknown: no tool table given");
+    parts.push_back(survey.has_tool_table ? "unknown: not in the tool table"
+                                          : "unknown: no tool table given");
   }
   std::vector<std::string> uses;
-  if (tool.is_loaded) uses.emplace_back("M6");
+  if (tool.is_loaded) uses.emplace_back(survey.is_conversational ? "TOOL CALL" : "M6");
   if (tool.uses_length) uses.emplace_back("length");
   if (tool.uses_diameter) uses.emplace_back("diameter");
   const std::string needs = uses.empty() ? "" : fmt::format("; used: {}", fmt::join(uses, ", "));
@@ -108,22 +111,24 @@ std::string tool_text(const SurveyedTool& tool, bool has_table) {
 void add_tools(const ProgramSurvey& survey, Text& text) {
   if (survey.tools.empty()) text.add("tools", "none");
   for (const auto& [number, tool] : survey.tools) {
-    text.add("tools", fmt::format("T{} (line {}): {}", number, tool.first_line,
-                                  tool_text(tool, survey.has_tool_table)));
+    text.add("tools",
+             fmt::format("T{} (line {}): {}", number, tool.first_line, tool_text(tool, survey)));
   }
 }
 
 void add_work_extent(const ProgramSurvey& survey, Text& text) {
   const ProgramExtent& extent = survey.extent;
   for (const auto& [system, ranges] : extent.work()) {
-    const std::string name = work_system_name(system);
+    const std::string label = survey.is_conversational
+                                  ? system_name(survey, system)
+                                  : fmt::format("extent {}", system_name(survey, system));
     for (const Axis axis : kAllAxes) {
       const auto i = static_cast<std::size_t>(index_of(axis));
       if (!ranges.motion[i].is_known()) continue;
       const std::string feeds = ranges.feed[i].is_known()
                                     ? fmt::format("; feeds {}", in_units(ranges.feed[i], axis))
                                     : "";
-      text.add(fmt::format("extent {}", name),
+      text.add(label,
                fmt::format("{} {}{}", letter(axis), in_units(ranges.motion[i], axis), feeds));
     }
   }
@@ -221,6 +226,10 @@ std::string tools_needed(const ProgramSurvey& survey) {
   return fmt::format(" (with {} in its tool table)", fmt::join(names, ", "));
 }
 
+std::string_view heidenhain_name() {
+  return controllers::kReaders[static_cast<std::size_t>(controllers::Reader::heidenhain)];
+}
+
 void add_readers(const ProgramSurvey& survey, Text& text) {
   std::vector<std::string_view> names;
   for (const ReaderVerdict& one : survey.readers) {
@@ -231,8 +240,13 @@ void add_readers(const ProgramSurvey& survey, Text& text) {
                           : fmt::format("{}{}", fmt::join(names, ", "), tools_needed(survey)));
   for (const ReaderVerdict& one : survey.readers) {
     if (!one.stop) continue;
+    const bool is_of_other_language = survey.is_conversational && one.reader != heidenhain_name();
+    if (is_of_other_language) continue;
     text.add("not read by",
              fmt::format("{}: {}: {}", one.reader, to_string(one.stop->place), one.stop->message));
+  }
+  if (survey.is_conversational) {
+    text.add("not read by", "controls for G-code: this is Heidenhain conversational");
   }
 }
 
@@ -308,10 +322,10 @@ std::string tools_json(const ProgramSurvey& survey) {
 std::string extent_json(const ProgramSurvey& survey) {
   system::JsonObject work, unknown;
   for (const auto& [system, ranges] : survey.extent.work()) {
-    work.raw(work_system_name(system), system::JsonObject()
-                                           .raw("motion", ranges_json(ranges.motion))
-                                           .raw("feed", ranges_json(ranges.feed))
-                                           .line());
+    work.raw(system_name(survey, system), system::JsonObject()
+                                              .raw("motion", ranges_json(ranges.motion))
+                                              .raw("feed", ranges_json(ranges.feed))
+                                              .line());
   }
   for (const Axis axis : kAllAxes) {
     const auto i = static_cast<std::size_t>(index_of(axis));

@@ -38,6 +38,27 @@ void ReadingStep::home() {
   memory.is_pending_known = true;
 }
 
+// G91 G28 X0 Z100. G90: a survey leaves out the intermediate point. True if the block was one.
+bool ReadingStep::distances_of_home(const BlockWord& word) {
+  if (!words.has_code('G', 280) && !words.has_code('G', 300)) return false;
+  const std::string why =
+      "G90 and G91 with G28 or G30: no control documents which one applies to the intermediate "
+      "point; use two blocks";
+  if (!options.accepts_unknown_positions) fail(word.column, why);
+  reading_.notes_.push_back({word.column, why + "; left out here"});
+  const bool ends_incremental = tenths_of(word.value) == 910;
+  for (const Axis axis : kAllAxes) {
+    if (words.has(letter(axis))) words.set(letter(axis), 0.0);
+  }
+  before.emplace_back("G91");
+  behind.emplace_back(ends_incremental ? "G91" : "G90");
+  for (BlockWord& one : words.all()) {
+    const int tenths = one.letter == 'G' ? tenths_of(one.value) : -1;
+    if (tenths == 900 || tenths == 910) words.erase(one);
+  }
+  return true;
+}
+
 // G28 G91 Z0 under G43.4: the axes go where G28 sends them, and then the tip is controlled again.
 // Switching the control of the tip moves no axis.
 void ReadingStep::home_under_tip_control() {

@@ -54,9 +54,13 @@ void ReadingStep::motion_in_force() {
 // A feed without F stops a control; what runs is a rapid.
 void ReadingStep::rapid_at_start(int column) {
   const bool can_feed = words.has('F') || state.feed_linear != 0.0 || options.feed.has_value();
-  if (can_feed || !apply(ReaderRule::rapid_at_start, column)) {
-    choose(WordDifference::start_motion, column);
-  }
+  if (!can_feed && apply(ReaderRule::rapid_at_start, column)) return;
+  const bool is_chosen = chosen_reading(WordDifference::start_motion, column).has_value();
+  if (is_chosen) return;
+  const std::string readings = both_readings(WordDifference::start_motion);
+  if (!options.accepts_unknown_positions) fail(column, readings);
+  reading_.notes_.push_back(
+      {column, readings + "; taken as a rapid here: the end of the move is the same"});
 }
 
 // FreeCAD writes K0 into arcs of the XY plane.

@@ -44,7 +44,6 @@ class ReadingStep {
   bool is_polar_angle(char letter) const;
   void unit_codes();
   void feed_beside_unit();
-  void refuse_distances_of_home(const BlockWord& word);
   void repeated_groups();
   void machine_functions();
   void leave_out(ReaderRule rule, BlockWord& word);
@@ -60,6 +59,7 @@ class ReadingStep {
   void dwell_of_other_controls();
   // home_reading.cpp
   void home();
+  bool distances_of_home(const BlockWord& word);
   void home_under_tip_control();
   void homing_cycle();
   void machine_coordinates();
@@ -92,6 +92,7 @@ class ReadingStep {
   void circular_pocket_of_haas(BlockWord& code, bool is_clockwise);
   void circles_of_haas(const HaasCircles& circles, bool is_clockwise);
   void mirror_of_haas();
+  void tip_control_of_haas();
   // corner_reading.cpp
   void shift_behind_corner();
   void corner();

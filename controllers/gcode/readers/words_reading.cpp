@@ -52,7 +52,7 @@ constexpr auto kChecks = std::to_array<Switch>({
 constexpr std::array kFunctions = {10, 11, 29, 31, 33, 34, 35, 41,  42, 43,
                                    44, 76, 77, 83, 84, 88, 89, 138, 139};
 
-constexpr int kLocalCall = 970;
+constexpr int kLocalCall = 970, kMotorsOn = 170;
 
 bool is_idle_function(int code) {
   return std::find(kFunctions.begin(), kFunctions.end(), code) != kFunctions.end();
@@ -99,13 +99,12 @@ constexpr auto kRefused = std::to_array<Refused>({
     {'G', 1410, "3D cutter compensation (Haas); post-process to the path of the tool centre"},
     {'G', 1430, "length compensation on tilted axes (Haas); post-process with G43.4"},
     {'G', 1500, "a pocket cycle (Haas); post-process to the moves of the pocket"},
-    {'G', 2340, "tool centre point control (Haas); use G43.4, which is the same"},
     {'G', 2540,
      "shifts the work offset with the rotary axes (Haas), by centres of rotation stored in the "
      "control; post-process with G68.2 or G43.4"},
     {'M', 170,
-     "ends a subprogram of Siemens, or switches the motors on that drive a hobby machine; write "
-     "M99, or remove it"},
+     "ends a subprogram of Siemens (write M99), or switches motors on (pass --ignore-code M17, or "
+     "remove it)"},
     {'M', 470, "restarts the program endlessly (Mach); use M30"},
     {'M', 960, "lets a signal interrupt the program; signals are not simulated"},
     {'M', 1040, "heats the extruder of a 3D printer; only milling programs are supported"},
@@ -123,7 +122,7 @@ bool is_known_function(int code) {
   return find_code('M', 10 * code) != nullptr || is_idle_function(code) ||
          10 * code == kLocalCall ||
          std::any_of(kRefused.begin(), kRefused.end(), [&](const Refused& one) {
-           return one.letter == 'M' && one.tenths == 10 * code;
+           return one.letter == 'M' && one.tenths == 10 * code && one.tenths != kMotorsOn;
          });
 }
 
@@ -182,13 +181,6 @@ void ReadingStep::feed_beside_unit() {
   words.erase(*code);
 }
 
-void ReadingStep::refuse_distances_of_home(const BlockWord& word) {
-  if (!words.has_code('G', 280) && !words.has_code('G', 300)) return;
-  fail(word.column,
-       "G90 and G91 with G28 or G30: no control documents which one applies to the intermediate "
-       "point; use two blocks");
-}
-
 // The last of several G codes of one group counts.
 void ReadingStep::repeated_groups() {
   constexpr std::array kGroups = {Group::g_plane,       Group::g_units,   Group::g_feed_mode,
@@ -202,7 +194,7 @@ void ReadingStep::repeated_groups() {
       const bool has_g80 = group == Group::g_motion && last != nullptr &&
                            (code->tenths == 800 || tenths_of(last->value) == 800);
       if (last != nullptr && !has_g80) {
-        if (group == Group::g_distance) refuse_distances_of_home(word);
+        if (group == Group::g_distance && distances_of_home(word)) break;
         if (tenths_of(last->value) != code->tenths) need(ReaderRule::repeated_group, word.column);
         words.erase(*last);
       }
@@ -216,6 +208,7 @@ void ReadingStep::refused_codes() {
     const int tenths = tenths_of(word.value);
     for (const Refused& one : kRefused) {
       if (word.letter != one.letter || tenths != one.tenths) continue;
+      if (tenths == kMotorsOn && options.ignored_codes.contains(tenths / 10)) continue;
       const bool is_of_haas = tenths == 1000 || tenths == 1010;
       if (is_of_haas && word.letter == 'G' && options.reader == Reader::haas) continue;
       fail(word.column, fmt::format("{}: {}", name_of(word), one.why));

@@ -45,6 +45,32 @@ const Refusal kRefusals[] = {
     {"L M136\n",
      "t.h:4:3: error: M136: F in micrometres per revolution on a TNC 426, in mm per revolution on "
      "an iTNC 530; use FU"},
+    {"CYCL DEF 251 Q218=60\n",
+     "t.h:4:10: error: CYCL DEF 251: pockets, slots, studs and threads are not supported; have the "
+     "CAM system output the moves"},
+    {"CYCL DEF 4.0 POCKET\n",
+     "t.h:4:10: error: CYCL DEF 4: pockets, slots and contour cycles are not supported; have the "
+     "CAM system output the moves"},
+    {"CYCL DEF 19.0\nCYCL DEF 19.1 A+0 B+30\n",
+     "t.h:5:19: error: cycle 19 with B: a spatial angle, or the position of a rotary axis, by a "
+     "machine parameter (MP7500); use PLANE SPATIAL"},
+    {"CYCL DEF 220 Q241=2\n",
+     "t.h:4:1: error: CYCL DEF 220 needs a drilling cycle from 200 on before it"},
+    {"CYCL DEF 240 Q200=1\nCYCL DEF 220 Q365=1\n",
+     "t.h:5:1: error: cycle 220 with Q365 (from hole to hole on the circle): no manual found gives "
+     "the feed; set Q365=0"},
+    {"CYCL DEF 240 Q200=1\nCYCL DEF 221 Q225=0 Q226=0 Q237=1 Q238=1 Q242=0 Q243=1 Q224=0\n",
+     "t.h:5:1: error: Q242 and Q243 must be > 0"},
+    {"CYCL DEF 240 Q200=1\nCYCL DEF 221 Q225=0 Q226=0 Q237=1 Q238=1 Q242=1 Q243=1 Q224=0 Q203=0 "
+     "Q204=20 Q301=0\n",
+     "t.h:5:1: error: Q301=0 with a second set-up clearance: no manual found gives the height "
+     "after "
+     "the last hole; set Q301=1, or Q204=0"},
+    {"CYCL DEF 17.0\nCYCL DEF 17.1 ABST2\nCYCL CALL\n",
+     "t.h:6:1: error: cycle 17 is incomplete; CYCL DEF 17.1 to 17.3 are required"},
+    {"CYCL DEF 2.0\nCYCL DEF 2.1 ABST2\nCYCL DEF 2.2 T-5\nCYCL DEF 2.3 V.ZEIT0\nCYCL DEF 2.4 "
+     "F9\nCYCL CALL\n",
+     "t.h:9:1: error: cycle 2: M3 or M4 must be active"},
     {"L M92 X+1 FMAX\n",
      "t.h:4:1: error: M92: the machine builder's reference point is unknown; use M91"},
     {"L IX+1 R0 FMAX M91\n", "t.h:4:3: error: M91 with an incremental coordinate"},

@@ -149,6 +149,29 @@ TEST(Conversational, TheBuildersReferencePointIsUnknown) {
             "t.h:5:3: error: IZ: the position of Z is unknown here; program an absolute position");
 }
 
+// The path of a pocket is the control's own: a survey goes on, and positions are unknown behind it.
+TEST(Conversational, ASurveyLeavesOutCyclesOfUnknownPath) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  setup.stored = {{5181, 100.0}, {5182, 200.0}, {5183, 250.0}};
+  const std::string pocket =
+      "CYCL DEF 251 RECTANGULAR POCKET ~\n  Q218=+60 ~\n  Q219=+20\nL X+3 Y+4 FMAX M99\n";
+  EXPECT_EQ(framed_moves(pocket + "L Z+5 FMAX\nL X+1 Y+2 FMAX\n", setup),
+            "4 rapid 3 4 0\n4 rapid 3 4 0\n4 rapid 100 200 150\n5 rapid 100 200 5\n"
+            "6 rapid 1 2 5\n");
+  EXPECT_EQ(warnings_of(with_frame(pocket), setup),
+            std::vector<std::string>{
+                "CYCL DEF 251: pockets, slots, studs and threads are not supported; have the CAM "
+                "system output the moves; extent and cycle time are without its moves"});
+  EXPECT_EQ(fault_of(pocket + "L IX+1 Y+2 F100\n", setup),
+            "t.h:8:3: error: IX: the position of X is unknown here; program an absolute position");
+  // contours name labels, and old pockets have steps
+  EXPECT_EQ(framed_moves("CYCL DEF 14.0 KONTUR\nCYCL DEF 14.1 KONTURLABEL 1/2\nCYCL DEF 4.0 "
+                         "TASCHENFRAESEN\nCYCL DEF 4.1 ABST 2\nL X+1 FMAX\n",
+                         setup),
+            "5 rapid 1 0 0\n");
+}
+
 // Z travels to 400 mm in machine coordinates, at rapid and at F2000; the tip is then 300 mm high.
 TEST(Conversational, RetractToTheEndOfTravel) {
   ProgramSetup setup = example_setup();

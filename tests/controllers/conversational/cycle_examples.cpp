@@ -102,6 +102,50 @@ std::vector<Example> cycle_examples() {
        "CYCL DEF 1.4 V.ZEIT 1\nCYCL DEF 1.5 F80\nL Z+2 FMAX\nL X+5 FMAX M99\n",
        "7 rapid 0 0 2\n8 rapid 5 0 2\n8 feed 5 0 -10 F80\n8 rapid 5 0 2\n8 rapid 5 0 -9.4\n"
        "8 feed 5 0 -15 F80\n8 dwell 1\n8 rapid 5 0 2\n"},
+      // begins at Z2, 2 above the surface; S1000
+      {"cycle 2",
+       "CYCL DEF 2.0 GEWINDEBOHREN\nCYCL DEF 2.1 ABST 2\nCYCL DEF 2.2 TIEFE-15\nCYCL DEF 2.3 "
+       "V.ZEIT "
+       "0.5\nCYCL DEF 2.4 F100\nL Z+2 FMAX M3\nL X+5 FMAX M99\n",
+       "6 spindle 1 S1000\n6 rapid 0 0 2\n7 rapid 5 0 2\n7 feed 5 0 -15 F100\n"
+       "7 spindle -1 S1000\n7 dwell 0.5\n7 feed 5 0 2 F100\n7 spindle 1 S1000\n"},
+      // a left-hand thread of pitch 1: S1000 is F1000
+      {"cycle 17",
+       "CYCL DEF 17.0 GEW.-BOHREN GS\nCYCL DEF 17.1 ABST 2\nCYCL DEF 17.2 TIEFE-15\nCYCL DEF 17.3 "
+       "STEIG-1\nL Z+2 FMAX\nL X+5 FMAX M99\n",
+       "5 rapid 0 0 2\n6 rapid 5 0 2\n6 spindle -1 S1000\n6 feed 5 0 -15 F1000\n"
+       "6 spindle 1 S1000\n6 feed 5 0 2 F1000\n6 spindle 0 S1000\n"},
+      // two holes of a full circle about X10, on a surface at 5, second clearance 20 above it
+      {"cycle 220",
+       "CYCL DEF 240 Q200=1 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\n"
+       "CYCL DEF 220 POLAR PATTERN Q216=10 Q217=0 Q244=20 Q245=0 Q246=360 Q247=0 Q241=2 Q200=2 "
+       "Q203=5 Q204=20 Q301=1\n",
+       "2 rapid 0 0 25\n2 rapid 20 0 25\n2 rapid 20 0 7\n2 feed 20 0 4 F50\n2 rapid 20 0 7\n"
+       "2 rapid 20 0 25\n2 rapid 0 0 25\n2 rapid 0 0 7\n2 feed 0 0 4 F50\n2 rapid 0 0 7\n"
+       "2 rapid 0 0 25\n"},
+      // from 90 degrees to 270 in two steps, and in steps of -90
+      {"cycle 220 with angles",
+       "CYCL DEF 240 Q200=1 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\nL Z+1 FMAX\n"
+       "CYCL DEF 220 Q216=0 Q217=0 Q244=10 Q245=90 Q246=270 Q247=0 Q241=2 Q200=1 Q203=0 Q204=0 "
+       "Q301=0 Q365=0\nCYCL DEF 220 Q216=0 Q217=0 Q244=10 Q245=90 Q246=0 Q247=-90 Q241=2 Q200=1 "
+       "Q203=0 Q204=0 Q301=0\n",
+       "2 rapid 0 0 1\n3 rapid 0 0 1\n3 rapid 0 5 1\n3 rapid 0 5 1\n3 feed 0 5 -1 F50\n"
+       "3 rapid 0 5 1\n3 rapid 0 -5 1\n3 rapid 0 -5 1\n3 feed 0 -5 -1 F50\n3 rapid 0 -5 1\n"
+       "4 rapid 0 -5 1\n4 rapid 0 5 1\n4 rapid 0 5 1\n4 feed 0 5 -1 F50\n4 rapid 0 5 1\n"
+       "4 rapid 5 0 1\n4 rapid 5 0 1\n4 feed 5 0 -1 F50\n4 rapid 5 0 1\n"},
+      // two lines of two holes, turned by 90 degrees; the second line runs backwards
+      {"cycle 221",
+       "CYCL DEF 240 Q200=2 Q343=0 Q201=-1 Q206=50 Q211=0 Q203=0 Q204=0\n"
+       "CYCL DEF 221 CARTESIAN PATTERN Q225=1 Q226=2 Q237=10 Q238=5 Q242=2 Q243=2 Q224=90 Q200=2 "
+       "Q203=0 Q204=0 Q301=0\n",
+       "2 rapid 0 0 2\n2 rapid 1 2 2\n2 rapid 1 2 2\n2 feed 1 2 -1 F50\n2 rapid 1 2 2\n"
+       "2 rapid 1 12 2\n2 rapid 1 12 2\n2 feed 1 12 -1 F50\n2 rapid 1 12 2\n"
+       "2 rapid -4 12 2\n2 rapid -4 12 2\n2 feed -4 12 -1 F50\n2 rapid -4 12 2\n"
+       "2 rapid -4 2 2\n2 rapid -4 2 2\n2 feed -4 2 -1 F50\n2 rapid -4 2 2\n"},
+      {"cycle 19 ends the tilting",
+       "CYCL DEF 19.0 BEARBEITUNGSEBENE\nCYCL DEF 19.1 A+0 B+0 C+0 F2000 ABST10\nCYCL DEF 19.0\n"
+       "CYCL DEF 19.1\nL X+1 FMAX (SIDE 1)\n",
+       "5 rapid 1 0 0\n"},
       {"TOOL DEF7 and CYCL DEF9 .0",
        "TOOL DEF7 L+0 R+3\nCYCL DEF9 .0 VERWEILZEIT\nCYCL DEF9.1 V.ZEIT5\nL X+5 FMAX\n",
        "3 dwell 5\n4 rapid 5 0 0\n"},

@@ -249,6 +249,17 @@ TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
   EXPECT_NE(moves_of("M82\nG0 X1.\nM2\n", setup).find("unknown M code M82"), std::string::npos);
 }
 
+TEST(MachineFunctions, MotorsAreSwitchedOnByTheUsersWord) {
+  EXPECT_EQ(moves_of("M17\nG0 X1.\nM2\n", setup_for(Reader::any)),
+            "p.nc:1:1: error: M17: ends a subprogram of Siemens (write M99), or switches motors on "
+            "(pass --ignore-code M17, or remove it)");
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.ignored_codes = {17};
+  EXPECT_TRUE(ignored_code("M17").fault.empty());
+  EXPECT_EQ(moves_of("M17\nG0 X1.\nM2\n", setup),
+            moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
+}
+
 TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
   constexpr std::string_view kBoth =
       "G4 S: seconds (Marlin), or spindle revolutions (Siemens); use G4 P";

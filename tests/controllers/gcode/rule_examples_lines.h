@@ -39,6 +39,11 @@ inline std::vector<RuleExample> line_examples() {
        "from memory"},
       {skip_level, Reader::fanuc, "G0 Y2.\n/3 X1.\n/9 X3.\nM2\n", "R 0 2 0 | R 1 2 0 | R 3 2 0",
        "p.nc:2:2", "from memory"},
+      // the next specification is enabled
+      {repeated_word, Reader::fanuc, "G1 X1. F100. F200.\nM2\n", "F 1 0 0 f200", "p.nc:1:14",
+       "Fanuc, parameter 3403#6, from memory"},
+      {repeated_word, Reader::any, "G0 X1. Y2. X1.0 (X9)\nM2\n", "R 1 2 0", "p.nc:1:12",
+       "Fanuc, parameter 3403#6, from memory"},
       {colon_number, Reader::fanuc, ":1000 (PART)\nG0 X1.\nM2\n", "R 1 0 0", "p.nc:1:1",
        "Fanuc B-64124EN/01 p. 136"},
       {colon_number, Reader::fanuc, "M98 P1000\nM2\n:1000\nG0 X1.\nM99\n", "R 1 0 0", "p.nc:3:1",

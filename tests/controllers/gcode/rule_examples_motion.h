@@ -213,6 +213,14 @@ inline std::vector<RuleExample> motion_examples() {
       {ReaderRule::arc_without_axes, Reader::any,
        "G91 G18 G3 X2. I1. F100.\nI-1. K0.\nG1 Z1.\nM2\n",
        "CCW18 2 0 0 o 1 0 0 f100 | CCW18 2 0 0 o 1 0 0 | F 2 0 1", "p.nc:2:1", kMemory},
+      // G234 as G43.4: positions are those of the tip
+      {ReaderRule::haas_tip_control,
+       Reader::haas,
+       "T1 M6\nG0 X1. Y2.\nG234 H1 Z5.\nG1 X3. F100.\nG49\nM2\n",
+       "T1 | R 1 2 0 | R 1 2 5 | F 3 2 5 f100",
+       "p.nc:3:1",
+       "from memory",
+       {.has_tools = true}},
       // spindle at Z15 and the way over there; machine zero of Z, and the tip under control again
       {ReaderRule::home_under_tip_control,
        Reader::fanuc,

@@ -1,0 +1,74 @@
+// Moves whose words two controls read differently, in surveys, and arcs with the other kind of
+// centre.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "controllers/gcode/canon_json.h"
+#include "controllers/gcode/interpreter.h"
+
+namespace servomill::controllers {
+namespace {
+
+ProgramSetup setup_for(Reader reader) {
+  ProgramSetup setup;
+  setup.reader = reader;
+  return setup;
+}
+
+// The end of each move in work coordinates, or the first fault.
+std::string moves_of(const std::string& text, const ProgramSetup& setup) {
+  std::string out;
+  try {
+    Interpreter interpreter(text, "p.nc", setup);
+    while (const Move* move = interpreter.next()) {
+      const std::string line = canon_json(*move);
+      const std::size_t end = line.find("\"end\":");
+      if (end == std::string::npos) continue;
+      out += line.substr(line.find("\"t\""), line.find(',') - 1) + line.substr(end) + "\n";
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return out;
+}
+
+// Words with two readings that end at the same place do not end a survey.
+TEST(Surveys, GoOnWhereBothReadingsEndAtTheSamePlace) {
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.accepts_unknown_positions = true;
+  const auto warnings_of = [&](const std::string& text) {
+    Interpreter interpreter(text, "p.nc", setup);
+    while (interpreter.next() != nullptr) {
+    }
+    return to_string(interpreter.warnings().back());
+  };
+  const std::string start = "F100.\nX1.\nM2\n";
+  EXPECT_EQ(moves_of(start, setup), moves_of("F100\nG0 X1\nM2\n", setup_for(Reader::linuxcnc)));
+  EXPECT_EQ(warnings_of(start),
+            "p.nc:2:1: error: axis words before the first G0, G1, G2, G3: a rapid (grbl, Haas), or "
+            "a rapid or a feed move, depending on a control setting (Fanuc, Mach); choose with "
+            "--reader; taken as a rapid here: the end of the move is the same");
+  const std::string home = "G0 X5.\nG91 G28 X0. Z9. G90\nX1.\nM2\n";
+  EXPECT_EQ(moves_of(home, setup),
+            moves_of("G0 X5\nG91\nG28 X0 Z0\nG90\nG0 X1\nM2\n", setup_for(Reader::linuxcnc)));
+  EXPECT_EQ(warnings_of("G0 X5.\nG91 G28 X0. Z9. G90\nM2\n"),
+            "p.nc:2:17: error: G90 and G91 with G28 or G30: no control documents which one applies "
+            "to the intermediate point; use two blocks; left out here");
+}
+
+TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
+  const std::string fault =
+      moves_of("G0 X10. Y0.\nG3 X0. Y10. I0. J0. F9.\nM2\n", setup_for(Reader::any));
+  EXPECT_NE(fault.find("; as positions of the centre I, J and K fit: if they are meant so, program "
+                       "G90.1 at the start"),
+            std::string::npos)
+      << fault;
+  const std::string other =
+      moves_of("G90.1\nG0 X10. Y0.\nG3 X0. Y10. I-10. J0. F9.\nM2\n", setup_for(Reader::any));
+  EXPECT_NE(other.find("; as distances from the start (G91.1) I, J and K fit"), std::string::npos)
+      << other;
+}
+
+}  // namespace
+}  // namespace servomill::controllers
