@@ -148,6 +148,24 @@ void Translator::survey_cycle(int number, std::string_view why, bool is_called,
   assign_words(values);
 }
 
+// A survey goes on after a touch probe cycle: positions and results are unknown, and a preset that
+// it sets counts as the one in force.
+void Translator::survey_probe(const HeidenhainBlock& block) {
+  std::vector<HeidenhainWord> inputs;
+  for (const HeidenhainWord& word : block.words) {
+    const bool is_input = word.address == "Q" && word.text.find('=') != std::string::npos;
+    if (is_input) inputs.push_back(word);
+  }
+  Words values(inputs);
+  assign_words(values);
+  for (int number = 115; number <= 166; ++number) {
+    if (number > 119 && number < 150) continue;
+    parameters_.forget({'Q', number}, "is measured by TCH PROBE");
+  }
+  require_no_compensation("TCH PROBE");
+  leave_positions_unknown("TCH PROBE: the measured values are unknown");
+}
+
 // CYCL DEF 7.0 DATUM SHIFT / CYCL DEF 7.1 X+10: step 0 names the cycle.
 void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& block) {
   const std::span<const HeidenhainWord> all(block.words);

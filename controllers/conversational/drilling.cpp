@@ -68,7 +68,10 @@ void Translator::drill() {
   }
   require_no_compensation("a drilling cycle");
   if (is_tcp_) fail("a drilling cycle with M128; end it with M129");
-  if (!cycle_->why_unknown.empty()) return leave_positions_unknown();
+  if (!cycle_->why_unknown.empty()) {
+    return leave_positions_unknown(
+        fmt::format("CYCL DEF {}: {}", cycle_->number, cycle_->why_unknown));
+  }
   if (frame_.scale != 1.0) fail("a drilling cycle while cycle 11 is active");
   last_element_.reset();
   run_drilling_cycle();
@@ -77,10 +80,8 @@ void Translator::drill() {
 
 // The call of a cycle that a survey cannot follow. Surveys take the second home of G30 for a
 // position that is not known.
-void Translator::leave_positions_unknown() {
-  warn_once(fmt::format("cycle {}", cycle_->number),
-            fmt::format("CYCL DEF {}: {}; extent and cycle time are without its moves",
-                        cycle_->number, cycle_->why_unknown));
+void Translator::leave_positions_unknown(const std::string& why) {
+  warn_once(why, why + "; extent and cycle time are without its moves");
   for (const char* text : {"G91 G30 X0 Y0 Z0", "G90"}) note(text);
   forget_linear_positions();
 }
@@ -218,9 +219,11 @@ void Translator::ream_201() {
 // As 201; the spindle stops in an orientation, and Q214 frees the tool from the wall.
 void Translator::bore_202() {
   if (q(214) != 0.0) {
-    fail(
+    const std::string why =
         "cycle 202 with Q214: the feed of the disengaging move is unknown; set Q214=0, or program "
-        "the moves");
+        "the moves";
+    if (!setup_.accepts_unknown_positions) fail(why);
+    warn_once("Q214", why + "; extent and cycle time are without it");
   }
   warn_once("cycle 202",
             "CYCL DEF 202: the spindle orientation at the bottom is ignored: no effect on motion");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/conversational/translator.h"
+#include "plant/vocabulary/units.h"
 
 namespace servomill::controllers::conversational {
 namespace {
@@ -124,8 +125,13 @@ bool Translator::read_feed(Words& words, Positioning& p) {
   return true;
 }
 
-Feed Translator::modal_feed() const {
-  if (!feed_) fail("no F in the block, and none is active");
+Feed Translator::modal_feed() {
+  const std::string why = "no F in the block, and none is active";
+  if (!feed_ && !setup_.accepts_unknown_feeds) fail(why);
+  if (!feed_) {
+    warn_once("feed", why + "; the cycle time stays unknown");
+    return {Feed::Kind::per_minute, kUnknownFeed / mm_per_min};
+  }
   return {Feed::Kind::per_minute, *feed_};
 }
 

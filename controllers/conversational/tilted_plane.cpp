@@ -32,7 +32,7 @@ std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
 
 }  // namespace
 
-// PLANE SPATIAL, PLANE RESET, FUNCTION TCPM, FUNCTION RESET TCPM.
+// PLANE SPATIAL, PLANE RESET, FUNCTION TCPM, FUNCTION RESET TCPM, FUNCTION DWELL TIME.
 void Translator::plane(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(1));
   if (block.words.front().text == "FUNCTION") {
@@ -40,13 +40,20 @@ void Translator::plane(const HeidenhainBlock& block) {
       words.refuse_rest("FUNCTION RESET TCPM");
       return tcp_control(false);
     }
+    if (words.take("DWELL") != nullptr) {
+      const auto time = words.take_number("TIME");
+      if (!time) fail("FUNCTION DWELL: only TIME is supported, in seconds");
+      words.refuse_rest("FUNCTION DWELL");
+      return cycle_dwell(value(*time));
+    }
     const bool is_tcpm = words.take("TCPM") && words.take("F") && words.take("TCP") &&
                          words.take("AXIS") && words.take("POS") && words.take("PATHCTRL") &&
                          words.take("AXIS");
     if (!is_tcpm) {
       fail(
-          "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, and RESET TCPM are "
-          "supported");
+          "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, RESET TCPM and DWELL "
+          "TIME "
+          "are supported");
     }
     words.refuse_rest("FUNCTION TCPM");
     return tcp_control(true);

@@ -207,6 +207,8 @@ bool Translator::execute_other(const HeidenhainBlock& block) {
   } else if (first.text == "TRANS") {
     Words words(std::span(block.words).subspan(1));
     trans_datum(words);
+  } else if (first.text == "TCH" && setup_.accepts_unknown_positions) {
+    survey_probe(block);
   } else if (first.text == "FUNCTION") {
     plane(block);
   } else if (first.address == "FN" ||

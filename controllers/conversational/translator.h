@@ -116,7 +116,7 @@ class Translator {
   Positioning read_positioning(Words& words, std::string_view block);
   bool read_feed(Words& words, Positioning& p);
   bool read_function(Words& words, Positioning& p);
-  Feed modal_feed() const;
+  Feed modal_feed();
   Feed feed_of(const Positioning& p);
   double feed_per_minute(const Operand& operand) const;
   Values ends(const Positioning& p, bool& is_incremental);
@@ -207,13 +207,14 @@ class Translator {
 
   // cycles.cpp
   void define_cycle(const HeidenhainBlock& block);
+  void survey_probe(const HeidenhainBlock& block);
   void define_old_cycle(int number, int step, const HeidenhainBlock& block);
   void survey_cycle(int number, std::string_view why, bool is_called,
                     std::span<const HeidenhainWord> words);
   void call_cycle(const HeidenhainBlock& block);
   void drill();
   void run_drilling_cycle();
-  void leave_positions_unknown();
+  void leave_positions_unknown(const std::string& why);
   void drill_old();
   void tap_old(bool is_rigid);
   void drill_200();

@@ -12,10 +12,11 @@ namespace {
 
 // Addresses that may be separated from their number by a blank.
 constexpr auto kNumbered = std::to_array<std::string_view>(
-    {"X",   "Y",   "Z",   "A",   "B",   "C",   "U",    "V",     "W",  "IX", "IY", "IZ",  "IA",
-     "IB",  "IC",  "PR",  "PA",  "IPR", "IPA", "F",    "S",     "M",  "R",  "L",  "DL",  "DR",
-     "LEN", "CCA", "SPA", "SPB", "SPC", "MB",  "DIST", "MBMAX", "FT", "FU", "FZ", "REP", "ROT",
-     "SCL", "T",   "TA",  "RND", "CHF", "NX",  "NY",   "NZ",    "TX", "TY", "TZ", "CCX", "CCY"});
+    {"X",     "Y",  "Z",  "A",  "B",   "C",   "U",   "V",   "W",   "IX",  "IY",
+     "IZ",    "IA", "IB", "IC", "PR",  "PA",  "IPR", "IPA", "F",   "S",   "M",
+     "R",     "L",  "DL", "DR", "LEN", "CCA", "SPA", "SPB", "SPC", "MB",  "DIST",
+     "MBMAX", "FT", "FU", "FZ", "REP", "ROT", "SCL", "T",   "TA",  "RND", "CHF",
+     "NX",    "NY", "NZ", "TX", "TY",  "TZ",  "CCX", "CCY", "TIME"});
 
 bool is_numbered(std::string_view address) {
   return std::find(kNumbered.begin(), kNumbered.end(), address) != kNumbered.end();

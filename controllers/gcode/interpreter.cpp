@@ -89,6 +89,7 @@ ReadingOptions Interpreter::Machine::reading_options() {
   ReadingOptions out{setup_.reader, setup_.decimal_point, setup_.feed};
   out.accepts_unknown_dwells = setup_.accepts_unknown_dwells;
   out.accepts_unknown_positions = setup_.accepts_unknown_positions;
+  out.accepts_unknown_feeds = setup_.accepts_unknown_feeds;
   out.ignored_codes = setup_.ignored_codes;
   out.is_trial = setup_.is_trial;
   out.radius_of = [this](int D) {

@@ -157,8 +157,8 @@ void add(system::MemoKey& key, const plant::ErrorModel& errors) {
 void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
                decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
-               accepts_unknown_dwells, accepts_unknown_positions, is_trial, start, block_delete,
-               subroutine_file, most_jumps, machine, probed, trials] = setup;
+               accepts_unknown_dwells, accepts_unknown_positions, accepts_unknown_feeds, is_trial,
+               start, block_delete, subroutine_file, most_jumps, machine, probed, trials] = setup;
   static_cast<void>(trials);  // what it holds follows from the program and the setup
   static_cast<void>(probed);  // whoever sets it adds what its answers depend on
   key.add(stored.size());
@@ -189,6 +189,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   key.add(accepts_unknown_lengths);
   key.add(accepts_unknown_dwells);
   key.add(accepts_unknown_positions);
+  key.add(accepts_unknown_feeds);
   key.add(is_trial);
   key.add(start);
   key.add(block_delete);

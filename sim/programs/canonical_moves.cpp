@@ -207,6 +207,7 @@ std::vector<Fault> check_file(const std::string& path, const std::vector<std::st
     controllers::ProgramSetup setup = program_setup(inputs, path);
     if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
     setup.accepts_unknown_dwells = setup.accepts_unknown_positions = true;
+    setup.accepts_unknown_feeds = true;
     setup.probed = std::make_shared<controllers::AssumedContact>();
     return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
                                       warnings);

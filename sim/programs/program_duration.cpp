@@ -51,6 +51,9 @@ bool ProgramDuration::refuses(const Move& move) {
   if (move.kind != MoveKind::rapid && !(move.feed > 0.0)) {
     why_unknown_ = fmt::format("line {} feeds per revolution with the spindle off", move.line);
   }
+  if (controllers::is_unknown(move.feed)) {
+    why_unknown_ = fmt::format("line {} feeds before the first F; pass --feed", move.line);
+  }
   if (!why_unknown_.empty()) moves_ = {};
   return !why_unknown_.empty();
 }

@@ -236,6 +236,7 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();
   inputs.setup.accepts_unknown_dwells = inputs.setup.accepts_unknown_positions = true;
+  inputs.setup.accepts_unknown_feeds = true;
   inputs.setup.probed = std::make_shared<controllers::AssumedContact>();
   survey_moves(inputs, out);
   // every control has a tool table of its own: without one here, no number stops a reader

@@ -195,8 +195,29 @@ M30
             return self.lines(program, "cycle time", "--machine", "router.toml", *more)
         self.assertEqual(time("G0 C90\nM2\n"), ["unknown: line 1 moves C, but the machine has no such axis"])
         self.assertEqual(time("G0 X0\nG95 S100 G1 X1 F0.1\nM2\n"), ["unknown: line 2 feeds per revolution with the spindle off"])
+        self.assertEqual(time("G0 X0 Y0 Z5\nG1 X1\nG1 X2 F100\nM2\n"),
+                         ["unknown: line 2 feeds before the first F; pass --feed"])
         self.write("router.toml", ROUTER.replace('j_max = "30 m/s^3"\n[axis.Z]', "[axis.Z]"))
         self.assertEqual(time("G0 X0\nX1\nM2\n"), ["unknown: the machine file lacks v_max, a_max or j_max of Y"])
+
+    def test_conversational_programs_in_their_own_words(self):
+        program = ("BEGIN PGM P MM\nTOOL CALL 1 Z S1000\nL X+0 Y+5 Z+9 FMAX M3\n"
+                   "CYCL DEF 251 RECTANGULAR POCKET Q218=9\nL X+10 Y+5 FMAX M99\nL X+20 Y+5 Z+9 FMAX\n"
+                   "END PGM P MM\n")
+        self.assertEqual(self.lines(program, "units"), ["mm, BEGIN PGM MM (line 1)"])
+        self.assertEqual(self.lines(program, "work offsets"), ["preset 1 (in force at the start)"])
+        self.assertEqual(self.lines(program, "tools"),
+                         ["T1 (line 2): unknown: no tool table given; used: TOOL CALL, length"])
+        self.assertEqual(self.lines(program, "preset 1"),
+                         ["X 0.000 ... 20.000 mm", "Y 5.000 mm", "Z 9.000 mm"])
+        self.assertEqual(self.lines(program, "not read by"),
+                         ["controls for G-code: this is Heidenhain conversational"])
+        found = self.json(program)
+        self.assertEqual(found["units"], [{"word": "BEGIN PGM MM", "line": 1}])
+        self.assertEqual(list(found["extent"]["work"]), ["preset 1"])
+        warnings = self.check(program).stderr
+        self.assertIn("extent and cycle time are without its moves", warnings)
+        self.assertNotIn("LinuxCNC", warnings)
 
     # The run begins where the program has named all axes.
     def test_cycle_time_is_that_of_a_run(self):

@@ -32,6 +32,7 @@ struct ReadingOptions {
   std::optional<double> feed;  // m/s, of moves before any F
   bool accepts_unknown_dwells = false;
   bool accepts_unknown_positions = false;
+  bool accepts_unknown_feeds = false;
   std::set<int> ignored_codes = {};  // as of ProgramSetup
   bool is_trial = false;             // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "controllers/gcode/number_text.h"
+#include "controllers/gcode/program_setup.h"
 #include "controllers/gcode/readers/reading_step.h"
 #include "plant/vocabulary/units.h"
 
@@ -133,11 +134,13 @@ void ReadingStep::feed() {
   const BlockWord* code = words.code('G', motion);
   const int column = code != nullptr ? code->column : words.all().front().column;
   if (!options.feed) {
-    fail(column,
-         fmt::format(
-             "{} before the first F: Mach keeps the last feed, other controls raise an alarm; "
-             "program F, or set the feed with --feed or program.first_feed of a scenario",
-             code_name('G', motion)));
+    const std::string why = fmt::format(
+        "{} before the first F: Mach keeps the last feed, other controls raise an alarm; "
+        "program F, or set the feed with --feed or program.first_feed of a scenario",
+        code_name('G', motion));
+    if (!options.accepts_unknown_feeds) fail(column, why);
+    reading_.notes_.push_back({column, why + "; the cycle time stays unknown"});
+    return before.push_back(word_text('F', kUnknownFeed * minute / state.unit));
   }
   if (!apply(ReaderRule::given_feed, column)) return;
   words.add('F', *options.feed * minute / state.unit, column);

@@ -172,6 +172,34 @@ TEST(Conversational, ASurveyLeavesOutCyclesOfUnknownPath) {
             "5 rapid 1 0 0\n");
 }
 
+// Measured values are unknown, and so are the positions behind the cycle; Q115 to Q119 and Q150 to
+// Q166 are its results.
+TEST(Conversational, ASurveyGoesOnAfterTouchProbeCycles) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  setup.stored = {{5181, 100.0}, {5182, 200.0}, {5183, 250.0}};
+  const std::string probe = "TCH PROBE 412 DATUM INSIDE CIRCLE ~\n  Q321=+0 ~\n  Q262=+40\n";
+  EXPECT_EQ(framed_moves(probe + "L Z+5 FMAX\nL X+Q262 Y+2 FMAX\n", setup),
+            "1 rapid 0 0 0\n1 rapid 100 200 150\n4 rapid 100 200 5\n5 rapid 40 2 5\n");
+  EXPECT_NE(fault_of(probe + "L X+Q151 F100\n", setup).find("Q151 is measured by TCH PROBE"),
+            std::string::npos);
+  EXPECT_EQ(framed_moves("CYCL DEF 202 Q200=2 Q201=-9 Q206=50 Q211=0 Q208=0 Q203=0 Q204=0 Q214=1\n"
+                         "CYCL CALL M3\n",
+                         setup),
+            "2 spindle 1 S1000\n2 rapid 0 0 2\n2 feed 0 0 -9 F50\n2 feed 0 0 2 F50\n");
+}
+
+// The end of a move does not depend on its feed.
+TEST(Conversational, ASurveyGoesOnWithoutAFeed) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_feeds = true;
+  EXPECT_EQ(warnings_of(with_frame("L X+1\nL X+2\n"), setup),
+            std::vector<std::string>{
+                "no F in the block, and none is active; the cycle time stays unknown"});
+  EXPECT_EQ(framed_moves("L X+1 F100\nFUNCTION DWELL TIME2.5\nFUNCTION DWELL TIME 3\n", setup),
+            "1 feed 1 0 0 F100\n2 dwell 2.5\n3 dwell 3\n");
+}
+
 // Z travels to 400 mm in machine coordinates, at rapid and at F2000; the tip is then 300 mm high.
 TEST(Conversational, RetractToTheEndOfTravel) {
   ProgramSetup setup = example_setup();

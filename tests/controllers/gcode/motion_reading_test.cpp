@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
@@ -55,6 +56,23 @@ TEST(Surveys, GoOnWhereBothReadingsEndAtTheSamePlace) {
   EXPECT_EQ(warnings_of("G0 X5.\nG91 G28 X0. Z9. G90\nM2\n"),
             "p.nc:2:17: error: G90 and G91 with G28 or G30: no control documents which one applies "
             "to the intermediate point; use two blocks; left out here");
+}
+
+TEST(Surveys, GoOnBeforeTheFirstFeed) {
+  ProgramSetup setup = setup_for(Reader::any);
+  setup.accepts_unknown_feeds = true;
+  for (const std::string unit : {"G20 ", "G21 "}) {
+    Interpreter interpreter(unit + "G1 X1.\nX2.\nF100. X3.\nM2\n", "p.nc", setup);
+    std::vector<bool> unknown;
+    while (const Move* move = interpreter.next()) {
+      if (move->kind == MoveKind::feed) unknown.push_back(is_unknown(move->feed));
+    }
+    EXPECT_EQ(unknown, (std::vector<bool>{true, true, false}));
+    EXPECT_EQ(to_string(interpreter.warnings().front()),
+              "p.nc:1:5: error: G1 before the first F: Mach keeps the last feed, other controls "
+              "raise an alarm; program F, or set the feed with --feed or program.first_feed of a "
+              "scenario; the cycle time stays unknown");
+  }
 }
 
 TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
