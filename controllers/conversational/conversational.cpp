@@ -22,6 +22,8 @@ constexpr auto kReadings = std::to_array<Reading>({
      "TNC 407 (280 580) p. 8-7; cycle 17 from memory"},
     {"cycles 220 and 221", "the drilling cycle before them, at each hole of the pattern",
      "iTNC 530, TNC 640", "from memory"},
+    {"PLANE with MB", "the tool retracts along its axis before the rotary axes turn",
+     "iTNC 530, TNC 640", "from memory"},
     {"FUNCTION DWELL TIME", "a dwell in seconds", "TNC 640", "from memory"},
     {"cycle 19 without angles, or with angles of 0", "ends the tilting; no axis moves",
      "TNC 426, iTNC 530", "from memory"},

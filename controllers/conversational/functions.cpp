@@ -9,7 +9,8 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-enum class Effect { start, end, none, refused };
+// `feed`: refused, but a survey goes on with unknown feeds.
+enum class Effect { start, end, none, refused, feed };
 
 struct Function {
   int number;
@@ -41,20 +42,20 @@ constexpr auto kFunctions = std::to_array<Function>({
     {99, Effect::end, ""},
     {101, Effect::none, "change to a replacement tool"},
     {102, Effect::none, "change to a replacement tool"},
-    {103, Effect::refused, "the plunging feed factor is not supported; program F"},
+    {103, Effect::feed, "the plunging feed factor is not supported; program F"},
     {104, Effect::refused, "the manually set datum is not in the program"},
     {105, Effect::none, "selection of the Kv factor"},
     {106, Effect::none, "selection of the Kv factor"},
     {107, Effect::none, "error message for oversized replacement tools"},
     {108, Effect::none, "error message for oversized replacement tools"},
-    {109, Effect::refused, "feed of the cutting edge on arcs is not supported; use M111"},
-    {110, Effect::refused, "feed of the cutting edge on arcs is not supported; use M111"},
+    {109, Effect::feed, "feed of the cutting edge on arcs is not supported; use M111"},
+    {110, Effect::feed, "feed of the cutting edge on arcs is not supported; use M111"},
     {111, Effect::start, ""},
     {112, Effect::refused, "transitions with a tolerance are not supported; use cycle 32"},
     {113, Effect::none, "end of M112"},
     {114, Effect::refused, "compensation of the machine geometry is not supported; use M128"},
     {115, Effect::none, "end of M114"},
-    {116, Effect::refused, "feed of rotary axes in mm/min is not supported; use M117"},
+    {116, Effect::feed, "feed of rotary axes in mm/min is not supported; use M117"},
     {117, Effect::start, ""},
     {118, Effect::none, "superimposed handwheel"},
     {120, Effect::none, "look-ahead of radius compensation"},
@@ -67,7 +68,7 @@ constexpr auto kFunctions = std::to_array<Function>({
      "points in the untilted coordinate system are not supported; PLANE RESET first"},
     {134, Effect::none, "exact stop at transitions with rotary axes"},
     {135, Effect::none, "end of M134"},
-    {136, Effect::refused,
+    {136, Effect::feed,
      "F in micrometres per revolution on a TNC 426, in mm per revolution on an iTNC 530; use FU"},
     {137, Effect::start, ""},
     {138, Effect::refused, "the selection of tilting axes is not supported"},
@@ -103,8 +104,11 @@ void Translator::begin_functions(const Positioning& p) {
       }
       continue;
     }
-    if (function->effect == Effect::refused) {
-      fail(place, fmt::format("M{}: {}", m, function->text));
+    const bool is_refused = function->effect == Effect::refused ||
+                            (function->effect == Effect::feed && !setup_.accepts_unknown_positions);
+    if (is_refused) fail(place, fmt::format("M{}: {}", m, function->text));
+    if (function->effect == Effect::feed) {
+      forget_feeds(fmt::format("M{}: {}", m, function->text));
     }
     if (function->effect == Effect::start) start_function(m, place);
   }

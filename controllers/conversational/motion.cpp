@@ -102,6 +102,9 @@ double Translator::tool_radius(const Place& place) const {
 // Stores the end position and passes the motion on with the side of the tool.
 void Translator::add(Motion motion) {
   motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
+  if (are_feeds_unknown_ && motion.feed.kind != Feed::Kind::rapid) {
+    motion.feed = {Feed::Kind::per_minute, kUnknownFeed / mm_per_min};
+  }
   const auto axes = plane_axes(motion.normal);
   const bool names_first = motion.words[axes[0]].has_value();
   const bool names_second = motion.words[axes[1]].has_value();

@@ -125,6 +125,12 @@ bool Translator::read_feed(Words& words, Positioning& p) {
   return true;
 }
 
+// From here on a survey knows no feeds.
+void Translator::forget_feeds(const std::string& why) {
+  warn_once("feeds " + why, why + "; the cycle time stays unknown");
+  are_feeds_unknown_ = true;
+}
+
 Feed Translator::modal_feed() {
   const std::string why = "no F in the block, and none is active";
   if (!feed_ && !setup_.accepts_unknown_feeds) fail(why);

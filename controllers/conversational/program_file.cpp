@@ -91,8 +91,10 @@ bool are_digits(std::string_view text) {
 // "TOOL DEF1" is TOOL DEF 1, and "CYCL DEF9 .0" is CYCL DEF 9.0: posts put blanks as they like.
 void set_blanks_of_definition(HeidenhainBlock& block) {
   auto& words = block.words;
-  const bool is_definition = words.size() > 1 && words[1].address == "DEF" &&
-                             (words[0].text == "TOOL" || words[0].text == "CYCL");
+  const bool is_definition =
+      words.size() > 1 &&
+      ((words[1].address == "DEF" && (words[0].text == "TOOL" || words[0].text == "CYCL")) ||
+       (words[1].address == "PGM" && words[0].text == "CALL"));
   if (!is_definition) return;
   if (!words[1].rest.empty()) {
     HeidenhainWord number = words[1];

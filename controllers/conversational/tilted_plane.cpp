@@ -32,32 +32,41 @@ std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
 
 }  // namespace
 
-// PLANE SPATIAL, PLANE RESET, FUNCTION TCPM, FUNCTION RESET TCPM, FUNCTION DWELL TIME.
+// FUNCTION TCPM, FUNCTION RESET TCPM, FUNCTION DWELL TIME.
+void Translator::function_block(Words& words) {
+  if (words.take("RESET") != nullptr && words.take("TCPM") != nullptr) {
+    words.refuse_rest("FUNCTION RESET TCPM");
+    return tcp_control(false);
+  }
+  if (words.take("DWELL") != nullptr) {
+    const auto time = words.take_number("TIME");
+    if (!time) fail("FUNCTION DWELL: only TIME is supported, in seconds");
+    words.refuse_rest("FUNCTION DWELL");
+    return cycle_dwell(value(*time));
+  }
+  const bool is_tcpm = words.take("TCPM") && words.take("F");
+  const bool is_on_axes = words.take("CONT") != nullptr;
+  const bool has_positions = (is_on_axes || words.take("TCP") != nullptr) && words.take("AXIS") &&
+                             words.take("POS") && words.take("PATHCTRL");
+  const bool is_vector = words.take("VECTOR") != nullptr;
+  const bool is_known = is_tcpm && has_positions && (is_vector || words.take("AXIS") != nullptr);
+  const bool has_other_path = is_on_axes || is_vector;
+  if (!is_known || (has_other_path && !setup_.accepts_unknown_positions)) {
+    fail(
+        "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, RESET TCPM and DWELL "
+        "TIME are supported");
+  }
+  words.refuse_rest("FUNCTION TCPM");
+  if (has_other_path) {
+    forget_feeds("FUNCTION TCPM with F CONT or PATHCTRL VECTOR: only the ends of moves are known");
+  }
+  tcp_control(true);
+}
+
+// PLANE SPATIAL, PLANE RESET.
 void Translator::plane(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(1));
-  if (block.words.front().text == "FUNCTION") {
-    if (words.take("RESET") != nullptr && words.take("TCPM") != nullptr) {
-      words.refuse_rest("FUNCTION RESET TCPM");
-      return tcp_control(false);
-    }
-    if (words.take("DWELL") != nullptr) {
-      const auto time = words.take_number("TIME");
-      if (!time) fail("FUNCTION DWELL: only TIME is supported, in seconds");
-      words.refuse_rest("FUNCTION DWELL");
-      return cycle_dwell(value(*time));
-    }
-    const bool is_tcpm = words.take("TCPM") && words.take("F") && words.take("TCP") &&
-                         words.take("AXIS") && words.take("POS") && words.take("PATHCTRL") &&
-                         words.take("AXIS");
-    if (!is_tcpm) {
-      fail(
-          "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, RESET TCPM and DWELL "
-          "TIME "
-          "are supported");
-    }
-    words.refuse_rest("FUNCTION TCPM");
-    return tcp_control(true);
-  }
+  if (block.words.front().text == "FUNCTION") return function_block(words);
   const auto behaviour = [&]() -> std::string {
     for (const char* name : {"STAY", "TURN", "MOVE"}) {
       if (words.take(name) != nullptr) return name;
@@ -66,11 +75,13 @@ void Translator::plane(const HeidenhainBlock& block) {
   };
   if (words.take("RESET") != nullptr) {
     const std::string how = behaviour();
-    while (words.peek() != nullptr && words.peek()->address.starts_with('F')) words.take_next();
+    plane_options(words);
+    retract_before_plane(words, how);
     words.refuse_rest("PLANE RESET");
     return reset_plane(how);
   }
   if (words.take("SPATIAL") == nullptr) {
+    if (can_leave_plane_unknown()) return survey_plane("PLANE other than SPATIAL");
     fail("PLANE: only SPATIAL and RESET are supported; define the plane with spatial angles");
   }
   std::array<double, 3> angles{};
@@ -83,14 +94,26 @@ void Translator::plane(const HeidenhainBlock& block) {
   tilt(angles, behaviour(), words);
 }
 
-void Translator::tilt(const std::array<double, 3>& angles, const std::string& behaviour,
-                      Words& words) {
-  require_no_compensation("PLANE");
-  if (is_tcp_) fail("PLANE with M128; end it with M129");
-  if (behaviour.empty()) fail("PLANE SPATIAL needs STAY, TURN or MOVE");
-  if (behaviour == "MOVE") {
-    fail("PLANE ... MOVE: the compensating movement of the linear axes is not supported; use TURN");
-  }
+// MB and the feed of a PLANE block that positions the rotary axes: before them the tool retracts by
+// MB along its axis, or to the limit of travel (iTNC 530, PLANE, MB; from memory).
+void Translator::retract_before_plane(Words& words, const std::string& behaviour) {
+  Positioning p;
+  const HeidenhainWord* mb = words.take("MB");
+  const bool is_to_limit =
+      mb != nullptr ? words.take("MAX") != nullptr : words.take("MBMAX") != nullptr;
+  if (mb != nullptr && !is_to_limit) fail(mb->place, "'MB' without a number or MAX");
+  p.is_retract_to_limit = is_to_limit;
+  if (const auto MB = is_to_limit ? std::nullopt : words.take_number("MB")) p.retract = length(*MB);
+  while (words.peek() != nullptr && words.peek()->address.starts_with('F')) read_feed(words, p);
+  if (behaviour != "TURN" && behaviour != "MOVE") return;
+  if (p.retract && *p.retract != 0.0) retract(p);
+  if (!is_to_limit) return;
+  if (plane_ && can_leave_plane_unknown()) return forget_linear_positions();
+  retract_to_limit(p);
+}
+
+// SEQ, TABLE ROT and COORD ROT; returns the sign of SEQ, or 0.
+int Translator::plane_options(Words& words) {
   const int seq = words.take("SEQ+") != nullptr ? 1 : words.take("SEQ-") != nullptr ? -1 : 0;
   if (words.take("SYM+") != nullptr || words.take("SYM-") != nullptr) {
     fail("PLANE: SYM selects a solution by a machine-specific rule; use SEQ+, SEQ- or neither");
@@ -101,11 +124,55 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
         "TABLE ROT",
         "PLANE: TABLE ROT and COORD ROT are ignored; they matter only where a table axis is free");
   }
-  words.take_number("MB");
-  while (words.peek() != nullptr && words.peek()->address.starts_with('F')) {
-    Positioning ignored;
-    read_feed(words, ignored);
+  return seq;
+}
+
+// True in surveys without a machine, which print no places in tilted planes.
+bool Translator::can_leave_plane_unknown() const {
+  return setup_.accepts_unknown_positions && !setup_.machine;
+}
+
+// A plane of unknown tilt: surveys leave out what moves in it.
+void Translator::survey_plane(const std::string& what) {
+  require_no_compensation("PLANE");
+  if (is_tcp_) fail("PLANE with M128; end it with M129");
+  warn_once("plane",
+            what + ": the tilt is not read; moves in the plane are left out of the extent");
+  if (plane_) reset_plane("STAY");
+  path_.flush();
+  plane_turn_.clear();
+  plane_line_ = "G68.2";
+  for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
+  plane_line_ += " I0 J90 K0";
+  lines_.put(plane_line_, place_);
+  enter_plane({90.0, 0.0, 0.0});
+  for (const int number : {120, 121, 122}) {
+    parameters_.forget({'Q', number}, "is the angle of a rotary axis after PLANE");
   }
+  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
+}
+
+// Positions count from the plane, where nothing has been programmed yet.
+void Translator::enter_plane(const std::array<double, 3>& angles) {
+  plane_ = angles;
+  frame_before_plane_ = frame_;
+  frame_ = {};
+  forget_linear_positions();
+}
+
+void Translator::tilt(const std::array<double, 3>& angles, const std::string& behaviour,
+                      Words& words) {
+  require_no_compensation("PLANE");
+  if (is_tcp_) fail("PLANE with M128; end it with M129");
+  if (behaviour.empty()) fail("PLANE SPATIAL needs STAY, TURN or MOVE");
+  if (behaviour == "MOVE") {
+    const std::string why =
+        "PLANE ... MOVE: the compensating movement of the linear axes is not supported; use TURN";
+    if (!can_leave_plane_unknown()) fail(why);
+    warn_once("MOVE", why + "; left out of the extent");
+  }
+  const int seq = plane_options(words);
+  retract_before_plane(words, behaviour);
   words.refuse_rest("PLANE SPATIAL");
   if (!frame_.is_plain() &&
       (frame_.rotation != 0.0 || frame_.is_any_mirrored() || frame_.scale != 1.0)) {
@@ -121,19 +188,16 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
   path_.flush();
   const Eigen::Matrix3d R = rotation_of(angles);
   plane_turn_ = turn_of_plane(R, seq);
-  if (behaviour == "TURN" && !plane_turn_.empty()) lines_.put(plane_turn_, place_);
+  if (behaviour != "STAY" && !plane_turn_.empty()) lines_.put(plane_turn_, place_);
   const std::array<double, 3> euler = euler_angles(R);
   plane_line_ = "G68.2";
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("IJK"[i], euler[i]);
   lines_.put(plane_line_, place_);
-  if (behaviour == "TURN") lines_.put("G53.1", place_);
-  plane_ = angles;
-  frame_before_plane_ = frame_;
-  frame_ = {};
-  forget_linear_positions();
+  if (behaviour != "STAY") lines_.put("G53.1", place_);
+  enter_plane(angles);
   for (std::size_t i = 3; i < work_.size(); ++i) {
-    if (behaviour == "TURN") work_[i].reset();
+    if (behaviour != "STAY") work_[i].reset();
   }
 }
 
@@ -235,6 +299,14 @@ void Translator::reset_plane(const std::string& behaviour) {
     plane_.reset();
     frame_ = frame_before_plane_;
     forget_linear_positions();
+  }
+  const bool turns = behaviour == "TURN" || behaviour == "MOVE";
+  if (turns && can_leave_plane_unknown()) {
+    warn_once("PLANE RESET",
+              "PLANE RESET TURN or MOVE: takes the rotary axes to zero; which ones depends on the "
+              "machine, which --machine gives");
+    for (std::size_t i = 3; i < work_.size(); ++i) work_[i] = frame_.shift[i];
+    return forget_linear_positions();
   }
   if (behaviour == "MOVE") {
     fail(

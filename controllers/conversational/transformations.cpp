@@ -133,6 +133,7 @@ void Translator::working_plane(Words& words) {
   for (const std::string_view axis : {"A", "B", "C"}) {
     const auto angle = words.take_number(axis);
     if (!angle || value(*angle) == 0.0) continue;
+    if (can_leave_plane_unknown()) return survey_plane("cycle 19 with angles");
     fail(angle->place,
          fmt::format("cycle 19 with {}: a spatial angle, or the position of a rotary axis, by a "
                      "machine parameter (MP7500); use PLANE SPATIAL",

@@ -117,6 +117,7 @@ class Translator {
   bool read_feed(Words& words, Positioning& p);
   bool read_function(Words& words, Positioning& p);
   Feed modal_feed();
+  void forget_feeds(const std::string& why);
   Feed feed_of(const Positioning& p);
   double feed_per_minute(const Operand& operand) const;
   Values ends(const Positioning& p, bool& is_incremental);
@@ -187,6 +188,12 @@ class Translator {
 
   // tilted_plane.cpp
   void plane(const HeidenhainBlock& block);
+  void function_block(Words& words);
+  int plane_options(Words& words);
+  void retract_before_plane(Words& words, const std::string& behaviour);
+  bool can_leave_plane_unknown() const;
+  void survey_plane(const std::string& what);
+  void enter_plane(const std::array<double, 3>& angles);
   void tilt(const std::array<double, 3>& angles, const std::string& behaviour, Words& words);
   std::string turn_of_plane(const Eigen::Matrix3d& R, int seq);
   bool turn_to_plane(const Positioning& p);
@@ -273,6 +280,7 @@ class Translator {
   int last_normal_ = 2;
   std::optional<double> feed_, tool_call_feed_;  // mm/min
   bool was_rapid_ = false;
+  bool are_feeds_unknown_ = false;  // in surveys: a function changes them
   int side_ = 0;
   std::optional<bool> is_shorter_path_;  // M126, M127
   std::array<double, kAxisWords> revolutions_{};

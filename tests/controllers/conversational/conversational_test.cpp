@@ -189,6 +189,38 @@ TEST(Conversational, ASurveyGoesOnAfterTouchProbeCycles) {
             "2 spindle 1 S1000\n2 rapid 0 0 2\n2 feed 0 0 -9 F50\n2 feed 0 0 2 F50\n");
 }
 
+// Before the rotary axes turn, the tool retracts along its axis by MB.
+TEST(Conversational, PlaneRetractsBeforeItTurns) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  EXPECT_EQ(framed_moves("L Z+5 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN MB+20 F500\n"
+                         "L X+1 Y+2 Z+3 FMAX\nPLANE RESET STAY MB+9\n",
+                         setup),
+            "1 rapid 0 0 5\n2 feed 0 0 25 F500\n3 rapid 1 2 3\n");
+  EXPECT_EQ(fault_of("L Z+5 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN MB FMAX\n"),
+            "t.h:5:38: error: 'MB' without a number or MAX");
+}
+
+// Without a machine, surveys leave out what depends on the tilt, and name the option that gives it.
+TEST(Conversational, ASurveyGoesOnInPlanesOfUnknownTilt) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  const std::string ends = "L X+1 Y+2 Z+3 FMAX\n";
+  const std::vector<std::string> planes = {"PLANE AXIAL B+45 TURN FMAX\n",
+                                           "PLANE SPATIAL SPA+0 SPB+45 SPC+0 MOVE MB MAX FMAX\n",
+                                           "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+45\n"};
+  for (const std::string& plane : planes) {
+    EXPECT_EQ(fault_of(plane + ends + "PLANE RESET TURN FMAX\n" + ends, setup), "") << plane;
+    EXPECT_NE(fault_of(plane), "") << plane;
+  }
+  EXPECT_EQ(fault_of("M116\nL B+10 F500\n", setup), "");
+  EXPECT_EQ(
+      fault_of("FUNCTION TCPM F CONT AXIS POS PATHCTRL VECTOR\n" + ends + "FUNCTION RESET TCPM\n",
+               setup),
+      "");
+  EXPECT_NE(fault_of("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n", setup), "");
+}
+
 // The end of a move does not depend on its feed.
 TEST(Conversational, ASurveyGoesOnWithoutAFeed) {
   ProgramSetup setup = example_setup();
