@@ -99,6 +99,18 @@ double Translator::tool_radius(const Place& place) const {
   return tool->diameter / 2.0 / mm + delta_radius_;
 }
 
+// The end of a motion is the position programmed last.
+void Translator::store_end(const Motion& motion) {
+  for (std::size_t i = 0; i < motion.words.size(); ++i) {
+    if (!motion.words[i]) continue;
+    if (!motion.is_incremental) {
+      work_[i] = motion.words[i];
+    } else if (work_[i]) {
+      *work_[i] += *motion.words[i];
+    }
+  }
+}
+
 // Stores the end position and passes the motion on with the side of the tool.
 void Translator::add(Motion motion) {
   motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
@@ -123,14 +135,7 @@ void Translator::add(Motion motion) {
     }
     is_beside_ = false;
   }
-  for (std::size_t i = 0; i < motion.words.size(); ++i) {
-    if (!motion.words[i]) continue;
-    if (!motion.is_incremental) {
-      work_[i] = motion.words[i];
-    } else if (work_[i]) {
-      *work_[i] += *motion.words[i];
-    }
-  }
+  store_end(motion);
   // the tip stays where it is, the other way round
   const bool turns = motion.words[3] || motion.words[4] || motion.words[5];
   if (turns && is_tcp_) last_element_.reset();

@@ -29,46 +29,66 @@ Positioning::Target Translator::target_of(const Operand& operand, bool is_increm
 
 Positioning Translator::read_positioning(Words& words, std::string_view block) {
   Positioning p;
-  while (const HeidenhainWord* word = words.peek()) {
-    bool is_increment = false;
-    const auto axis = axis_of_address(word->address, is_increment);
-    const std::string text = word->text, address = word->address;
-    const Place place = word->place;
-    const bool is_function = (address == "M" && !word->rest.empty()) || text == "STOP";
-    if (axis) {
-      auto& target = p.target[*axis];
-      if (target) {
-        fail(place, fmt::format("'{}': {} appears twice in the block", text, letter_of(*axis)));
-      }
-      const auto operand = words.take_number(address);
-      target = target_of(*operand, is_increment);
-    } else if (text == "R0" || text == "RL" || text == "RR") {
-      if (p.side) fail(place, fmt::format("'{}': a second radius compensation", text));
-      p.side = text == "R0" ? 0 : text == "RL" ? 1 : -1;
-      words.take(text);
-    } else if (text == "DR+" || text == "DR-") {
-      p.direction = text.back() == '+' ? 1 : -1;
-      words.take(text);
-    } else if (address == "PR" || address == "IPR") {
-      p.polar_radius = target_of(*words.take_number(address), address.front() == 'I');
-    } else if (address == "PA" || address == "IPA") {
-      p.polar_angle = target_of(*words.take_number(address), address.front() == 'I');
-    } else if (is_function) {
-      read_function(words, p);
-    } else if (!address.empty() && address.front() == 'F') {
-      read_feed(words, p);
-    } else if (text == "R+" || text == "R-") {
-      fail(place,
-           fmt::format("'{}': paraxial compensation is not supported; program the position with R0",
-                       text));
-    } else {
-      if (block == "L" && (address == "U" || address == "V" || address == "W")) {
-        fail(place, fmt::format("'{}': there are no axes U, V, W", text));
-      }
-      break;  // a word of the block that calls
-    }
+  while (words.peek() != nullptr && read_word(words, p, block)) {
   }
   return p;
+}
+
+// False for a word of the block that calls.
+bool Translator::read_word(Words& words, Positioning& p, std::string_view block) {
+  const HeidenhainWord& word = *words.peek();
+  const std::string text = word.text, address = word.address;
+  const Place place = word.place;
+  if (read_target(words, p) || read_side(words, p)) return true;
+  if (address == "PR" || address == "IPR") {
+    p.polar_radius = target_of(*words.take_number(address), address.front() == 'I');
+  } else if (address == "PA" || address == "IPA") {
+    p.polar_angle = target_of(*words.take_number(address), address.front() == 'I');
+  } else if ((address == "M" && !word.rest.empty()) || text == "STOP") {
+    read_function(words, p);
+  } else if (!address.empty() && address.front() == 'F') {
+    read_feed(words, p);
+  } else {
+    const bool is_parallel = address == "U" || address == "V" || address == "W";
+    if (block == "L" && is_parallel) {
+      fail(place, fmt::format("'{}': there are no axes U, V, W", text));
+    }
+    return false;
+  }
+  return true;
+}
+
+bool Translator::read_target(Words& words, Positioning& p) {
+  const HeidenhainWord& word = *words.peek();
+  bool is_increment = false;
+  const auto axis = axis_of_address(word.address, is_increment);
+  if (!axis) return false;
+  auto& target = p.target[*axis];
+  if (target) {
+    fail(word.place,
+         fmt::format("'{}': {} appears twice in the block", word.text, letter_of(*axis)));
+  }
+  target = target_of(*words.take_number(std::string(word.address)), is_increment);
+  return true;
+}
+
+// R0, RL, RR, DR+, DR-.
+bool Translator::read_side(Words& words, Positioning& p) {
+  const HeidenhainWord& word = *words.peek();
+  const std::string text = word.text;
+  if (text == "R+" || text == "R-") {
+    fail(word.place,
+         fmt::format("'{}': paraxial compensation is not supported; program the position with R0",
+                     text));
+  }
+  const bool is_side = text == "R0" || text == "RL" || text == "RR";
+  const bool is_direction = text == "DR+" || text == "DR-";
+  if (!is_side && !is_direction) return false;
+  if (is_side && p.side) fail(word.place, fmt::format("'{}': a second radius compensation", text));
+  if (is_side) p.side = text == "R0" ? 0 : text == "RL" ? 1 : -1;
+  if (is_direction) p.direction = text.back() == '+' ? 1 : -1;
+  words.take(text);
+  return true;
 }
 
 bool Translator::read_function(Words& words, Positioning& p) {
@@ -201,25 +221,27 @@ void Translator::ends_in_plane(const Positioning& p, Values& end, bool& is_incre
   end[1] = to.y();
 }
 
+// True if all axes of the block count from positions that are unknown.
+bool Translator::counts_from_unknown(const Positioning& p) const {
+  std::size_t named = 0, free = 0, first_free = 0;
+  for (std::size_t i = 0; i < p.target.size(); ++i) {
+    if (!p.target[i]) continue;
+    ++named;
+    if (!p.target[i]->is_increment || work_[i]) continue;
+    if (free++ == 0) first_free = i;
+  }
+  if (free > 0 && free < named) {
+    fail(p.target[first_free]->value.place,
+         fmt::format("I{0}: the position of {0} is unknown here; program an absolute position",
+                     letter_of(first_free)));
+  }
+  return free > 0;
+}
+
 // End positions of the axes in the block. An increment from an unknown position stays an increment.
 Values Translator::ends(const Positioning& p, bool& is_incremental) {
   Values end;
-  is_incremental = false;
-  std::size_t named = 0, free = 0;
-  for (std::size_t i = 0; i < end.size(); ++i) {
-    if (!p.target[i]) continue;
-    ++named;
-    if (p.target[i]->is_increment && !work_[i]) ++free;
-  }
-  is_incremental = free > 0;
-  if (free > 0 && free < named) {
-    for (std::size_t i = 0; i < end.size(); ++i) {
-      if (!p.target[i] || !p.target[i]->is_increment || work_[i]) continue;
-      fail(p.target[i]->value.place,
-           fmt::format("I{}: the position of {} is unknown here; program an absolute position",
-                       letter_of(i), letter_of(i)));
-    }
-  }
+  is_incremental = counts_from_unknown(p);
   const bool is_coupled = frame_.couples_plane();
   if (is_coupled) ends_in_plane(p, end, is_incremental);
   for (std::size_t i = is_coupled ? 2 : 0; i < end.size(); ++i) {

@@ -114,12 +114,16 @@ class Translator {
 
   // positioning.cpp: words and coordinates
   Positioning read_positioning(Words& words, std::string_view block);
+  bool read_word(Words& words, Positioning& p, std::string_view block);
+  bool read_target(Words& words, Positioning& p);
+  bool read_side(Words& words, Positioning& p);
   bool read_feed(Words& words, Positioning& p);
   bool read_function(Words& words, Positioning& p);
   Feed modal_feed();
   void forget_feeds(const std::string& why);
   Feed feed_of(const Positioning& p);
   double feed_per_minute(const Operand& operand) const;
+  bool counts_from_unknown(const Positioning& p) const;
   Values ends(const Positioning& p, bool& is_incremental);
   void ends_in_plane(const Positioning& p, Values& end, bool& is_incremental);
   double rotary_end(std::size_t axis, double program, const Place& place);
@@ -138,6 +142,7 @@ class Translator {
   void retract_to_limit(const Positioning& p);
   Motion motion_of(const Positioning& p);
   void add(Motion motion);
+  void store_end(const Motion& motion);
   void begin_functions(const Positioning& p);
   void end_functions(const Positioning& p);
   void set_side(const Positioning& p);

@@ -150,7 +150,6 @@ void ReadingStep::run() {
   decimal_points();
   shift_behind_corner();
   repeated_groups();
-  tip_control_of_haas();
   refused_codes();
   circular_pocket();
   machine_functions();

@@ -143,13 +143,4 @@ void ReadingStep::mirror_of_haas() {
   }
 }
 
-// G234 H1: the tip is controlled, and the rotary axes turn the workpiece with its origin.
-void ReadingStep::tip_control_of_haas() {
-  BlockWord* code = words.code('G', 2340);
-  if (code == nullptr) return;
-  need(ReaderRule::haas_tip_control, code->column);
-  code->value = 43.4;
-  code->is_changed = true;
-}
-
 }  // namespace servomill::controllers

@@ -11,8 +11,18 @@ constexpr int kPowerChanges = 8;  // feeds that change S, beyond which it is no 
 
 }  // namespace
 
+// G234 H1: the tip is controlled, and the rotary axes turn the workpiece with its origin.
+void ReadingStep::tip_control_of_haas() {
+  BlockWord* code = words.code('G', 2340);
+  if (code == nullptr) return;
+  need(ReaderRule::haas_tip_control, code->column);
+  code->value = 43.4;
+  code->is_changed = true;
+}
+
 // Fanuc keeps H; G43 H0 is no length there, and the length of the tool in the spindle here.
 void ReadingStep::length_offset() {
+  tip_control_of_haas();
   BlockWord* G43 = words.code('G', 430);
   const BlockWord* H = words.find('H');
   const bool is_other =
