@@ -5,8 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/frequency/linear_algebra.h"
 #include "sim/frequency/stability.h"
+#include "sim/numerics/complex_solver.h"
+#include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::frequency {
 namespace {
@@ -83,7 +84,7 @@ Response FrequencyResponse::at(Entry entry, double f) {
 
   Eigen::MatrixXcd A = -monodromy_.cast<Complex>();
   A.diagonal().array() += turn(stand_.hyperperiod());
-  const Eigen::VectorXcd x0 = solve(A, x_re.cast<Complex>() + kJ * x_im);
+  const Eigen::VectorXcd x0 = numerics::complex_solve(A, x_re.cast<Complex>() + kJ * x_im);
 
   Fundamental sum;
   const auto add = [&](Complex part) {
@@ -123,7 +124,7 @@ std::vector<double> ringing_frequencies(const model::MachineSettings& machine, i
   for (const PositionLoop one : loops) {
     const FrequencyResponse response(machine, joint, reading_delay, one);
     const double rate = 1.0 / response.stand().period();
-    for (const Complex z : eigenvalues(response.monodromy())) {
+    for (const Complex z : numerics::eigenvalues(response.monodromy())) {
       if (z.imag() <= 0.0) continue;  // one of each pair
       const double f = std::arg(z) / (2.0 * std::numbers::pi) * rate;
       const double a = -std::log(std::abs(z)) / (2.0 * std::numbers::pi) * rate;
@@ -153,7 +154,7 @@ double velocity_spectral_radius(const model::MachineSettings& machine, int joint
   AxisTestBench stand(alone, joint, 0, PositionLoop::closed);
   const Eigen::MatrixXd monodromy = monodromy_of(stand);
   if (!monodromy.allFinite()) return std::numeric_limits<double>::infinity();
-  const Eigen::VectorXcd all = eigenvalues(monodromy);
+  const Eigen::VectorXcd all = numerics::eigenvalues(monodromy);
   // the position is carried along: one eigenvalue of 1, as near as the others let it be computed
   Eigen::Index carried = 0;
   (all.array() - 1.0).abs().minCoeff(&carried);

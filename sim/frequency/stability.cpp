@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "sim/engine/servo_axes.h"
-#include "sim/frequency/linear_algebra.h"
+#include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::frequency {
 
@@ -59,7 +59,7 @@ double spectral_radius(const model::MachineSettings& machine, int joint, Tick re
     int row = 0;
     axes.each_state(joint, [&](double& x) { monodromy(row++, column) = x; });
   }
-  return eigenvalues(monodromy).cwiseAbs().maxCoeff();
+  return numerics::eigenvalues(monodromy).cwiseAbs().maxCoeff();
 }
 
 }  // namespace servomill::sim::frequency

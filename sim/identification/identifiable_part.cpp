@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::identification {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/numerics/decompositions.h"
+#include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -65,11 +67,13 @@ std::optional<LagLaw> lag_law(const std::vector<Ramp>& ramps) {
   }
   X.col(0) /= X.col(0).norm();
   const double unit = ramps[0].speed / X(0, 0);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
-  if (qr.rank() < 3) return std::nullopt;  // one speed, or one direction
-  const Eigen::Vector3d c = qr.solve(y);
+  constexpr double kDependent = 1e-12;
+  if (numerics::singular_values(numerics::triangular_factor(X)).rank(kDependent) < 3) {
+    return std::nullopt;  // one speed, or one direction
+  }
+  const Eigen::Vector3d c = numerics::least_squares(X, y);
   const double variance = (y - X * c).squaredNorm() / static_cast<double>(n - 3);
-  const Eigen::Matrix3d C = variance * (X.transpose() * X).inverse();
+  const Eigen::Matrix3d C = variance * numerics::inverse_of_definite(X.transpose() * X);
   return LagLaw{c[0] / unit, std::sqrt(C(0, 0)) / unit, c[1], std::sqrt(C(1, 1))};
 }
 
@@ -85,7 +89,7 @@ Harmonic harmonic_of(const std::vector<double>& signal, double w_T) {
     X.row(k) << std::cos(angle), std::sin(angle), 1.0;
   }
   const auto y = Eigen::VectorXd::Map(signal.data(), X.rows());
-  const Eigen::Vector3d c = (X.transpose() * X).ldlt().solve(X.transpose() * y);
+  const Eigen::Vector3d c = numerics::solve_symmetric(X.transpose() * X, X.transpose() * y);
   return {c[0], c[1], (y - X * c).norm() / std::sqrt(static_cast<double>(X.rows()))};
 }
 

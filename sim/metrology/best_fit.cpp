@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/numerics/dense_solver.h"
+#include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::metrology {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/metrology/round_fit.h"
+#include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "plant/geometry/volumetric.h"
+#include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::metrology {

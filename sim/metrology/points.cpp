@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "sim/numerics/dense_solver.h"
+#include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::metrology {
 namespace {

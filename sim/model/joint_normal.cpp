@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/numerics/dense_solver.h"
+#include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::model {
 namespace {

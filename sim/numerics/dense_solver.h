@@ -22,30 +22,11 @@ Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& A);
 /// x of least |A x - b|, by QR with column pivoting. @pre A has full column rank
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// A = vectors diag(values) vectors^T; values ascend, vectors are columns of length 1.
-struct SymmetricEigen {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
-};
-SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
-
-/// Smallest eigenvalue of a symmetric matrix.
-double least_eigenvalue(const Eigen::MatrixXd& A);
-
 /// R of A = Q R, min(rows, columns) x columns.
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& A);
 
-/// A = U diag(s) V^T of a square matrix; s descends.
-struct SingularValues {
-  Eigen::MatrixXd U, V;
-  Eigen::VectorXd s;
-
-  /// Number of singular values above `threshold` times the largest.
-  Eigen::Index rank(double threshold) const;
-  /// x of least squares and least length, from the `rank` largest.
-  Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const;
-};
-SingularValues singular_values(const Eigen::MatrixXd& A);
+/// Pseudo-inverse of A, by a complete orthogonal decomposition.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
 /// Shortest rotation that turns `from` into the direction of `to`. @pre neither is zero
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);

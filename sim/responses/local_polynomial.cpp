@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/numerics/complex_solver.h"
 
 namespace servomill::sim::responses {
 namespace {
@@ -82,12 +83,11 @@ LocalFit fit_around(const Spectrum& U, const Spectrum& Y, std::size_t k,
   // columns of like size: speed and torque differ by many powers of ten
   const double unit = std::sqrt(level);
   K.leftCols(terms) /= unit;
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXcd> solver(K);
-  const Eigen::VectorXcd values = solver.solve(y);
-  const double left = (y - K * values).squaredNorm();
+  const numerics::ComplexLeastSquares fit = numerics::complex_least_squares(K, y);
+  const double left = (y - K * fit.x).squaredNorm();
   const double freedom = static_cast<double>(rows - 2 * terms);
-  const double weight = solver.pseudoInverse().row(0).squaredNorm();
-  return {values[0] / unit, left / freedom * weight / level, weight};
+  const double weight = fit.weights.squaredNorm();
+  return {fit.x[0] / unit, left / freedom * weight / level, weight};
 }
 
 }  // namespace

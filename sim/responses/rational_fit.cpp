@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/numerics/decompositions.h"
+#include "sim/numerics/dense_solver.h"
 #include "sim/responses/response_misfit.h"
 
 namespace servomill::sim::responses {
@@ -97,7 +99,7 @@ class Fitter {
       }
     }
     const Eigen::Index coefficients = K.cols() - (order_.with_dead_time ? 1 : 0);
-    x.head(coefficients) = K.leftCols(coefficients).colPivHouseholderQr().solve(y);
+    x.head(coefficients) = numerics::least_squares(K.leftCols(coefficients), y.col(0));
   }
 
   Eigen::VectorXd residual(const Eigen::VectorXd& x, const std::vector<double>& weight) const {
@@ -137,7 +139,8 @@ class Fitter {
       const Eigen::VectorXd gradient = unit.transpose() * residual(x, weight);
       Eigen::MatrixXd normal = unit.transpose() * unit;
       normal.diagonal().array() += damping;
-      const Eigen::VectorXd step = -normal.ldlt().solve(gradient).cwiseQuotient(scale);
+      const Eigen::VectorXd step =
+          -numerics::solve_symmetric(normal, gradient).cwiseQuotient(scale);
       const double next = residual(x + step, weight).squaredNorm();
       if (!(next < cost)) {
         damping *= 10.0;
@@ -168,7 +171,7 @@ Eigen::VectorXcd roots_of(std::vector<double> c) {
   for (Eigen::Index k = 0; k < n; ++k) {
     companion(k, n - 1) = -c[static_cast<std::size_t>(k)] / c.back();
   }
-  return companion.eigenvalues();
+  return numerics::eigenvalues(companion);
 }
 
 // A root's change with a coefficient: -p^k / C'(p). Frequency |p|, damping -Re p / |p|.
@@ -237,8 +240,8 @@ RationalFit fit_rational(const MeasuredResponse& response, const RationalOrder& 
   const Eigen::MatrixXd J = fitter.jacobian(x, weight);
   const double rows = static_cast<double>(2 * weight.size() - parameters);
   const double ratio = fitter.residual(x, weight).squaredNorm() / std::max(rows, 1.0);
-  out.covariance = (J.transpose() * J).completeOrthogonalDecomposition().pseudoInverse() *
-                   std::max(ratio, 1.0) * response.lines_per_estimate;
+  out.covariance = numerics::pseudo_inverse(J.transpose() * J) * std::max(ratio, 1.0) *
+                   response.lines_per_estimate;
   const Eigen::Index n = order.numerator + 1, m = order.denominator;
   out.zeros = roots_with_deviation(out.model.b, out.model.w0, out.covariance.topLeftCorner(n, n));
   out.poles = roots_with_deviation(out.model.a, out.model.w0, out.covariance.block(n, n, m, m));

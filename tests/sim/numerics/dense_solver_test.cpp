@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 namespace servomill::sim::numerics::dense_solver_test {
 namespace {
 
@@ -48,18 +45,6 @@ TEST(RotationBetween, TurnsOneDirectionIntoTheOtherEvenWhereTheyAreOpposite) {
   }
 }
 
-TEST(SymmetricEigen, HasTheEigenvaluesOfASecondDifferenceInAscendingOrder) {
-  const int n = 6;
-  const MatrixXd A = second_difference(n);
-  const SymmetricEigen eigen = symmetric_eigen(A);
-  EXPECT_NEAR(least_eigenvalue(A), eigen.values[0], 1e-15);
-  for (int k = 0; k < n; ++k) {
-    EXPECT_NEAR(eigen.values[k], 2.0 - 2.0 * std::cos((k + 1) * std::numbers::pi / (n + 1)), 1e-14);
-    EXPECT_NEAR(eigen.vectors.col(k).norm(), 1.0, 1e-14);
-    EXPECT_LT((A * eigen.vectors.col(k) - eigen.values[k] * eigen.vectors.col(k)).norm(), 1e-13);
-  }
-}
-
 TEST(TriangularFactor, IsTheCholeskyFactorOfTheNormalEquationsUpToSigns) {
   MatrixXd A(4, 2);
   A << 1, 0, 1, 1, 1, 2, 1, 3;
@@ -70,29 +55,10 @@ TEST(TriangularFactor, IsTheCholeskyFactorOfTheNormalEquationsUpToSigns) {
   EXPECT_LT((R.transpose() * R - A.transpose() * A).norm(), 1e-13);
 }
 
-TEST(SingularValues, OfARankOneMatrix) {
-  MatrixXd A(2, 2);
-  A << 3, 6, 4, 8;  // (3, 4) (1, 2)^T
-  const SingularValues svd = singular_values(A);
-  EXPECT_NEAR(svd.s[0], 5.0 * std::sqrt(5.0), 1e-13);
-  EXPECT_EQ(svd.rank(1e-10), 1);
-  EXPECT_LT((svd.U * svd.s.asDiagonal() * svd.V.transpose() - A).norm(), 1e-13);
-  // (3, 4) t is met by x + 2 y = t; the shortest is t / 5 (1, 2)
-  const VectorXd x = svd.solve(Eigen::Vector2d(3.0, 4.0), 1);
-  EXPECT_NEAR(x[0], 0.2, 1e-14);
-  EXPECT_NEAR(x[1], 0.4, 1e-14);
-}
-
-TEST(SingularValues, OfARegularMatrixSolveIt) {
-  const MatrixXd A = second_difference(5);
-  const VectorXd x = VectorXd::LinSpaced(5, -1.0, 2.0);
-  const SingularValues svd = singular_values(A);
-  EXPECT_EQ(svd.rank(1e-10), 5);
-  EXPECT_LT((svd.solve(A * x, 5) - x).norm(), 1e-13);
-}
-
-TEST(SingularValues, OfZeroHaveNoRank) {
-  EXPECT_EQ(singular_values(MatrixXd::Zero(3, 3)).rank(1e-10), 0);
+TEST(PseudoInverse, OfARankOneMatrixIsItsTransposeOverTheSquareOfItsLength) {
+  MatrixXd A(2, 3);
+  A << 1, 2, 2, 2, 4, 4;  // (1, 2)^T (1, 2, 2), of length sqrt(5) 3
+  EXPECT_LT((pseudo_inverse(A) - A.transpose() / 45.0).norm(), 1e-15);
 }
 
 }  // namespace
