@@ -2,6 +2,8 @@
 /// Private to the interpreter: interpreter.cpp, motion.cpp, offsets.cpp, flow_control.cpp, ...
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <deque>
 #include <limits>
