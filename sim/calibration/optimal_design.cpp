@@ -3,9 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
 
+#include "sim/calibration/whole_design.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
@@ -19,7 +18,6 @@ constexpr int kStepsEach = 600;
 constexpr double kFirstPower = 0.5, kMostPower = 1.0, kLeastPower = 1e-4;  // of a step
 constexpr double kEnough = 0.999;     // efficiency at which an order is done
 constexpr double kLeastCount = 1e-9;  // of a candidate that is still looked at
-constexpr int kMostPasses = 8;        // of exchanges
 
 }  // namespace
 
@@ -143,76 +141,10 @@ DesignProblem::Gains DesignProblem::gains_of(const State& state, double q,
   return out;
 }
 
-// Adds what lowers the size most for its time, as long as there is time.
-template <class Size>
-void DesignProblem::add_best(std::vector<double>& counts, const std::vector<std::size_t>& useful,
-                             double time, const Size& size_of) const {
-  double size = size_of(counts);
-  for (double left = time - total_time(counts);;) {
-    std::optional<std::size_t> best;
-    double best_gain = 0.0, best_size = 0.0;
-    for (const std::size_t i : useful) {
-      if (candidates_[i].time > left) continue;
-      counts[i] += 1.0;
-      const double smaller = size_of(counts), gain = (size - smaller) / candidates_[i].time;
-      counts[i] -= 1.0;
-      if (gain > best_gain) std::tie(best, best_gain, best_size) = std::tuple(i, gain, smaller);
-    }
-    if (!best) return;
-    counts[*best] += 1.0;
-    left -= candidates_[*best].time;
-    size = best_size;
-  }
-}
-
-// Replaces each candidate that is taken by the one that lowers the size most. True if one did.
-template <class Size>
-bool DesignProblem::exchange(std::vector<double>& counts, const std::vector<std::size_t>& useful,
-                             double time, const Size& size_of) const {
-  bool gained = false;
-  double size = size_of(counts);
-  for (std::size_t from = 0; from < counts.size(); ++from) {
-    if (counts[from] < 1.0) continue;
-    counts[from] -= 1.0;
-    const double left = time - total_time(counts);
-    std::size_t best = from;
-    double best_size = size * (1.0 - 1e-6);
-    for (const std::size_t to : useful) {
-      if (to == from || candidates_[to].time > left) continue;
-      counts[to] += 1.0;
-      const double smaller = size_of(counts);
-      counts[to] -= 1.0;
-      if (smaller < best_size) std::tie(best, best_size) = std::tuple(to, smaller);
-    }
-    counts[best] += 1.0;
-    if (best == from) continue;
-    size = best_size;
-    gained = true;
-  }
-  return gained;
-}
-
 Design DesignProblem::whole(const Design& relaxed, double time) const {
   Design out;
   out.bound = relaxed.bound;
-  for (const double count : relaxed.counts) out.counts.push_back(std::floor(count + 1e-9));
-  // worth looking at: what the relaxed design uses at all
-  std::vector<std::size_t> useful;
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (relaxed.counts[i] > 1e-3) useful.push_back(i);
-  }
-  // A mean of some order instead of the worst: one candidate alone seldom lowers several worst
-  // ones.
-  for (const double order : {16.0, 64.0}) {
-    const auto size_of = [&](const std::vector<double>& counts) {
-      return state_of(counts).mean(order);
-    };
-    add_best(out.counts, useful, time, size_of);
-    for (int pass = 0; pass < kMostPasses; ++pass) {
-      if (!exchange(out.counts, useful, time, size_of)) break;
-      add_best(out.counts, useful, time, size_of);
-    }
-  }
+  out.counts = whole_counts(candidates_, known_, quantities_, relaxed.counts, time);
   out.worst = state_of(out.counts).worst;
   return out;
 }

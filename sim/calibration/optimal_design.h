@@ -39,8 +39,7 @@ class DesignProblem {
   /// Comm. Stat. A7 (1978).
   Design relaxed(double time) const;
 
-  /// Whole counts within the time: those of the relaxed design rounded down, then whatever lowers
-  /// the variances most for its time, then exchanges while they gain.
+  /// Whole counts within the time (whole_design.h), and the bound of the relaxed design.
   Design whole(const Design& relaxed, double time) const;
 
  private:
@@ -52,12 +51,6 @@ class DesignProblem {
   };
   Gains gains_of(const State& state, double q, const std::vector<double>& counts,
                  double time) const;
-  template <class Size>
-  void add_best(std::vector<double>& counts, const std::vector<std::size_t>& useful, double time,
-                const Size& size_of) const;
-  template <class Size>
-  bool exchange(std::vector<double>& counts, const std::vector<std::size_t>& useful, double time,
-                const Size& size_of) const;
   State state_of(const std::vector<double>& counts) const;
   double total_time(const std::vector<double>& counts) const;
 
