@@ -76,8 +76,9 @@ class Motion {
     refuse_through_point(state_, block_, context_);
   }
 
-  // MEAS=1: to the first signal of probe 1, which deletes the distance to go ([P], measuring with
-  // touch-trigger probes; M for the page). The axes of the block stand where it stopped them.
+  // MEAS=1: to the first signal of probe 1, which deletes the distance to go (840D sl, Job
+  // planning 03/2006, 6FC5398-2BP10-1BA0, section 5.7). The axes of the block stand where it
+  // stopped them.
   void measure() {
     if (block_.MEAS->value != 1.0) {
       fail(block_.MEAS->column, "only MEAS=1, the rising edge of probe 1, is read");

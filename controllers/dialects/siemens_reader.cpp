@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kLongestDwell = 1e6;  // s
 
-// DEF INT NERR and WRITE(NERR,"file",...), the report of a measurement ([P], write file; M for the
-// page), with or without a block number: they move nothing.
+// DEF INT NERR and WRITE(NERR,"file",...), the report of a measurement ([P] p. 566), with or
+// without a block number: they move nothing.
 bool is_report(std::string_view line) {
   const auto skip_blanks = [&line] {
     while (line.starts_with(' ')) line.remove_prefix(1);

@@ -9,6 +9,7 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -157,7 +158,7 @@ TextFile mesh_file(const TableExport& e) {
   }
   const bool klipper = format == TableFormat::klipper;
   std::string text;
-  for (const std::string& line : mesh_report(e)) {
+  for (const std::string& line : with_unknown(mesh_report(e), e)) {
     text += fmt::format("{} {}\n", klipper ? '#' : ';', line);
   }
   text += klipper ? fmt::format("# beside a section [bed_mesh]; BED_MESH_PROFILE LOAD={}\n",

@@ -11,6 +11,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/tables/table_comparison.h"
+#include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -208,7 +209,7 @@ std::vector<std::string> skew_report(const TableExport& e) {
 std::vector<TextFile> skew_files(const TableExport& e) {
   const bool klipper = e.request.format == TableFormat::klipper;
   std::string text;
-  for (const std::string& line : skew_report(e)) {
+  for (const std::string& line : with_unknown(skew_report(e), e)) {
     text += fmt::format("{} {}\n", klipper ? '#' : ';', line);
   }
   const char* name = klipper                                   ? "skew.cfg"

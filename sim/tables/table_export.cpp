@@ -11,6 +11,7 @@
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "sim/tables/tool_side_errors.h"
+#include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -183,6 +184,7 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
               errors,
               {0.0, 0.0, -request.tool_length},
               reference_of(request, e.lines, machine.chain.layout)};
+  refuse_unknown(e);
   if (e.rules().skew) {
     e.skew = skew_settings_of(e.source, e.lines, request.format, !request.mesh);
     if (request.mesh) e.mesh = bed_mesh_of(e.source, e.lines, e.skew, *request.mesh);

@@ -28,6 +28,8 @@ struct TableRequest {
   int comp_file_type = 0;                  // of LinuxCNC: 0 positions, 1 trims
   std::optional<std::array<int, 2>> mesh;  // points along X and Y of a bed mesh, of firmwares
   std::array<AxisRequest, kJoints> axes;
+  /// Errors that the readings of a calibrated machine leave undetermined (unknown_errors.h).
+  std::vector<plant::ErrorName> unknown;
 };
 
 struct TableExport {

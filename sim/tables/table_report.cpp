@@ -6,6 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
+#include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -215,16 +216,15 @@ void add_unheld(const TableExport& e, std::vector<std::string>& out) {
 }  // namespace
 
 std::vector<std::string> report(const TableExport& e) {
+  std::vector<std::string> out;
   if (e.rules().skew) {
-    std::vector<std::string> out;
     if (e.skew) out = skew_report(e);
     if (e.mesh) {
       for (std::string& line : mesh_report(e)) out.push_back(std::move(line));
     }
-    return out;
+    return with_unknown(std::move(out), e);
   }
   const bool csv = e.rules().components;
-  std::vector<std::string> out;
   out.push_back(
       fmt::format("compensation tables of error model '{}' on {}", e.request.model, e.machine));
   out.push_back(fmt::format("document: {}", e.rules().document));
@@ -233,6 +233,7 @@ std::vector<std::string> report(const TableExport& e) {
   out.push_back("tables:");
   for (const CompensationTable& table : e.tables) out.push_back(line_of(e, table));
   add_notes(e, out);
+  out = with_unknown(std::move(out), e);
   if (csv) {
     add_unheld(e, out);
     return out;

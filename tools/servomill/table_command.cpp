@@ -12,9 +12,11 @@
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
+#include "sim/input/uncertain_errors.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
+#include "sim/tables/unknown_errors.h"
 #include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/import_errors.h"
@@ -30,16 +32,17 @@ namespace fs = std::filesystem;
 struct Inputs {
   sim::model::MachineSettings machine;
   std::map<std::string, plant::ErrorModel> models;
+  std::shared_ptr<const sim::model::UncertainErrors> uncertain;  // of a scenario's machine; or none
 };
 
 Inputs read_inputs(const Options& options) {
   if (!options.has("machine")) {
     sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
-    return {std::move(scenario.machine), std::move(scenario.errors)};
+    return {std::move(scenario.machine), std::move(scenario.errors), scenario.uncertain};
   }
   sim::input::MachineDescription described = sim::input::read_machine_description(
       options.get<std::string>("machine"), options.list("set"));
-  Inputs inputs{std::move(described.machine), std::move(described.errors)};
+  Inputs inputs{std::move(described.machine), std::move(described.errors), nullptr};
   if (!options.words().empty()) {
     inputs.models = sim::input::read_error_file(options.word(), inputs.machine.chain.layout);
   }
@@ -66,6 +69,21 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
   if (found != inputs.models.end()) return found->second;
   throw InputError({"--model"}, fmt::format("no error model '{}'{}; {}", name,
                                             did_you_mean(name, names), there_are));
+}
+
+// Errors of the model that the readings of a calibrated machine leave undetermined.
+std::vector<plant::ErrorName> unknown_of(const Inputs& inputs, const Options& options,
+                                         const std::string& model,
+                                         const plant::ErrorModel& errors) {
+  const JointLayout& layout = inputs.machine.chain.layout;
+  if (options.has("machine")) {
+    const auto identified =
+        sim::input::uncertain_errors_of_file(error_file(options), model, layout);
+    if (identified) return sim::tables::unknown_errors(errors, *identified, layout);
+  } else if (inputs.uncertain && inputs.uncertain->model == model) {
+    return sim::tables::unknown_errors(errors, *inputs.uncertain, layout);
+  }
+  return {};
 }
 
 // "X=..." of an option that may come once for each axis.
@@ -331,6 +349,7 @@ int table_command(const Arguments& arguments) {
   const Inputs inputs = read_inputs(options);
   sim::tables::TableRequest request = request_of(options, inputs.machine);
   const plant::ErrorModel& errors = model_of(inputs, options, request.model);
+  request.unknown = unknown_of(inputs, options, request.model, errors);
   const sim::tables::TableExport tables = [&] {
     try {
       return sim::tables::export_tables(inputs.machine, errors, request);

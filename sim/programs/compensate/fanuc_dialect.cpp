@@ -96,7 +96,7 @@ class Fanuc final : public IsoDialect {
     put(motion_text(helix, prefix));
   }
 
-  // G31 is one-shot: G0 or G1 stay in force (B-63844EN/02, skip function; M for the page).
+  // G31 is one-shot: G0 or G1 stay in force (Series 15i/150i-MA, Programming, p. 564).
   void probe(const DialectMotion& motion, const DialectMotion&) override {
     check_positions(motion, kMostPosition);
     const auto code = modes_.code;

@@ -82,7 +82,8 @@ class Siemens final : public IsoDialect {
     put(motion_text(motion, prefix));
   }
 
-  // Measuring with delete distance-to-go: 6FC5398-2EP40-0BA0, MEAS (M for the page).
+  // Measuring with delete distance-to-go: 840D sl, Programming Manual Job
+  // planning 03/2006, 6FC5398-2BP10-1BA0, section 5.7 (p. 5-24).
   void probe(const DialectMotion& motion, const DialectMotion&) override {
     check_positions(motion, kMostPosition);
     put(motion_text(motion, "MEAS=1"));

@@ -38,10 +38,13 @@ void require_turning_table(const model::MachineSettings& machine) {
     const Vector3d tool = plant::forward(machine.chain, turned, Vector3d::Zero()).k_W;
     const Vector3d spindle = plant::R_WM(machine.chain, turned) * Vector3d::UnitZ();
     if ((tool - spindle).norm() > 1e-9) {
-      throw InputError({"plan-calibration"},
-                       fmt::format("writes measuring programs for machines whose rotary axes carry "
-                                   "the table; {} carries the spindle",
-                                   letter(axis)));
+      throw InputError(
+          {"plan-calibration"},
+          fmt::format("writes measuring programs for machines whose rotary axes carry "
+                      "the table; {} carries the spindle: a stylus that turns swings about the "
+                      "sphere, and its pre-travel turns with it; neither a clear path "
+                      "nor that is covered. --instruments without probe plans the rest",
+                      letter(axis)));
     }
   }
   if (!turns) {
