@@ -9,6 +9,7 @@
 #include <limits>
 #include <tuple>
 
+#include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {
