@@ -15,6 +15,7 @@ constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
 constexpr std::string_view kPercentInside =
     "Fanuc ends the program at this '%', other controls continue after it; choose with --reader";
+constexpr std::string_view kUnread = "the program ends here: lines after this '%' are not read";
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
 }  // namespace
@@ -78,8 +79,7 @@ void Interpreter::Machine::read_executed_line() {
   reader_.parse(line_, file(), line(), block_);
   for (const AppliedRule& one : reader_.applied()) tolerates(one.rule, one.column);
   if (block_.percent) return saw_percent();
-  const bool is_move = !block_.words.empty() && block_.o_word.flow == Flow::none;
-  if (reader_.corner() && !is_move) {
+  if (reader_.corner() && (block_.words.empty() || block_.o_word.flow != Flow::none)) {
     fail(reader_.corner()->column,
          fmt::format("',{}' needs a line in its block", reader_.corner()->letter));
   }
@@ -212,12 +212,12 @@ void Interpreter::Machine::saw_percent() {
     if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
       fail(1, std::string(kMisplacedPercent));
     }
-    const bool may_go_on = setup_.reader == Reader::any && !text().is_generated();
-    if (may_go_on && has_more_words()) fail(1, std::string(kPercentInside));
+    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
     return run_end(ReaderRule::percent_at_end);
   }
   if (meaning != Percent::end) return;
   if (flow_.skip_to || text_ != 0) fail_at_end();
+  if (setup_.reader != Reader::linuxcnc && has_more_words()) warn(1, std::string(kUnread));
   ended_ = true;
 }
 
@@ -239,16 +239,16 @@ void Interpreter::Machine::run_end(ReaderRule rule) {
 
 // The subprogram that is looked for may stand behind the closing '%' in this file.
 bool Interpreter::Machine::goes_on_behind_end() {
-  const bool may_go_on = flow_.skips_to_sub && text_ == 0 && !text().is_generated();
-  return may_go_on && has_more_words() && tolerates(ReaderRule::subprogram_behind_end, 1);
+  const bool may_go_on = flow_.skips_to_sub && text_ == 0 && has_more_words();
+  return may_go_on && tolerates(ReaderRule::subprogram_behind_end, 1);
 }
 
 bool Interpreter::Machine::has_more_words() {
+  if (text().is_generated()) return false;
   const ProgramText::Mark here = text().mark();
+  std::string_view next;
   bool found = false;
-  for (std::string_view next; !found && text().next(next);) {
-    found = next.find_first_not_of(" \t\r%") != std::string_view::npos;
-  }
+  while (!found && text().next(next)) found = next.find_first_not_of(" \t\r%") != next.npos;
   text().go_to(here);
   return found;
 }

@@ -331,6 +331,14 @@ TEST(Reader, TwoReadingsAreRefused) {
             "others; use ( ) or ;");
 }
 
+TEST(Reader, SaysThatLinesAfterTheClosingPercentAreNotRead) {
+  const Read any = read("%\nG0 X1.\n%\nG0 X2.\nM2\n", Reader::any);
+  EXPECT_EQ(any.moves, read("%\nG0 X1.\n%\n", Reader::any).moves);
+  ASSERT_EQ(any.warnings.size(), 1u);
+  EXPECT_EQ(to_string(any.warnings[0]),
+            "p.nc:3:1: error: the program ends here: lines after this '%' are not read");
+}
+
 TEST(Reader, FaultsKeepTheirColumns) {
   EXPECT_EQ(refusal("\xEF\xBB\xBFG0 N5 X1 (a (b) c) G99.5\nM2\n"),
             "p.nc:1:20: error: unknown G code G99.5");
