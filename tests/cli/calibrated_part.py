@@ -101,6 +101,29 @@ G1 X0
 M2
 """
 
+WALLS = """G21 G17 G90 G94 G54 G64 P0.001
+T1 M6
+G43 H1
+S4775 M3
+F800
+G0 X-20 Y-10
+G0 Z5
+G1 Z-15
+G1 X-4
+(MSG, left)
+G1 Y70
+(MSG, approach)
+G0 Z5
+G0 X120 Y-10
+G1 Z-15
+G1 X104
+(MSG, right)
+G1 Y70
+(MSG, approach)
+G0 Z5
+M2
+"""
+
 REVERSAL = f"""based_on = "{os.path.abspath(SCENARIOS)}/machines/router_3axis.toml"
 [errors.identified]
 EXX = {{ polynomial_um = [0.0], reversal = {{ width_polynomial_um = [3.0], distance_mm = 0.1 }} }}
@@ -252,6 +275,37 @@ class CalibratedPart(unittest.TestCase):
         self.assertAlmostEqual(found["X", "mean", "down"], 2.0 * math.sqrt(1.0 + 0.6 + 0.5625), delta=0.01)
         self.assertAlmostEqual(found["X", "max", "down"], 2.0 * math.sqrt(1.0 + 0.6 + 0.5625), delta=1e-3)
         self.assertAlmostEqual(found["Y", "max", "down"], 0.0, delta=1e-6)
+
+    def test_sides_cut_in_either_direction_show_the_lost_motion_that_is_left(self):
+        # X comes rising to the left side and falling to the right one; 3 um of lost motion w and no mean are corrected:
+        # sides at m + (w - 3) / 2 and m - (w - 3) / 2
+        self.write("reversal.toml", REVERSAL)
+        self.write("walls.ngc", WALLS)
+        text = SCENARIO[:SCENARIO.index("[[probe]]")].replace("UNCERTAINTY", "0.0").replace("machine.toml", "reversal.toml")
+        text = re.sub(r'file = ".*"', 'file = "walls.ngc"', text)
+        text = text.replace('parameters = { "#101" = 800.0 }\n', "")
+        for name, x, normal in (("left", 0.0, -1), ("right", 100.0, 1)):
+            text += f'[[probe]]\nname = "{name}"\nline = {{ from_mm = [{x}, 10.0, -8.0], to_mm = [{x}, 50.0, -8.0], normal = [{normal}, 0, 0], points = 5 }}\n'
+        text += SCENARIO[SCENARIO.index("[[case]]"):SCENARIO.index("[[quantity]]")]
+        text += "".join(f'[[quantity]]\nname = "probed_position"\nprobe = "{name}"\naxis = "X"\ntolerance = 2.0\n' for name in ("left", "right"))
+        text += SCENARIO[SCENARIO.index("[sweep]"):].replace("machine.toml", "reversal.toml")
+        self.write("walls.toml", text)
+        self.run_here("sweep", "walls.toml", "-o", "walls.h5")
+        with open(os.path.join(self.folder, "walls.csv"), newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+
+        def column(part):
+            name = next(name for name in rows[0] if part in name)
+            return np.array([float(row[name]) for row in rows])
+
+        mean, half = column("EXX_polynomial"), 0.5 * (column("width_polynomial") - 3.0)
+        left, right = column("position_X_left"), column("position_X_right")
+        self.assertGreater(np.abs(half).max(), 1.0)
+        np.testing.assert_allclose(left, mean + half, atol=0.02)
+        np.testing.assert_allclose(right, mean - half, atol=0.02)
+        # their uncertainties are those of either direction: s_m^2 +- r s_m s_w + s_w^2 / 4, r = -0.4
+        for found, wanted in ((left, math.sqrt(1.0 - 0.6 + 0.5625)), (right, math.sqrt(1.0 + 0.6 + 0.5625))):
+            self.assertAlmostEqual(found.std(ddof=1) / wanted, 1.0, delta=3.0 / math.sqrt(2.0 * COUNT))
 
     def test_a_machine_without_covariance_has_no_such_quantity(self):
         self.write("plain.toml", f'based_on = "{os.path.abspath(SCENARIOS)}/machines/router_3axis.toml"\n')
