@@ -31,7 +31,7 @@ bool is_number(std::string_view text) {
 
 // Bytes of the struct as the first headers of this ABI version had it; what follows was appended.
 constexpr std::size_t kFirstSize = offsetof(servomill_strategy, rewrite);
-constexpr std::size_t kMostSize = 1024;
+constexpr std::size_t kMaxSize = 1024;
 
 bool has_unknown_parts(const servomill_strategy& declared) {
   const char* const bytes = reinterpret_cast<const char*>(&declared);
@@ -65,9 +65,9 @@ servomill_strategy completed(const servomill_strategy& declared) {
 }
 
 std::string wrong_with(const servomill_strategy& declared) {
-  if (declared.size < kFirstSize || declared.size > kMostSize) {
+  if (declared.size < kFirstSize || declared.size > kMaxSize) {
     return fmt::format("its struct has {} bytes, expected {} to {}", declared.size, kFirstSize,
-                       kMostSize);
+                       kMaxSize);
   }
   if (has_unknown_parts(declared)) {
     return "has functions unknown to this program: it was built for a later version";

@@ -71,7 +71,7 @@ struct CProgram::Parts {
   // One more than there may be is kept, as a sign.
   static void add_block(void* host, const servomill_block* block) {
     Parts& parts = *static_cast<Parts*>(host);
-    if (parts.blocks.size() > kMostPluginBlocks) return;
+    if (parts.blocks.size() > kMaxPluginBlocks) return;
     servomill_block one{};
     std::memcpy(&one, block, std::min(block->size, sizeof one));
     parts.blocks.push_back(one);
@@ -248,8 +248,8 @@ class Replacing {
 std::vector<Move> with_blocks(const std::vector<Move>& moves,
                               const std::vector<servomill_block>& blocks, const JointLayout& layout,
                               const Joints& start, bool displaces_rotary, std::string& wrong) {
-  if (blocks.size() > kMostPluginBlocks) {
-    wrong = fmt::format("adds more than {} blocks", kMostPluginBlocks);
+  if (blocks.size() > kMaxPluginBlocks) {
+    wrong = fmt::format("adds more than {} blocks", kMaxPluginBlocks);
     return {};
   }
   Replacing replacing(blocks, layout, start, displaces_rotary);

@@ -13,7 +13,7 @@
 namespace servomill::strategies {
 
 /// Most blocks that a plug-in may make of a program.
-inline constexpr std::size_t kMostPluginBlocks = 5'000'000;
+inline constexpr std::size_t kMaxPluginBlocks = 5'000'000;
 
 /// The motions of a program, for one call of `rewrite`, and the blocks that it adds.
 class CProgram {

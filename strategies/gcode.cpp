@@ -112,7 +112,7 @@ class Rewriter {
   }
 
  private:
-  static constexpr int kMostSplits = 24;
+  static constexpr int kMaxSplits = 24;
 
   struct Place {
     double t = 0.0;   // of the move
@@ -141,7 +141,7 @@ class Rewriter {
           emit(a);
         }
       }
-      split(a, b, kMostSplits);
+      split(a, b, kMaxSplits);
       a = b;
     }
   }
@@ -299,14 +299,14 @@ class RewrittenProgram final : public Strategy {
  private:
   // Before the work: a program in blocks of a micrometre is larger than the memory.
   void refuse_too_many(const std::vector<Move>& moves) const {
-    constexpr double kMostBlocks = 5e6;
+    constexpr double kMaxBlocks = 5e6;
     double blocks = 0.0;
     for (const Move& move : moves) {
       if (move.kind != MoveKind::rapid) blocks += (move.s_end - move.s_begin) / params_.max_block;
     }
-    if (blocks <= kMostBlocks) return;
+    if (blocks <= kMaxBlocks) return;
     throw TooManyBlocks(fmt::format("max_block_mm = {:g} gives {:.2g} blocks; must be <= {:.2g}",
-                                    params_.max_block / mm, blocks, kMostBlocks));
+                                    params_.max_block / mm, blocks, kMaxBlocks));
   }
 
   IdentifiedMachine identified_;

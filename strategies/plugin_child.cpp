@@ -24,7 +24,7 @@ std::atomic<bool> is_isolated = false;
 constexpr char kResult = 'r', kFailure = 'f', kException = 'e';
 
 constexpr char kBegin = 'b';  // the only byte that it reads
-constexpr std::size_t kMostText = 4096;
+constexpr std::size_t kMaxText = 4096;
 
 void write_text(ProcessPipe& pipe, char what, const std::string& text) {
   pipe.write(&what, 1);
@@ -156,7 +156,7 @@ void PluginChild::fail() {
 
 std::string PluginChild::rest_as_text() {
   std::string text;
-  for (char c = 0; text.size() < kMostText && pipe_.read(&c, 1);) text += c;
+  for (char c = 0; text.size() < kMaxText && pipe_.read(&c, 1);) text += c;
   return text;
 }
 

@@ -43,7 +43,7 @@ class Loading {
 
   LoadedPlugin load() const {
     std::string why;
-    const std::string bytes = read_input(path_, kMostBytesOfFile, why);
+    const std::string bytes = read_input(path_, kMaxBytesOfFile, why);
     if (!why.empty()) refuse(why);
     const servomill_plugin_c& plugin = open();
     check(plugin);

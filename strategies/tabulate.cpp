@@ -79,8 +79,8 @@ GridLine Tabulation::line(int joint) const {
                                      line.first / mm, to / mm));
   }
   const double intervals = std::max(1.0, std::ceil((to - line.first) / line.spacing - 1e-9));
-  constexpr double kMostIntervals = 1e7;
-  if (intervals > kMostIntervals) {
+  constexpr double kMaxIntervals = 1e7;
+  if (intervals > kMaxIntervals) {
     throw InputError({}, fmt::format("table over {}: {:.3g} points exceed the capacity of any NC",
                                      axis, intervals));
   }

@@ -165,8 +165,8 @@ void Translator::helix(const Positioning& p, int normal) {
   const double from = std::atan2(ray.y(), ray.x());
   const double written = value(p.polar_angle->value) * deg;
   double sweep = written;
-  constexpr double kMostAngle = 5400.0 * deg;  // [640] p. 631
-  if (!(std::abs(written) <= kMostAngle)) fail("CP: angles are -5400 to 5400 degrees");
+  constexpr double kMaxAngle = 5400.0 * deg;  // [640] p. 631
+  if (!(std::abs(written) <= kMaxAngle)) fail("CP: angles are -5400 to 5400 degrees");
   if (p.polar_angle->is_increment) {
     if (p.direction && written != 0.0 && (written > 0.0) != (*p.direction > 0)) {
       fail(p.polar_angle->value.place,

@@ -63,10 +63,10 @@ constexpr auto kReadings = std::to_array<Reading>({
 
 // The first line that is neither blank nor a comment.
 bool begins_program(ProgramText& text) {
-  constexpr int kMostLines = 1000;
+  constexpr int kMaxLines = 1000;
   bool found = false;
   int lines = 0;
-  for (std::string_view line; text.next(line) && ++lines < kMostLines;) {
+  for (std::string_view line; text.next(line) && ++lines < kMaxLines;) {
     const std::size_t at = line.find_first_not_of(" \t\r0123456789");
     if (at == std::string_view::npos || std::string_view(";*(").find(line[at]) != line.npos) {
       continue;

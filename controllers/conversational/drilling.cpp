@@ -10,7 +10,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-constexpr int kMostPecks = 10000;
+constexpr int kMaxPecks = 10000;
 
 }  // namespace
 
@@ -138,7 +138,7 @@ void Translator::drill_old() {
   double done = std::min(peck, total);
   cycle_move(feed, surface - done);
   for (int i = 0; done < total; ++i) {
-    if (i == kMostPecks) fail("cycle 1: too many pecks");
+    if (i == kMaxPecks) fail("cycle 1: too many pecks");
     cycle_move({}, start);
     if (stop < done) cycle_move({}, surface - done + stop);
     done = std::min(done + peck, total);
@@ -194,7 +194,7 @@ void Translator::drill_200() {
   double at = std::max(h.surface - peck, h.bottom);
   cycle_move(feed, at);
   for (int i = 0; at > h.bottom; ++i) {
-    if (i == kMostPecks) fail("cycle 200: too many infeeds");
+    if (i == kMaxPecks) fail("cycle 200: too many infeeds");
     cycle_move({}, h.clearance);
     cycle_dwell(dwell_above);
     cycle_move({}, std::min(at + (h.clearance - h.surface), h.clearance));
@@ -251,7 +251,7 @@ void Translator::drill_203() {
   cycle_move(feed, at);
   double left = breaks;
   for (int i = 0; at > h.bottom; ++i) {
-    if (i == kMostPecks) fail("cycle 203: too many infeeds");
+    if (i == kMaxPecks) fail("cycle 203: too many infeeds");
     if (left > 0.0) {
       --left;
       cycle_move(out, at + back);
@@ -288,7 +288,7 @@ void Translator::peck_205() {
   cycle_move({}, h.clearance);
   double at = h.surface;
   for (int i = 0; at > h.bottom; ++i) {
-    if (i == kMostPecks) fail("cycle 205: too many infeeds");
+    if (i == kMaxPecks) fail("cycle 205: too many infeeds");
     const double to = std::max(at - peck, h.bottom);
     while (step > 0.0 && at - step > to) {
       at -= step;
@@ -352,7 +352,7 @@ void Translator::tap_209() {
   note(in);
   double at = h.surface;
   for (int i = 0; at > h.bottom; ++i) {
-    if (i == kMostPecks) fail("cycle 209: too many infeeds");
+    if (i == kMaxPecks) fail("cycle 209: too many infeeds");
     at = step > 0.0 ? std::max(at - step, h.bottom) : h.bottom;
     cycle_move(feed, at);
     if (at <= h.bottom) break;

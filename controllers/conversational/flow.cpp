@@ -11,7 +11,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-constexpr std::size_t kMostCalls = 19;  // in each other: TNC 640; 8 on the iTNC 530 (M)
+constexpr std::size_t kMaxCalls = 19;  // in each other: TNC 640; 8 on the iTNC 530 (M)
 
 }  // namespace
 
@@ -65,8 +65,8 @@ void Translator::call(const HeidenhainBlock& block) {
 void Translator::call_label(const std::string& label, std::span<const HeidenhainWord> rest) {
   if (label == "0") fail("LBL 0 cannot be called");
   if (rest.empty() || (rest.size() == 1 && rest.front().text == "REP")) {
-    if (returns_.size() >= kMostCalls) {
-      fail(fmt::format("calls nested deeper than {}", kMostCalls));
+    if (returns_.size() >= kMaxCalls) {
+      fail(fmt::format("calls nested deeper than {}", kMaxCalls));
     }
     const BlockMark behind = program().mark();
     go_to(label);
@@ -77,9 +77,9 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
   for (const HeidenhainWord& word : rest) text += word.text;
   if (!text.starts_with("REP")) fail(rest.front().place, "expected REP");
   text = text.substr(3, text.find('/') - 3);
-  constexpr int kMostRepeats = 65534;  // [640] p. 631
+  constexpr int kMaxRepeats = 65534;  // [640] p. 631
   const Place& at = rest.front().place;
-  const int wanted = whole(value(operand_of(text, at)), kMostRepeats, at, "REP");
+  const int wanted = whole(value(operand_of(text, at)), kMaxRepeats, at, "REP");
   const auto key = std::pair(file_, block_mark_.offset);
   auto [found, is_new] = repeats_.try_emplace(key, wanted);
   if (found->second <= 0) {
@@ -93,7 +93,7 @@ void Translator::call_label(const std::string& label, std::span<const Heidenhain
 void Translator::call_program(std::span<const HeidenhainWord> words) {
   if (words.size() > 1) fail(words[1].place, "unexpected text after the program name");
   const std::string name = program_name(words.front().text);
-  if (returns_.size() >= kMostCalls) fail(fmt::format("calls nested deeper than {}", kMostCalls));
+  if (returns_.size() >= kMaxCalls) fail(fmt::format("calls nested deeper than {}", kMaxCalls));
   std::optional<ProgramText> text;
   if (setup_.subroutine_file) text = setup_.subroutine_file(name);
   if (!text) {

@@ -12,7 +12,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-constexpr int kMostHoles = 99999;  // in a row, on a circle
+constexpr int kMaxHoles = 99999;  // in a row, on a circle
 constexpr double kFullCircle = 360.0;
 
 Point in_direction(double degrees) { return {std::cos(degrees * deg), std::sin(degrees * deg)}; }
@@ -37,7 +37,7 @@ void Translator::call_hole_pattern(bool is_circle) {
 std::vector<Point> Translator::points_on_circle() const {
   const Point centre(q(216) * unit(), q(217) * unit());
   const double radius = 0.5 * q(244) * unit(), first = q(245);
-  const int count = whole(q(241), kMostHoles, place_, "Q241");
+  const int count = whole(q(241), kMaxHoles, place_, "Q241");
   if (count == 0) fail("Q241 must be > 0");
   double step = q(247);
   if (step == 0.0 && count > 1) {
@@ -56,8 +56,8 @@ std::vector<Point> Translator::points_on_circle() const {
 std::vector<Point> Translator::points_on_lines() const {
   const Point start(q(225) * unit(), q(226) * unit());
   const Point along = in_direction(q(224)), across(-along.y(), along.x());
-  const int columns = whole(q(242), kMostHoles, place_, "Q242");
-  const int lines = whole(q(243), kMostHoles, place_, "Q243");
+  const int columns = whole(q(242), kMaxHoles, place_, "Q242");
+  const int lines = whole(q(243), kMaxHoles, place_, "Q243");
   if (columns == 0 || lines == 0) fail("Q242 and Q243 must be > 0");
   std::vector<Point> out;
   for (int line = 0; line < lines; ++line) {

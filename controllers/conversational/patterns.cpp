@@ -12,7 +12,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-constexpr int kMostPoints = 9999;  // in a row
+constexpr int kMaxPoints = 9999;  // in a row
 
 // "(X+25" and "Z+0)": the words of a pattern stand in brackets.
 std::vector<HeidenhainWord> without_brackets(std::span<const HeidenhainWord> words) {
@@ -82,10 +82,9 @@ void Translator::add_pattern(const std::string& kind, Words& words) {
   const bool is_row = kind == "ROW";
   const double dx = pattern_number(words, is_row ? "D" : "DX", unit());
   const double dy = is_row ? 0.0 : pattern_number(words, "DY", unit());
-  const int nx = whole(pattern_number(words, is_row ? "NUM" : "NUMX", 1.0), kMostPoints, place_,
+  const int nx = whole(pattern_number(words, is_row ? "NUM" : "NUMX", 1.0), kMaxPoints, place_,
                        is_row ? "NUM" : "NUMX");
-  const int ny =
-      is_row ? 1 : whole(pattern_number(words, "NUMY", 1.0), kMostPoints, place_, "NUMY");
+  const int ny = is_row ? 1 : whole(pattern_number(words, "NUMY", 1.0), kMaxPoints, place_, "NUMY");
   const double rotation = pattern_number(words, "ROT", 1.0, 0.0);
   for (const char* skew : {"ROTX", "ROTY"}) {
     if (!is_row && pattern_number(words, skew, 1.0, 0.0) != 0.0) {
@@ -106,7 +105,7 @@ void Translator::add_pattern(const std::string& kind, Words& words) {
 void Translator::add_circle(Words& words, const Point& centre, double surface, bool is_full) {
   const double radius = 0.5 * pattern_number(words, "D", unit());
   const double first = pattern_number(words, "START", 1.0, 0.0);
-  const int count = whole(pattern_number(words, "NUM", 1.0), kMostPoints, place_, "NUM");
+  const int count = whole(pattern_number(words, "NUM", 1.0), kMaxPoints, place_, "NUM");
   if (count == 0) fail("PATTERN DEF: NUM must be > 0");
   double step = 360.0 / count;
   if (!is_full) {

@@ -146,8 +146,8 @@ const BlockMark* ProgramFile::find_label(const std::string& label) const {
 }
 
 void ProgramFile::index() {
-  constexpr std::size_t kMostFaults = 100;
-  while (at_.offset < text_.size() && faults_.size() < kMostFaults) {
+  constexpr std::size_t kMaxFaults = 100;
+  while (at_.offset < text_.size() && faults_.size() < kMaxFaults) {
     try {
       const auto block = next();
       if (block && !block->words.empty()) index(*block);

@@ -103,8 +103,8 @@ void Translator::run_block() {
   const auto block = program().next();
   if (!block) return end_of_file({program().file(), program().line(), 0});
   place_ = block->place;
-  constexpr long kMostBlocks = 10;  // after the first jump, for each jump allowed
-  if (jumps_ > 0 && ++blocks_ / kMostBlocks > setup_.most_jumps)
+  constexpr long kMaxBlocks = 10;  // after the first jump, for each jump allowed
+  if (jumps_ > 0 && ++blocks_ / kMaxBlocks > setup_.most_jumps)
     jumps_ = setup_.most_jumps, count_jump();
   if (block->is_continued_comment) {
     warn_once("comment", "a comment that ends with '~': the next line is taken as part of it");

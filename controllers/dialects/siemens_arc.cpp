@@ -13,11 +13,11 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kLeastSweep = 1e-3 * deg;  // below, rounding decides between 0 and a full turn
-constexpr double kSamePoint = 1.0 * nm;     // a tenth of the last digit that programs have
+constexpr double kMinSweep = 1e-3 * deg;  // below, rounding decides between 0 and a full turn
+constexpr double kSamePoint = 1.0 * nm;   // a tenth of the last digit that programs have
 // Rise of CIP along the normal of a plane of two axes. Taken as linear, it is off by at most 0.11
 // of that, the largest of |a / pi - (1 - cos a) / 2|.
-constexpr double kMostTilt = 1.0 * um;
+constexpr double kMaxTilt = 1.0 * um;
 constexpr double kCollinear = 1e-9;  // rad, between the chords of CIP
 
 }  // namespace
@@ -168,7 +168,7 @@ void SiemensArc::read_through_point(MachineAction& out) {
   normal.cwiseAbs().maxCoeff(&normal_axis_);
   u_ = (normal_axis_ + 1) % 3;
   v_ = (normal_axis_ + 2) % 3;
-  if (std::max(std::abs(p[normal_axis_]), std::abs(q[normal_axis_])) > kMostTilt + 1e-12) {
+  if (std::max(std::abs(p[normal_axis_]), std::abs(q[normal_axis_])) > kMaxTilt + 1e-12) {
     fail("CIP in a plane that is not spanned by two axes is not supported");
   }
   const Eigen::Vector3d centre =
@@ -230,7 +230,7 @@ int SiemensArc::turns_of(const Eigen::Vector2d& start, const Eigen::Vector2d& en
   if (!context_.rules.TURN_adds_turns && added > 0) --added;
   const double angle = std::atan2(from[0] * to[1] - from[1] * to[0], from.dot(to));
   const bool is_full = (end - start).norm() < kSamePoint;
-  if (!is_full && std::abs(angle) < kLeastSweep) {
+  if (!is_full && std::abs(angle) < kMinSweep) {
     fail(
         "start and end of the arc nearly coincide: rounding decides between no motion and a full "
         "circle");

@@ -25,7 +25,7 @@ class AptReader : ClReader {
   ClData read(std::string_view text) {
     PlacedText statement;
     int line = 0;
-    while (!text.empty() && faults_.size() < kMostFaults) {
+    while (!text.empty() && faults_.size() < kMaxFaults) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       const bool goes_on = add_line(text.substr(0, end), ++line, statement);
       text.remove_prefix(std::min(end + 1, text.size()));
@@ -291,10 +291,10 @@ class AptReader : ClReader {
   }
 
   void load_tool(Spot at, const Words& words) {
-    constexpr double kMostTools = 99999.0;
+    constexpr double kMaxTools = 99999.0;
     need(at, !words.empty(), "LOADTL needs a tool number");
     const double tool = number(words[0]);
-    need(words[0].spot(), tool == std::floor(tool) && tool >= 1.0 && tool <= kMostTools,
+    need(words[0].spot(), tool == std::floor(tool) && tool >= 1.0 && tool <= kMaxTools,
          "the tool number must be an integer >= 1 and <= 99999");
     for (std::size_t i = 1; i < words.size(); ++i) unknown_minor("LOADTL", words[i]);
     add(MoveKind::tool, at).number = static_cast<int>(tool);

@@ -14,7 +14,7 @@ namespace {
 using enum CycleStep::Kind;
 
 constexpr double kBackedOff = 0.01 * inch;  // LinuxCNC's default for G73 and G83
-constexpr double kMostSteps = 1e5;          // of a block, which is held in memory
+constexpr double kMaxSteps = 1e5;           // of a block, which is held in memory
 
 class Steps {
  public:
@@ -141,8 +141,8 @@ std::vector<CycleStep> cycle_steps(int tenths, const CycleHole& hole) {
 }
 
 double cycle_step_count(int tenths, const CycleHole& hole) {
-  constexpr double kMostOfOthers = 12.0;
-  if (!is_pecking(tenths)) return kMostOfOthers;
+  constexpr double kMaxOfOthers = 12.0;
+  if (!is_pecking(tenths)) return kMaxOfOthers;
   return 3.0 * (1.0 + (hole.r - hole.bottom) / hole.peck);
 }
 
@@ -268,10 +268,10 @@ int Interpreter::Machine::cycle_repeats(const CycleHole& hole) const {
   if (repeats < 1) fail_at('L', fmt::format("L{}; must be at least 1", repeats));
   const int code = request().motion_code();
   const double steps = (3.0 + cycle_step_count(code, hole)) * repeats;
-  if (steps > kMostSteps) {
+  if (steps > kMaxSteps) {
     fail(cycle_column(repeats > 1 ? 'L' : 'Q'),
          fmt::format("{} would make {:.0f} moves; must be <= {:.0f}", code_name('G', code), steps,
-                     kMostSteps));
+                     kMaxSteps));
   }
   return repeats;
 }

@@ -18,7 +18,7 @@ class CsvReader : ClReader {
   ClData read(std::string_view text) {
     int line = 0;
     bool has_header = false;
-    while (!text.empty() && faults_.size() < kMostFaults) {
+    while (!text.empty() && faults_.size() < kMaxFaults) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       PlacedText whole;
       int column = 0;

@@ -53,7 +53,7 @@ class ClReader {
       : file_(file), of_refused_(of_refused) {}
 
  protected:
-  static constexpr std::size_t kMostFaults = 100;  // a file of another format has one per line
+  static constexpr std::size_t kMaxFaults = 100;  // a file of another format has one per line
 
   Place place(Spot spot) const { return {file_, spot.line, spot.column}; }
   [[noreturn]] void fail(Spot spot, std::string message) const {

@@ -14,8 +14,8 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-constexpr double kStraightTol = 0.05;       // rad; a corner that turns by less is none
-constexpr double kLeastEntryCosine = 1e-4;  // of the angle between the chord and the end of an arc
+constexpr double kStraightTol = 0.05;     // rad; a corner that turns by less is none
+constexpr double kMinEntryCosine = 1e-4;  // of the angle between the chord and the end of an arc
 
 Vector2d left_of(const Vector2d& v) { return {-v.y(), v.x()}; }
 
@@ -170,7 +170,7 @@ Compensated entry_move(const Cutter& cutter, const PlaneMove& programmed) {
   const Vector2d ray = (programmed.centre - held.end).normalized();
   const Vector2d chord = tool - held.end;
   const double cosine = chord.normalized().dot(ray);
-  if (std::abs(cosine) < kLeastEntryCosine) {
+  if (std::abs(cosine) < kMinEntryCosine) {
     return {held, "no arc connects the tool position with the end of the programmed arc"};
   }
   held.centre = held.end + chord.norm() / (2.0 * cosine) * ray;

@@ -257,8 +257,8 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
 
 void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
                                       const LinePlace& return_to) {
-  if (flow_.calls.size() == kMostCalls) {
-    fail(o.column, fmt::format("subroutine calls nested deeper than {}", kMostCalls));
+  if (flow_.calls.size() == kMaxCalls) {
+    fail(o.column, fmt::format("subroutine calls nested deeper than {}", kMaxCalls));
   }
   count_jump();
   Call call;

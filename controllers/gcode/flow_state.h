@@ -28,7 +28,7 @@ struct Label {
 };
 
 inline constexpr int kArguments = 30;  // #1 ... #30
-inline constexpr int kMostCalls = 9;   // in each other, as LinuxCNC
+inline constexpr int kMaxCalls = 9;    // in each other, as LinuxCNC
 
 /// One call that is under way.
 struct Call {

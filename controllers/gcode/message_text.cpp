@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kZero = 1e-4;  // as LinuxCNC compares
 constexpr std::string_view kUnknown = "######";
-constexpr std::size_t kMostDigits = 4;  // of the number of a parameter
+constexpr std::size_t kMaxDigits = 4;  // of the number of a parameter
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -65,8 +65,7 @@ class MessageText {
 
   bool number() {
     std::size_t end = 1;
-    while (rest_[0] == '#' && end < rest_.size() && end <= kMostDigits + 1 &&
-           is_digit(rest_[end])) {
+    while (rest_[0] == '#' && end < rest_.size() && end <= kMaxDigits + 1 && is_digit(rest_[end])) {
       ++end;
     }
     if (end == 1) return false;

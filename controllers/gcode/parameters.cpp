@@ -89,8 +89,8 @@ bool is_logic(OpCode code) {
 
 // Operation on the bits of two whole numbers; no number where a control that counts bits has none.
 std::optional<double> of_bits(OpCode code, double a, double b) {
-  constexpr double kMost = 4294967295.0;
-  const auto is_whole = [](double x) { return x >= 0.0 && x <= kMost && x == std::floor(x); };
+  constexpr double kMax = 4294967295.0;
+  const auto is_whole = [](double x) { return x >= 0.0 && x <= kMax && x == std::floor(x); };
   if (!is_whole(a) || !is_whole(b)) return std::nullopt;
   const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
   return static_cast<double>(code == OpCode::logical_and  ? x & y

@@ -73,7 +73,7 @@ const Operator* operator_at(Cursor cursor) {
   return nullptr;
 }
 
-constexpr int kMostDigits = 15;  // whose number is exact in a double
+constexpr int kMaxDigits = 15;  // whose number is exact in a double
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -137,7 +137,7 @@ double Parser::number(std::string_view what) {
     fail(start, fmt::format("expected a value after {}, found {}", what, shown(peek())));
   }
   if (peek() == '.') fail_here("a second decimal point in one number");
-  if (count <= kMostDigits) {
+  if (count <= kMaxDigits) {
     return static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
   }
   std::string text(cursor_.line().substr(start, cursor_.at() - start));

@@ -9,7 +9,7 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr std::size_t kMostFaults = 20;
+constexpr std::size_t kMaxFaults = 20;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void PostReport::warn(int line, std::string message) {
   warnings_.push_back({{file_, line, 0}, std::move(message)});
 }
 
-bool PostReport::is_full() const { return faults_.size() >= kMostFaults; }
+bool PostReport::is_full() const { return faults_.size() >= kMaxFaults; }
 
 void PostReport::note_singular(int line) {
   if (singular_++ == 0) first_singular_ = line;

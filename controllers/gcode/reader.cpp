@@ -264,8 +264,8 @@ IgnoredCode ignored_code(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data() + 1, last, number);
     if (error != std::errc() || end != last) number = -1;
   }
-  constexpr int kMost = 9999;
-  if (number < 0 || number > kMost) {
+  constexpr int kMax = 9999;
+  if (number < 0 || number > kMax) {
     return {-1, "must be an M code of the machine builder, such as M82"};
   }
   if (is_known_function(number)) {

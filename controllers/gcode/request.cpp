@@ -13,7 +13,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kCodeTol = 1e-4;  // how far the number of a code may be from a code
-constexpr int kMostMCodes = 4;     // as LinuxCNC
+constexpr int kMaxMCodes = 4;      // as LinuxCNC
 constexpr std::string_view kClaimedLetters = "DHIJKLPQR";
 
 constexpr std::uint32_t mask_of(std::string_view letters) {
@@ -163,8 +163,8 @@ void check_claims(const Context& context, const Request& request, bool has_vecto
 
 void add_code(const Context& context, Request& request, const Word& word, double value,
               int& m_codes_seen) {
-  if (word.letter == 'M' && ++m_codes_seen > kMostMCodes) {
-    context.fail(word.column, fmt::format("more than {} M codes in one block", kMostMCodes));
+  if (word.letter == 'M' && ++m_codes_seen > kMaxMCodes) {
+    context.fail(word.column, fmt::format("more than {} M codes in one block", kMaxMCodes));
   }
   const Code& code = look_up(context, word.letter, value, word.column);
   choose(context, request, word.letter, code, word.column);

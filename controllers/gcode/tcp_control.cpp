@@ -11,8 +11,8 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kLeastVector = 1e-6;  // length of a tool axis; below it is zero
-constexpr double kLeaning = 1e-4;      // rad of the tool axis off Z of a tilted plane
+constexpr double kMinVector = 1e-6;  // length of a tool axis; below it is zero
+constexpr double kLeaning = 1e-4;    // rad of the tool axis off Z of a tilted plane
 
 }  // namespace
 
@@ -198,7 +198,7 @@ Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   const Eigen::Vector3d given(request()['I'], request()['J'], request()['K']);
   const char first = request().has('I') ? 'I' : request().has('J') ? 'J' : 'K';
   const double length = given.norm();
-  if (!(length > kLeastVector)) fail_at(first, "the tool axis I J K has length zero");
+  if (!(length > kMinVector)) fail_at(first, "the tool axis I J K has length zero");
   if (std::abs(length - 1.0) > kAxisLengthTolerance) {
     warnings_.push_back(
         {{file(), line(), request().word(first).column},

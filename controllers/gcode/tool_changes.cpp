@@ -10,7 +10,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr int kFixture = 9;  // G59.3, to which G10 L11 refers
-constexpr int kMostOrientation = 9;
+constexpr int kMaxOrientation = 9;
 
 }  // namespace
 
@@ -75,9 +75,9 @@ void Interpreter::Machine::set_tool(int L) {
   if (request().has('J')) tool.back_angle = request()['J'] * deg;
   if (request().has('Q')) {
     tool.orientation = integer('Q');
-    if (tool.orientation < 0 || tool.orientation > kMostOrientation) {
+    if (tool.orientation < 0 || tool.orientation > kMaxOrientation) {
       fail_at('Q', fmt::format("Q{}; the orientation of a tool must be in 0 ... {}",
-                               tool.orientation, kMostOrientation));
+                               tool.orientation, kMaxOrientation));
     }
   }
   setup_.tools.replace(tool);

@@ -16,7 +16,7 @@ namespace {
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 constexpr std::string_view kWords = "TPXYZABCDIJQUVW";
-constexpr int kMostOrientation = 9;
+constexpr int kMaxOrientation = 9;
 
 // Reads one line, and goes on behind a fault with the next word.
 class ToolLine {
@@ -91,20 +91,20 @@ class ToolLine {
   }
 
   void store(ToolEntry& tool, char letter, double x, std::size_t start) {
-    constexpr int kMostNumber = 1000000;
+    constexpr int kMaxNumber = 1000000;
     if (const auto axis = axis_of(letter)) {
       tool.offset[index_of(*axis)] = x * (is_linear(*axis) ? mm : deg);
       return;
     }
     switch (letter) {
       case 'T':
-        tool.number = integer(letter, x, kMostNumber, start);
+        tool.number = integer(letter, x, kMaxNumber, start);
         return;
       case 'P':
-        tool.pocket = integer(letter, x, kMostNumber, start);
+        tool.pocket = integer(letter, x, kMaxNumber, start);
         return;
       case 'Q':
-        tool.orientation = integer(letter, x, kMostOrientation, start);
+        tool.orientation = integer(letter, x, kMaxOrientation, start);
         return;
       case 'D':
         tool.diameter = x * mm;

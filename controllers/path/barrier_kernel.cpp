@@ -6,8 +6,8 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kIdle = 0.1;  // of a limit, below which it does not bend the search
-constexpr double kLeastLoss = 1e-9;
-constexpr double kLeastLength = 1e-12;  // m, for which a point stands
+constexpr double kMinLoss = 1e-9;
+constexpr double kMinLength = 1e-12;  // m, for which a point stands
 
 template <class Arch>
 struct Triple {
@@ -101,7 +101,7 @@ struct FormedParts {
     p10 = -per_D, p11 = per_D;
     p20 = per_Dh, p21 = -per_Dh - per_Eh, p22 = per_Eh;
     whole = to - from, half = P(0.5) * whole, middle = P(0.5) * (from + to);
-    const P least(kLeastLength);
+    const P least(kMinLength);
     sixth = max(whole / P(6.0), least), two_thirds = max(whole * P(2.0 / 3.0), least);
     swell = P(4.5) * whole * whole / P(8.0);
     const P x(parts.x);
@@ -272,7 +272,7 @@ template <class Arch>
 double largest_loss(const BarrierPoints* points, std::size_t count, const BarrierJoints& joints,
                     const double* step, const BarrierTerms* terms) {
   using P = Pack<Arch>;
-  P loss(kLeastLoss);
+  P loss(kMinLoss);
   for (std::size_t n = 0; n < count; ++n) {
     const BarrierPoints& p = points[n];
     const Triple<Arch> x = {{P(terms[n].x[0]), P(terms[n].x[1]), P(terms[n].x[2])}};

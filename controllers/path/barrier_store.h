@@ -17,7 +17,7 @@ namespace servomill::controllers {
 /// Either way the same bits.
 class BarrierStore {
  public:
-  static constexpr std::size_t kMostKept = 8192;  // parts: 6 MB
+  static constexpr std::size_t kMaxKept = 8192;  // parts: 6 MB
 
   /// Points first_block .. first_block + count - 1 blocks; the lanes behind the last point repeat
   /// it.
@@ -35,7 +35,7 @@ class BarrierStore {
   /// @param most_kept  parts of which the points are kept
   BarrierStore(const SmoothPath& path, const SpeedSpline& spline, const PathParts& parts,
                std::span<const double> v_top, const std::vector<double>& first,
-               std::size_t most_kept = kMostKept);
+               std::size_t most_kept = kMaxKept);
 
   void prepare(const BarrierJoints& joints, const std::array<int, kBarrierJoints>& moving,
                const BarrierKernel& kernel);

@@ -15,12 +15,12 @@ namespace {
 constexpr double kKnotSpacing = 0.55;  // of the window
 constexpr double kKappa = 1.0 / 2.2;   // of (1), which halves waves of 2.2 rad in a window
 constexpr double kAim = 0.9;           // of the tolerance, where a vertex is missed
-constexpr double kMostRaise = 16.0;    // of mu at once
+constexpr double kMaxRaise = 16.0;     // of mu at once
 constexpr double kBendAim = 0.7;       // of the third derivative that leaves the programmed speed
-constexpr double kLeastFactor = 0.8, kMostFactor = 2.0;  // of its weight at once
-constexpr int kBendRounds = 5;                           // in which bends are spread
-constexpr int kMostRounds = 12;                          // in all
-constexpr std::size_t kLeastIntervals = 7;
+constexpr double kMinFactor = 0.8, kMaxFactor = 2.0;  // of its weight at once
+constexpr int kBendRounds = 5;                        // in which bends are spread
+constexpr int kMaxRounds = 12;                        // in all
+constexpr std::size_t kMinIntervals = 7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kExtra = 3;  // knots beyond each end
 
@@ -58,11 +58,11 @@ bool FairSpline::fit(const Polyline& v, std::span<const double> s, std::span<con
   jerk_ = jerk;
   begin_ = begin, end_ = end;
   lay_knots();
-  if (N_ < kLeastIntervals) return false;
+  if (N_ < kMinIntervals) return false;
   form_intervals();
   gather();
   set_ends();
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     throw_if_interrupted();
     solve();
     if (round < kBendRounds) {
@@ -95,7 +95,7 @@ void FairSpline::lay_knots() {
   double sum = 0.0;
   walk([&](double a, double b, double w) { sum += (b - a) / w; });
   N_ = static_cast<std::size_t>(std::ceil(sum / kKnotSpacing));
-  if (N_ < kLeastIntervals) return;
+  if (N_ < kMinIntervals) return;
   t_.clear();
   w_t_.clear();
   t_.resize(kExtra);
@@ -238,7 +238,7 @@ bool FairSpline::deviations() {
 void FairSpline::raise_weights() {
   const auto factor = [&](std::size_t k) {
     const double over = intervals_[k].worst / (kAim * kAim);
-    return std::clamp(over * over, 1.0, kMostRaise);
+    return std::clamp(over * over, 1.0, kMaxRaise);
   };
   double before = 1.0, here = factor(0);
   for (std::size_t k = 0; k < N_; ++k) {
@@ -260,7 +260,7 @@ void FairSpline::spread_bends() {
   }
   const double aim = std::max(kBendAim, kBendAim * sum / static_cast<double>(N_));
   for (Interval& I : intervals_) {
-    const double factor = std::clamp(I.bend / aim, kLeastFactor, kMostFactor);
+    const double factor = std::clamp(I.bend / aim, kMinFactor, kMaxFactor);
     for (double& x : I.F) x *= factor;
   }
 }

@@ -8,10 +8,10 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kDense = 1.5;         // chords in a window, above which a spline pays
-constexpr std::size_t kLeastRun = 16;  // vertices that are worth a spline
-constexpr std::size_t kBlock = 512;    // vertices of one spline
-constexpr std::size_t kOverlap = 48;   // of them are done again with the next
+constexpr double kDense = 1.5;        // chords in a window, above which a spline pays
+constexpr std::size_t kMinRun = 16;   // vertices that are worth a spline
+constexpr std::size_t kBlock = 512;   // vertices of one spline
+constexpr std::size_t kOverlap = 48;  // of them are done again with the next
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Fairing::Fairing(const SmoothingWindows& path, const Joints& jerk)
     }
     std::size_t j = i;
     while (j + 1 < n_ && is_dense(j + 1)) ++j;
-    if (j - i >= kLeastRun) fair_run(i, j);
+    if (j - i >= kMinRun) fair_run(i, j);
     i = j + 1;
   }
 }
@@ -61,7 +61,7 @@ void Fairing::fair_run(std::size_t i, std::size_t j) {
   while (run.next <= run.last) {
     throw_if_interrupted();
     const std::size_t to = std::min(run.next + run.length, run.last);
-    if (to - run.next < kLeastRun) break;
+    if (to - run.next < kMinRun) break;
     const FairSpline::State stop = to == j ? run.end : state_at(s_[to], to);
     if (spline_.fit(v_, s_, w_, jerk_, run.begin, stop)) {
       accept(run, to, stop);
@@ -106,7 +106,7 @@ void Fairing::finish_tail(Run& run) {
 
 // Fewer vertices; if they are few, what is between windows stays as it is.
 void Fairing::try_less(Run& run, std::size_t to) const {
-  if (to - run.next > 2 * kLeastRun) {
+  if (to - run.next > 2 * kMinRun) {
     run.length = (to - run.next) / 2;
     return;
   }

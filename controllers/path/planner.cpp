@@ -15,8 +15,8 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kLeastChord = 1e-9;    // m, points closer than this to the last are skipped
-constexpr double kLeastChain = 1e-12;   // m, below this there is no motion
+constexpr double kMinChord = 1e-9;      // m, points closer than this to the last are skipped
+constexpr double kMinChain = 1e-12;     // m, below this there is no motion
 constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
 constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
@@ -210,7 +210,7 @@ class Planner {
   void add_chord(const JointChord& chord, double time, int arc) {
     const Joints u = scaled(chord.end);
     const double length = (u - last_u()).norm();
-    skipped_ = length < kLeastChord;
+    skipped_ = length < kMinChord;
     if (skipped_) return;
     const double speed = time > 0.0 ? length / time : limits_.v.norm();
     vertices_.push_back(
@@ -226,7 +226,7 @@ class Planner {
       const Joints step = scaled(chord.end) - at;
       const double length = step.norm();
       at += step;
-      if (length < kLeastChord) continue;
+      if (length < kMinChord) continue;
       if (leg.length == 0.0) leg.tangent_begin = step / length;
       leg.tangent_end = step / length;
       leg.length += length;
@@ -275,7 +275,7 @@ class Planner {
       vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
     }
     vertex.tolerance_rotary *= options_.rotary_radius;
-    skipped_ = (u - last_u()).norm() < kLeastChord;
+    skipped_ = (u - last_u()).norm() < kMinChord;
     if (!skipped_) vertices_.push_back(vertex);
   }
 
@@ -324,9 +324,9 @@ class Planner {
     restart();
   }
 
-  // The end lies within kLeastChord of the last vertex, but not on it.
+  // The end lies within kMinChord of the last vertex, but not on it.
   void reach_end() {
-    if ((u_ - last_u()).norm() <= kLeastChain) return;
+    if ((u_ - last_u()).norm() <= kMinChain) return;
     const double speed = vertices_.speed(vertices_.size() - 1);
     if (speeds_.spans.empty()) {
       ChainSpeeds::Span span = begin_span(last_move_, *last_);

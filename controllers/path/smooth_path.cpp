@@ -12,7 +12,7 @@ namespace {
 
 // Pieces of the splines, and between them those of the smoothed polyline.
 SmoothPath join(const SmoothingWindows& windows, const Fairing& fairing) {
-  constexpr double kLeastPiece = SmoothingWindows::kLeastPiece;
+  constexpr double kMinPiece = SmoothingWindows::kMinPiece;
   const std::vector<Fairing::Stretch>& faired = fairing.stretches();
   const std::vector<CubicPiece>& splines = fairing.pieces();
   const Polyline& v = windows.vertices();
@@ -30,20 +30,20 @@ SmoothPath join(const SmoothingWindows& windows, const Fairing& fairing) {
   windows.for_each_span(0.0, s.back(), [&](const SmoothingWindows::Span& span) {
     const auto [from, to, k, first, last] = span;
     const double middle = span.middle();
-    while (next < faired.size() && faired[next].to <= from + kLeastPiece) ++next;
+    while (next < faired.size() && faired[next].to <= from + kMinPiece) ++next;
     double at = from;
     for (; next < faired.size() && faired[next].from < to; ++next) {
       const Fairing::Stretch& run = faired[next];
-      if (run.from > at + kLeastPiece) add(at, middle, k, first, last);
+      if (run.from > at + kMinPiece) add(at, middle, k, first, last);
       if (run.from >= from) {
         path.pieces.insert(path.pieces.end(),
                            splines.begin() + static_cast<std::ptrdiff_t>(run.first),
                            splines.begin() + static_cast<std::ptrdiff_t>(run.last));
       }
       at = run.to;
-      if (run.to > to - kLeastPiece) break;
+      if (run.to > to - kMinPiece) break;
     }
-    if (at < to - kLeastPiece) add(at, middle, k, first, last);
+    if (at < to - kMinPiece) add(at, middle, k, first, last);
   });
   return path;
 }

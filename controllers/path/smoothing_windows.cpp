@@ -144,11 +144,11 @@ class SmoothingWindows::RollingDeviation {
 
  private:
   // Rounding of the third derivative, eps/w^2 for each window, grows like the cube of the way.
-  static constexpr int kMostSteps = 32;
-  static constexpr double kMostWindows = 16.0;
+  static constexpr int kMaxSteps = 32;
+  static constexpr double kMaxWindows = 16.0;
 
   bool roll(const Span& span) {
-    if (++steps_ > kMostSteps || span.from != last_.to) return false;
+    if (++steps_ > kMaxSteps || span.from != last_.to) return false;
     const double h = span.from - last_.from;
     D_.d0 += h * (D_.d1 + (0.5 * h) * (D_.d2 + (h / 3.0) * D_.d3));
     D_.d1 += h * (D_.d2 + (0.5 * h) * D_.d3);
@@ -159,7 +159,7 @@ class SmoothingWindows::RollingDeviation {
       bend(i, -2.0);
     }
     for (std::size_t i = last_.first; i < span.first; ++i) bend(i, 1.0);
-    return span.to - anchor_ <= kMostWindows * narrowest_;
+    return span.to - anchor_ <= kMaxWindows * narrowest_;
   }
   void bend(std::size_t i, double times) {
     const double w = path_.w_[i];
@@ -171,7 +171,7 @@ class SmoothingWindows::RollingDeviation {
   Deviation D_;
   Span last_;
   double anchor_ = 0.0, narrowest_ = 0.0;  // m
-  int steps_ = kMostSteps;
+  int steps_ = kMaxSteps;
 };
 
 // Square of the deviation on a span of length h over its tolerance, from the control points of

@@ -14,7 +14,7 @@ namespace servomill::controllers {
 /// the vertices and both ends of their windows.
 class SmoothingWindows {
  public:
-  static constexpr double kLeastPiece = 1e-12;  // m, knots closer than this are one
+  static constexpr double kMinPiece = 1e-12;  // m, knots closer than this are one
 
   /// Deviation from the polyline, equation (2) of smooth_path.h, and its derivatives by s.
   struct Deviation {
@@ -70,14 +70,14 @@ class SmoothingWindows {
     std::size_t i_rise = first_behind(rise), i_peak = first_behind(peak);
     std::size_t i_fall = first_behind(fall);
     Span span{begin, begin, i_peak - 1, i_fall, i_rise};
-    while (end - span.from > kLeastPiece) {
+    while (end - span.from > kMinPiece) {
       const double next = std::min({rise(i_rise), peak(i_peak), fall(i_fall), end});
       span.to = std::max(next, span.from);
       while (i_rise < n_ && rise(i_rise) <= next) ++i_rise;
       while (i_peak < n_ && peak(i_peak) <= next) ++i_peak;
       while (i_fall < n_ && fall(i_fall) <= next) ++i_fall;
-      if (end - span.to <= kLeastPiece) span.to = end;
-      if (span.to - span.from <= kLeastPiece) continue;
+      if (end - span.to <= kMinPiece) span.to = end;
+      if (span.to - span.from <= kMinPiece) continue;
       const double middle = span.middle();
       while (span.segment + 1 < n_ && s_[span.segment + 1] <= middle) ++span.segment;
       while (span.first < n_ && fall(span.first) <= middle) ++span.first;

@@ -23,7 +23,7 @@ constexpr double kAxisShare = 0.5;  // of the tolerance of the tool axis, for th
 static_assert(kGreatCircleShare + kAxisShare * std::numbers::sqrt2 < 1.0);
 constexpr double kLongestTurn = 30.0 * deg;  // of a joint or an arc in one chord
 constexpr int kArcParts = 12;                // of each turn of an arc
-constexpr int kMostHalvings = 40;
+constexpr int kMaxHalvings = 40;
 constexpr double kSameAngle = 1e-9;  // rad, rounding of work offsets
 constexpr std::array<double, 3> kLooks = {0.25, 0.5, 0.75};
 
@@ -138,7 +138,7 @@ class Tracer {
       const double f = static_cast<double>(i) / parts;
       const double t = i == parts ? to.fraction : from.fraction + f * (to.fraction - from.fraction);
       const auto next = point_at(t, from, to);
-      if (!next || !split(at, *next, from, to, kMostHalvings)) return false;
+      if (!next || !split(at, *next, from, to, kMaxHalvings)) return false;
       at = *next;
     }
     return true;

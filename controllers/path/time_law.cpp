@@ -14,7 +14,7 @@ namespace {
 constexpr double kOver = 1.0 + 1e-9;  // a limit counts as exceeded beyond this
 constexpr double kRounding = 2e-15;   // m, of positions along the path
 constexpr double kJoint = 1e-9;       // m, m/s, 1e3 m/s^2: rounding where phases meet
-constexpr double kLeast = 1e-12;      // m, waypoints closer than this are one
+constexpr double kMin = 1e-12;        // m, waypoints closer than this are one
 
 // S-curve from v0 up to v1 >= v0, acceleration zero at both ends. A fall is a rise read backwards.
 struct Rise {
@@ -172,10 +172,10 @@ class SpeedPlanner {
   // Lowers or inserts a waypoint between l and its successor.
   void put(std::size_t l, double s, double v) {
     std::size_t at = l;
-    while (points_[at].next != at && points_[points_[at].next].s <= s + kLeast && at != 1) {
+    while (points_[at].next != at && points_[points_[at].next].s <= s + kMin && at != 1) {
       at = points_[at].next;
     }
-    if (std::abs(points_[at].s - s) <= kLeast) {
+    if (std::abs(points_[at].s - s) <= kMin) {
       if (v < points_[at].v) {
         points_[at].v = v;
         if (at != 0) dirty_.push_back(points_[at].previous);

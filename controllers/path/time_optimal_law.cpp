@@ -27,11 +27,11 @@ constexpr std::size_t kPasses = 12;   // four more gain 0.3 %
 constexpr std::size_t kBlock = 64;    // coefficients that move together
 constexpr double kFraction = 0.9;     // of a slack that one step may use
 constexpr double kFirstScale = 0.81;  // of v^2, where the search begins
-constexpr double kLeastScale = 0.01;  // below it there is nothing to gain
+constexpr double kMinScale = 0.01;    // below it there is nothing to gain
 constexpr double kLongest = 8e-3;     // s, an interval
 constexpr double kShortest = 3e-3;    // s, an interval
-constexpr double kLeastSpeed = 1e-6;  // m/s
-constexpr std::size_t kLeast = 4;     // intervals
+constexpr double kMinSpeed = 1e-6;    // m/s
+constexpr std::size_t kMin = 4;       // intervals
 constexpr std::size_t kPartsAtOnce = 512;
 
 static_assert(kBarrierJoints == kJoints);
@@ -54,7 +54,7 @@ class Refinement {
   bool run(TimeLaw& out) {
     if (!find_region()) return false;
     lay_knots();
-    if (N_ < kLeast) return false;
+    if (N_ < kMin) return false;
     parts_.lay(path_, t_, first_piece_);
     find_moving_joints();
     start();
@@ -96,7 +96,7 @@ class Refinement {
       if (v <= 0.0) break;
       t -= (t * (p.v + t * (0.5 * p.a + t * p.j / 6.0)) - d) / v;
     }
-    return std::max(p.v + t * (p.a + 0.5 * t * p.j), kLeastSpeed);
+    return std::max(p.v + t * (p.a + 0.5 * t * p.j), kMinSpeed);
   }
 
   // Knots where pieces meet, unless they are short; long pieces are divided.
@@ -169,7 +169,7 @@ class Refinement {
                                    0.9 / std::max(use.acceleration, 1e-12), 0.9 / use.speed});
     for (double& c : c_) c *= scale;
     time_scale_ = 1.0 / std::sqrt(scale);
-    return scale > kLeastScale;
+    return scale > kMinScale;
   }
 
   void optimise() {

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double kStandingAxis = 1e-12;  // rad, turns of the tool axis below this are none
 constexpr double kOpposite = 1e-6;       // rad, from half a turn: no plane is given
-constexpr double kLeastTurn = 1e-12;     // rad of the tool axis; what changes within is a jump
+constexpr double kMinTurn = 1e-12;       // rad of the tool axis; what changes within is a jump
 constexpr double kUneven = 0.1;          // of the chord, by which joints may leave it evenly
 constexpr std::array<double, 3> kLooks = {0.25, 0.5, 0.75};  // where a chord is compared
 
@@ -147,7 +147,7 @@ std::optional<RotaryKnot> ToolCentrePoint::depart(const RotaryKnot& start, doubl
   RotaryKnot knot{t, Q};
   while (!keeps_circle(start, knot, k_begin, k_end)) {
     knot.fraction *= 0.5;
-    if (knot.fraction * angle_between(k_begin, k_end) < kLeastTurn) return std::nullopt;
+    if (knot.fraction * angle_between(k_begin, k_end) < kMinTurn) return std::nullopt;
     knot.Q = point(axis_between(k_begin, k_end, knot.fraction), knot.Q).Q;
   }
   return knot;
@@ -174,7 +174,7 @@ AxisTurn ToolCentrePoint::trace(const RotaryKnot& start, const Vector3d& k_begin
       at = next;
       out.knots.push_back(at);
       step *= 2.0;
-    } else if (step * out.angle < kLeastTurn) {
+    } else if (step * out.angle < kMinTurn) {
       out.fault = jump_fault(at.Q, next.Q, k);
       return out;
     } else {

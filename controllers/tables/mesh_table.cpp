@@ -12,10 +12,10 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr int kMostPoints = 100;  // along an axis
+constexpr int kMaxPoints = 100;  // along an axis
 
 void check_size(const MeshTable& mesh, const TableText& file, int line) {
-  if (mesh.nx < 2 || mesh.ny < 2 || mesh.nx > kMostPoints || mesh.ny > kMostPoints) {
+  if (mesh.nx < 2 || mesh.ny < 2 || mesh.nx > kMaxPoints || mesh.ny > kMaxPoints) {
     refuse(file.name, line, fmt::format("a mesh of {} x {} points", mesh.nx, mesh.ny));
   }
   const auto points = static_cast<std::size_t>(mesh.nx) * static_cast<std::size_t>(mesh.ny);

@@ -44,9 +44,9 @@ SkewSetting read_marlin(const TableText& file, std::string_view text, int line) 
 
 SkewSetting read_reprapfirmware(const TableText& file, std::string_view text, int line) {
   const auto values = words_of_command("M556", "SXYZ", text, file, line);
-  constexpr double kLeast = 10.0;  // mm
+  constexpr double kMin = 10.0;  // mm
   const double length = values.at('S');
-  if (length < kLeast) refuse(file.name, line, fmt::format("S = {:g}; must be >= 10", length));
+  if (length < kMin) refuse(file.name, line, fmt::format("S = {:g}; must be >= 10", length));
   return {SkewFirmware::reprapfirmware, values.at('X') / length, values.at('Z') / length,
           values.at('Y') / length, line};
 }

@@ -11,11 +11,11 @@ namespace servomill::plant {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAcross = 1e-6;         // feed across the axis below which it counts as along it
-constexpr double kSame = 1 * um;         // of places on the profile
-constexpr double kSameShare = 1e-4;      // of the range of contact, for angles
-constexpr double kMostTurn = 7.5 * deg;  // of the profile's normal within one piece
-constexpr int kPiecesOfFlank = 8;        // at least, of the height that can be in material
+constexpr double kAcross = 1e-6;        // feed across the axis below which it counts as along it
+constexpr double kSame = 1 * um;        // of places on the profile
+constexpr double kSameShare = 1e-4;     // of the range of contact, for angles
+constexpr double kMaxTurn = 7.5 * deg;  // of the profile's normal within one piece
+constexpr int kPiecesOfFlank = 8;       // at least, of the height that can be in material
 constexpr int kPiecesOfBottom = 6;
 constexpr double kThinnest = 0.5 * mm;  // wall on the flank that is seen in any case
 constexpr int kLevelsOfCorner = 8, kLevelsOfFlank = 14;
@@ -130,7 +130,7 @@ class Search {
     }
     if (corner > bottom && lowest_ < cutter_.corner_radius) {
       sections_.push_back({bottom, corner, middles(bottom, corner, kLevelsOfCorner),
-                           kMostTurn * cutter_.corner_radius});
+                           kMaxTurn * cutter_.corner_radius});
     }
     if (highest_ <= cutter_.corner_radius) return;
     const double low = std::max(lowest_, cutter_.corner_radius), range = highest_ - low;

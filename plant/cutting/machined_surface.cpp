@@ -34,7 +34,7 @@ Meeting::Kind kind_of(FreeWay::Kind kind) {
 
 constexpr double kContactTolerance = 20e-9;  // m
 constexpr double kSmallestCell = 50e-9;      // m, half a side
-constexpr std::size_t kMostSteps = 24;
+constexpr std::size_t kMaxSteps = 24;
 
 // Lines parallel to the normal, over a square beside the ball's axis.
 struct Cell {
@@ -105,7 +105,7 @@ class BallContact {
                                     [&](const FreeWay& one) { return one.step == way.step; });
     if (known != ways_.end()) ways_.erase(known);
     ways_.insert(ways_.begin(), way);
-    if (ways_.size() > kMostSteps) ways_.pop_back();
+    if (ways_.size() > kMaxSteps) ways_.pop_back();
   }
 
   void divide(const Cell& cell, double best, std::priority_queue<Cell>& cells) const {

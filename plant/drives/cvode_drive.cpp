@@ -136,13 +136,13 @@ CvodeDrive::Impl::Impl(const FeedDriveParams& params, const CvodeTolerances& tol
   void* const memory = cvode.get();
   Events falling;
   falling.fill(-1);
-  constexpr long kMostSteps = 10'000'000;
+  constexpr long kMaxSteps = 10'000'000;
   checked(CVodeSetErrHandlerFn(memory, keep_message, this), "CVodeSetErrHandlerFn");
   checked(CVodeInit(memory, rates, 0.0, y.get()), "CVodeInit");
   checked(CVodeSetUserData(memory, this), "CVodeSetUserData");
   checked(CVodeSVtolerances(memory, tolerances.relative, absolute.get()), "CVodeSVtolerances");
   checked(CVodeSetLinearSolver(memory, solver.get(), jacobian.get()), "CVodeSetLinearSolver");
-  checked(CVodeSetMaxNumSteps(memory, kMostSteps), "CVodeSetMaxNumSteps");
+  checked(CVodeSetMaxNumSteps(memory, kMaxSteps), "CVodeSetMaxNumSteps");
   checked(CVodeRootInit(memory, kEvents, distances), "CVodeRootInit");
   checked(CVodeSetRootDirection(memory, falling.data()), "CVodeSetRootDirection");
   checked(CVodeSetNoInactiveRootWarn(memory), "CVodeSetNoInactiveRootWarn");
@@ -313,7 +313,7 @@ void CvodeDrive::advance(LaneState& s, double command, double F, double duration
   impl_->F = F;
   double left = duration;
   for (int n = 0; left > 0.0; ++n) {
-    if (n == kMostEvents) {
+    if (n == kMaxEvents) {
       throw std::runtime_error(fmt::format(
           "more than {} events of friction and contact within {} s, at x {} m", n, duration, s.x));
     }

@@ -41,7 +41,7 @@ class CvodeDrive {
  public:
   static constexpr double kSpeedGuard = 1e-15;  // m/s or rad/s
   static constexpr double kForceGuard = 1e-9;   // N or N m; times 1/k: a wind-up of 1e-17 m
-  static constexpr int kMostEvents = 10000;     // in one call of advance()
+  static constexpr int kMaxEvents = 10000;      // in one call of advance()
 
   /// @pre implausible(params) is empty
   /// @throws std::runtime_error if SUNDIALS cannot be set up
@@ -55,7 +55,7 @@ class CvodeDrive {
   /// A drive without lag and winding takes the command for its current.
   /// @param command  A; V for a drive with a winding
   /// @param F        N, force against the slide beside the constant F_load
-  /// @throws std::runtime_error if CVODE fails (with its own words), or after kMostEvents
+  /// @throws std::runtime_error if CVODE fails (with its own words), or after kMaxEvents
   void advance(LaneState& state, double command, double F, double duration);
 
  private:

@@ -14,7 +14,7 @@ namespace servomill::plant {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMostHalvings = 26;
+constexpr int kMaxHalvings = 26;
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
 
@@ -49,11 +49,11 @@ Gliding gliding_of(const FeedDriveParams& p) {
 ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick longest_step,
                      const Resolution& resolution)
     : params_(params), resolution_(resolution), sub_ticks_(halvings_of(params, base_period)) {
-  assert(sub_ticks_ <= kMostHalvings);
+  assert(sub_ticks_ <= kMaxHalvings);
   finest_ = std::ldexp(base_period, -sub_ticks_);
   const double longest =
       std::min({static_cast<double>(longest_step) * base_period, resolution.longest,
-                PropagatorSeries::kMostRate / fastest_rate_of(params)});
+                PropagatorSeries::kMaxRate / fastest_rate_of(params)});
   const int coarsest =
       std::max(0, static_cast<int>(std::floor(std::log2(longest / finest_) + 1e-9)));
   const bool may_stick = params.friction.kind == FrictionKind::set_valued;
@@ -167,7 +167,7 @@ BristleForces<double> ExactStep::friction_at(const LaneState& s, double h,
 bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
                           Trial& trial) const {
   constexpr std::size_t kRow[2] = {1, 3};  // of v at h/2 and h
-  constexpr int kMostIterations = 12;
+  constexpr int kMaxIterations = 12;
   const double f0 = force(s, F);
   y.add(P, 5, f0);
   const auto& at_half = P.slide[6];
@@ -179,7 +179,7 @@ bool ExactStep::collocate(const LaneState& s, double F, double h, const Propagat
   };
   for (std::size_t j = 0; j < 2; ++j) v[j] = response(j);
   const double load = params_.F_load + F;
-  for (int n = 0; n < kMostIterations; ++n) {
+  for (int n = 0; n < kMaxIterations; ++n) {
     double cogging[2] = {};
     if (params_.cogging.T != 0.0) {
       constexpr std::size_t kHalf = 4 * 1 + 3, kEnd = Propagator::kPosition;

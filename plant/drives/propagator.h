@@ -30,7 +30,7 @@ class PropagatorSeries {
  public:
   /// The sum of the omitted terms stays below the last bit of long double as long as
   /// t times the rates of A does not exceed this.
-  static constexpr double kMostRate = 2.0;
+  static constexpr double kMaxRate = 2.0;
 
   /// @param equations  dx/dt = A x + B (command, F) of feed_drive.h
   explicit PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations);

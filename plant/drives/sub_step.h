@@ -97,7 +97,7 @@ class SubStep {
 
   // Newton's iteration; a lane that has arrived stays as it is. Returns those that did.
   Mask collocate(const Mask& active) {
-    constexpr int kMostIterations = 12;
+    constexpr int kMaxIterations = 12;
     constexpr std::size_t kRow[2] = {1, 3};  // of v at h/2 and h
     const Matrix2<P> C = {weight(1, 6), weight(1, 7), weight(3, 6), weight(3, 7)};
     const P tolerance(block_.speed_tolerance);
@@ -109,7 +109,7 @@ class SubStep {
       for (int j = 0; j < 2; ++j) v[j] = s_.v + dv[j];
     }
     Mask open = active;
-    for (int n = 0; n < kMostIterations; ++n) {
+    for (int n = 0; n < kMaxIterations; ++n) {
       auto at = friction_at(v);
       P f[2] = {load_ + at.f[0], load_ + at.f[1]};
       P residual[2];

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
-constexpr double kMostTurn = 0.5;  // rad in one step; the derivatives say nothing beyond
+constexpr double kMaxTurn = 0.5;   // rad in one step; the derivatives say nothing beyond
 constexpr double kShorter = 0.25;  // where a step led away
 
 struct Turn {
@@ -87,7 +87,7 @@ TrueJoints nonideal_inverse_from(const VolumetricModel& model, const ToolPose& P
     out.miss_k = angle_between(P.k_W, got.k_W);
     return got;
   };
-  double most_turn = kMostTurn;
+  double most_turn = kMaxTurn;
   ToolPose got = look();
   while (!is_met(out) && out.steps < kMaxPoseSteps) {
     const Step step =

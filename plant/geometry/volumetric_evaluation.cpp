@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 static_assert(kMachineJoints == kJoints && kErrorComponents == kErrorDirections);
-static_assert(kStraightAxes == kLinearJoints);
+static_assert(kLinearAxes == kLinearJoints);
 static_assert(sizeof(Joints) == kMachineJoints * sizeof(double));  // poses lie without gaps
 
 VolumetricKernel kernel_of(SimdLevel level, bool in_frames) {
@@ -31,8 +31,8 @@ VolumetricKernel kernel_of(SimdLevel level, bool in_frames) {
   return kernel;
 }
 
-StraightKernel straight_kernel_of(const StraightProgram& program, SimdLevel level) {
-  return at_simd_level(level, [&]<SimdLevel l>() { return make_straight_kernel<l>(program); });
+LinearAxisKernel linear_axis_kernel_of(const LinearAxisProgram& program, SimdLevel level) {
+  return at_simd_level(level, [&]<SimdLevel l>() { return make_linear_axis_kernel<l>(program); });
 }
 
 }  // namespace
@@ -51,8 +51,8 @@ VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const Erro
   program_.steps = steps_.data();
   program_.number_of_steps = steps_.size();
   program_.functions = functions_.finish();
-  find_straight_way(chain, errors);
-  if (is_straight_) straight_kernel_ = straight_kernel_of(straight_, level);
+  find_linear_axis_path(chain, errors);
+  if (has_linear_axes_only_) linear_axis_kernel_ = linear_axis_kernel_of(linear_axis_, level);
 }
 
 void VolumetricEvaluation::add(const ChainAxis& axis, const ErrorModel& errors) {
@@ -83,59 +83,60 @@ void VolumetricEvaluation::find_ends() {
 }
 
 // Turns, which place the tip, and then three linear axes; what follows are turns that do not count.
-void VolumetricEvaluation::find_straight_way(const MachineChain& chain, const ErrorModel& errors) {
+void VolumetricEvaluation::find_linear_axis_path(const MachineChain& chain,
+                                                 const ErrorModel& errors) {
   const std::size_t end = program_.offset_steps;
-  if (end < kStraightAxes) return;
-  const std::size_t first = end - kStraightAxes;
+  if (end < kLinearAxes) return;
+  const std::size_t first = end - kLinearAxes;
   for (std::size_t n = 0; n < end; ++n) {
     const VolumetricStep& step = steps_[n];
     const bool is_ideal_turn = step.move == VolumetricMove::turn || is_frame(step);
     if (n < first ? !is_ideal_turn : !is_shift(step)) return;
   }
-  is_straight_ = true;
-  for (std::size_t n = 0; n < kStraightAxes; ++n) {
-    straight_.joint[n] = steps_[first + n].joint;
+  has_linear_axes_only_ = true;
+  for (std::size_t n = 0; n < kLinearAxes; ++n) {
+    linear_axis_.joint[n] = steps_[first + n].joint;
   }
-  for (std::size_t n = 0; n < kStraightAxes; ++n) {
-    add_straight_axis(n, steps_[first + n], chain, errors);
+  for (std::size_t n = 0; n < kLinearAxes; ++n) {
+    add_linear_axis(n, steps_[first + n], chain, errors);
   }
-  straight_.functions = straight_functions_.finish();
-  straight_.functions.axes = kStraightAxes;
-  lay_out_straight_powers();
-  is_plain_ = tip_turns_ == 0 && !straight_functions_.has_tables();
+  linear_axis_.functions = linear_axis_functions_.finish();
+  linear_axis_.functions.axes = kLinearAxes;
+  lay_out_linear_axis_powers();
+  is_plain_ = tip_turns_ == 0 && !linear_axis_functions_.has_tables();
 }
 
-void VolumetricEvaluation::add_straight_axis(std::size_t n, const VolumetricStep& step,
-                                             const MachineChain& chain, const ErrorModel& errors) {
-  const auto& order = straight_.joint;
+void VolumetricEvaluation::add_linear_axis(std::size_t n, const VolumetricStep& step,
+                                           const MachineChain& chain, const ErrorModel& errors) {
+  const auto& order = linear_axis_.joint;
   const bool is_mirrored = (order[0] + 1) % 3 != order[1];
   const auto functions = functions_of(chain.at(kAllAxes[step.direction]), errors);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = order[i];
-    straight_.levers[n].slope[i] = step.lever_slope[k];
-    straight_.levers[n].centre[i] = step.centre[k];
-    straight_functions_.add(n, i, step.joint, functions[k]);
-    straight_functions_.add(n, 3 + i, step.joint,
-                            scaled(functions[3 + k], is_mirrored ? -0.5 : 0.5));
+    linear_axis_.levers[n].slope[i] = step.lever_slope[k];
+    linear_axis_.levers[n].centre[i] = step.centre[k];
+    linear_axis_functions_.add(n, i, step.joint, functions[k]);
+    linear_axis_functions_.add(n, 3 + i, step.joint,
+                               scaled(functions[3 + k], is_mirrored ? -0.5 : 0.5));
   }
-  straight_.has_levers = straight_.has_levers || step.has_lever;
+  linear_axis_.has_levers = linear_axis_.has_levers || step.has_lever;
 }
 
-void VolumetricEvaluation::lay_out_straight_powers() {
-  for (std::size_t power = 0; power <= straight_.functions.degree; ++power) {
-    StraightPower& p = straight_powers_.emplace_back(StraightPower{});
-    const VolumetricPower& from = straight_.functions.polynomial[power];
-    for (std::size_t axis = 0; axis < kStraightAxes; ++axis) {
+void VolumetricEvaluation::lay_out_linear_axis_powers() {
+  for (std::size_t power = 0; power <= linear_axis_.functions.degree; ++power) {
+    LinearAxisPower& p = linear_axis_powers_.emplace_back(LinearAxisPower{});
+    const VolumetricPower& from = linear_axis_.functions.polynomial[power];
+    for (std::size_t axis = 0; axis < kLinearAxes; ++axis) {
       for (std::size_t i = 0; i < 3; ++i) {
         p.shift[axis][i] = from.e[i][axis];
         p.half_turn[axis][i] = from.e[3 + i][axis];
         if (power > 0) continue;
-        straight_.has_constants =
-            straight_.has_constants || p.shift[axis][i] != 0.0 || p.half_turn[axis][i] != 0.0;
+        linear_axis_.has_constants =
+            linear_axis_.has_constants || p.shift[axis][i] != 0.0 || p.half_turn[axis][i] != 0.0;
       }
     }
   }
-  straight_.powers = straight_powers_.data();
+  linear_axis_.powers = linear_axis_powers_.data();
 }
 
 // --- evaluation ---------------------------------------------------------------------------------
@@ -236,15 +237,17 @@ Vector3d VolumetricEvaluation::tip_before_linear_axes(const Coordinate& q,
 
 // q(lane, joint)
 template <class Coordinate>
-StraightData VolumetricEvaluation::data_of_eight(const Coordinate& q, const Vector3d& p_ST) const {
-  StraightData data{};
+LinearAxisData VolumetricEvaluation::data_of_eight(const Coordinate& q,
+                                                   const Vector3d& p_ST) const {
+  LinearAxisData data{};
   for (std::size_t lane = 0; lane < kLaneWidth; ++lane) {
     const auto at = [&](std::size_t joint) { return q(lane, joint); };
     const Vector3d tip = tip_before_linear_axes(at, p_ST);
     for (std::size_t i = 0; i < kOffset; ++i) data.tip[i][lane] = tip[static_cast<int>(i)];
-    straight_functions_.tables_at(at, [&](std::size_t axis, std::size_t component, double value) {
-      data.tables[axis].e[component][lane] += value;
-    });
+    linear_axis_functions_.tables_at(at,
+                                     [&](std::size_t axis, std::size_t component, double value) {
+                                       data.tables[axis].e[component][lane] += value;
+                                     });
   }
   return data;
 }
@@ -254,40 +257,40 @@ void VolumetricEvaluation::offset(const Joints& Q, const Vector3d& p_ST, double*
     plain_offset(Q, p_ST, out);
     return;
   }
-  if (!is_straight_) {
+  if (!has_linear_axes_only_) {
     one(kernel_.offset, Q, p_ST, out);
     return;
   }
   const auto at = [&](std::size_t joint) { return Q[static_cast<int>(joint)]; };
   VolumetricPower tables{};
-  straight_functions_.tables_at(at, [&](std::size_t axis, std::size_t component, double value) {
+  linear_axis_functions_.tables_at(at, [&](std::size_t axis, std::size_t component, double value) {
     tables.e[component][axis] += value;
   });
   const Vector3d tip = tip_before_linear_axes(at, p_ST);
-  straight_kernel_.one(straight_, &tables, tip.data(), Q.data(), out);
+  linear_axis_kernel_.one(linear_axis_, &tables, tip.data(), Q.data(), out);
 }
 
 void VolumetricEvaluation::offsets(std::span<const Joints> Q, const Vector3d& p_ST,
                                    double* out) const {
-  if (is_straight_) {
-    straight_offsets(Q, p_ST, out);
+  if (has_linear_axes_only_) {
+    linear_axis_offsets(Q, p_ST, out);
   } else {
     many(kernel_.offsets, kOffset, Q, p_ST, out);
   }
 }
 
-void VolumetricEvaluation::straight_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
-                                            double* out) const {
+void VolumetricEvaluation::linear_axis_offsets(std::span<const Joints> Q, const Vector3d& p_ST,
+                                               double* out) const {
   in_blocks(Q, kOffset, out, [&](const Joints* poses, std::size_t blocks, double* to) {
     if (is_plain_) {
-      straight_kernel_.many(straight_, nullptr, p_ST.data(), poses->data(), blocks, to);
+      linear_axis_kernel_.many(linear_axis_, nullptr, p_ST.data(), poses->data(), blocks, to);
       return;
     }
     for (std::size_t n = 0; n < blocks; ++n, poses += kLaneWidth, to += kOffset * kLaneWidth) {
-      const StraightData data = data_of_eight(
+      const LinearAxisData data = data_of_eight(
           [&](std::size_t lane, std::size_t joint) { return poses[lane][static_cast<int>(joint)]; },
           p_ST);
-      straight_kernel_.many(straight_, &data, p_ST.data(), poses->data(), 1, to);
+      linear_axis_kernel_.many(linear_axis_, &data, p_ST.data(), poses->data(), 1, to);
     }
   });
 }
@@ -295,13 +298,13 @@ void VolumetricEvaluation::straight_offsets(std::span<const Joints> Q, const Vec
 void VolumetricEvaluation::offsets(const LaneArray (&Q)[kJoints], const Vector3d& p_ST,
                                    LaneArray (&out)[kLinearJoints]) const {
   if (is_plain_) {
-    straight_kernel_.lanes(straight_, nullptr, p_ST.data(), Q, out);
+    linear_axis_kernel_.lanes(linear_axis_, nullptr, p_ST.data(), Q, out);
     return;
   }
-  if (is_straight_) {
-    const StraightData data =
+  if (has_linear_axes_only_) {
+    const LinearAxisData data =
         data_of_eight([&](std::size_t lane, std::size_t joint) { return Q[joint][lane]; }, p_ST);
-    straight_kernel_.lanes(straight_, &data, p_ST.data(), Q, out);
+    linear_axis_kernel_.lanes(linear_axis_, &data, p_ST.data(), Q, out);
     return;
   }
   std::array<Joints, kLaneWidth> poses;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "plant/geometry/error_model.h"
+#include "plant/geometry/linear_axis_kernel.h"
 #include "plant/geometry/prepared_functions.h"
 #include "plant/geometry/reversal_memory.h"
-#include "plant/geometry/straight_kernel.h"
 #include "plant/geometry/volumetric_kernel.h"
 #include "plant/kinematics/chain.h"
 
@@ -49,22 +49,22 @@ class VolumetricEvaluation {
   void offsets(const LaneArray (&Q)[kJoints], const Eigen::Vector3d& p_ST,
                LaneArray (&out)[kLinearJoints]) const;
 
-  /// Offsets go the straight way (straight_kernel.h).
-  bool is_straight() const { return is_straight_; }
+  /// Offsets go the linear-axis path (linear_axis_kernel.h).
+  bool has_linear_axes_only() const { return has_linear_axes_only_; }
   /// They do, and nothing is to be found before.
   bool is_plain() const { return is_plain_; }
   /// The offset then.
   void plain_offset(const Joints& Q, const Eigen::Vector3d& p_ST, double* out) const {
-    straight_kernel_.one(straight_, nullptr, p_ST.data(), Q.data(), out);
+    linear_axis_kernel_.one(linear_axis_, nullptr, p_ST.data(), Q.data(), out);
   }
 
  private:
   void add(const ChainAxis& axis, const ErrorModel& errors);
   void find_ends();
-  void find_straight_way(const MachineChain& chain, const ErrorModel& errors);
-  void add_straight_axis(std::size_t n, const VolumetricStep& step, const MachineChain& chain,
-                         const ErrorModel& errors);
-  void lay_out_straight_powers();
+  void find_linear_axis_path(const MachineChain& chain, const ErrorModel& errors);
+  void add_linear_axis(std::size_t n, const VolumetricStep& step, const MachineChain& chain,
+                       const ErrorModel& errors);
+  void lay_out_linear_axis_powers();
 
   void one(VolumetricKernel::One call, const Joints& Q, const Eigen::Vector3d& p_ST,
            double* out) const {
@@ -82,11 +82,12 @@ class VolumetricEvaluation {
             const Eigen::Vector3d& p_ST, double* out) const;
   void eight_with_tables(VolumetricKernel::Many call, const Joints* Q, const Eigen::Vector3d& p_ST,
                          double* out) const;
-  void straight_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST, double* out) const;
+  void linear_axis_offsets(std::span<const Joints> Q, const Eigen::Vector3d& p_ST,
+                           double* out) const;
   template <class Coordinate>
   Eigen::Vector3d tip_before_linear_axes(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
   template <class Coordinate>
-  StraightData data_of_eight(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
+  LinearAxisData data_of_eight(const Coordinate& q, const Eigen::Vector3d& p_ST) const;
 
   VolumetricKernel kernel_;
   VolumetricProgram program_{};
@@ -94,11 +95,11 @@ class VolumetricEvaluation {
   PreparedFunctions functions_;    // axes counted as joints
   std::vector<ChainAxis> rotary_;  // in the order of the steps
 
-  bool is_straight_ = false, is_plain_ = false;
-  StraightKernel straight_kernel_{};
-  StraightProgram straight_{};
-  PreparedFunctions straight_functions_;  // axes counted as the tool passes them
-  std::vector<StraightPower> straight_powers_;
+  bool has_linear_axes_only_ = false, is_plain_ = false;
+  LinearAxisKernel linear_axis_kernel_{};
+  LinearAxisProgram linear_axis_{};
+  PreparedFunctions linear_axis_functions_;  // axes counted as the tool passes them
+  std::vector<LinearAxisPower> linear_axis_powers_;
   std::size_t tip_turns_ = 0;  // rotary axes among the steps that offsets need
 };
 

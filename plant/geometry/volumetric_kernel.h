@@ -12,7 +12,7 @@
 /// and with AVX-512 agree in every bit; the baseline, which rounds a b + c twice, differs by
 /// rounding.
 ///
-/// The offset of most machines needs less: straight_kernel.h.
+/// The offset of most machines needs less: linear_axis_kernel.h.
 #pragma once
 
 #include <cstddef>
@@ -28,11 +28,11 @@ inline constexpr std::size_t kTurnedJoints = 2;     // the last ones
 inline constexpr std::size_t kErrorComponents = 6;  // along X, Y, Z, about A, B, C
 
 /// Turns below this use the first two terms of their sine, whose next one is below 1e-16: those of
-/// the straight way (straight_kernel.h).
+/// the linear-axis path (linear_axis_kernel.h).
 inline constexpr double kSmallTurn = 2e-4;  // rad
 
 /// Turns below this use series of three terms, whose next one is below 1e-16: all that the errors
-/// of a machine amount to. The straight way has no use for them.
+/// of a machine amount to. The linear-axis path has no use for them.
 inline constexpr double kSeriesTurn = 5e-3;  // rad
 
 enum class VolumetricMove : std::uint8_t {

@@ -11,7 +11,7 @@
 namespace servomill::plant {
 namespace {
 
-constexpr int kMostSplits = 24;
+constexpr int kMaxSplits = 24;
 constexpr double kSameAxis = 1e-9;  // rad; nearer, a straight line is the great circle
 
 class Lineariser {
@@ -22,7 +22,7 @@ class Lineariser {
 
   LinearisedPath run() {
     const PathPoint start = at_;
-    go_to(1.0, kMostSplits);
+    go_to(1.0, kMaxSplits);
     if (out_.is_complete || !inverse_.nearest(path_.at(0.0), p_ST_, start.Q).is_singular) {
       return std::move(out_);
     }
@@ -40,7 +40,7 @@ class Lineariser {
  private:
   // From the singular direction to the end by the branch of Q, which belongs to t.
   void depart(double t, Joints Q) {
-    for (int splits_left = kMostSplits; !holds(t, Q); --splits_left) {
+    for (int splits_left = kMaxSplits; !holds(t, Q); --splits_left) {
       if (splits_left == 0) {
         out_.is_complete = false;
         return;
@@ -51,7 +51,7 @@ class Lineariser {
     }
     at_ = {t, Q};
     out_.points.push_back(at_);
-    if (t < 1.0) go_to(1.0, kMostSplits);
+    if (t < 1.0) go_to(1.0, kMaxSplits);
   }
 
   // Every solution is sought next to a point that holds, so that no branch is taken unseen.

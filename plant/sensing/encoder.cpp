@@ -9,7 +9,7 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-constexpr double kMostNoise = 0.2;  // rms; at 0.2 a signal of 5 sigma is lost
+constexpr double kMaxNoise = 0.2;  // rms; at 0.2 a signal of 5 sigma is lost
 
 enum Channel : std::uint32_t { kSignals, kPosition };
 
@@ -61,7 +61,7 @@ std::vector<std::string> implausible(const EncoderParams& p) {
   };
   demand(p.period >= 0.0, "period must be >= 0");
   demand(p.step >= 0.0, "step must be >= 0");
-  demand(p.signal_noise >= 0.0 && p.signal_noise <= kMostNoise, "signal_noise must be in [0, 0.2]");
+  demand(p.signal_noise >= 0.0 && p.signal_noise <= kMaxNoise, "signal_noise must be in [0, 0.2]");
   demand(p.position_noise >= 0.0, "position_noise must be >= 0");
   demand(p.frequency_limit > 0.0, "frequency_limit must be > 0");
   if (p.period > 0.0) {

@@ -15,11 +15,11 @@ template <class Arch>
 Pack<Arch> exp_of_negative(const Pack<Arch>& x) {
   using P = Pack<Arch>;
   using Bits = xsimd::batch<std::int64_t, Arch>;
-  constexpr double kLeast = -200.0;
+  constexpr double kMin = -200.0;
   constexpr double kRound = 6755399441055744.0;  // 3 2^51: its last bit counts ones
   constexpr double kLog2e = 1.4426950408889634, kLn2 = 0x1.62e42fefa0000p-1;
   constexpr double kLn2Rest = 0x1.cf79abc9e3b39p-40;
-  const P y = max(x, P(kLeast));
+  const P y = max(x, P(kMin));
   const P rounded = fma(y, P(kLog2e), P(kRound)), n = rounded - P(kRound);
   const P r = fma(n, P(-kLn2Rest), fma(n, P(-kLn2), y));
   const auto pair = [&](double a, double b) { return fma(P(b), r, P(a)); };

@@ -112,7 +112,7 @@ std::string why_unreadable(const std::string& path) {
 }
 
 std::string read_input(const std::string& path, std::uintmax_t most, std::string& why) {
-  constexpr std::size_t kPiece = 1U << 20, kLeastPiece = 1U << 12;
+  constexpr std::size_t kPiece = 1U << 20, kMinPiece = 1U << 12;
   struct stat about {};
   const OpenFile file = open_regular(path, about, why);
   if (!file) return {};
@@ -123,12 +123,12 @@ std::string read_input(const std::string& path, std::uintmax_t most, std::string
     return {};
   }
   std::string text;
-  text.reserve(static_cast<std::size_t>(size) + kLeastPiece);  // the end shows behind the last byte
+  text.reserve(static_cast<std::size_t>(size) + kMinPiece);  // the end shows behind the last byte
   while (std::feof(file.get()) == 0 && std::ferror(file.get()) == 0) {
     throw_if_interrupted();
     const std::size_t kept = text.size();
     text.resize(kept + std::clamp<std::size_t>(size - std::min<std::uintmax_t>(kept, size),
-                                               kLeastPiece, kPiece));
+                                               kMinPiece, kPiece));
     text.resize(kept + std::fread(text.data() + kept, 1, text.size() - kept, file.get()));
     if (text.size() <= most) continue;  // it may grow while it is read
     why = fmt::format("is larger than the limit of {}", size_text(most));

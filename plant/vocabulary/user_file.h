@@ -32,9 +32,9 @@ struct FileCloser {
 using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
 
 /// Limit of what is read of one file at once, bytes.
-inline constexpr std::uintmax_t kMostBytesOfFile = 2'000'000'000;
+inline constexpr std::uintmax_t kMaxBytesOfFile = 2'000'000'000;
 /// Limit of a document of keys and values (TOML), which takes many times its size in memory.
-inline constexpr std::uintmax_t kMostBytesOfDocument = 100'000'000;
+inline constexpr std::uintmax_t kMaxBytesOfDocument = 100'000'000;
 
 /// Opens a file for reading and remembers it. Devices, pipes and sockets have no end that could be
 /// known before, and are refused.

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStartingUncertainty = 1e-6;  // m, rad, of one that is estimated
-constexpr int kMostIterations = 30;
+constexpr int kMaxIterations = 30;
 constexpr double kSettled = 1e-4;     // relative, of estimated uncertainties
 constexpr double kStill = 1e-12;      // m, rad, of the last step
 constexpr double kHuber = 2.0;        // standard uncertainties
@@ -59,7 +59,7 @@ class Adjuster {
       out_.left_out = equations.left_out();
       const bool settled = update_weights(equations);
       out_.converged = settled && largest_effect(step) < kStill;
-      if (out_.converged || out_.iterations == kMostIterations) {
+      if (out_.converged || out_.iterations == kMaxIterations) {
         out_.covariance = equations.inverse();
         break;
       }
@@ -233,7 +233,7 @@ class Adjuster {
         all_redundancy += redundancy[k];
       }
       if (all_redundancy < 1.0) refuse_estimate(readings_.groups[g]);
-      const double found = std::max(std::sqrt(all_squares / all_redundancy), kLeastUncertainty);
+      const double found = std::max(std::sqrt(all_squares / all_redundancy), kMinUncertainty);
       change = std::max(change, std::abs(found / out_.groups[g].uncertainty - 1.0));
       out_.groups[g].uncertainty = found;
     }
@@ -346,7 +346,7 @@ class Adjuster {
     }
   }
 
-  static constexpr double kLeastUncertainty = 1e-12;  // m, rad
+  static constexpr double kMinUncertainty = 1e-12;  // m, rad
 
   const readings::Readings& readings_;
   const Observations& observations_;

@@ -15,10 +15,10 @@ namespace {
 
 using plant::ErrorName;
 
-constexpr std::size_t kMostTargets = 51;  // knots, where readings stand in as many places
-constexpr int kDefaultKnots = 17;         // where they stand in more
-constexpr double kSamePlace = 1e-6;       // m, rad
-constexpr double kSignificant = 3.0;      // standard uncertainties of a reversal
+constexpr std::size_t kMaxTargets = 51;  // knots, where readings stand in as many places
+constexpr int kDefaultKnots = 17;        // where they stand in more
+constexpr double kSamePlace = 1e-6;      // m, rad
+constexpr double kSignificant = 3.0;     // standard uncertainties of a reversal
 
 bool is_sought(const CalibrationSettings& settings, const ErrorName& name) {
   const auto& errors = settings.errors;
@@ -45,7 +45,7 @@ std::vector<double> places_of(const readings::Readings& readings, const Observat
   };
   all = distinct(std::move(all));
   own = distinct(std::move(own));
-  if (own.size() < 2 || own.size() > kMostTargets) {
+  if (own.size() < 2 || own.size() > kMaxTargets) {
     if (all.size() <= 1) return all;
     if (own.size() < 2 && all.size() <= std::size_t(kDefaultKnots)) return all;
     return {all.front(), all.back()};
@@ -289,12 +289,12 @@ namespace {
 // Enough places to show the shortest period.
 int places_for(const FunctionForm& form, int points) {
   constexpr double kEachPeriod = 12.0;
-  constexpr double kMost = 2000.0;
+  constexpr double kMax = 2000.0;
   double most = points;
   for (const double period : form.periods) {
     most = std::max(most, kEachPeriod * (form.upper - form.lower) / period);
   }
-  return static_cast<int>(std::min(most, kMost));
+  return static_cast<int>(std::min(most, kMax));
 }
 
 }  // namespace

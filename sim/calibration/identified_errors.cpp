@@ -219,9 +219,9 @@ std::string text_of(const Calibration& calibration, const IdentifiedErrors& erro
   out += fmt::format("based_on = {}  # machine that was measured\n\n[errors.{}]\n",
                      config::quoted_text(machine), model);
   for (const std::string& line : errors.lines) out += line + "\n";
-  if (errors.values.keys.size() > std::size_t(kMostCovarianceNumbers)) {
+  if (errors.values.keys.size() > std::size_t(kMaxCovarianceNumbers)) {
     return out + fmt::format("# The covariance of these {} numbers is not written: at most {}.\n",
-                             errors.values.keys.size(), kMostCovarianceNumbers);
+                             errors.values.keys.size(), kMaxCovarianceNumbers);
   }
   return out + "\n[identified]\n" + input::table_lines(errors.values);
 }

@@ -11,7 +11,7 @@
 namespace servomill::sim::calibration {
 
 /// Most numbers whose covariance is written; beyond, only their uncertainties are.
-inline constexpr int kMostCovarianceNumbers = 1000;
+inline constexpr int kMaxCovarianceNumbers = 1000;
 
 struct IdentifiedErrors {
   input::IdentifiedValues values;  // keys "errors.MODEL.EXX.table.value_um[3]", in um, urad

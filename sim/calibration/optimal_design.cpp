@@ -15,9 +15,9 @@ using Eigen::MatrixXd;
 // The mean of order q of the variances stands for the largest one; q grows while it settles.
 constexpr double kOrders[] = {2.0, 8.0, 32.0, 128.0, 512.0};
 constexpr int kStepsEach = 600;
-constexpr double kFirstPower = 0.5, kMostPower = 1.0, kLeastPower = 1e-4;  // of a step
-constexpr double kEnough = 0.999;     // efficiency at which an order is done
-constexpr double kLeastCount = 1e-9;  // of a candidate that is still looked at
+constexpr double kFirstPower = 0.5, kMaxPower = 1.0, kMinPower = 1e-4;  // of a step
+constexpr double kEnough = 0.999;   // efficiency at which an order is done
+constexpr double kMinCount = 1e-9;  // of a candidate that is still looked at
 
 }  // namespace
 
@@ -90,7 +90,7 @@ Design DesignProblem::relaxed(double time) const {
   out.worst = state.worst;
   for (const double q : kOrders) {
     double power = kFirstPower;
-    for (int step = 0; step < kStepsEach && power > kLeastPower; ++step) {
+    for (int step = 0; step < kStepsEach && power > kMinPower; ++step) {
       const Gains gains = gains_of(state, q, counts, time);
       out.bound = std::max(out.bound, gains.bound);
       if (out.efficiency() > kEnough) return out;
@@ -105,7 +105,7 @@ Design DesignProblem::relaxed(double time) const {
         power *= 0.5;
         continue;
       }
-      power = std::min(kMostPower, 1.3 * power);
+      power = std::min(kMaxPower, 1.3 * power);
       counts = std::move(next);
       state = std::move(there);
       if (state.worst < out.worst) {
@@ -123,7 +123,7 @@ DesignProblem::Gains DesignProblem::gains_of(const State& state, double q,
   MatrixXd Q = MatrixXd::Zero(known_.rows(), known_.cols());
   double V = 0.0;
   for (std::size_t p = 0; p < quantities_.size(); ++p) {
-    if (weights[p] < kLeastCount) continue;
+    if (weights[p] < kMinCount) continue;
     const MatrixXd KC = quantities_[p] * state.covariance;
     Q.noalias() += weights[p] * KC.transpose() * KC;
     V += weights[p] * state.variances[p];

@@ -11,8 +11,8 @@
 namespace servomill::sim::calibration {
 namespace {
 
-constexpr std::int64_t kMostDegree = 20;
-constexpr std::int64_t kMostKnots = 1000;
+constexpr std::int64_t kMaxDegree = 20;
+constexpr std::int64_t kMaxKnots = 1000;
 constexpr std::array<std::string_view, 1> kByData = {"auto"};
 
 // Size that is expected of errors along (um) or about (urad).
@@ -39,11 +39,11 @@ FormSettings read_form(config::Reader& table, bool linear) {
   form.knots_by_data = is_by_data("knots");
   if (table.has("polynomial") && !form.degree_by_data) {
     form.degree = static_cast<int>(
-        table.integer("polynomial", {config::at_least(0.0), config::at_most(double(kMostDegree))}));
+        table.integer("polynomial", {config::at_least(0.0), config::at_most(double(kMaxDegree))}));
   }
   if (table.has("knots") && !form.knots_by_data) {
     form.number_of_knots = static_cast<int>(
-        table.integer("knots", {config::at_least(0.0), config::at_most(double(kMostKnots))}));
+        table.integer("knots", {config::at_least(0.0), config::at_most(double(kMaxKnots))}));
     if (*form.number_of_knots == 1) table.fault("knots", "must be 0 or at least 2");
   }
   if (table.has(key("knots"))) {
@@ -58,7 +58,7 @@ FormSettings read_form(config::Reader& table, bool linear) {
   form.periods = table.reals_or(key("harmonics"), {}, travel, {config::above(0.0)});
   if (table.has("reversal")) {
     form.reversal_degree = static_cast<int>(
-        table.integer("reversal", {config::at_least(-1.0), config::at_most(double(kMostDegree))}));
+        table.integer("reversal", {config::at_least(-1.0), config::at_most(double(kMaxDegree))}));
   }
   if (table.has(key("reversal_distance"))) {
     form.reversal_distance = table.real(key("reversal_distance"), travel, {config::above(0.0)});

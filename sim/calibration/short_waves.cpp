@@ -27,7 +27,7 @@ struct Roughness {
 
 bool counts(const SoughtFunction& function) {
   return !function.has_own_knots &&
-         static_cast<int>(function.basis.form().knots.size()) >= kLeastKnots;
+         static_cast<int>(function.basis.form().knots.size()) >= kMinKnots;
 }
 
 Roughness roughness_of(const Adjustment& adjustment, const SoughtFunction& function) {

@@ -16,7 +16,7 @@ namespace servomill::sim::calibration {
 /// A table has few independent differences, and aliasing may turn a short wave into a long one that
 /// they do not show: a quarter of h^2 is that of the function, the rest the mean over all functions
 /// in the same unit. 0 where the roughness
-/// of these is no more than the noise lets expect, where a table has less than kLeastKnots, and
+/// of these is no more than the noise lets expect, where a table has less than kMinKnots, and
 /// where knots were asked for: then the error is taken to be straight between them. A wave whose
 /// period is the spacing, or a whole part of it, shows nowhere.
 std::vector<double> short_waves(const Adjustment& adjustment);
@@ -26,6 +26,6 @@ std::vector<double> short_waves(const Adjustment& adjustment);
 /// third of the spacing to the spacing, all frequencies alike.
 double interpolation_variance(const FunctionBasis& basis, double s);
 
-inline constexpr int kLeastKnots = 6;
+inline constexpr int kMinKnots = 6;
 
 }  // namespace servomill::sim::calibration

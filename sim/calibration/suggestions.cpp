@@ -22,7 +22,7 @@ constexpr double kDetermined =
     0.2;  // of its standard uncertainty is left of an error that counts as determined
 constexpr double kOpen = 0.5;       // of what is expected of an error: less is known of it
 constexpr double kAsGood = 1.5;     // times the least uncertainty: the shorter set-up is taken
-constexpr int kMostUnknowns = 800;  // above, one candidate takes seconds
+constexpr int kMaxUnknowns = 800;   // above, one candidate takes seconds
 constexpr std::size_t kTried = 24;  // candidates that promise most, tried in full
 
 // An error that the readings leave open: its unknowns.
@@ -165,7 +165,7 @@ class Suggestions {
 
 std::vector<std::string> suggestions(const Calibration& calibration,
                                      const model::MachineSettings& machine) {
-  if (calibration.adjustment.unknowns.size() > kMostUnknowns) return {};
+  if (calibration.adjustment.unknowns.size() > kMaxUnknowns) return {};
   return Suggestions(calibration, machine).all();
 }
 

@@ -25,7 +25,7 @@ constexpr double kRank = 1e-10;        // of the largest eigenvalue of an inform
 constexpr std::size_t kLookedAt = 48;  // candidates of the steepest gains, a step
 constexpr double kStretches[] = {1.0, 1.6, 2.5};
 constexpr int kRounds = 500;                         // of each start
-constexpr int kFewestOut = 1, kMostOut = 6;          // taken out in a round
+constexpr int kFewestOut = 1, kMaxOut = 6;           // taken out in a round
 constexpr double kSpreads[] = {0.0, 0.5, 0.0, 1.0};  // of gains, round by round
 constexpr double kNothing = 1e-8;  // of a candidate's information, where nothing is known
 constexpr double kGain = 1e-6;     // relative, that counts as one
@@ -213,7 +213,7 @@ class Search {
       }
       if (taken.empty()) return;
       std::vector<double> counts = plan.counts;
-      const std::size_t out = Draw(kFewestOut, kMostOut)(generator_);
+      const std::size_t out = Draw(kFewestOut, kMaxOut)(generator_);
       for (std::size_t k = 0; k < std::min(out, taken.size()); ++k) {
         const std::size_t at = Draw(k, taken.size() - 1)(generator_);
         std::swap(taken[k], taken[at]);

@@ -200,7 +200,7 @@ void merge_table(Value& base, const Value& overriding) {
 Document::Document(std::string name, Value root) : name_(std::move(name)), root_(std::move(root)) {}
 
 Document Document::from_file(const std::string& path) {
-  return from_text(system::read_file(path, {}, "scenario", kMostBytesOfDocument), path);
+  return from_text(system::read_file(path, {}, "scenario", kMaxBytesOfDocument), path);
 }
 
 Document Document::from_text(std::string_view text, const std::string& name) {

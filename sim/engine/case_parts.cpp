@@ -21,10 +21,10 @@ Outcome failed(std::string_view why, double time, int line) {
 
 std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity,
                             const model::MachineSettings& machine) {
-  constexpr double kMostFactor = 10.0;
+  constexpr double kMaxFactor = 10.0;
   const JointLayout& layout = machine.chain.layout;
   for (int j = 0; j < kJoints; ++j) {
-    const double most = kMostFactor * machine.nc.v_max[j];
+    const double most = kMaxFactor * machine.nc.v_max[j];
     if (!layout.has(j) || std::abs(velocity[j]) <= most) continue;
     if (!std::isfinite(velocity[j])) {
       return fmt::format("strategy {}: position_loop returned a value that is not finite",
@@ -33,7 +33,7 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
     return fmt::format(
         "strategy {}: position_loop adds {:.4g} {} to axis {}, beyond {:g} times its v_max",
         term.strategy, velocity[j], j < kLinearJoints ? "m/s" : "rad/s", layout.letter_of(j),
-        kMostFactor);
+        kMaxFactor);
   }
   return {};
 }

@@ -15,7 +15,7 @@ std::vector<model::Rate> loop_rates(const model::LoopPeriods& p, Tick reading_de
 namespace {
 
 // Matrices are prepared for each stop of each: beyond that, steps are taken as they come.
-constexpr std::size_t kMostStretches = 32;
+constexpr std::size_t kMaxStretches = 32;
 
 // Number of a stretch with stops among those of the way, which it joins if it is new; -1 if there
 // are too many.
@@ -23,7 +23,7 @@ int number_of(const plant::Stretch& stretch, DriveSteps& way) {
   const auto known = std::find(way.stretches.begin(), way.stretches.end(), stretch);
   const auto number = static_cast<int>(known - way.stretches.begin());
   if (known != way.stretches.end()) return number;
-  if (way.stretches.size() == kMostStretches) return -1;
+  if (way.stretches.size() == kMaxStretches) return -1;
   way.most_stops = std::max(way.most_stops, stretch.stops.size());
   way.stretches.push_back(stretch);
   return number;

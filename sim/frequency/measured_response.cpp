@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kDecay = 20.7;         // time constants to 1e-9
 constexpr double kLongestWait = 60.0;   // s
-constexpr double kLeastWindow = 0.1;    // s
-constexpr double kLeastPeriods = 2.0;   // of the lowest frequency in a window of one sine
+constexpr double kMinWindow = 0.1;      // s
+constexpr double kMinPeriods = 2.0;     // of the lowest frequency in a window of one sine
 constexpr double kSharedPeriods = 6.0;  // of the lowest frequency in that of a multi-sine
-constexpr Tick kMostKept = 4'000'000;   // turns of a window that are computed once
+constexpr Tick kMaxKept = 4'000'000;    // turns of a window that are computed once
 constexpr double kCurrentShare = 0.02;
 
 // Whole periods in whole hyperperiods.
@@ -31,7 +31,7 @@ bool folds_onto_itself(Tick periods, Tick hyperperiods) {
 }
 
 Window window_of(double f, double T) {
-  const Tick periods = static_cast<Tick>(std::ceil(std::max(kLeastPeriods, f * kLeastWindow)));
+  const Tick periods = static_cast<Tick>(std::ceil(std::max(kMinPeriods, f * kMinWindow)));
   Tick hyperperiods = std::max<Tick>(1, std::llround(static_cast<double>(periods) / (f * T)));
   while (folds_onto_itself(periods, hyperperiods)) ++hyperperiods;
   return {hyperperiods, {periods}};
@@ -41,7 +41,7 @@ Window window_of_all(const std::vector<double>& f, double T) {
   const double lowest = *std::min_element(f.begin(), f.end());
   Window window;
   window.hyperperiods =
-      static_cast<Tick>(std::ceil(std::max(kLeastWindow, kSharedPeriods / lowest) / T - 1e-6));
+      static_cast<Tick>(std::ceil(std::max(kMinWindow, kSharedPeriods / lowest) / T - 1e-6));
   for (const double one : f) {
     Tick periods =
         std::max<Tick>(1, std::llround(one * T * static_cast<double>(window.hyperperiods)));
@@ -62,8 +62,8 @@ class Excitation {
  public:
   Excitation(const Window& window, const AxisTestBench& stand, const Measurement& how)
       : how_(how), h_(stand.base()), ticks_(window.hyperperiods * stand.hyperperiod()) {
-    if (ticks_ <= kMostKept) turn_.reserve(static_cast<std::size_t>(ticks_));
-    for (Tick n = 0; n < ticks_ && ticks_ <= kMostKept; ++n) turn_.push_back(turned(n));
+    if (ticks_ <= kMaxKept) turn_.reserve(static_cast<std::size_t>(ticks_));
+    for (Tick n = 0; n < ticks_ && ticks_ <= kMaxKept; ++n) turn_.push_back(turned(n));
     const double K = static_cast<double>(window.periods.size());
     for (std::size_t k = 0; k < window.periods.size(); ++k) {
       const double order = static_cast<double>(k);
@@ -231,7 +231,7 @@ void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& 
 bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input) {
   const auto small = [&](AxisSignal signal) {
     const std::size_t s = index_of(signal);
-    return std::abs(point.added[s]) <= kMostAdded * std::abs(point.response[s]);
+    return std::abs(point.added[s]) <= kMaxAdded * std::abs(point.response[s]);
   };
   return point.response[index_of(output)] != 0.0 && small(output) && small(input);
 }

@@ -36,7 +36,7 @@ struct MeasuredPoint {
 
 /// Largest share of input or output that encoder errors may add for their ratio to count as a
 /// measurement.
-inline constexpr double kMostAdded = 0.1;
+inline constexpr double kMaxAdded = 0.1;
 bool resolved(const MeasuredPoint& point, AxisSignal output, AxisSignal input);
 
 struct MeasuredResponse {

@@ -17,14 +17,14 @@
 namespace servomill::sim::frequency {
 namespace {
 
-constexpr double kLowest = 0.5;           // Hz
-constexpr std::size_t kGrid = 150;        // frequencies of a curve, before those where it turns
-constexpr double kScan = 1.15;            // factor between gains that are tried
-constexpr double kGainTol = 1e-4;         // of a gain that is sought
-constexpr double kLeastBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
+constexpr double kLowest = 0.5;         // Hz
+constexpr std::size_t kGrid = 150;      // frequencies of a curve, before those where it turns
+constexpr double kScan = 1.15;          // factor between gains that are tried
+constexpr double kGainTol = 1e-4;       // of a gain that is sought
+constexpr double kMinBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
 constexpr double kCalmer[] = {0.8, 0.65, 0.5};  // of the largest velocity bandwidth
 constexpr double kWorthIt = 1.05;               // gain in Kv
-constexpr double kLeastKv = 1.0;                // 1/s
+constexpr double kMinKv = 1.0;                  // 1/s
 constexpr double kStepHeight = 1e-4;            // m, rad; the model is linear
 constexpr double kStepDuration = 12.0;          // of the slowest time constant
 constexpr double kLongestStep = 5.0;            // s
@@ -110,9 +110,9 @@ double rounded_up(double value) {
 // half of it is not enough.
 template <class Kept>
 double kept_at(double gain, const Kept& kept) {
-  constexpr double kFirst = 1e-3, kMost = 0.5;
+  constexpr double kFirst = 1e-3, kMax = 0.5;
   double tried = rounded_down(gain);
-  for (double share = kFirst; share <= kMost; share *= 2.0) {
+  for (double share = kFirst; share <= kMax; share *= 2.0) {
     throw_if_interrupted();
     if (kept(tried)) return tried;
     tried = rounded_down((1.0 - share) * gain);
@@ -151,7 +151,7 @@ Largest largest_Kv(const model::MachineSettings& machine, int joint, Tick readin
   FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
   const double Tp = machine.nc.periods.seconds(machine.nc.periods.position);
   const Curve one = curve_of(open_position(response), position_grid(tried, joint, reading_delay));
-  return largest_gain(kLeastKv, std::numbers::pi / Tp, [&](double Kv) {
+  return largest_gain(kMinKv, std::numbers::pi / Tp, [&](double Kv) {
     Curve curve = one;
     for (auto& L : curve.y) L *= Kv;
     return missed(margins_of(curve), wanted);
@@ -227,7 +227,7 @@ class Tuner {
   // The largest that keeps the margins of the velocity loop, up to --velocity-bandwidth.
   double velocity_bandwidth() {
     const double Tv = linear_.nc.periods.seconds(linear_.nc.periods.velocity);
-    Largest wv = largest_gain(kLeastBandwidth, std::numbers::pi / Tv,
+    Largest wv = largest_gain(kMinBandwidth, std::numbers::pi / Tv,
                               [&](double one) { return missed_with(gains_for(one)); });
     if (wv.gain == 0.0) no_gain(machine_, joint_, "velocity_bandwidth above 20 rad/s", wanted_);
     if (wanted_.wv_most && *wanted_.wv_most < wv.gain) {

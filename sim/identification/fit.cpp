@@ -140,10 +140,10 @@ Values find_scales(const Prediction& prediction, const Differences& differences,
       searches[p].look(rms_of(J.col(static_cast<Eigen::Index>(p))) * steps[p], wanted);
     }
   }
-  constexpr double kLeast = 1e-9;  // of a value: smaller steps are lost in its rounding
+  constexpr double kMin = 1e-9;  // of a value: smaller steps are lost in its rounding
   for (std::size_t p = 0; p < at.size(); ++p) {
     scales[p] = searches[p].scale();
-    if (std::isfinite(scales[p])) scales[p] = std::max(scales[p], kLeast * std::abs(at[p]));
+    if (std::isfinite(scales[p])) scales[p] = std::max(scales[p], kMin * std::abs(at[p]));
   }
   return scales;
 }
@@ -279,9 +279,9 @@ void descend(const Prediction& prediction, const Differences& differences, Fit& 
   // far from the recording scales are rough, and so are differences by them: they are found again
   // where that has ended, and what had no effect may have one there
   constexpr double kFar = 5.0;
-  constexpr int kMostRuns = 4;
+  constexpr int kMaxRuns = 4;
   double wanted = 0.0;
-  for (int run = 0; run < kMostRuns; ++run) {
+  for (int run = 0; run < kMaxRuns; ++run) {
     wanted = rms_of(out.residual);
     out.scales = find_scales(prediction, differences, out.values, out.residual, wanted);
     minimise(prediction, differences, out);

@@ -32,7 +32,7 @@ double fastest(const std::vector<double>& v) {
 
 std::vector<Ramp> ramps_of(const Record& r, const std::vector<double>& v) {
   constexpr double kConstant = 2e-3, kMoves = 1e-3;  // of the speed; of the fastest
-  constexpr double kLeastTime = 0.1;                 // s: the lag has settled in its last third
+  constexpr double kMinTime = 0.1;                   // s: the lag has settled in its last third
   std::vector<Ramp> out;
   const double least = kMoves * fastest(v);
   for (std::size_t begin = 1; begin + 1 < v.size();) {
@@ -41,7 +41,7 @@ std::vector<Ramp> ramps_of(const Record& r, const std::vector<double>& v) {
       ++end;
     }
     const double time = r.period * static_cast<double>(end - begin);
-    if (std::abs(v[begin]) > least && time >= kLeastTime) {
+    if (std::abs(v[begin]) > least && time >= kMinTime) {
       Ramp ramp{r.time(begin), r.time(end), 0.0, 0.0};
       const std::size_t last = begin + (end - begin) * 2 / 3;
       for (std::size_t k = last; k < end; ++k) {

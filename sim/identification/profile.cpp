@@ -36,8 +36,8 @@ class Side {
     double inside = 0.0, outside = limit_;  // distances
     bool has_outside = false;
     double reached = 0.0, at = std::min(half, limit_);
-    constexpr int kMost = 30;
-    for (int n = 0; n < kMost; ++n) {
+    constexpr int kMax = 30;
+    for (int n = 0; n < kMax; ++n) {
       const auto excess = excess_at(at, along, out);
       if (excess && std::abs(*excess - 1.0) < kEnough) return {ProfileEnd::crossed, value(at)};
       if (!excess) {  // beyond what can be simulated

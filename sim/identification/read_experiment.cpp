@@ -177,7 +177,7 @@ LoopSettings read_loop(config::Reader& table) {
   loop.kaf = table.real_or("acceleration_feed_forward", 0.0, config::kMass);
   loop.F_max = table.real_or("force_limit", infinite, config::kForce, {config::above(0.0)});
   loop.mean_of = static_cast<int>(table.integer_or(
-      "feedback_mean_of", 1, {config::at_least(1.0), config::at_most(kMostMeanOf)}));
+      "feedback_mean_of", 1, {config::at_least(1.0), config::at_most(kMaxMeanOf)}));
   loop.speed_feedback =
       static_cast<SpeedFeedback>(table.choice_or("speed_feedback", 0, kSpeedFeedbacks));
   loop.filters = input::read_filters(table, loop.period);

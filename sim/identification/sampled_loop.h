@@ -54,7 +54,7 @@ struct LoopSettings {
 };
 
 /// Most samples in the mean of the feedback.
-inline constexpr int kMostMeanOf = 16;
+inline constexpr int kMaxMeanOf = 16;
 /// Longest dead time, in periods.
 inline constexpr double kLongestDeadTime = 8.0;
 
@@ -86,7 +86,7 @@ class SampledLoop {
   void remember(const LaneArray& force);
 
   std::vector<LoopSettings> lanes_;
-  std::array<LaneArray, kMostMeanOf + 1> past_readings_{};  // ring, of the speed feedback
+  std::array<LaneArray, kMaxMeanOf + 1> past_readings_{};  // ring, of the speed feedback
   std::size_t newest_ = 0;
   LaneArray integral_{}, first_force_{};
   std::array<controllers::FilterState, kLaneWidth> filters_{};

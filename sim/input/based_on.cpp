@@ -18,7 +18,7 @@ std::optional<std::string> take_base(config::Value& root, const DocumentKind& ki
   if (bases_left == 0) {
     throw InputError(
         base->place,
-        fmt::format("based_on nested deeper than {}; is one of the {} based on itself?", kMostBases,
+        fmt::format("based_on nested deeper than {}; is one of the {} based on itself?", kMaxBases,
                     kind.several));
   }
   std::string path = beside(base->place, base->text);

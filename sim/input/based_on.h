@@ -10,7 +10,7 @@
 namespace servomill::sim::input {
 
 /// Most documents that may stand on each other.
-inline constexpr int kMostBases = 8;
+inline constexpr int kMaxBases = 8;
 
 /// Name of a sort of documents, for messages.
 struct DocumentKind {

@@ -6,13 +6,13 @@
 namespace servomill::sim::input {
 namespace {
 
-constexpr std::size_t kMostDocuments = 100;
+constexpr std::size_t kMaxDocuments = 100;
 
 }  // namespace
 
 InputFiles::InputFiles(std::size_t most_bytes)
     : texts_(most_bytes, [](const std::string& text) { return text.size(); }),
-      documents_(kMostDocuments) {}
+      documents_(kMaxDocuments) {}
 
 std::shared_ptr<const std::string> InputFiles::text(const std::string& path, const Place& at,
                                                     std::string_view what) {
@@ -21,7 +21,7 @@ std::shared_ptr<const std::string> InputFiles::text(const std::string& path, con
   return texts_.get(key, [&] {
     const bool is_document = what == "scenario" || what == "machine";
     std::string text =
-        system::read_file(path, at, what, is_document ? kMostBytesOfDocument : kMostBytesOfFile);
+        system::read_file(path, at, what, is_document ? kMaxBytesOfDocument : kMaxBytesOfFile);
     const std::uint64_t now = crc64(text);
     const std::scoped_lock lock(mutex_);
     if (checksums_.emplace(path, now).first->second != now) {

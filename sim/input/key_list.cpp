@@ -27,7 +27,7 @@ struct Requests {
 
 // A component error over mm: listed with those.
 constexpr std::string_view kLeadError = "machine.axis.X.screw.lead_error";
-constexpr std::size_t kMostWords = 8;  // of a choice that are printed
+constexpr std::size_t kMaxWords = 8;  // of a choice that are printed
 
 struct Renaming {
   std::regex pattern;
@@ -129,8 +129,8 @@ std::string type_of(const config::KeyUse& use) {
     case config::KeyType::text:
       return "string";
     case config::KeyType::choice:
-      return use.words.size() > kMostWords ? fmt::format("one of {} names", use.words.size())
-                                           : quoted_words(use.words);
+      return use.words.size() > kMaxWords ? fmt::format("one of {} names", use.words.size())
+                                          : quoted_words(use.words);
     case config::KeyType::numbers:
       return "list of numbers" + unit;
     case config::KeyType::texts:

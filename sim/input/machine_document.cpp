@@ -45,19 +45,19 @@ MachineDocument with_base(const config::Document& own, InputFiles& files, int ba
 }  // namespace
 
 MachineDocument machine_document(const std::string& path, InputFiles& files, const Place& at) {
-  return with_base(*files.document(path, *files.text(path, at, "machine")), files, kMostBases);
+  return with_base(*files.document(path, *files.text(path, at, "machine")), files, kMaxBases);
 }
 
 MachineDocument machine_document_of_text(const std::string& text, const std::string& path,
                                          InputFiles& files) {
-  return with_base(config::Document::from_text(text, path), files, kMostBases);
+  return with_base(config::Document::from_text(text, path), files, kMaxBases);
 }
 
 bool is_machine_file(const std::string& path) {
   InputFiles files;
   std::string at = path;
   try {
-    for (int bases_left = kMostBases; bases_left >= 0; --bases_left) {
+    for (int bases_left = kMaxBases; bases_left >= 0; --bases_left) {
       config::Value root = files.document(at)->root();
       if (root.find("structure") != nullptr || root.find("identified") != nullptr) return true;
       const auto base = take_base(root, kMachineFile, bases_left);

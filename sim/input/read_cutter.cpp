@@ -9,7 +9,7 @@ namespace servomill::sim::input {
 namespace {
 
 constexpr double kUsualSlenderness = 4.0;  // flutes over diameter
-constexpr double kMostTeeth = 100.0;
+constexpr double kMaxTeeth = 100.0;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::optional<plant::Cutter> read_cutter(config::Reader& tool, double diameter) 
   cutter.length = tool.real_or("flute_length_mm", kUsualSlenderness * diameter, config::kLength,
                                {config::above(cutter.corner_radius)});
   cutter.teeth = static_cast<int>(
-      tool.integer_or("teeth", cutter.teeth, {config::at_least(1), config::at_most(kMostTeeth)}));
+      tool.integer_or("teeth", cutter.teeth, {config::at_least(1), config::at_most(kMaxTeeth)}));
   cutter.helix = tool.real_or("helix_deg", 30 * deg, config::kAngle,
                               {config::at_least(0.0), config::at_most(80 * deg)});
   if (tool.faults() > before) return std::nullopt;

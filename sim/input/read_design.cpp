@@ -314,10 +314,10 @@ class DesignReader {
       return std::find(kDistributions.begin(), kDistributions.end(), name) != kDistributions.end();
     });
     const std::size_t dimension = design_.sampled_dimensions;
-    if (dimension == model::kMostDimensions) {
+    if (dimension == model::kMaxDimensions) {
       form.raw(word);
       return table.fault(
-          key, fmt::format("exceeds the limit of {} sampled keys", model::kMostDimensions));
+          key, fmt::format("exceeds the limit of {} sampled keys", model::kMaxDimensions));
     }
     if (word == "choice") {
       const config::Value* value = form.raw(word);
@@ -350,11 +350,11 @@ class DesignReader {
   void refuse_too_many(config::Reader& table) const {
     double points = design_.sampled_dimensions > 0 ? static_cast<double>(design_.samples.count) : 1;
     for (const std::uint64_t length : design_.grid) points *= static_cast<double>(length);
-    if (points <= static_cast<double>(model::kMostPoints)) return;
+    if (points <= static_cast<double>(model::kMaxPoints)) return;
     constexpr double kCountable = 1e15;
     table.fault(points < kCountable
-                    ? fmt::format("has {:.0f} points; must be <= {}", points, model::kMostPoints)
-                    : fmt::format("has {:.3g} points; must be <= {}", points, model::kMostPoints));
+                    ? fmt::format("has {:.0f} points; must be <= {}", points, model::kMaxPoints)
+                    : fmt::format("has {:.3g} points; must be <= {}", points, model::kMaxPoints));
   }
 
   InputFiles& files_;

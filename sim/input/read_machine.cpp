@@ -36,7 +36,7 @@ constexpr std::array<Preset, 2> kPresetPeriods = {
 
 constexpr std::string_view kRetractKey = "retract_mm";
 
-constexpr double kLeastBase = 0.1 * us;  // more ticks than that no run can count
+constexpr double kMinBase = 0.1 * us;    // more ticks than that no run can count
 constexpr double kLongestPeriod = 1.0;   // s
 constexpr double kFinestSolver = 1e-14;  // m; what rounding leaves of a position of 1 m is 1e-16
 constexpr double kCoarsestSolver = 1 * um;
@@ -60,8 +60,7 @@ Tick period(config::Reader& nc, std::string_view key, double fallback, double ba
 model::LoopPeriods read_periods(config::Reader& nc) {
   model::LoopPeriods periods;
   const std::size_t before = nc.faults();
-  periods.base =
-      nc.real_or("base_period_us", 10 * us, config::kTime, {config::at_least(kLeastBase)});
+  periods.base = nc.real_or("base_period_us", 10 * us, config::kTime, {config::at_least(kMinBase)});
   const Preset& preset = kPresetPeriods[nc.choice_or("preset", 1, kPresets)];
   if (nc.faults() > before) return {};
   periods.position = period(nc, "position_period_us", preset.position, periods.base);
@@ -93,16 +92,16 @@ model::NominalFilter read_filter(config::Reader& nc, const model::LoopPeriods& p
 }
 
 // SI; far from any machine, and near enough that a path can be planned with them.
-constexpr double kLeastLimit = 1e-6, kMostLimit = 1e7;
+constexpr double kMinLimit = 1e-6, kMaxLimit = 1e7;
 
 void read_dynamic_limits(config::Reader& axis, bool linear, int j, model::NcSettings& nc) {
   const AxisQuantities& q = quantities_of(linear);
   nc.v_max[j] =
-      axis.real("v_max", q.velocity, {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
-  nc.a_max[j] = axis.real("a_max", q.acceleration,
-                          {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
+      axis.real("v_max", q.velocity, {config::at_least(kMinLimit), config::at_most(kMaxLimit)});
+  nc.a_max[j] =
+      axis.real("a_max", q.acceleration, {config::at_least(kMinLimit), config::at_most(kMaxLimit)});
   nc.j_max[j] =
-      axis.real("j_max", q.jerk, {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
+      axis.real("j_max", q.jerk, {config::at_least(kMinLimit), config::at_most(kMaxLimit)});
 }
 
 void read_travel(config::Reader& axis, bool linear, int j, model::NcSettings& nc) {
@@ -123,7 +122,7 @@ void read_travel(config::Reader& axis, bool linear, int j, model::NcSettings& nc
 }
 
 // Lengths of which the square is a number.
-constexpr double kLeastDirection = 1e-100, kMostDirection = 1e100;
+constexpr double kMinDirection = 1e-100, kMaxDirection = 1e100;
 
 // Settings that all axes of the machine share.
 struct Common {
@@ -157,7 +156,7 @@ void read_direction(config::Reader& axis, plant::ChainAxis& chain_axis) {
   }
   const Eigen::Vector3d d =
       direction.size() == 3 ? Eigen::Vector3d(direction.data()) : Eigen::Vector3d::Zero();
-  if (d.norm() >= kLeastDirection && d.norm() <= kMostDirection) {
+  if (d.norm() >= kMinDirection && d.norm() <= kMaxDirection) {
     plant::incline(chain_axis, d);
   } else {
     axis.fault("direction", "must be [x, y, z], not all 0; the length is irrelevant");
@@ -305,7 +304,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
     for (std::size_t k = 0; k < limits.size(); ++k) {
       if (!axis.has(limits[k])) continue;
       (*into[k])[j] =
-          axis.real(limits[k], of[k], {config::at_least(kLeastLimit), config::at_most(kMostLimit)});
+          axis.real(limits[k], of[k], {config::at_least(kMinLimit), config::at_most(kMaxLimit)});
     }
     read_travel(axis, j < kLinearJoints, j, machine.nc);
     read_axis_geometry(axis, j, machine);

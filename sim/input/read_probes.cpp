@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 
 constexpr std::array<std::string_view, 6> kKinds = {"line",     "plane", "circle",
                                                     "cylinder", "notch", "points_mm"};
-constexpr double kMostPoints = 1e6;
-constexpr double kMostRepetitions = 1e4;
-constexpr double kMostSeed = 9007199254740992.0;  // 2^53: whole numbers are exact up to there
+constexpr double kMaxPoints = 1e6;
+constexpr double kMaxRepetitions = 1e4;
+constexpr double kMaxSeed = 9007199254740992.0;  // 2^53: whole numbers are exact up to there
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kAcross = 1e-6;  // cosine of what still counts as a right angle
 
@@ -37,7 +37,7 @@ Vector3d read_direction(config::Reader& table, std::string_view key) {
 
 int read_points(config::Reader& table, int least) {
   return static_cast<int>(
-      table.integer("points", {config::at_least(least), config::at_most(kMostPoints)}));
+      table.integer("points", {config::at_least(least), config::at_most(kMaxPoints)}));
 }
 
 // [along, across] with at least `least` each.
@@ -47,13 +47,13 @@ std::array<int, 2> read_grid(config::Reader& table, std::array<int, 2> least) {
   const auto is_whole = [](double x) { return x == std::floor(x); };
   if (table.faults() > before) return least;
   if (n.size() == 2 && is_whole(n[0]) && is_whole(n[1]) && n[0] >= least[0] && n[1] >= least[1] &&
-      n[0] * n[1] <= kMostPoints) {
+      n[0] * n[1] <= kMaxPoints) {
     return {static_cast<int>(n[0]), static_cast<int>(n[1])};
   }
   table.fault(
       "points",
       fmt::format("must be two integers, at least [{}, {}], and at most {:g} points in total",
-                  least[0], least[1], kMostPoints));
+                  least[0], least[1], kMaxPoints));
   return least;
 }
 
@@ -248,9 +248,9 @@ metrology::Cmm read_cmm(config::Reader& root) {
   cmm.probe_radius =
       table.real_or("probe_radius_mm", cmm.probe_radius, config::kLength, {config::at_least(0.0)});
   cmm.repetitions = static_cast<int>(table.integer_or(
-      "repetitions", cmm.repetitions, {config::at_least(1), config::at_most(kMostRepetitions)}));
+      "repetitions", cmm.repetitions, {config::at_least(1), config::at_most(kMaxRepetitions)}));
   cmm.seed = static_cast<std::uint64_t>(
-      table.integer_or("seed", 1, {config::at_least(0), config::at_most(kMostSeed)}));
+      table.integer_or("seed", 1, {config::at_least(0), config::at_most(kMaxSeed)}));
   cmm.clearance =
       table.real_or("approach_mm", cmm.clearance, config::kLength, {config::above(0.0)});
   cmm.depth = table.real_or("search_mm", cmm.depth, config::kLength, {config::above(0.0)});

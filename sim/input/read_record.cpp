@@ -26,15 +26,15 @@ void read_record(config::Reader& root, model::Scenario& out) {
                     {config::at_least(0.0), config::at_most(kCoarsestResolution)});
   record.compression = static_cast<int>(table.integer_or(
       "compression", record.compression,
-      {config::at_least(records::kNoCompression), config::at_most(records::kMostCompression)}));
+      {config::at_least(records::kNoCompression), config::at_most(records::kMaxCompression)}));
   record.uncorrectable = table.boolean_or("uncorrectable", false);
-  constexpr double kGigabyte = 1e9, kHour = 3600.0, kMostGigabytes = 1e6, kMostHours = 1e4;
+  constexpr double kGigabyte = 1e9, kHour = 3600.0, kMaxGigabytes = 1e6, kMaxHours = 1e4;
   record.max_size =
       kGigabyte * table.real_or("max_size_GB", record.max_size / kGigabyte, config::kNumber,
-                                {config::above(0.0), config::at_most(kMostGigabytes)});
+                                {config::above(0.0), config::at_most(kMaxGigabytes)});
   record.max_duration =
       kHour * table.real_or("max_duration_h", record.max_duration / kHour, config::kNumber,
-                            {config::above(0.0), config::at_most(kMostHours)});
+                            {config::above(0.0), config::at_most(kMaxHours)});
   out.settle_time = table.real_or("settle_ms", 100 * ms, config::kTime,
                                   {config::at_least(0.0), config::at_most(kLongestSettling)});
 }

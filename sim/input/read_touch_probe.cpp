@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostSeed = 9007199254740992.0;  // 2^53: whole numbers are exact up to there
-constexpr double kMostLobes = 12;
+constexpr double kMaxSeed = 9007199254740992.0;  // 2^53: whole numbers are exact up to there
+constexpr double kMaxLobes = 12;
 constexpr std::array<std::string_view, 3> kWorkpieces = {"stock", "part", "none"};
 constexpr std::array<std::string_view, 2> kLengths = {"centre", "end"};
 
@@ -62,12 +62,12 @@ void read_switching(config::Reader& table, model::TouchProbe& out) {
   out.pretravel = table.real_or("pretravel_um", 0.0, config::kLength, not_below_zero);
   out.lobing = table.real_or("lobing_um", 0.0, config::kLength, not_below_zero);
   out.lobes = static_cast<int>(
-      table.integer_or("lobes", 3, {config::at_least(1), config::at_most(kMostLobes)}));
+      table.integer_or("lobes", 3, {config::at_least(1), config::at_most(kMaxLobes)}));
   out.lobing_phase = table.real_or("lobing_phase_deg", 0.0, config::kAngle);
   out.repeatability = table.real_or("repeatability_um", 0.0, config::kLength, not_below_zero);
   out.delay = table.real_or("delay_us", 0.0, config::kTime, not_below_zero);
   out.seed = static_cast<std::uint64_t>(
-      table.integer_or("seed", 1, {config::at_least(0), config::at_most(kMostSeed)}));
+      table.integer_or("seed", 1, {config::at_least(0), config::at_most(kMaxSeed)}));
 }
 
 void read_stylus(config::Reader& table, model::TouchProbe& out) {

@@ -115,7 +115,7 @@ bool comes_before_machine(std::string_view change) {
 }
 
 config::Document scenario_document(const std::string& path, InputFiles& files) {
-  return with_base(path, files, kMostBases);
+  return with_base(path, files, kMaxBases);
 }
 
 ScenarioDocument with_machine(config::Document scenario, std::span<const std::string> changes,

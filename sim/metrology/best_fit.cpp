@@ -23,7 +23,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Columns3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using Columns6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-constexpr int kMostSteps = 200;   // Gauss-Newton takes about five, point to point some dozens
+constexpr int kMaxSteps = 200;    // Gauss-Newton takes about five, point to point some dozens
 constexpr double kNoGain = 1e-9;  // of the sum of squares
 // Likewise, while a motion is free: elsewhere it may not be, and great gains tell of a long way.
 constexpr double kGainToGoOn = 0.01;
@@ -184,7 +184,7 @@ std::variant<BestFit, NoFit> fit_to(Points3 measured, const Find& find, const Is
   std::vector<Vector3d> points = moved(measured, motion);
   std::vector<Target> targets = find_all(points, find);
   double sum = sum_of_squares(targets), last_step = std::numeric_limits<double>::infinity();
-  for (int steps = 1; steps <= kMostSteps; ++steps) {
+  for (int steps = 1; steps <= kMaxSteps; ++steps) {
     throw_if_interrupted();
     const Linear linear(points, targets, count);
     const Linear::Step step = linear.step();
@@ -216,7 +216,7 @@ std::variant<BestFit, NoFit> fit_to(Points3 measured, const Find& find, const Is
   }
   return NoFit{fmt::format(
       "distances still decrease after {} steps; the points may be too far from the part",
-      kMostSteps)};
+      kMaxSteps)};
 }
 
 }  // namespace

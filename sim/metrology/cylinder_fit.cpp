@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using Vector5 = Eigen::Vector<double, 5>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-constexpr int kMostSteps = 200;       // ten or twenty are usual
+constexpr int kMaxSteps = 200;        // ten or twenty are usual
 constexpr double kLittleGain = 1e-4;  // of the sum: Gauss-Newton takes over
 // Relative to the strongest motion: one that changes distances by less than 1e-7 of it is free.
 constexpr double kFree = 1e-14;
@@ -75,7 +75,7 @@ struct LinearFit {
 // Levenberg-Marquardt: downhill from anywhere, to where the sum hardly falls.
 Cylinder descend(Points3 points, Cylinder cylinder, double size) {
   double sum = sum_of_squares(points, cylinder), damping = 1e-3;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const LinearFit fit(points, cylinder, size);
     const Cylinder next = fit.moved(cylinder, fit.step(damping));
     const double next_sum = sum_of_squares(points, next);
@@ -97,7 +97,7 @@ Cylinder descend(Points3 points, Cylinder cylinder, double size) {
 std::optional<Cylinder> finish(Points3 points, Cylinder cylinder, double size) {
   constexpr double kSmall = 1e-9;  // a step below this that grows is rounding
   double last = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const LinearFit fit(points, cylinder, size);
     if (!fit.determined()) return std::nullopt;
     const Vector5 x = fit.step(0.0);

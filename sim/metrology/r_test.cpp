@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStands = 1.0 * um;         // how far a nominal tip may move, or a bar lengthen
-constexpr double kTurns = 1e3 * urad;        // corrections turn an axis by less
-constexpr double kLeastArm = 1.0 * mm;       // of a ball about an axis
-constexpr std::size_t kMostSamples = 20000;  // for one identification
+constexpr double kStands = 1.0 * um;        // how far a nominal tip may move, or a bar lengthen
+constexpr double kTurns = 1e3 * urad;       // corrections turn an axis by less
+constexpr double kMinArm = 1.0 * mm;        // of a ball about an axis
+constexpr std::size_t kMaxSamples = 20000;  // for one identification
 
 // A rotary axis in the workpiece.
 struct Line {
@@ -65,13 +65,13 @@ std::string why_no_bar(const TipPath& path, const Vector3d& centre) {
     low = std::min(low, (p - centre).norm());
     high = std::max(high, (p - centre).norm());
   }
-  if (low < kLeastArm) return "the TCP passes through the centre of the bar";
+  if (low < kMinArm) return "the TCP passes through the centre of the bar";
   return high - low < kStands ? ""
                               : "the TCP does not keep its distance from the centre of the bar";
 }
 
 // As many samples of a path as are enough, evenly.
-std::size_t stride(std::size_t count) { return count / kMostSamples + 1; }
+std::size_t stride(std::size_t count) { return count / kMaxSamples + 1; }
 
 }  // namespace
 
@@ -83,7 +83,7 @@ BallDeviation nest_deviation(const plant::MachineChain& chain, const TipPath& pa
   for (std::size_t n = 0; n < path.Q.size(); ++n) {
     const Line line = axis_in_workpiece(chain, *which, path.Q[n]);
     const Vector3d tangent = line.direction.cross(path.nominal[n] - line.point);
-    if (tangent.norm() < kLeastArm) return {{}, "the ball is on the moving rotary axis"};
+    if (tangent.norm() < kMinArm) return {{}, "the ball is on the moving rotary axis"};
     const Vector3d along = direction == NestDirection::axial ? line.direction
                            : direction == NestDirection::tangential
                                ? Vector3d(tangent.normalized())

@@ -44,11 +44,11 @@ Round<N> algebraic_round(std::span<const Eigen::Vector<double, N>> points) {
 /// @pre the points determine it
 template <int N>
 Round<N> geometric_round(std::span<const Eigen::Vector<double, N>> points) {
-  constexpr int kMostSteps = 50;    // about five are needed
+  constexpr int kMaxSteps = 50;     // about five are needed
   constexpr double kStill = 1e-14;  // of the radius: shorter steps are rounding
   using Row = Eigen::Vector<double, N + 1>;
   Round<N> round = algebraic_round<N>(points);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     // |p - centre| - radius changes by -u . d(centre) - d(radius)
     Eigen::Matrix<double, N + 1, N + 1> normal = Eigen::Matrix<double, N + 1, N + 1>::Zero();
     Row right = Row::Zero();

@@ -19,9 +19,9 @@ using Vector6 = Eigen::Vector<double, 6>;
 // Gauss-Newton over shifts of the centre, tilts of the normal and the radius, in units of the
 // radius. A point at (x, y, z) in the circle's frame is rho - r = |(x, y)| - r and z away from it.
 Circle3 refined(Points3 points, Circle3 circle) {
-  constexpr int kMostSteps = 50;    // about five are needed
+  constexpr int kMaxSteps = 50;     // about five are needed
   constexpr double kStill = 1e-14;  // shorter steps are rounding
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double r = circle.radius;
     const Vector3d n = circle.normal, u = across(n), v = n.cross(u);
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();

@@ -8,7 +8,7 @@
 namespace servomill::sim::metrology {
 namespace {
 
-constexpr int kMostSteps = 500;    // about five are needed, more where many points nearly touch
+constexpr int kMaxSteps = 500;     // about five are needed, more where many points nearly touch
 constexpr double kStill = 1e-14;   // of the size: narrower zones are rounding
 constexpr double kNoGain = 1e-12;  // of the zone's width
 
@@ -113,7 +113,7 @@ void narrow_zone(ZoneShape& shape) {
   ZoneSearch search(shape);
   double best = shape.spread().range();
   shape.keep();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     search.improve();
     const double width = shape.spread().range();
     const bool better = width < best * (1.0 - kNoGain);

@@ -34,7 +34,7 @@
 namespace servomill::sim::model {
 
 /// Most points that a sweep may have: far more than a mistake, fewer than a table can hold.
-inline constexpr std::uint64_t kMostPoints = 10'000'000;
+inline constexpr std::uint64_t kMaxPoints = 10'000'000;
 
 /// A number with its unit as TOML has it: 60.0 or "60 1/s".
 struct WrittenNumber {
@@ -109,7 +109,7 @@ struct SweepDesign {
   std::vector<SampleFile> sample_files;
 
   bool empty() const { return keys.empty(); }
-  /// Number of points. @pre there are not more than kMostPoints
+  /// Number of points. @pre there are not more than kMaxPoints
   std::uint64_t size() const;
   /// A value (TOML) for each key at a point. Uses nothing but its arguments.
   /// @pre index < size()

@@ -97,7 +97,7 @@ std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t k
 
 std::vector<double> unit_sample(const SampleSettings& settings, std::uint64_t index,
                                 std::size_t dimensions) {
-  assert(index < settings.count && dimensions > 0 && dimensions <= kMostDimensions);
+  assert(index < settings.count && dimensions > 0 && dimensions <= kMaxDimensions);
   switch (settings.sampling) {
     case Sampling::random:
       return random_sample(settings.seed, Use::sample, index, dimensions);

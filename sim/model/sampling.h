@@ -21,7 +21,7 @@ struct SampleSettings {
 };
 
 /// Most dimensions: what the tables of Boost's Sobol sequence reach.
-inline constexpr std::size_t kMostDimensions = 3667;
+inline constexpr std::size_t kMaxDimensions = 3667;
 
 /// Sample `index` of `settings.count`, a number in (0, 1) for each dimension.
 ///
@@ -32,7 +32,7 @@ inline constexpr std::size_t kMostDimensions = 3667;
 ///     spares the first one the corner.
 /// (4) latin_hypercube, random: the dimensions are independent of each other and of how many
 ///     there are.
-/// @pre index < settings.count, 0 < dimensions <= kMostDimensions
+/// @pre index < settings.count, 0 < dimensions <= kMaxDimensions
 /// Source of (2): McKay, Beckman, Conover, "A comparison of three methods for selecting values of
 /// input variables", Technometrics 21 (1979); the permutations are Feistel networks (Luby, Rackoff,
 /// 1988) that walk until they are within the count, so that none is kept in memory.

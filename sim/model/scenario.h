@@ -116,7 +116,7 @@ struct QuantitySpec {
 /// Recording: signals, period and storage.
 struct RecordSpec {
   RecordFormat format = {.resolution = 0.001e-9};
-  int compression = 1;            // of the result file, kNoCompression to kMostCompression
+  int compression = 1;            // of the result file, kNoCompression to kMaxCompression
   bool uncorrectable = false;     // what strategies cannot correct
   double max_size = 8e9;          // bytes of the signals of all cases, as estimated before a run
   bool period_is_given = false;   // else rows of long programs are thinned

@@ -23,7 +23,7 @@ constexpr double kTangent = 1 * um;     // over which the direction of feed is t
 constexpr double kForceShare = 0.02;    // of the larger force, by which linear may be wrong,
 constexpr double kForceTol = 0.5;       // N, at least
 constexpr double kUsualChip = 50 * um;  // feed per tooth at which forces are compared
-constexpr std::size_t kMostWarnings = 5;
+constexpr std::size_t kMaxWarnings = 5;
 
 // Deepest cut of a tool beyond its flutes, and its place.
 struct Shank {
@@ -42,10 +42,10 @@ class Planner {
     for (const Stage& stage : stages_) add_rows(stage);
     if (!touches_) refuse_untouched();
     warn_of_shanks();
-    if (rapids_ > kMostWarnings) {
+    if (rapids_ > kMaxWarnings) {
       plan_.warnings.push_back(
           {{in_.file},
-           fmt::format("{} more rapid moves through material", rapids_ - kMostWarnings)});
+           fmt::format("{} more rapid moves through material", rapids_ - kMaxWarnings)});
     }
     plan_.program = in_.program;
     plan_.table = engine::CuttingTable(std::move(rows_));
@@ -225,7 +225,7 @@ class Planner {
   }
 
   void warn_of_rapid(int line) {
-    if (++rapids_ > kMostWarnings) return;
+    if (++rapids_ > kMaxWarnings) return;
     plan_.warnings.push_back(
         {{in_.file, line},
          fmt::format("rapid move through material, {:.3g} mm deep", rapid_depth_ / mm)});

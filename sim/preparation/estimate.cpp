@@ -28,7 +28,7 @@ double columns_of(const model::MachineSettings& machine) {
   return kOfRow + kOfAxis * static_cast<double>(machine.joints().size());
 }
 
-constexpr double kUsualCompression = 6.0, kLeastCompression = 4.0;
+constexpr double kUsualCompression = 6.0, kMinCompression = 4.0;
 
 bool needs_every_row(const model::QuantitySpec& quantity) {
   const evaluation::QuantityEntry& info = evaluation::quantity_entry(quantity.name);
@@ -101,7 +101,7 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const double> mo
   const double row = columns_of(scenario.machine) * static_cast<double>(sizeof(double));
   out.size = out.rows * row;
   out.is_thinned = out.size > scenario.record.max_size && can_be_thinned(scenario);
-  out.file = out.is_thinned ? scenario.record.max_size / kLeastCompression
+  out.file = out.is_thinned ? scenario.record.max_size / kMinCompression
                             : out.size / compression_of(scenario);
   out.memory = memory_of(scenario, motions, row, threads);
   const double cores = std::min<double>(system::thread_count(threads), system::thread_count(0));
@@ -131,7 +131,7 @@ std::string thinning_message(const RunEstimate& estimate) {
       "{} (a quarter of record.max_size_GB = {:g}), densest where blocks end, axes reverse and the "
       "contour error changes, with minimum and maximum values in between; record.period_ms = {:g} "
       "records all",
-      estimate.rows, in_gigabytes(estimate.file), estimate.file * kLeastCompression / kGigabyte,
+      estimate.rows, in_gigabytes(estimate.file), estimate.file * kMinCompression / kGigabyte,
       estimate.motion / estimate.rows / ms);
 }
 

@@ -141,14 +141,14 @@ void refuse_endless(const model::Scenario& scenario, double duration) {
                                  duration / kHour, scenario.program.feed_override,
                                  scenario.record.max_duration / kHour));
   }
-  constexpr double kMostSamples = 1e8;  // of some 500 bytes: more than most machines hold
+  constexpr double kMaxSamples = 1e8;  // of some 500 bytes: more than most machines hold
   const double period = scenario.machine.nc.periods.seconds(scenario.record_period);
   const double samples = (duration + scenario.settle_time) / period;
-  if (samples <= kMostSamples) return;
+  if (samples <= kMaxSamples) return;
   throw InputError({scenario.program.file},
                    fmt::format("takes {:.3g} s: {:.3g} samples at record.period_ms = {:g}; must be "
                                "<= {:g}; check feeds, feed_override and the limits of the axes",
-                               duration, samples, period / ms, kMostSamples));
+                               duration, samples, period / ms, kMaxSamples));
 }
 
 void refuse_absent_sections(const model::Scenario& scenario,

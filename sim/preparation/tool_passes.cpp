@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double kChord = 0.05 * um;  // between the path and the straight steps that remove
 constexpr int kFirstParts = 8;        // of a curved move
-constexpr int kMostHalvings = 12;
+constexpr int kMaxHalvings = 12;
 // Share at which whole turns in a step do not pass for a straight one.
 constexpr double kOddShare = 0.381966;
 
@@ -97,7 +97,7 @@ plant::RemovedVolume ToolPasses::remove() {
 void ToolPasses::add_steps(Stage& stage, double end, const plant::CutterPosition& at_end,
                            std::vector<plant::CutterPosition>& positions, int halvings) {
   const plant::CutterPosition from = positions.back();
-  if (!stage.is_straight && halvings < kMostHalvings) {
+  if (!stage.is_straight && halvings < kMaxHalvings) {
     const double begin = stage.shares.back();
     const auto at_share = [&](double share) {
       return position(stage, begin + share * (end - begin));

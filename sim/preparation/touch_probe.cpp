@@ -19,10 +19,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kContact = 1e-10;     // m: a gap that counts as none
-constexpr int kMostSteps = 20000;      // of a search along a surface that is all but parallel
+constexpr int kMaxSteps = 20000;       // of a search along a surface that is all but parallel
 constexpr int kSamples = 16;           // of the speed along a way
 constexpr double kSpeedMargin = 1.25;  // over the greatest speed sampled
-constexpr int kMostRounds = 20;        // of (1), which contracts by the slope of the errors
+constexpr int kMaxRounds = 20;         // of (1), which contracts by the slope of the errors
 constexpr double kSettled = 1e-13;     // m, rad
 
 }  // namespace
@@ -70,7 +70,7 @@ Joints TouchedBodies::true_joints(const Joints& Q, const Vector3d& p_ST) {
   for (const auto& setpoint : strategies.setpoints) wanted += setpoint->offset(Q);
   if (!strategies.feedback) return wanted;
   Joints Q_true = wanted;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const Joints next = wanted - strategies.feedback->settle(Q_true);
     const double change = (next - Q_true).cwiseAbs().maxCoeff();
     Q_true = next;
@@ -101,7 +101,7 @@ double TouchedBodies::gap(const Way& way, double share) {
 std::optional<double> TouchedBodies::switching_share(const Way& way) {
   const double sign = gap(way, 0.0) > 0.0 ? 1.0 : -1.0;
   double share = 0.0;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double left = sign * gap(way, share);
     if (left <= kContact) return share;
     if (share >= 1.0) return std::nullopt;

@@ -44,8 +44,8 @@ std::string in_time(double seconds) {
 
 // "line 3", "lines 3, 7, 12, ...".
 std::string lines_text(const std::vector<int>& lines) {
-  constexpr std::size_t kMost = 5;
-  const std::size_t shown = std::min(lines.size(), kMost);
+  constexpr std::size_t kMax = 5;
+  const std::size_t shown = std::min(lines.size(), kMax);
   return fmt::format(
       "{} {}{}", lines.size() == 1 ? "line" : "lines",
       fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "),

@@ -134,7 +134,7 @@ std::optional<double> Table::number(const Row& row, const Column& column,
 
 Table read_table(const std::string& path) {
   std::string why;
-  const std::string text = read_input(path, kMostBytesOfDocument, why);
+  const std::string text = read_input(path, kMaxBytesOfDocument, why);
   if (!why.empty()) throw InputError({path}, why);
   Table table;
   table.file = path;

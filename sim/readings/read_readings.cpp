@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 6> kAxisNames = {"X", "Y", "Z", "A", "B", "C"};
 constexpr std::array<std::string_view, 2> kTools = {"unknown", "adjusted"};
 constexpr std::array<std::string_view, 2> kFeatures = {"surface", "centre"};
-constexpr std::int64_t kMostWaves = 8;
+constexpr std::int64_t kMaxWaves = 8;
 constexpr std::int64_t kTargets = 11;
-constexpr std::int64_t kMostTargets = 10'000;
+constexpr std::int64_t kMaxTargets = 10'000;
 constexpr double kSteel = 11.5e-6;  // 1/K
 
 std::string beside(const std::string& file, const std::string& path) {
@@ -174,7 +174,7 @@ class GroupReader {
     if (!table_.has("pretravel")) return;
     config::Reader table = table_.table("pretravel");
     group_.lobes = static_cast<int>(
-        table.integer("waves", {config::at_least(2.0), config::at_most(double(kMostWaves))}));
+        table.integer("waves", {config::at_least(2.0), config::at_most(double(kMaxWaves))}));
     group_.lobe_size = table.real("size_um", config::kLength, {config::above(0.0)});
   }
 
@@ -247,7 +247,7 @@ class GroupReader {
       table_.fault("lengths_mm", "must be the lengths of the two lines, along each axis");
     }
     group_.targets = static_cast<int>(table_.integer_or(
-        "targets", kTargets, {config::at_least(2.0), config::at_most(double(kMostTargets))}));
+        "targets", kTargets, {config::at_least(2.0), config::at_most(double(kMaxTargets))}));
     Reading reading;
     reading.Q = group_.at;
     if (numbers_ == Numbers::required || table_.has("deviation_urad")) {

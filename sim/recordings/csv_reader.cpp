@@ -17,7 +17,7 @@ namespace servomill::sim::recordings {
 namespace {
 
 constexpr std::size_t kExamined = 200;  // lines that the layout is recognised from
-constexpr std::size_t kMostColumns = 4096;
+constexpr std::size_t kMaxColumns = 4096;
 
 // Reading of a text as a table, and where its rows begin.
 struct Layout {
@@ -106,8 +106,8 @@ class Table {
       : file_(std::move(file)), lines_(lines), layout_(layout) {}
 
   Recording read(bool ends_with_line_end) {
-    if (layout_.columns > kMostColumns) {
-      fail(lines_[layout_.first], 0, fmt::format("more than {} columns", kMostColumns));
+    if (layout_.columns > kMaxColumns) {
+      fail(lines_[layout_.first], 0, fmt::format("more than {} columns", kMaxColumns));
     }
     read_headings();
     refuse_same_names();

@@ -52,12 +52,12 @@ class Hdf5Walk {
   // Before memory is taken for all of it: compression makes a byte into 1032 at most.
   void refuse_impossible_size(const std::string& dataset,
                               const std::vector<std::size_t>& shape) const {
-    constexpr double kMostPerByte = 1032.0;
+    constexpr double kMaxPerByte = 1032.0;
     double count = 1.0;
     for (const std::size_t extent : shape) count *= static_cast<double>(extent);
     std::error_code fault;
     const auto bytes = std::filesystem::file_size(file_.path(), fault);
-    if (fault || count <= kMostPerByte * static_cast<double>(bytes)) return;
+    if (fault || count <= kMaxPerByte * static_cast<double>(bytes)) return;
     throw InputError({file_.path()},
                      fmt::format("is damaged: '{}' has {:g} values in a file of {} bytes", dataset,
                                  count, bytes));

@@ -85,7 +85,7 @@ std::string kind_of(const matvar_t& variable) {
   }
 }
 
-constexpr double kMostPerByte = 1032.0;  // values; the greatest ratio of the compression (deflate)
+constexpr double kMaxPerByte = 1032.0;  // values; the greatest ratio of the compression (deflate)
 constexpr std::size_t kHeader = 128, kTag = 8;  // bytes
 
 // Number of four bytes, in the order of the file's mark.
@@ -163,7 +163,7 @@ class MatFile {
       return;
     }
     // before the library and the copy take memory for all of them
-    if (static_cast<double>(rows) * static_cast<double>(columns) > kMostPerByte * bytes_) {
+    if (static_cast<double>(rows) * static_cast<double>(columns) > kMaxPerByte * bytes_) {
       fail(fmt::format("variable '{}' has {} x {} values in a file of {} bytes: it is damaged",
                        name, rows, columns, bytes_));
     }

@@ -50,12 +50,11 @@ bool is_hdf5_file(const std::string& path) {
 // first. The time grows with the file.
 void refuse_if_fatal(const std::string& path, const std::function<void()>& read) {
   constexpr double kBytesPerSecond = 10e6;
-  constexpr int kLeastSeconds = 2;
+  constexpr int kMinSeconds = 2;
   std::error_code fault;
   const auto bytes = std::filesystem::file_size(path, fault);
   if (fault) return;
-  const int seconds =
-      kLeastSeconds + static_cast<int>(static_cast<double>(bytes) / kBytesPerSecond);
+  const int seconds = kMinSeconds + static_cast<int>(static_cast<double>(bytes) / kBytesPerSecond);
   const std::string way = system::try_in_process(read, seconds);
   if (!way.empty()) throw InputError({path}, fmt::format("is damaged: reading it {}", way));
 }

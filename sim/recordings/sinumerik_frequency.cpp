@@ -22,7 +22,7 @@ namespace {
 using Complex = std::complex<double>;
 using Series = std::vector<std::vector<double>>;
 
-constexpr std::size_t kMostSamples = 1 << 15;  // of series that are transformed again
+constexpr std::size_t kMaxSamples = 1 << 15;  // of series that are transformed again
 
 // Spectrum as the control computed it.
 struct Spectrum {
@@ -192,7 +192,7 @@ class FrequencyFile {
   static bool can_transform(const Series& x, const Series& y, std::size_t lines) {
     if (x.empty() || x.size() != y.size()) return false;
     for (std::size_t s = 0; s < x.size(); ++s) {
-      if (x[s].size() != y[s].size() || x[s].size() > kMostSamples || lines > x[s].size())
+      if (x[s].size() != y[s].size() || x[s].size() > kMaxSamples || lines > x[s].size())
         return false;
     }
     return true;

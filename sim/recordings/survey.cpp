@@ -157,8 +157,8 @@ std::vector<Gap> gaps(const Base& base) {
   for (std::size_t i = 1; i < base.values.size(); ++i) {
     const double from = base.values[i - 1], to = base.values[i];
     if (to - from <= kGap * step) continue;
-    constexpr double kMost = 1e15;  // far below what a count can hold
-    const double fits = std::min(std::round((to - from) / step) - 1.0, kMost);
+    constexpr double kMax = 1e15;  // far below what a count can hold
+    const double fits = std::min(std::round((to - from) / step) - 1.0, kMax);
     out.push_back({from, to, static_cast<std::size_t>(fits)});
   }
   return out;

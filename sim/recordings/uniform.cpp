@@ -11,8 +11,8 @@
 namespace servomill::sim::recordings {
 namespace {
 
-constexpr double kAgree = 1e-9;        // of the period: rounding of times such as 0.1 + 0.2
-constexpr double kMostInstants = 1e8;  // 0.8 GB
+constexpr double kAgree = 1e-9;       // of the period: rounding of times such as 0.1 + 0.2
+constexpr double kMaxInstants = 1e8;  // 0.8 GB
 
 // Samples that are there, and between which of them some are not.
 struct Present {
@@ -110,7 +110,7 @@ UniformChannel uniform_channel(const Recording& recording, std::string_view name
   refuse_gaps(recording, channel, known, longest);
   add_gaps(base, known);
   UniformChannel out{channel.name, channel.unit, known.times.front(), period, {}, {}};
-  if ((known.times.back() - out.start) / period > kMostInstants) {
+  if ((known.times.back() - out.start) / period > kMaxInstants) {
     throw InputError({recording.file},
                      fmt::format("channel '{}': {} s in periods of {} s are more than 1e8 samples",
                                  channel.name, known.times.back() - out.start, period));

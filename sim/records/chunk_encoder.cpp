@@ -51,7 +51,7 @@ struct ChunkEncoder::Deflate {
 };
 
 ChunkEncoder::ChunkEncoder(int level) {
-  assert(level >= kNoCompression && level <= kMostCompression);
+  assert(level >= kNoCompression && level <= kMaxCompression);
   if (level != kNoCompression) deflate_ = std::make_unique<Deflate>(level);
 }
 

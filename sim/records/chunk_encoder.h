@@ -15,7 +15,7 @@ enum class Storage : std::uint8_t { float64, float32, int32 };
 std::size_t bytes_of(Storage storage);
 
 /// Levels of compression: none to most.
-inline constexpr int kNoCompression = 0, kMostCompression = 9;
+inline constexpr int kNoCompression = 0, kMaxCompression = 9;
 
 /// Makes what HDF5's own filters "shuffle" and "deflate" would make of a chunk, so that whoever
 /// reads HDF5 reads it: bytes sorted by their place in a number, as a zlib stream (RFC 1950). Level

@@ -71,13 +71,13 @@ Hdf5Group Hdf5Group::group(const std::string& path) {
 
 Hdf5Group Hdf5Group::group_with_room(const std::string& name, std::size_t children,
                                      std::size_t longest_name) {
-  constexpr std::size_t kMost = 65535;  // of either number
+  constexpr std::size_t kMax = 65535;  // of either number
   const Hdf5Lock lock;
   const Hdf5Handle creation = group_creation(H5P_GROUP_CREATE);
-  const auto entries = static_cast<unsigned>(std::min(children, kMost));
+  const auto entries = static_cast<unsigned>(std::min(children, kMax));
   H5Pset_link_phase_change(creation.get(), std::max(entries, 8U), 0);
   H5Pset_est_link_info(creation.get(), entries,
-                       static_cast<unsigned>(std::min(longest_name, kMost)));
+                       static_cast<unsigned>(std::min(longest_name, kMax)));
   return Hdf5Group(Hdf5Handle(written(
       H5Gcreate2(id_.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), id_.get())));
 }

@@ -10,9 +10,9 @@ namespace {
 // A thinned recording is bounded by its size, not by a number of rows; its chunks must reach the
 // thinning in time.
 std::size_t rows_within(const ThinningLimits& limits, const Series& series) {
-  constexpr double kLeastChunks = 16.0;
+  constexpr double kMinChunks = 16.0;
   const double rows =
-      limits.bytes / (kLeastChunks * static_cast<double>(series.width() * sizeof(double)));
+      limits.bytes / (kMinChunks * static_cast<double>(series.width() * sizeof(double)));
   return static_cast<std::size_t>(std::clamp(rows, 64.0, 16384.0));
 }
 

@@ -14,10 +14,10 @@ namespace {
 constexpr double kShare = 0.97;            // of the limit; the rest is for what the file notes
 constexpr double kUsualCompression = 4.0;  // until it is known
 constexpr double kLongest = 1e4;           // rows that one stands for in any case
-constexpr double kMostSaved = 1e4;         // events that were not needed before
+constexpr double kMaxSaved = 1e4;          // events that were not needed before
 constexpr double kForBlocks = 64.0;    // events: blocks and reversals come before the contour error
 constexpr double kContourShare = 0.1;  // of the greatest contour error
-constexpr double kLeastContourError = 0.1;  // um; changes below it are nothing
+constexpr double kMinContourError = 0.1;  // um; changes below it are nothing
 
 std::size_t column_of(const Series& series, std::string_view name) {
   return series.column(name).value();
@@ -108,7 +108,7 @@ void RowThinning::add_row(std::span<const double> row, std::vector<double>& out)
   }
   tell_of(row);
   ++come_;
-  events_ = std::min(kMostSaved, events_ + events_per_row_);
+  events_ = std::min(kMaxSaved, events_ + events_per_row_);
   if (is_first || keeps_all(row) || static_cast<double>(samples_) >= longest_ ||
       (contour_error_has_changed(row) && events_ >= kForBlocks && takes_event())) {
     stay(row, out);
@@ -147,7 +147,7 @@ bool RowThinning::contour_error_has_changed(std::span<const double> row) {
   const double error = row[contour_error_];
   greatest_contour_error_ = std::max(greatest_contour_error_, error);
   return std::abs(error - last_contour_error_) >
-         std::max(kLeastContourError, kContourShare * greatest_contour_error_);
+         std::max(kMinContourError, kContourShare * greatest_contour_error_);
 }
 
 bool RowThinning::takes_event() {

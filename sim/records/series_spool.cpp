@@ -71,8 +71,8 @@ void ScratchFile::read(std::uint64_t place, std::span<std::uint8_t> bytes) const
 }
 
 std::size_t even_chunk_rows(std::size_t rows) {
-  constexpr std::size_t kMostRows = 16384;
-  const std::size_t chunks = std::max<std::size_t>(1, (rows + kMostRows - 1) / kMostRows);
+  constexpr std::size_t kMaxRows = 16384;
+  const std::size_t chunks = std::max<std::size_t>(1, (rows + kMaxRows - 1) / kMaxRows);
   return std::max<std::size_t>(1, (rows + chunks - 1) / chunks);
 }
 

@@ -38,7 +38,7 @@ class ScratchFile {
 struct SpoolFormat {
   std::string folder;  // of its file
   std::size_t chunk_rows = 16384;
-  int compression = 1;  // kNoCompression to kMostCompression
+  int compression = 1;  // kNoCompression to kMaxCompression
 };
 
 /// Rows of a chunk so that chunks are of equal length and the last one holds little that is

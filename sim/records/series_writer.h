@@ -35,7 +35,7 @@ struct SeriesLayout {
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
   std::size_t chunk_rows = 16384;
-  int compression = 1;      // kNoCompression to kMostCompression
+  int compression = 1;      // kNoCompression to kMaxCompression
   unsigned threads = 0;     // that compress; 0: one a core; the file does not depend on it
   bool is_encoded = false;  // rows come as chunks (append_encoded); none can be appended
 };

@@ -130,9 +130,9 @@ class Fitter {
 
   // Levenberg and Marquardt, in columns of like size.
   Eigen::VectorXd descend(Eigen::VectorXd x, const std::vector<double>& weight) const {
-    constexpr int kMostRounds = 200;
+    constexpr int kMaxRounds = 200;
     double damping = 1e-3, cost = residual(x, weight).squaredNorm();
-    for (int round = 0; round < kMostRounds && damping < 1e12; ++round) {
+    for (int round = 0; round < kMaxRounds && damping < 1e12; ++round) {
       const Eigen::MatrixXd J = jacobian(x, weight);
       const Eigen::VectorXd scale = J.colwise().norm().cwiseMax(1e-300);
       const Eigen::MatrixXd unit = J * scale.cwiseInverse().asDiagonal();

@@ -38,7 +38,7 @@ struct RationalOrder {
   int numerator = 0, denominator = 0;
   bool with_dead_time = false;
 };
-inline constexpr int kMostOrder = 12;
+inline constexpr int kMaxOrder = 12;
 
 /// Least squares weighted by the variance of each line: linear iterations (Sanathanan and Koerner),
 /// then Levenberg and Marquardt. Where the misfit exceeds the noise the covariance is that of the

@@ -28,9 +28,9 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"imposed", "imposed on purpose by strategies"},
 }};
 
-constexpr double kFine = 0.01;        // share of tolerances that are taken away
-constexpr double kLeastChord = 1e-9;  // m
-constexpr double kFineBlocks = 0.1;   // of the length: the chord error is the square of it
+constexpr double kFine = 0.01;       // share of tolerances that are taken away
+constexpr double kMinChord = 1e-9;   // m
+constexpr double kFineBlocks = 0.1;  // of the length: the chord error is the square of it
 
 model::MachineSettings& own_machine(const model::Scenario& scenario, model::CaseSpec& one) {
   if (!one.machine) one.machine = scenario.machine;
@@ -98,12 +98,12 @@ bool remove_measurement(model::MachineSettings& machine) {
 }
 
 bool remove_delay(model::Scenario& scenario, model::CaseSpec& one) {
-  constexpr Tick kNone = 0, kLeast = 1;
+  constexpr Tick kNone = 0, kMin = 1;
   const bool needs_hardware = one.needs_feedback_hardware();
   model::MachineSettings& machine = own_machine(scenario, one);
   bool any = machine.scale_delay != kNone ||
              (one.feedback_hardware && scenario.hardware.signal_delay != kNone) ||
-             (needs_hardware && scenario.hardware.model_period != kLeast);
+             (needs_hardware && scenario.hardware.model_period != kMin);
   machine.scale_delay = kNone;
   any |= idealise(one, Shortcoming::delay);
   return any;
@@ -154,7 +154,7 @@ void refine_blocks(model::StrategySpec& strategy) {
   for (const ParameterSpec& spec : strategy.entry->parameters) {
     Parameters& p = strategy.parameters;
     if (by_chord && spec.shortcoming == Shortcoming::chord_tolerance) {
-      p.set(spec.name, std::max(kLeastChord, kFine * p.number(spec.name)));
+      p.set(spec.name, std::max(kMinChord, kFine * p.number(spec.name)));
     } else if (!by_chord && spec.shortcoming == Shortcoming::block_length && spec.is_number) {
       p.set(spec.name, kFineBlocks * p.number(spec.name));
     }

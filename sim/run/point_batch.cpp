@@ -183,8 +183,8 @@ std::string in_one_line(const InputError& error) {
 }
 
 double rows_at_once(unsigned threads) {
-  return std::min(kMostRows, kMemoryShare * system::memory_of_process() /
-                                 (kRowBytes * static_cast<double>(threads)));
+  return std::min(kMaxRows, kMemoryShare * system::memory_of_process() /
+                                (kRowBytes * static_cast<double>(threads)));
 }
 
 void run_batch(std::span<const model::Scenario> points, const engine::StopFlag& stop,

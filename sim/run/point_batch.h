@@ -46,16 +46,16 @@ struct EndedPoint {
 };
 
 /// Rows of recorded signals, of all its runs together, that each of some threads may hold: a
-/// quarter of the machine's memory is theirs, up to kMostRows (some 2 GB) a thread: eight long
+/// quarter of the machine's memory is theirs, up to kMaxRows (some 2 GB) a thread: eight long
 /// points fill the lanes.
 double rows_at_once(unsigned threads);
-inline constexpr double kMostRows = 4e6;
+inline constexpr double kMaxRows = 4e6;
 
 struct BatchControl {
   Keep keep = Keep::comparison;
   preparation::PreparationCache* cache =
-      nullptr;              // what preparing points shares, with other batches too
-  double rows = kMostRows;  // that may be held; one point is always run
+      nullptr;             // what preparing points shares, with other batches too
+  double rows = kMaxRows;  // that may be held; one point is always run
 };
 
 /// Prepares and runs all cases of all points on the calling thread, in lockstep where they share

@@ -9,14 +9,14 @@ namespace servomill::sim::run {
 namespace {
 
 constexpr double kWay = 5.0 * mm, kTurn = 1.0 * deg;  // between two looks, about
-constexpr double kMostOnALine = 360.0;
-constexpr std::size_t kMost = 4000;  // in all: they shall take no time beside the run
+constexpr double kMaxOnALine = 360.0;
+constexpr std::size_t kMax = 4000;  // in all: they shall take no time beside the run
 
 std::size_t looks_of(const engine::ProgramPath::Piece& piece) {
   if (piece.rapid) return 0;
   const double turn = (piece.end - piece.begin).tail<3>().cwiseAbs().maxCoeff();
   const double looks = std::max((piece.s_end - piece.s_begin) / kWay, turn / kTurn);
-  return static_cast<std::size_t>(std::clamp(std::ceil(looks), 1.0, kMostOnALine));
+  return static_cast<std::size_t>(std::clamp(std::ceil(looks), 1.0, kMaxOnALine));
 }
 
 bool is_worse(const strategies::Residual& a, const strategies::Residual& b) {
@@ -29,7 +29,7 @@ template <class Visit>
 void look_along(const engine::ProgramPath& path, const JointLayout& layout, Visit visit) {
   std::size_t total = 0;
   for (std::size_t n = 0; n < path.size(); ++n) total += looks_of(path.piece(n));
-  const std::size_t stride = total / kMost + 1;
+  const std::size_t stride = total / kMax + 1;
   std::size_t look = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
     const engine::ProgramPath::Piece piece = path.piece(n);

@@ -11,7 +11,7 @@
 namespace servomill::sim::run {
 namespace {
 
-constexpr std::size_t kLeastSamples = 1601, kMostSamples = 8001;
+constexpr std::size_t kMinSamples = 1601, kMaxSamples = 8001;
 constexpr double kApart = 0.5 * mm;    // places on a longer axis; of a rotary one mm read as deg
 constexpr double kEndless = 500 * mm;  // of a linear axis without travel, to either side of zero
 constexpr double kTurn = 360 * deg;
@@ -36,8 +36,8 @@ Range range_of(const model::NcSettings& nc, int joint) {
 std::vector<double> places_in(const Range& range, bool linear) {
   const double apart = linear ? kApart : kApart / mm * deg;
   const auto steps = static_cast<std::size_t>(
-      std::ceil(std::min((range.upper - range.lower) / apart, double{kMostSamples})));
-  std::vector<double> out(std::clamp(steps + 1, kLeastSamples, kMostSamples));
+      std::ceil(std::min((range.upper - range.lower) / apart, double{kMaxSamples})));
+  std::vector<double> out(std::clamp(steps + 1, kMinSamples, kMaxSamples));
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(out.size() - 1);
     out[i] = range.lower + (range.upper - range.lower) * share;

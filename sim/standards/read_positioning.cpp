@@ -217,13 +217,13 @@ class PositioningReader {
   std::optional<int> run_number(const Row& row, const TargetReading& one) {
     const Column* column = table_.find("run");
     if (column == nullptr) return approaches_[{one.target, one.direction}]++;
-    constexpr double kMost = 1000.0;
+    constexpr double kMax = 1000.0;
     const auto run = number(row, *column);
     if (!run) return std::nullopt;
-    if (*run >= 1.0 && *run <= kMost && *run == std::floor(*run)) return static_cast<int>(*run) - 1;
+    if (*run >= 1.0 && *run <= kMax && *run == std::floor(*run)) return static_cast<int>(*run) - 1;
     fault(table_.place(row, *column), fmt::format("run = {:g}; must be an integer from 1 to "
                                                   "{:g}",
-                                                  *run, kMost));
+                                                  *run, kMax));
     return std::nullopt;
   }
 
@@ -273,7 +273,7 @@ class PositioningReader {
 
 PositioningFile read_positioning(const std::string& path) {
   std::string why;
-  const std::string text = read_input(path, kMostBytesOfDocument, why);
+  const std::string text = read_input(path, kMaxBytesOfDocument, why);
   if (!why.empty()) throw InputError({path}, why);
   if (is_list_of_readings(text)) return parse_list_of_readings(text, path);
   return PositioningReader(path).read();

@@ -12,7 +12,7 @@
 namespace servomill::sim::sweep {
 namespace {
 
-constexpr std::size_t kMostNamed = 20;  // shards or ranges in one message
+constexpr std::size_t kMaxNamed = 20;  // shards or ranges in one message
 
 // Data that a merge keeps of each file; files are opened one at a time, there may be thousands.
 struct Shard {
@@ -65,7 +65,7 @@ std::string ranges(const std::vector<std::uint64_t>& numbers) {
   for (std::size_t begin = 0; begin < numbers.size();) {
     std::size_t end = begin + 1;
     while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
-    if (parts.size() == kMostNamed) {
+    if (parts.size() == kMaxNamed) {
       parts.emplace_back("...");
       break;
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kLongestBlock = 16;
 constexpr std::uint64_t kBlocks = 4;  // a shard, at least, where there are points enough
-constexpr std::uint64_t kMostShards = 1'000'000;
+constexpr std::uint64_t kMaxShards = 1'000'000;
 
 std::optional<std::uint64_t> number(std::string_view digits) {
   std::uint64_t value = 0;
@@ -77,9 +77,9 @@ Selection read_selection(std::uint64_t points, const std::string& range, const s
   if (!shard.empty()) {
     const Place place{"--shard " + shard};
     const auto of = two_numbers(shard, '/');
-    if (!of || of->first < 1 || of->first > of->second || of->second > kMostShards) {
+    if (!of || of->first < 1 || of->first > of->second || of->second > kMaxShards) {
       throw InputError(
-          place, fmt::format("must be I/N, shard I of N, with 1 <= I <= N <= {}", kMostShards));
+          place, fmt::format("must be I/N, shard I of N, with 1 <= I <= N <= {}", kMaxShards));
     }
     if (of->second > selection.last - selection.first) {
       throw InputError(place,

@@ -69,7 +69,7 @@ Distribution distribution_of(std::span<const double> values) {
   double squares = 0.0;
   for (const double value : finite) squares += (value - out.mean) * (value - out.mean);
   if (finite.size() > 1) out.deviation = std::sqrt(squares / (n - 1.0));
-  if (finite.size() < kLeastForInterval) return out;
+  if (finite.size() < kMinForInterval) return out;
   std::sort(finite.begin(), finite.end());
   out.low = quantile(finite, kLow);
   out.high = quantile(finite, kHigh);

@@ -13,7 +13,7 @@
 namespace servomill::sim::sweep {
 
 /// Fewest values of which the ends of an interval of 95 % are given: 2.5 % of them are one.
-inline constexpr std::size_t kLeastForInterval = 40;
+inline constexpr std::size_t kMinForInterval = 40;
 
 /// Numbers that describe a set of values; NaN where there are too few.
 struct Distribution {

@@ -18,8 +18,8 @@
 namespace servomill::sim::sweep {
 namespace {
 
-constexpr std::uint64_t kProbes = 8;         // points tried before all are given up
-constexpr std::uint64_t kMostChecked = 256;  // points that `check` reads
+constexpr std::uint64_t kProbes = 8;        // points tried before all are given up
+constexpr std::uint64_t kMaxChecked = 256;  // points that `check` reads
 
 // Values of these keys name files, which stand beside the scenario.
 bool names_a_file(const std::string& key) {
@@ -270,7 +270,7 @@ std::optional<preparation::RunEstimate> Sweep::refuse_hopeless() const {
 }
 
 void Sweep::check() const {
-  for (const std::uint64_t point : spread(design().size(), kMostChecked)) {
+  for (const std::uint64_t point : spread(design().size(), kMaxChecked)) {
     const model::Scenario scenario = at(point);
     try {
       run::check_scenario(scenario);

@@ -24,14 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;  // as Linux follows
+constexpr int kMaxLinks = 40;  // as Linux follows
 
 // The end of a chain of symbolic links, which need not exist.
 fs::path behind_links(const std::string& path) {
   std::error_code ignored;
   fs::path target(path);
   for (int links = 0; fs::is_symlink(fs::symlink_status(target, ignored)); ++links) {
-    if (links == kMostLinks) {
+    if (links == kMaxLinks) {
       throw InputError({path}, "is a symbolic link loop; choose another file");
     }
     const fs::path next = fs::read_symlink(target, ignored);

@@ -16,6 +16,6 @@ namespace servomill::sim::system {
 /// @param most  bytes that it may hold
 /// @throws InputError if it cannot be read
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
-                      std::uintmax_t most = kMostBytesOfFile);
+                      std::uintmax_t most = kMaxBytesOfFile);
 
 }  // namespace servomill::sim::system

@@ -21,8 +21,8 @@ constexpr std::size_t kUsualPoints = 256;         // for a spacing that nobody a
 
 std::size_t points_over(double length, double spacing) {
   const double intervals = std::ceil(length / spacing - kSlack);
-  constexpr double kMost = 1e9;  // enough to be refused
-  return static_cast<std::size_t>(std::clamp(intervals, 1.0, kMost)) + 1;
+  constexpr double kMax = 1e9;  // enough to be refused
+  return static_cast<std::size_t>(std::clamp(intervals, 1.0, kMax)) + 1;
 }
 
 // The smallest spacing of a growing series with which the travel fits.

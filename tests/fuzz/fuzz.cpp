@@ -43,9 +43,9 @@ void out_of_time(int) {
 }
 
 #ifdef SERVOMILL_INSTRUMENTED
-constexpr int kAllowed = kMostSeconds * kInstrumentedFactor;
+constexpr int kAllowed = kMaxSeconds * kInstrumentedFactor;
 #else
-constexpr int kAllowed = kMostSeconds;
+constexpr int kAllowed = kMaxSeconds;
 #endif
 
 }  // namespace
@@ -53,7 +53,7 @@ constexpr int kAllowed = kMostSeconds;
 void run_in_time(std::string_view input) {
   std::signal(SIGPROF, out_of_time);
   set_timer(kAllowed);
-  run(input.substr(0, kMostBytes));
+  run(input.substr(0, kMaxBytes));
   set_timer(0);
 }
 

@@ -17,10 +17,10 @@
 namespace servomill::fuzz {
 
 /// Longest input; what comes behind it is left out, as libFuzzer does.
-inline constexpr std::size_t kMostBytes = 65536;
+inline constexpr std::size_t kMaxBytes = 65536;
 
 /// Law of all targets: no input takes more time of the processor than this.
-inline constexpr int kMostSeconds = 1;
+inline constexpr int kMaxSeconds = 1;
 /// Instrumented programs, with both sanitizers and hardly optimised, take so many times longer.
 inline constexpr int kInstrumentedFactor = 60;
 

@@ -12,7 +12,7 @@ namespace servomill::fuzz {
 namespace {
 
 constexpr std::string_view kFile = "p.h";
-constexpr std::size_t kMostMoves = 20'000;
+constexpr std::size_t kMaxMoves = 20'000;
 
 controllers::ProgramSetup setup_for(std::string_view text) {
   controllers::ProgramSetup setup;
@@ -42,7 +42,7 @@ void run(std::string_view text) {
   try {
     controllers::Interpreter interpreter(std::string(text), std::string(kFile), setup_for(text));
     double s = 0.0;
-    for (std::size_t moves = 0; moves < kMostMoves; ++moves) {
+    for (std::size_t moves = 0; moves < kMaxMoves; ++moves) {
       const Move* move = interpreter.next();
       if (move == nullptr) break;
       require_move(*move, lines, s);

@@ -13,9 +13,9 @@ namespace servomill::fuzz {
 namespace {
 
 // It runs to the end, however many lines a loop goes through.
-constexpr std::size_t kMostChecked = 4096;
+constexpr std::size_t kMaxChecked = 4096;
 // A loop may fail at every turn: a thrown fault costs a sanitizer more than a block does.
-constexpr std::size_t kMostFaults = 500;
+constexpr std::size_t kMaxFaults = 500;
 
 bool is_finite(const Move& move) {
   const double sum = move.end.sum() + move.end_machine.sum() + move.arc.centre.sum() +
@@ -29,7 +29,7 @@ bool is_finite(const Move& move) {
 std::size_t faults_in(controllers::Interpreter& interpreter, std::string_view text) {
   std::size_t faults = 0;
   double s = 0.0;
-  for (std::size_t lines = 0; lines < kMostLines && faults < kMostFaults; ++lines) {
+  for (std::size_t lines = 0; lines < kMaxLines && faults < kMaxFaults; ++lines) {
     try {
       const auto block = interpreter.next_block();
       if (!block) break;
@@ -81,7 +81,7 @@ void run(std::string_view text) {
   read_as_controls(text);
   const auto setup = setup_for(text);
   const std::size_t faults = faults_of(text, setup);
-  if (text.size() > kMostChecked) return;
+  if (text.size() > kMaxChecked) return;
   const auto found = controllers::check_program(std::string(text), std::string(kProgram), setup);
   require_program_places(found, text);
   // not the other way round: it goes on behind an end that only a run can see, M[1 + 1]

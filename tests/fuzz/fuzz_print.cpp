@@ -16,16 +16,16 @@ namespace {
 // Half a step of the seventh decimal, and the rounding of doubles at the largest size.
 constexpr double kPrintTol = 0.6e-7 * mm;        // m
 constexpr double kPrintAngleTol = 0.6e-7 * deg;  // rad
-constexpr double kMostLength = 100.0;            // m; what no machine has need not come back
-constexpr double kMostAngle = 1e6 * deg;         // rad
-constexpr double kMostRate = 1e6;                // SI, of feed, speed and dwell
+constexpr double kMaxLength = 100.0;             // m; what no machine has need not come back
+constexpr double kMaxAngle = 1e6 * deg;          // rad
+constexpr double kMaxRate = 1e6;                 // SI, of feed, speed and dwell
 constexpr double kRateTol = 1e-11;               // relative, twelve digits
 
 bool has_size_of_a_machine(const Move& move) {
   const auto is_small = [](const auto& p, double most) { return p.cwiseAbs().maxCoeff() < most; };
-  return is_small(move.end.head<3>(), kMostLength) && is_small(move.end.tail<3>(), kMostAngle) &&
-         is_small(move.arc.centre, kMostLength) && std::abs(move.value) < kMostRate &&
-         move.feed < kMostRate && move.path_tolerance < kMostLength;
+  return is_small(move.end.head<3>(), kMaxLength) && is_small(move.end.tail<3>(), kMaxAngle) &&
+         is_small(move.arc.centre, kMaxLength) && std::abs(move.value) < kMaxRate &&
+         move.feed < kMaxRate && move.path_tolerance < kMaxLength;
 }
 
 void require_same(const Move& a, const Move& b, std::string_view printed) {

@@ -9,7 +9,7 @@ namespace servomill::fuzz {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of the size
-constexpr std::size_t kMostCorners = 50;
+constexpr std::size_t kMaxCorners = 50;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void run(std::string_view text) {
     for (const auto& corner : mesh.triangles().corners) size = std::max(size, corner.norm());
     std::size_t count = 0;
     for (const auto& corner : mesh.triangles().corners) {
-      if (++count > kMostCorners) break;
+      if (++count > kMaxCorners) break;
       require(std::abs(mesh.closest(corner).distance) <= kRounding * size,
               "corners lie on the surface");
     }

@@ -9,7 +9,7 @@
 namespace servomill::fuzz {
 namespace {
 
-constexpr long kMostJumps = 300;
+constexpr long kMaxJumps = 300;
 
 std::shared_ptr<const controllers::ToolCentrePoint> trunnion() {
   plant::MachineChain chain = plant::make_chain(plant::parse_structure("[w C' A' X' b Y Z t]"));
@@ -51,7 +51,7 @@ controllers::ProgramSetup setup_for(std::string_view program) {
   setup.block_delete = program.size() % 2 == 1;
   if (program.size() % 4 < 2) setup.machine = kMachine;
   setup.subroutine_file = subroutine_file;
-  setup.most_jumps = kMostJumps;
+  setup.most_jumps = kMaxJumps;
   return setup;
 }
 
@@ -71,7 +71,7 @@ std::vector<Move> moves_until_fault(std::string_view program,
   std::vector<Move> moves;
   controllers::Interpreter interpreter(std::string(program), std::string(kProgram), setup);
   try {
-    while (moves.size() < kMostMoves) {
+    while (moves.size() < kMaxMoves) {
       const Move* move = interpreter.next();
       if (move == nullptr) break;
       moves.push_back(*move);

@@ -14,7 +14,7 @@ inline constexpr std::string_view kProgram = "p.ngc";
 
 /// A program is not run further after so many moves or, where these are counted, lines: a loop may
 /// give them without end.
-inline constexpr std::size_t kMostMoves = 20'000, kMostLines = 20'000;
+inline constexpr std::size_t kMaxMoves = 20'000, kMaxLines = 20'000;
 
 /// Tools 1 and 3, a few parameters, offsets and a start off the origin, the subroutine files `side`
 /// and `100`, few jumps. Lines with '/' count or do not, there is a five-axis machine or there is

@@ -114,13 +114,13 @@ double compensated(double feed, const std::string& more) {
 
 // The torque turns over along the presliding curve: -2 Fc at first, which fades over Fc / sigma0.
 TEST(FrictionCompensation, AlongThePreslidingCurveTakesMostOfTheGlitchAtEveryFeed) {
-  constexpr double kLeast = 3.5;  // factor; measured 3.9, 3.9, 5.0, 5.9
+  constexpr double kMin = 3.5;  // factor; measured 3.9, 3.9, 5.0, 5.9
   for (std::size_t n = 0; n < kFeeds.size(); ++n) {
     const double left =
         compensated(kFeeds[n], "reversal_pulse = \"-900 N\"\nreversal_pulse_distance = \"9 um\"\n");
     RecordProperty(fmt::format("factor_F{:.0f}", kFeeds[n]),
                    fmt::format("{:.3f}", kGlitch[n] / left));
-    EXPECT_LT(left, kGlitch[n] / kLeast) << kFeeds[n];
+    EXPECT_LT(left, kGlitch[n] / kMin) << kFeeds[n];
   }
 }
 

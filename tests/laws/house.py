@@ -36,6 +36,8 @@ WORDS = {
     "raw part": r"raw[ _]parts?",
     "part zero": r"part[ _-]zero",
     "laid on": r"laid (?:on|over)",
+    "kMost, kLeast": r"k(?:most|least)\w*",
+    "straight kernel": r"straight[ _]?kernel\w*",
     "bring out": r"br(?:ing|ings|ought)[ _]out",
 }
 # Pages that may have them, with the reason.

@@ -182,9 +182,9 @@ TEST(CProgram, TakesNoMoreBlocksThanMemoryHolds) {
   CProgram shown(moves, layout(), Joints::Zero());
   const servomill_program& seen = *shown.program();
   const servomill_block one = block(0, 1.0, Joints::Zero());
-  for (std::size_t n = 0; n < kMostPluginBlocks + 100; ++n) seen.add_block(seen.host, &one);
+  for (std::size_t n = 0; n < kMaxPluginBlocks + 100; ++n) seen.add_block(seen.host, &one);
   const auto blocks = shown.take_blocks();
-  EXPECT_EQ(blocks.size(), kMostPluginBlocks + 1);
+  EXPECT_EQ(blocks.size(), kMaxPluginBlocks + 1);
   EXPECT_EQ(wrong_with(blocks), "adds more than 5000000 blocks");
 }
 

@@ -264,7 +264,7 @@ TEST(VirtualEncoder, GivesTheSameBitsTogetherAndAlone) {
 // Limits of eight runs at once: the bits of each, on every instruction set of this machine.
 TEST(Approach, GivesInLanesTheBitsOfEachRun) {
   plant::Uniform random(31);
-  constexpr double kMost[] = {2.0, 0.5, 1e-9}, kChange[] = {0.3, 10.0, 0.1};
+  constexpr double kMax[] = {2.0, 0.5, 1e-9}, kChange[] = {0.3, 10.0, 0.1};
   for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512}) {
     if (level > simd_level()) continue;
     const Approach approach =
@@ -276,10 +276,10 @@ TEST(Approach, GivesInLanesTheBitsOfEachRun) {
         before[j] = values[j];
         for (double& w : wanted[j]) w = 3.0 * random();
       }
-      approach(kMost, kChange, 3, wanted, values);
+      approach(kMax, kChange, 3, wanted, values);
       for (int j = 0; j < 3; ++j) {
         for (std::size_t k = 0; k < kLaneWidth; ++k) {
-          ASSERT_EQ(values[j][k], approached(wanted[j][k], kMost[j], kChange[j], before[j][k]));
+          ASSERT_EQ(values[j][k], approached(wanted[j][k], kMax[j], kChange[j], before[j][k]));
         }
       }
     }

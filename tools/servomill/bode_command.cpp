@@ -19,7 +19,7 @@ namespace po = boost::program_options;
 
 constexpr std::array<std::string_view, 4> kLoops = {"position", "velocity", "compliance", "all"};
 constexpr std::array<std::string_view, 3> kMethods = {"sine", "multisine", "none"};
-constexpr std::size_t kMostPoints = 1000;
+constexpr std::size_t kMaxPoints = 1000;
 
 std::vector<sim::frequency::BodeLoop> loops_of(const Options& options) {
   const std::size_t chosen = choice_option(options, "loop", kLoops);
@@ -84,8 +84,8 @@ sim::frequency::BodeSettings settings_of(const Options& options,
   if (const auto to = positive_option(options, "f-max", sim::config::kRate, "Hz"))
     settings.to = *to;
   const int points = options.get<int>("points");
-  if (points < 2 || points > static_cast<int>(kMostPoints)) {
-    throw InputError({"--points"}, fmt::format("{}; must be >= 2 and <= {}", points, kMostPoints));
+  if (points < 2 || points > static_cast<int>(kMaxPoints)) {
+    throw InputError({"--points"}, fmt::format("{}; must be >= 2 and <= {}", points, kMaxPoints));
   }
   settings.points = static_cast<std::size_t>(points);
   const std::size_t method = choice_option(options, "method", kMethods);

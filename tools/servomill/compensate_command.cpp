@@ -47,7 +47,7 @@ std::string upper(std::string text) {
 
 // Fanuc's program number: as given, or the digits of a file called 1234.ngc or O1234.ngc; 0: none.
 int program_number(const Options& options) {
-  constexpr int kMost = 9999;
+  constexpr int kMax = 9999;
   const bool is_given = options.has("program-number");
   std::string text = is_given ? options.get<std::string>("program-number")
                               : fs::path(options.word()).stem().string();
@@ -55,7 +55,7 @@ int program_number(const Options& options) {
   const bool is_number = !text.empty() && text.size() <= 4 &&
                          text.find_first_not_of("0123456789") == std::string::npos;
   const int number = is_number ? std::stoi(text) : 0;
-  if (number >= 1 && number <= kMost) return number;
+  if (number >= 1 && number <= kMax) return number;
   if (!is_given) return 0;
   throw InputError({"--program-number " + text}, "must be 1 ... 9999");
 }
@@ -148,8 +148,8 @@ sim::programs::CompensateRequest request_of(const Options& options) {
   request.model = text_of(options, "model");
   request.changes = options.list("set");
   request.tolerance = *positive_option(options, "tolerance", sim::config::kLength, "um");
-  constexpr double kLeast = 1e-9;  // m; control and machine know nothing of less
-  if (request.tolerance < kLeast * (1.0 - 1e-9)) {
+  constexpr double kMin = 1e-9;  // m; control and machine know nothing of less
+  if (request.tolerance < kMin * (1.0 - 1e-9)) {
     throw InputError({"--tolerance"}, fmt::format("'{}' must be >= 0.001 um",
                                                   options.get<std::string>("tolerance")));
   }

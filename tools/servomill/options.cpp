@@ -138,10 +138,10 @@ void load_plugins(const Options& options) {
 }
 
 unsigned thread_count(const Options& options) {
-  constexpr int kMost = 1024;
+  constexpr int kMax = 1024;
   const int threads = options.get<int>("threads");
-  if (threads >= 0 && threads <= kMost) return static_cast<unsigned>(threads);
-  throw InputError({"--threads"}, fmt::format("{}; must be >= 0 and <= {}", threads, kMost));
+  if (threads >= 0 && threads <= kMax) return static_cast<unsigned>(threads);
+  throw InputError({"--threads"}, fmt::format("{}; must be >= 0 and <= {}", threads, kMax));
 }
 
 std::string output_name(const Options& options, const std::string& scenario_name,

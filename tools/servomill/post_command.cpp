@@ -76,12 +76,12 @@ Eigen::Vector3d work_offset_of(const std::string& text) {
 
 // A file may have one a line.
 void tell(const std::vector<controllers::Warning>& warnings) {
-  constexpr std::size_t kMostTold = 20;
-  for (std::size_t i = 0; i < std::min(kMostTold, warnings.size()); ++i) {
+  constexpr std::size_t kMaxReported = 20;
+  for (std::size_t i = 0; i < std::min(kMaxReported, warnings.size()); ++i) {
     fmt::print(stderr, "{}\n", to_string(warnings[i]));
   }
-  if (warnings.size() > kMostTold) {
-    fmt::print(stderr, "and {} more warnings\n", warnings.size() - kMostTold);
+  if (warnings.size() > kMaxReported) {
+    fmt::print(stderr, "and {} more warnings\n", warnings.size() - kMaxReported);
   }
 }
 

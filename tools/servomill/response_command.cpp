@@ -147,10 +147,10 @@ void print_response(const MeasuredResponse& response, bool all) {
   }
   fmt::print("{}", sim::system::text_table(table, 0, {0, 1, 2, 3}));
   constexpr double kMarked = 2.0;  // amplitudes
-  constexpr int kMostMarked = 10;
+  constexpr int kMaxMarked = 10;
   int count = 0;
   for (const auto& one : sim::responses::extremes(response)) {
-    if (one.prominence < kMarked || ++count > kMostMarked) break;
+    if (one.prominence < kMarked || ++count > kMaxMarked) break;
     fmt::print("{} at {:.2f} Hz\n", one.is_maximum ? "resonance" : "antiresonance", one.frequency);
   }
 }
@@ -221,7 +221,7 @@ std::optional<sim::responses::RationalOrder> rational_order(const std::string& t
   order.denominator = degree(rest.substr(slash + 1));
   const bool fits = order.numerator >= 0 && order.denominator >= 1 &&
                     order.numerator <= order.denominator &&
-                    order.denominator <= sim::responses::kMostOrder;
+                    order.denominator <= sim::responses::kMaxOrder;
   return fits ? std::optional(order) : std::nullopt;
 }
 
@@ -304,7 +304,7 @@ int response_command(const Arguments& arguments) {
         {"--fit"},
         fmt::format("unknown model '{}'; must be two-mass, N/M or N/M+delay with degrees "
                     "N <= M of numerator and denominator, M from 1 to {}",
-                    fit, sim::responses::kMostOrder));
+                    fit, sim::responses::kMaxOrder));
   }
   const bool force = options.has("force");
   if (options.has("table")) {

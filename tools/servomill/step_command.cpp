@@ -19,8 +19,8 @@ namespace po = boost::program_options;
 
 constexpr std::array<std::string_view, 4> kKinds = {"position", "velocity", "load", "all"};
 constexpr double kDefaultDecay = 12.0;      // time constants that are simulated
-constexpr Tick kMostRows = 20'000;          // of a response, about
-constexpr double kLeastOvershoot = 5e-5;    // less is none
+constexpr Tick kMaxRows = 20'000;           // of a response, about
+constexpr double kMinOvershoot = 5e-5;      // less is none
 constexpr double kLongestDuration = 100.0;  // s
 
 std::vector<sim::frequency::StepKind> kinds_of(const Options& options) {
@@ -99,7 +99,7 @@ void print_figures(const sim::frequency::StepSettings& settings,
                                               : "not in this time");
     fmt::print("  residual at the end  {:.4g} {}\n", f.steady_error / u.value_unit, u.value);
   } else {
-    fmt::print("  overshoot       {}\n", f.overshoot > kLeastOvershoot
+    fmt::print("  overshoot       {}\n", f.overshoot > kMinOvershoot
                                              ? fmt::format("{:.2f} % after {}", 100.0 * f.overshoot,
                                                            milliseconds(f.peak_time))
                                              : "none");
@@ -144,7 +144,7 @@ std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineS
   }
   const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
   sim::frequency::StepResponse response = sim::frequency::step_response(
-      machine, joint, delay, settings, std::max<Tick>(1, ticks / kMostRows));
+      machine, joint, delay, settings, std::max<Tick>(1, ticks / kMaxRows));
   if (response.fault) {
     fmt::print(stderr, "axis {}, {} step: {}\n", axis, sim::run::name_of(settings.kind),
                *response.fault);

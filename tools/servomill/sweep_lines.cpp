@@ -12,7 +12,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::size_t kLeastWidth = 9;  // of a column
+constexpr std::size_t kMinWidth = 9;  // of a column
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
@@ -21,7 +21,7 @@ std::string number(double value) {
 // "q3": how a line of the comparison is called in the heading.
 std::string label(std::size_t row) { return fmt::format("q{}", row + 1); }
 
-std::size_t width_of(const std::string& heading) { return std::max(kLeastWidth, heading.size()); }
+std::size_t width_of(const std::string& heading) { return std::max(kMinWidth, heading.size()); }
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::string SweepLines::heading() const {
     out += fmt::format("  {:>{}}", key.key, width_of(key.key));
   }
   for (std::size_t n = 0; n < rows_.size(); ++n)
-    out += fmt::format("  {:>{}}", label(n), kLeastWidth);
+    out += fmt::format("  {:>{}}", label(n), kMinWidth);
   return out + '\n';
 }
 
@@ -62,7 +62,7 @@ std::string SweepLines::line_of(const sim::sweep::SweepPoint& point) const {
     out += fmt::format("  {:>{}}", point.values[k], width_of(design_.keys[k].key));
   }
   for (const sim::evaluation::ComparisonRow& row : point.result.rows) {
-    out += fmt::format("  {:>{}}", number(row.value), kLeastWidth);
+    out += fmt::format("  {:>{}}", number(row.value), kMinWidth);
   }
   return out + '\n';
 }
@@ -135,10 +135,10 @@ std::string points_by_status(const sim::sweep::StatusCounts& counts) {
 }
 
 void print_statistics(const std::string& table) {
-  constexpr std::size_t kMostLines = 100;
+  constexpr std::size_t kMaxLines = 100;
   const auto quantities = sim::sweep::sample_statistics(table);
   if (quantities.empty()) return;
-  fmt::print("\n{}\n", sim::sweep::format_statistics(quantities, kMostLines));
+  fmt::print("\n{}\n", sim::sweep::format_statistics(quantities, kMaxLines));
 }
 
 void tell_refused_samples(const sim::model::SweepDesign& design,

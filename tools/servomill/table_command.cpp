@@ -203,15 +203,15 @@ std::array<int, 2> mesh_of(const Options& options, sim::tables::TableFormat form
         fmt::format("has no effect with {}; marlin, klipper and reprapfirmware take one",
                     sim::tables::name_of(format)));
   }
-  constexpr int kMost = 100;
+  constexpr int kMax = 100;
   std::array<int, 2> out{};
   int read = 0;
   const bool is_read = std::sscanf(text.c_str(), "%4dx%4d%n", out.data(), &out[1], &read) == 2 &&
                        read == static_cast<int>(text.size());
-  if (is_read && std::min(out[0], out[1]) >= 3 && std::max(out[0], out[1]) <= kMost) return out;
+  if (is_read && std::min(out[0], out[1]) >= 3 && std::max(out[0], out[1]) <= kMax) return out;
   throw InputError(
       {"--bed-mesh"},
-      fmt::format("'{}'; must be points along X and Y, such as 7x5, 3 to {} each", text, kMost));
+      fmt::format("'{}'; must be points along X and Y, such as 7x5, 3 to {} each", text, kMax));
 }
 
 sim::tables::TableRequest request_of(const Options& options,
@@ -237,8 +237,8 @@ sim::tables::TableRequest request_of(const Options& options,
     const int points = options.get<int>("max-points");
     const std::size_t most = sim::tables::rules_of(request.format).most_points;
     const bool may_be_more = request.format == sim::tables::TableFormat::siemens;
-    constexpr int kMost = 10000;
-    const int limit = may_be_more ? kMost : static_cast<int>(most);
+    constexpr int kMax = 10000;
+    const int limit = may_be_more ? kMax : static_cast<int>(most);
     if (points < 2 || points > limit) {
       throw InputError({"--max-points"}, fmt::format("{}; must be >= 2 and <= {} for {}", points,
                                                      limit, sim::tables::name_of(request.format)));

@@ -56,13 +56,13 @@ void take_block_skip(Line& line) {
 }
 
 void take_block_number(Line& line) {
-  constexpr long kMost = 99'999'999;
+  constexpr long kMax = 99'999'999;
   std::size_t at = line.begin;
   if (at >= line.body.size() || upper(line.body[at]) != 'N') return;
   for (++at; at < line.body.size() && is_blank(line.body[at]);) ++at;
   if (at >= line.body.size() || !is_digit(line.body[at])) return;
   long number = 0;
-  for (; at < line.body.size() && is_digit(line.body[at]) && number <= kMost; ++at) {
+  for (; at < line.body.size() && is_digit(line.body[at]) && number <= kMax; ++at) {
     number = number * 10 + (line.body[at] - '0');
   }
   if (at < line.body.size() && line.body[at] == '.') return;

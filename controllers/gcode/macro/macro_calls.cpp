@@ -10,8 +10,8 @@
 namespace servomill::controllers::macro {
 namespace {
 
-constexpr std::size_t kMostCalls = 9;      // in each other, as for other programs
-constexpr std::ptrdiff_t kMostMacros = 4;  // of G65 and G66. Fanuc B-63684EN/01 p. 278
+constexpr std::size_t kMaxCalls = 9;      // in each other, as for other programs
+constexpr std::ptrdiff_t kMaxMacros = 4;  // of G65 and G66. Fanuc B-63684EN/01 p. 278
 
 MacroWord* find_code(std::vector<MacroWord>& words, char letter, int tenths) {
   for (MacroWord& word : words) {
@@ -112,11 +112,11 @@ void MacroSource::check_depth(const MacroCall& call) {
   const auto macros = std::count_if(calls_.begin(), calls_.end(), [](const RunningCall& one) {
     return one.call.locals.has_value();
   });
-  if (call.locals && macros >= kMostMacros && reading_.reader() == Reader::fanuc) {
-    refuse(call.column, fmt::format("macro calls nested deeper than {}", kMostMacros));
+  if (call.locals && macros >= kMaxMacros && reading_.reader() == Reader::fanuc) {
+    refuse(call.column, fmt::format("macro calls nested deeper than {}", kMaxMacros));
   }
-  if (calls_.size() >= kMostCalls) {
-    refuse(call.column, fmt::format("program calls nested deeper than {}", kMostCalls));
+  if (calls_.size() >= kMaxCalls) {
+    refuse(call.column, fmt::format("program calls nested deeper than {}", kMaxCalls));
   }
 }
 

@@ -11,7 +11,7 @@
 namespace servomill::controllers::macro {
 namespace {
 
-constexpr int kMostLoops = 3;  // in each other, and their highest number
+constexpr int kMaxLoops = 3;  // in each other, and their highest number
 
 // The ']' that closes the first '[', or npos: a statement behind DO may have brackets, too.
 std::size_t end_of_condition(const std::string& body, std::size_t begin) {
@@ -77,7 +77,7 @@ void ProgramPlaces::add_loop_line(const Line& line, const ProgramText::Mark& bef
       loop.fault = fmt::format("DO{} within the loop DO{} of line {}", number, number,
                                loops_[one].begin_line);
     }
-    if (number < 1 || number > kMostLoops) loop.fault = "the number of DO must be 1, 2 or 3";
+    if (number < 1 || number > kMaxLoops) loop.fault = "the number of DO must be 1, 2 or 3";
     loop_begins_[at] = loops_.size();
     open.push_back(loops_.size());
     loops_.push_back(std::move(loop));

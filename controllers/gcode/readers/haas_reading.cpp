@@ -17,7 +17,7 @@ struct HaasCircles {
 namespace {
 
 constexpr int kClockwise = 120, kCounterclockwise = 130;
-constexpr int kMostCircles = 1000;
+constexpr int kMaxCircles = 1000;
 
 std::string number_of(double value) { return word_text('I', value).substr(1); }
 
@@ -77,7 +77,7 @@ void ReadingStep::circular_pocket_of_haas(BlockWord& code, bool is_clockwise) {
   if (memory.frame.is_active() || memory.polar.is_on || state.compensation.is_on) {
     fail(column, fmt::format("{} under G16, G41, G51, G54.1 or G68 is not supported", name));
   }
-  if (L * (1.0 + (K - I) / (Q > 0.0 ? Q : 1.0)) > kMostCircles)
+  if (L * (1.0 + (K - I) / (Q > 0.0 ? Q : 1.0)) > kMaxCircles)
     fail(column, name + " with too many circles");
   const int D = static_cast<int>(std::lround(words['D']));
   const double R = D > 0 && options.radius_of ? options.radius_of(D) / unit() : 0.0;

@@ -14,8 +14,8 @@ long block_number(std::string_view line) {
   std::size_t at = line.find_first_not_of(" \t/");
   if (at == std::string_view::npos || (line[at] != 'N' && line[at] != 'n')) return -1;
   long number = -1;
-  constexpr long kMost = 99'999'999;
-  for (++at; at < line.size() && line[at] >= '0' && line[at] <= '9' && number <= kMost; ++at) {
+  constexpr long kMax = 99'999'999;
+  for (++at; at < line.size() && line[at] >= '0' && line[at] <= '9' && number <= kMax; ++at) {
     number = std::max(number, 0L) * 10 + (line[at] - '0');
   }
   return number;

@@ -63,9 +63,9 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
 // So that rounding takes a fiftieth of the tolerance at most.
 int decimals_for(double tolerance) {
   constexpr double kShare = 50.0;
-  constexpr int kFewest = 3, kMost = 7;
+  constexpr int kFewest = 3, kMax = 7;
   return std::clamp(static_cast<int>(std::ceil(-std::log10(tolerance / mm / kShare))), kFewest,
-                    kMost);
+                    kMax);
 }
 
 WalkOptions walk_options(const CompensateRequest& request, const model::MachineSettings& machine,
@@ -188,7 +188,7 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
 // Before the work: a slip of the unit makes blocks without end.
 void refuse_too_many_blocks(const CompensateRequest& request,
                             const controllers::ProgramSetup& setup) {
-  constexpr double kMostBlocks = 1e7;
+  constexpr double kMaxBlocks = 1e7;
   if (!(request.max_block > 0.0)) return;
   double way = 0.0;
   try {
@@ -201,11 +201,11 @@ void refuse_too_many_blocks(const CompensateRequest& request,
   } catch (const InputError&) {
     return;  // reported when the program is corrected
   }
-  if (way <= kMostBlocks * request.max_block) return;
+  if (way <= kMaxBlocks * request.max_block) return;
   throw InputError({"--max-block"},
                    fmt::format("{:g} um makes {:.2g} blocks of {:.4g} m of feed; must be <= {:g} "
                                "blocks; use a larger value",
-                               request.max_block / um, way / request.max_block, way, kMostBlocks));
+                               request.max_block / um, way / request.max_block, way, kMaxBlocks));
 }
 
 // Takes what a writer assumes and warns of.

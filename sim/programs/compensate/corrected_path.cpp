@@ -18,7 +18,7 @@ constexpr double kMissed = 0.1, kForBlocks = 0.85;
 constexpr double kForArcs = 0.65;  // a correction that turns between two looks is missed there
 constexpr double kVaries = 0.1;    // of the tolerance: from then on a correction is not constant
 constexpr double kStill = 1e-12;   // m, rad: what rounding leaves of positions
-constexpr int kMostHalvings = 20;
+constexpr int kMaxHalvings = 20;
 constexpr double kWidestArc = 3.0;        // rad, where an arc falls into several
 constexpr double kShortestChord = 10e-6;  // m, of an arc: shorter ones are lines
 
@@ -69,7 +69,7 @@ class Fitter {
     for (int i = 1; i <= n; ++i) {
       throw_if_interrupted();
       const Look b = look_at(i == n ? 1.0 : static_cast<double>(i) / n);
-      refine(Look(looks_.back()), b, kMostHalvings);
+      refine(Look(looks_.back()), b, kMaxHalvings);
       looks_.push_back(b);
     }
   }

@@ -18,12 +18,12 @@ using controllers::Group;
 
 namespace {
 
-constexpr double kShortestShare = 1e-4;     // of a move, for the time of blocks that lead to it
-constexpr double kLeastSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
-constexpr double kSamePlace = 1e-9;         // m: the same digits
-constexpr double kStill = 1e-12;            // m, rad: the same number
-constexpr double kMostRadiusError = 5e-6;   // m, between begin and end of an arc
-constexpr double kMostTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
+constexpr double kShortestShare = 1e-4;   // of a move, for the time of blocks that lead to it
+constexpr double kMinSweep = 1e-3 * deg;  // of an arc, and of what it lacks of a full circle
+constexpr double kSamePlace = 1e-9;       // m: the same digits
+constexpr double kStill = 1e-12;          // m, rad: the same number
+constexpr double kMaxRadiusError = 5e-6;  // m, between begin and end of an arc
+constexpr double kMaxTurnOff = 0.25 * std::numbers::pi;  // rad: farther off, an arc goes round
 
 }  // namespace
 
@@ -199,7 +199,7 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   const Eigen::Vector2d begin = in_plane(from), end = in_plane(to);
   const Eigen::Vector2d d = (((in_plane(centre) - begin) / unit / grid).array().round()) * grid;
   const Eigen::Vector2d a = -d * unit, b = end - begin + a;  // from the centre
-  if (std::abs(a.norm() - b.norm()) > kMostRadiusError) return std::nullopt;
+  if (std::abs(a.norm() - b.norm()) > kMaxRadiusError) return std::nullopt;
   // start = end is a full circle: the digits must not make one, nor miss one
   const double wanted = programmed.sweep * (fitted.t_end - fitted.t_begin);
   const double full = 2.0 * std::numbers::pi, sign = wanted > 0.0 ? 1.0 : -1.0;
@@ -208,8 +208,8 @@ std::optional<DialectArc> DialectWriter::arc_of(const Step& step, const FittedBl
   // a helix of Heidenhain's ends off the grid: a circle after it would not be closed
   const bool is_closed = (end - begin).cwiseAbs().maxCoeff() < kSamePlace;
   if (is_closed) sweep = full;
-  if (!is_closed && (sweep < kLeastSweep || sweep > full - kLeastSweep)) return std::nullopt;
-  if (std::abs(sweep - std::abs(wanted)) > kMostTurnOff) return std::nullopt;
+  if (!is_closed && (sweep < kMinSweep || sweep > full - kMinSweep)) return std::nullopt;
+  if (std::abs(sweep - std::abs(wanted)) > kMaxTurnOff) return std::nullopt;
   DialectArc arc;
   arc.is_counter_clockwise = sign > 0.0;
   arc.from_begin[programmed.a] = d.x();

@@ -12,8 +12,8 @@ namespace {
 
 using controllers::fixed_text;
 
-constexpr std::size_t kMostNumbered = 9999;  // blocks; in longer programs every 1000th
-constexpr double kMostPosition = 99999.999;  // eight digits on IS-B (M)
+constexpr std::size_t kMaxNumbered = 9999;   // blocks; in longer programs every 1000th
+constexpr double kMaxPosition = 99999.999;   // eight digits on IS-B (M)
 constexpr double kLongestDwell = 99999.999;  // s, B-63844EN/02, dwell
 
 class Fanuc final : public IsoDialect {
@@ -74,7 +74,7 @@ class Fanuc final : public IsoDialect {
   }
 
   void motion(const DialectMotion& motion) override {
-    check_positions(motion, kMostPosition);
+    check_positions(motion, kMaxPosition);
     assume_ways(motion);
     check_rotation(motion);
     if (motion.is_place) return place(motion);
@@ -98,7 +98,7 @@ class Fanuc final : public IsoDialect {
 
   // G31 is one-shot: G0 or G1 stay in force (Series 15i/150i-MA, Programming, p. 564).
   void probe(const DialectMotion& motion, const DialectMotion&) override {
-    check_positions(motion, kMostPosition);
+    check_positions(motion, kMaxPosition);
     const auto code = modes_.code;
     modes_.code = "G1";
     std::string text = motion_text(motion, "G31");
@@ -183,7 +183,7 @@ class Fanuc final : public IsoDialect {
     std::string out = "%\n";
     std::size_t blocks = 0;
     for (const std::string& line : lines_) blocks += is_numbered(line) ? 1 : 0;
-    const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
+    const std::size_t step = blocks > kMaxNumbered ? 1000 : 1;
     std::size_t n = 0;
     for (const std::string& line : lines_) {
       const bool has_number = is_numbered(line) && n++ % step == 0;

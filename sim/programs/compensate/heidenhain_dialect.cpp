@@ -16,9 +16,9 @@ namespace {
 
 using controllers::fixed_text;
 
-constexpr int kDecimals = 3;                  // of F and S: TNC 430 p. 468
-constexpr double kLongestDwell = 3600.0;      // s, TNC 430 p. 468
-constexpr double kMostPosition = 99999.9999;  // mm, TNC 430 p. 468
+constexpr int kDecimals = 3;                 // of F and S: TNC 430 p. 468
+constexpr double kLongestDwell = 3600.0;     // s, TNC 430 p. 468
+constexpr double kMaxPosition = 99999.9999;  // mm, TNC 430 p. 468
 
 class Heidenhain final : public DialectPrinter {
  public:
@@ -76,7 +76,7 @@ class Heidenhain final : public DialectPrinter {
   }
 
   void motion(const DialectMotion& motion) override {
-    check_positions(motion, kMostPosition);
+    check_positions(motion, kMaxPosition);
     if (!motion.is_place) check_frame(motion);
     check_rotation(motion);
     // "Straight line at rapid traverse" is G00: iTNC 530 (60642x-03) ISO p. 211. Of FMAX none was
@@ -104,7 +104,7 @@ class Heidenhain final : public DialectPrinter {
 
   // Touch probe cycle 0; feed and range are those of the control's table of touch probes (M).
   void probe(const DialectMotion& motion, const DialectMotion& from) override {
-    check_positions(from, kMostPosition);
+    check_positions(from, kMaxPosition);
     const auto& [axis, to] = motion.words.front();
     const auto begin = std::find_if(from.words.begin(), from.words.end(),
                                     [axis = axis](const auto& word) { return word.first == axis; });

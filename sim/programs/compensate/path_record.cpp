@@ -13,8 +13,8 @@
 namespace servomill::sim::programs {
 namespace {
 
-constexpr double kApart = 1e-3;      // m
-constexpr double kMostPlaces = 1e4;  // of one block
+constexpr double kApart = 1e-3;     // m
+constexpr double kMaxPlaces = 1e4;  // of one block
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void PathRecord::add(const Step& step, const Correction& correction) {
   if (!step.is_corrected) return;
   for (const FittedBlock& block : step.blocks) {
     const double length = (block.t_end - block.t_begin) * step.programmed.length();
-    const int n = 1 + static_cast<int>(std::min(length / kApart, kMostPlaces));
+    const int n = 1 + static_cast<int>(std::min(length / kApart, kMaxPlaces));
     for (int i = 1; i < n && step.move->kind != MoveKind::rapid; ++i) {
       const double t = block.t_begin + (block.t_end - block.t_begin) * i / n;
       add_place(step, t, corrected(step.programmed, correction, t), false);

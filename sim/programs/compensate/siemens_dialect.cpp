@@ -11,9 +11,9 @@ namespace {
 
 using controllers::fixed_text;
 
-constexpr std::size_t kMostNumbered = 99'999'999;  // N has nine digits, tens of them are used
-constexpr double kMostPosition = 999999.999;       // M
-constexpr double kMostTilt = 1e-3;  // mm; of a circle through points, against a plane of two axes
+constexpr std::size_t kMaxNumbered = 99'999'999;  // N has nine digits, tens of them are used
+constexpr double kMaxPosition = 999999.999;       // M
+constexpr double kMaxTilt = 1e-3;  // mm; of a circle through points, against a plane of two axes
 
 class Siemens final : public IsoDialect {
  public:
@@ -48,7 +48,7 @@ class Siemens final : public IsoDialect {
   bool takes_arc(const DialectMotion& motion) const override {
     const bool is_in_XY = motion.arc->is_in_XY();
     const ArcSweep& path = motion.arc->path;
-    if (!is_in_XY && std::abs(path.along_end - path.along_begin) > kMostTilt) return false;
+    if (!is_in_XY && std::abs(path.along_end - path.along_begin) > kMaxTilt) return false;
     return (is_in_XY && !motion.names(Axis::Z)) || modes_.length == edge(motion);
   }
   std::string_view why_lines() const override {
@@ -57,7 +57,7 @@ class Siemens final : public IsoDialect {
   }
 
   void motion(const DialectMotion& motion) override {
-    check_positions(motion, kMostPosition);
+    check_positions(motion, kMaxPosition);
     // 6FC5398-2EP40-0BA0 p. 181: G0 under G64 is a line, under G60 where RTLION is in force
     if (stops_at_ends_ && motion.may_leave_its_line()) {
       assume(
@@ -85,7 +85,7 @@ class Siemens final : public IsoDialect {
   // Measuring with delete distance-to-go: 840D sl, Programming Manual Job
   // planning 03/2006, 6FC5398-2BP10-1BA0, section 5.7 (p. 5-24).
   void probe(const DialectMotion& motion, const DialectMotion&) override {
-    check_positions(motion, kMostPosition);
+    check_positions(motion, kMaxPosition);
     put(motion_text(motion, "MEAS=1"));
     put("STOPRE");
     assume("the touch probe is probe 1 of MEAS");
@@ -138,7 +138,7 @@ class Siemens final : public IsoDialect {
     std::string out;
     std::size_t blocks = 0;
     for (const std::string& line : lines_) blocks += line.front() != ';' ? 1 : 0;
-    const std::size_t step = blocks > kMostNumbered ? 1000 : 1;
+    const std::size_t step = blocks > kMaxNumbered ? 1000 : 1;
     std::size_t n = 0;
     for (const std::string& line : lines_) {
       const bool has_number = line.front() != ';' && n++ % step == 0;

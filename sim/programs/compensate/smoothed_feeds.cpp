@@ -14,10 +14,10 @@
 namespace servomill::sim::programs {
 namespace {
 
-constexpr std::size_t kMostBlocks = 200'000;  // some hundred bytes each
-constexpr std::size_t kLongestRun = 20'000;   // blocks; then the motion is taken to stop
-constexpr double kApart = 50e-6;              // m, of samples, about
-constexpr double kMostSamples = 2e5;          // of a run
+constexpr std::size_t kMaxBlocks = 200'000;  // some hundred bytes each
+constexpr std::size_t kLongestRun = 20'000;  // blocks; then the motion is taken to stop
+constexpr double kApart = 50e-6;             // m, of samples, about
+constexpr double kMaxSamples = 2e5;          // of a run
 
 // Distance of a point from the blocks around one of them.
 double distance(const Eigen::Vector3d& p, const std::vector<MoveCurve>& curves, std::size_t near) {
@@ -42,7 +42,7 @@ SmoothedFeeds::SmoothedFeeds(const model::MachineSettings& machine, double smoot
 }
 
 void SmoothedFeeds::add(const Step& step) {
-  is_cut_short_ |= blocks_ >= kMostBlocks;
+  is_cut_short_ |= blocks_ >= kMaxBlocks;
   if (!has_limits_ || is_cut_short_ || !(step.move->feed > 0.0)) return;
   const WorkFrame& frame = step.programmed.frame;
   if (run_.empty()) begin_ = at_ = frame.machine(step.begin);
@@ -93,7 +93,7 @@ SmoothedFeeds::Plan SmoothedFeeds::plan(double tolerance) const {
     from = move.end_machine;
   }
   Plan out{trajectory.duration(), 0.0};
-  const double samples = std::clamp(moves.back().s_end / kApart, 10.0, kMostSamples);
+  const double samples = std::clamp(moves.back().s_end / kApart, 10.0, kMaxSamples);
   controllers::Trajectory::Cursor cursor;
   for (double i = 0.0; i <= samples; i += 1.0) {
     const auto sample = trajectory.at(out.time * i / samples, cursor);

@@ -109,8 +109,8 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools) {
   const bool has_number = equals != std::string::npos;
   const double number =
       has_number ? config::plain_number(text.substr(0, equals)).value_or(0.0) : 0.0;
-  constexpr double kMost = 99999.0;
-  if (number < 1.0 || number > kMost || number != std::floor(number)) {
+  constexpr double kMax = 99999.0;
+  if (number < 1.0 || number > kMax || number != std::floor(number)) {
     throw InputError(place, "must be NUMBER=LENGTH of a tool, such as 1=50 (in mm) or \"1=50 mm\"");
   }
   const config::ScaledText length =

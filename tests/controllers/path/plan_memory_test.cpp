@@ -67,17 +67,17 @@ void expect_bounded(const char* what, const Memory& one, const Memory& twice, co
 // Ten intervals of a time law a line, whose points took 11 000 bytes more.
 TEST(PlanMemory, OfLongLinesIsBounded) {
   constexpr std::size_t kLines = 4000;
-  constexpr Memory kMost = {1800.0, 900.0};
+  constexpr Memory kMax = {1800.0, 900.0};
   const auto moves = [](std::size_t n) { return surface(n, 0.6 * mm, 4.0 * mm, 10 * mm); };
-  expect_bounded("long lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMost);
+  expect_bounded("long lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMax);
 }
 
 // Vertices, windows and spans: 560 bytes when each of them said all about itself.
 TEST(PlanMemory, OfShortLinesIsBounded) {
   constexpr std::size_t kLines = 60'000;
-  constexpr Memory kMost = {250.0, 150.0};
+  constexpr Memory kMax = {250.0, 150.0};
   const auto moves = [](std::size_t n) { return surface(n, 0.05 * mm, 0.2 * mm, 50 * mm); };
-  expect_bounded("short lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMost);
+  expect_bounded("short lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMax);
 }
 
 }  // namespace

@@ -195,7 +195,8 @@ TEST(InclinedAxes, JointOffsetMovesTheIdealTipByTheVolumetricError) {
     if (number_of_linear_axes(chain) < 3) continue;
     ErrorModel errors = random_errors(random, 1e-4);
     for (const bool rotary_axes_are_ideal : {false, true}) {
-      if (rotary_axes_are_ideal) {  // the straight way, where there is no rotary axis in between
+      if (rotary_axes_are_ideal) {  // the linear-axis path, where there is no rotary axis in
+                                    // between
         for (const Axis a : {Axis::A, Axis::B, Axis::C}) {
           const auto i = static_cast<std::size_t>(index_of(a));
           errors.components[i] = {};

@@ -52,7 +52,7 @@ TEST(PoseInverse, OfAMachineWithoutErrorsIsTheIdealOneWithoutAStep) {
 // by a hundred times the errors.
 TEST(PoseInverse, MeetsTipAndToolAxisInFourStepsForEveryKindOfMachine) {
   constexpr int kPoses = 600;
-  constexpr int kMostSteps = 4;  // promised by the issue
+  constexpr int kMaxSteps = 4;  // promised by the issue
   constexpr double kSpread = 0.1;
   Uniform random(92);
   int most = 0, counted = 0;
@@ -67,7 +67,7 @@ TEST(PoseInverse, MeetsTipAndToolAxisInFourStepsForEveryKindOfMachine) {
       if (spread(chain, Q, p_ST) < kSpread) continue;
       const TrueJoints found = nonideal_inverse(model, InverseKinematics(chain), P, p_ST, Q);
       ASSERT_TRUE(found.is_reached()) << kind.name << " " << Q.transpose();
-      ASSERT_LE(found.steps, kMostSteps) << kind.name << " " << Q.transpose();
+      ASSERT_LE(found.steps, kMaxSteps) << kind.name << " " << Q.transpose();
       ASSERT_FALSE(found.is_singular);
       ++counted;
       most = std::max(most, found.steps);

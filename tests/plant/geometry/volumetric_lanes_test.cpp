@@ -256,27 +256,27 @@ TEST(VolumetricLanes, OffsetsMoveTheIdealTipByTheErrorOfProductsOfMatrices) {
   });
 }
 
-TEST(VolumetricLanes, MostMachinesGoTheStraightWay) {
-  const auto is_straight = [](const char* text, ErrorName name) {
+TEST(VolumetricLanes, MostMachinesTakeTheLinearAxisPath) {
+  const auto has_linear_axes_only = [](const char* text, ErrorName name) {
     ErrorModel errors;
     if (name.is_location) {
       errors.location(name) = 1e-5;
     } else {
       errors.component(name) = constant(1e-5);
     }
-    return VolumetricEvaluation(make_chain(parse_structure(text)), errors).is_straight();
+    return VolumetricEvaluation(make_chain(parse_structure(text)), errors).has_linear_axes_only();
   };
   // linear axes in a row, of whatever order and side, which alone have errors
   for (const char* text : {"[w b X Y Z t]", "[w b Z X Y t]", "[w C' B' X b Y Z t]",
                            "[w Z' Y' X' b C A t]", "[w C' b Y Z X A t]"}) {
-    EXPECT_TRUE(is_straight(text, "EAX"_err)) << text;
-    EXPECT_TRUE(is_straight(text, "EC0Y"_err)) << text;
+    EXPECT_TRUE(has_linear_axes_only(text, "EAX"_err)) << text;
+    EXPECT_TRUE(has_linear_axes_only(text, "EC0Y"_err)) << text;
   }
   // a rotary axis between, one with errors, two linear axes
-  EXPECT_FALSE(is_straight("[w X b B Y Z t]", "EAX"_err));
-  EXPECT_FALSE(is_straight("[w C' B' X b Y Z t]", "EXC"_err));
-  EXPECT_FALSE(is_straight("[w b X Y Z C A t]", "EB0C"_err));
-  EXPECT_FALSE(is_straight("[w b X Y t]", "EAX"_err));
+  EXPECT_FALSE(has_linear_axes_only("[w X b B Y Z t]", "EAX"_err));
+  EXPECT_FALSE(has_linear_axes_only("[w C' B' X b Y Z t]", "EXC"_err));
+  EXPECT_FALSE(has_linear_axes_only("[w b X Y Z C A t]", "EB0C"_err));
+  EXPECT_FALSE(has_linear_axes_only("[w b X Y t]", "EAX"_err));
 }
 
 TEST(VolumetricLanes, AgreeOnAllInstructionSets) {
@@ -294,7 +294,7 @@ TEST(VolumetricLanes, AgreeOnAllInstructionSets) {
         evaluation.tool(Q[n], p_ST, alone.data());
         for (std::size_t i = 0; i < 6; ++i) ASSERT_EQ(many[6 * n + i], alone[i]) << name_of(level);
       }
-      if (!evaluation.is_straight()) continue;
+      if (!evaluation.has_linear_axes_only()) continue;
       evaluation.offsets(Q, p_ST, many.data() + 48);
       for (std::size_t n = 0; n < Q.size(); ++n) {
         std::array<double, 3> alone;

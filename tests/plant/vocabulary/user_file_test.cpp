@@ -26,7 +26,7 @@ class UserFile : public testing::Test {
   fs::path folder_ = fs::path(testing::TempDir()) / ("user_file_" + std::to_string(getpid()));
 };
 
-std::string why_not(const std::string& path, std::uintmax_t most = kMostBytesOfFile) {
+std::string why_not(const std::string& path, std::uintmax_t most = kMaxBytesOfFile) {
   std::string why;
   read_input(path, most, why);
   return why;
@@ -35,9 +35,9 @@ std::string why_not(const std::string& path, std::uintmax_t most = kMostBytesOfF
 TEST_F(UserFile, IsReadWhole) {
   std::string text(3'000'001, 'x'), why;
   text[7] = '\0';
-  EXPECT_EQ(read_input(file("text", text), kMostBytesOfFile, why), text);
+  EXPECT_EQ(read_input(file("text", text), kMaxBytesOfFile, why), text);
   EXPECT_EQ(why, "");
-  EXPECT_EQ(read_input(file("empty", ""), kMostBytesOfFile, why), "");
+  EXPECT_EQ(read_input(file("empty", ""), kMaxBytesOfFile, why), "");
   EXPECT_EQ(why, "");
 }
 

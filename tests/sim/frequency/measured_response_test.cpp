@@ -185,7 +185,7 @@ TEST(MeasuredResponse, SaysWhenTheCurrentIsLimited) {
 // may add to output and input; high frequencies of C move less than a step of its encoder.
 TEST(MeasuredResponse, TellsWhatTheEncodersDoNotResolve) {
   constexpr int kC = 4;
-  constexpr double kTol = 2.5 * kMostAdded;
+  constexpr double kTol = 2.5 * kMaxAdded;
   const model::MachineSettings machine = hsm600u();
   const std::vector<double> wanted = {30.0, 300.0, 1000.0, 2000.0};
   const auto count = [&](const Of& of, double share) {

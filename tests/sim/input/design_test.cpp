@@ -247,10 +247,10 @@ TEST(ReadSweep, RefusesRangesThatAreNone) {
 
 TEST(ReadSweep, RefusesMoreKeysToSampleThanThereAreDimensions) {
   std::string toml = "samples = { design = \"random\", count = 3 }\n";
-  for (std::size_t k = 0; k < model::kMostDimensions; ++k) {
+  for (std::size_t k = 0; k < model::kMaxDimensions; ++k) {
     toml += "a" + std::to_string(k) + " = { choice = [1] }\n";
   }
-  EXPECT_EQ(design_of(toml).sampled_dimensions, model::kMostDimensions);
+  EXPECT_EQ(design_of(toml).sampled_dimensions, model::kMaxDimensions);
   for (const std::string form : {"{ choice = [1] }", "{ uniform = [0, 1] }"}) {
     EXPECT_EQ(refusal(toml + "b = " + form + "\n"),
               "s.toml:3670:5: error: sweep.b = {...}; exceeds the limit of 3667 sampled keys");
@@ -288,7 +288,7 @@ TEST(ReadSweep, RefusesSamplesWithoutDistributionAndTheOtherWayRound) {
 }
 
 TEST(ReadSweep, RefusesMoreThanTenMillionPoints) {
-  EXPECT_EQ(design_of("a = { linear = [0, 1], count = 10_000_000 }\n").size(), model::kMostPoints);
+  EXPECT_EQ(design_of("a = { linear = [0, 1], count = 10_000_000 }\n").size(), model::kMaxPoints);
   EXPECT_EQ(refusal("a = { linear = [0, 1], count = 10_000_001 }\n"),
             "s.toml:1:1: error: sweep: has 10000001 points; must be <= 10000000");
   EXPECT_EQ(refusal("a = { linear = [0, 1], count = 9_000_000_000_000_000 }\n"

@@ -60,7 +60,7 @@ void expect_equal(const Series& series, const std::vector<double>& wanted) {
 
 TEST(SeriesSpool, GivesItsRowsBackBitForBit) {
   const std::vector<double> wanted = rows();
-  for (const int compression : {kNoCompression, 1, kMostCompression}) {
+  for (const int compression : {kNoCompression, 1, kMaxCompression}) {
     SCOPED_TRACE(compression);
     expect_equal(spooled(compression, wanted), wanted);
   }

@@ -147,10 +147,10 @@ TEST_F(SeriesFile, OpensInH5pyAndXarray) {
 // before that.
 std::size_t fill(const std::string& path, std::string& message) {
   constexpr std::size_t kBlock = 1024;
-  constexpr std::size_t kMostRows = 4'000'000;
+  constexpr std::size_t kMaxRows = 4'000'000;
   OutputFile out(path, false);
   SeriesWriter writer(out.root().group("servo"), layout(kBlock));
-  for (std::size_t n = 0; n < kMostRows; ++n) {
+  for (std::size_t n = 0; n < kMaxRows; ++n) {
     try {
       writer.append(row(n));
     } catch (const system::SystemError& error) {
@@ -158,7 +158,7 @@ std::size_t fill(const std::string& path, std::string& message) {
       return n + 1 - 2 * kBlock;
     }
   }
-  return kMostRows;
+  return kMaxRows;
 }
 
 TEST_F(SeriesFile, OnAFullDiskSaysSoAndKeepsWhatWasWritten) {
@@ -296,7 +296,7 @@ TEST_F(SeriesFile, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST_F(SeriesFile, HoldsTheSameAtEveryLevelOfCompression) {
-  for (int level = kNoCompression; level <= kMostCompression; ++level) {
+  for (int level = kNoCompression; level <= kMaxCompression; ++level) {
     {
       OutputFile out(path("out.h5"), true);
       SeriesLayout leveled = layout(7);

@@ -193,7 +193,7 @@ TEST(RunBatch, HoldsNoMoreRowsAtOnceThanItMay) {
 }
 
 TEST(RowsAtOnce, ShareTheMemoryAmongTheThreads) {
-  EXPECT_LE(run::rows_at_once(1), run::kMostRows);
+  EXPECT_LE(run::rows_at_once(1), run::kMaxRows);
   EXPECT_GT(run::rows_at_once(1000), 0.0);
   EXPECT_DOUBLE_EQ(run::rows_at_once(100000), run::rows_at_once(200000) * 2.0);
 }

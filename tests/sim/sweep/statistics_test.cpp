@@ -35,8 +35,8 @@ TEST(Distribution, GivesNoNumberWhereThereAreTooFew) {
   const Distribution one = distribution_of(std::vector<double>{1.0});
   EXPECT_EQ(one.mean, 1.0);
   EXPECT_TRUE(std::isnan(one.deviation));
-  EXPECT_TRUE(std::isnan(distribution_of(std::vector<double>(kLeastForInterval - 1, 1.0)).low));
-  EXPECT_EQ(distribution_of(std::vector<double>(kLeastForInterval, 1.0)).low, 1.0);
+  EXPECT_TRUE(std::isnan(distribution_of(std::vector<double>(kMinForInterval - 1, 1.0)).low));
+  EXPECT_EQ(distribution_of(std::vector<double>(kMinForInterval, 1.0)).low, 1.0);
 }
 
 TEST(FormatStatistics, ShowsTheGridOnlyWhereThereIsOne) {

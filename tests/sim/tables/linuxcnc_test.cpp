@@ -18,8 +18,8 @@ namespace {
 
 using plant::operator""_err;
 
-constexpr std::size_t kMostTriplets = 256;  // EMCMOT_COMP_SIZE
-constexpr std::size_t kLineLength = 255;    // LINELEN, with the end of the line
+constexpr std::size_t kMaxTriplets = 256;  // EMCMOT_COMP_SIZE
+constexpr std::size_t kLineLength = 255;   // LINELEN, with the end of the line
 
 struct JointCompensation {
   struct Triplet {
@@ -37,7 +37,7 @@ struct JointCompensation {
       EXPECT_LT(line.size() + 1, kLineLength);
       if (std::sscanf(line.c_str(), "%lf %lf %lf", &nominal, &up, &down) != 3) break;
       if (type == 0) up = nominal - up, down = nominal - down;
-      if (triplets.size() >= kMostTriplets) {
+      if (triplets.size() >= kMaxTriplets) {
         complaint = "too many compensation entries";
       } else if (!triplets.empty() && nominal <= triplets.back().nominal) {
         complaint = "compensation values must increase";
@@ -83,8 +83,8 @@ TEST_P(BothTypes, EveryLineIsLoaded) {
     const std::string text = file_named(table_files(tables), name).text;
     const JointCompensation joint(text, GetParam());
     EXPECT_EQ(joint.complaint, "");
-    EXPECT_EQ(joint.triplets.size(), kMostTriplets);
-    EXPECT_EQ(lines_in(text), kMostTriplets);
+    EXPECT_EQ(joint.triplets.size(), kMaxTriplets);
+    EXPECT_EQ(lines_in(text), kMaxTriplets);
   }
 }
 

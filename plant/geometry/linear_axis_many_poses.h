@@ -1,30 +1,30 @@
-/// The straight kernel for many poses: in rows by joint, or one after the other. Only that kernel
-/// includes this.
+/// The linear-axis kernel for many poses: in rows by joint, or one after the other. Only that
+/// kernel includes this.
 #pragma once
 
 #include <cstddef>
 #include <cstring>
 #include <utility>
 
-#include "plant/geometry/straight_formulas.h"
+#include "plant/geometry/linear_axis_formulas.h"
 
 namespace servomill::plant {
 namespace {  // one copy for each instruction set
 
 // Numbers of poses, a row for each axis in the order of the axes.
 struct Rows {
-  const double* q[kStraightAxes];
-  double* D[kStraightAxes];  // along their directions
+  const double* q[kLinearAxes];
+  double* D[kLinearAxes];  // along their directions
 };
 
 template <class N>
-SERVOMILL_INLINE Vector<N> load_rows(const double* const (&rows)[kStraightAxes], std::size_t n) {
+SERVOMILL_INLINE Vector<N> load_rows(const double* const (&rows)[kLinearAxes], std::size_t n) {
   return {load_number<N>(rows[0] + n), load_number<N>(rows[1] + n), load_number<N>(rows[2] + n)};
 }
 
 // The tips of poses from n on.
 template <class N>
-SERVOMILL_INLINE Vector<N> tips(const StraightProgram& program, const StraightData* data,
+SERVOMILL_INLINE Vector<N> tips(const LinearAxisProgram& program, const LinearAxisData* data,
                                 const double* tip, std::size_t n) {
   const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
   if (data == nullptr) return {all<N>(tip[j0]), all<N>(tip[j1]), all<N>(tip[j2])};
@@ -34,7 +34,7 @@ SERVOMILL_INLINE Vector<N> tips(const StraightProgram& program, const StraightDa
 // Poses from n on, as many as N has lanes. Writes what it finds in any case: without that the
 // compiler would put off half of the work until it knows the answer.
 template <class N, Parts has>
-SERVOMILL_INLINE bool try_rows(const StraightProgram& program, const StraightData* data,
+SERVOMILL_INLINE bool try_rows(const LinearAxisProgram& program, const LinearAxisData* data,
                                const double* tip, std::size_t n, const Rows& rows) {
   const Vector<N> q = load_rows<N>(rows.q, n), P = tips<N>(program, data, tip, n);
   Vector<N> D;
@@ -42,7 +42,7 @@ SERVOMILL_INLINE bool try_rows(const StraightProgram& program, const StraightDat
   if constexpr (has.way == Way::cubic) {
     is_done = try_offset<has>(program, q, P, NoTerms(), D);
   } else {
-    Register sums[kStraightAxes][kErrorComponents];
+    Register sums[kLinearAxes][kErrorComponents];
     find_terms(program.functions, data != nullptr ? data->tables : nullptr, n, q.v, sums);
     const auto terms =
         [&](std::size_t axis, std::size_t component)
@@ -53,14 +53,14 @@ SERVOMILL_INLINE bool try_rows(const StraightProgram& program, const StraightDat
   return is_done;
 }
 
-[[gnu::noinline]] void rows_in_general(const StraightProgram& program, const StraightData* data,
+[[gnu::noinline]] void rows_in_general(const LinearAxisProgram& program, const LinearAxisData* data,
                                        const double* tip, std::size_t n, const Rows& rows) {
   try_rows<Register, kEverything>(program, data, tip, n, rows);
 }
 
 // All `poses`, a multiple of eight; eight where there are data.
 template <Parts has>
-SERVOMILL_INLINE void solve_rows(const StraightProgram& program, const StraightData* data,
+SERVOMILL_INLINE void solve_rows(const LinearAxisProgram& program, const LinearAxisData* data,
                                  const double* tip, std::size_t poses, const Rows& rows) {
   std::size_t n = 0;
   if constexpr (has.way == Way::cubic) {
@@ -78,7 +78,7 @@ SERVOMILL_INLINE void solve_rows(const StraightProgram& program, const StraightD
 }
 
 template <Parts has>
-void lanes(const StraightProgram& program, const StraightData* data, const double* tip,
+void lanes(const LinearAxisProgram& program, const LinearAxisData* data, const double* tip,
            const LaneArray* Q, LaneArray* out) {
   const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
   solve_rows<has>(program, data, tip, kLaneWidth,
@@ -150,7 +150,7 @@ SERVOMILL_INLINE void put_poses(const Register (&xyz)[3], double* out,
 
 // Many at a time: each of the three loops keeps the processor busy by itself.
 template <Parts has>
-void many(const StraightProgram& program, const StraightData* data, const double* tip,
+void many(const LinearAxisProgram& program, const LinearAxisData* data, const double* tip,
           const double* Q, std::size_t blocks, double* out) {
   constexpr std::size_t kAtATime = 4 * kLaneWidth;
   const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];

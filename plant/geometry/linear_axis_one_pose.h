@@ -1,22 +1,22 @@
-/// The straight kernel for one pose: with directions in lanes where the processor has FMA. Only
+/// The linear-axis kernel for one pose: with directions in lanes where the processor has FMA. Only
 /// that kernel includes this.
 #pragma once
 
 #include <cstddef>
 #include <type_traits>
 
-#include "plant/geometry/straight_formulas.h"
+#include "plant/geometry/linear_axis_formulas.h"
 
 namespace servomill::plant {
 namespace {  // one copy for each instruction set
 
 // Numbers along X, Y, Z in the order of the axes.
-SERVOMILL_INLINE Vector<double> in_order(const StraightProgram& program, const double* xyz) {
+SERVOMILL_INLINE Vector<double> in_order(const LinearAxisProgram& program, const double* xyz) {
   return {xyz[program.joint[0]], xyz[program.joint[1]], xyz[program.joint[2]]};
 }
 
 template <Parts has>
-SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPower* tables,
+SERVOMILL_INLINE bool try_one(const LinearAxisProgram& program, const VolumetricPower* tables,
                               const double* tip, const double* Q, double* out) {
   const Vector<double> q = in_order(program, Q), P = in_order(program, tip);
   Vector<double> D;
@@ -34,8 +34,9 @@ SERVOMILL_INLINE bool try_one(const StraightProgram& program, const VolumetricPo
   return is_done;
 }
 
-[[gnu::noinline]] void one_in_general(const StraightProgram& program, const VolumetricPower* tables,
-                                      const double* tip, const double* Q, double* out) {
+[[gnu::noinline]] void one_in_general(const LinearAxisProgram& program,
+                                      const VolumetricPower* tables, const double* tip,
+                                      const double* Q, double* out) {
   try_one<kEverything>(program, tables, tip, Q, out);
 }
 
@@ -96,9 +97,9 @@ SERVOMILL_INLINE Four cubic_value(const double* c3, const double* c2, const doub
 }
 
 template <Parts has>
-SERVOMILL_INLINE bool try_cubic(const StraightProgram& program, const double* tip, const double* Q,
-                                double* out) {
-  const StraightPower* const p = program.powers;
+SERVOMILL_INLINE bool try_cubic(const LinearAxisProgram& program, const double* tip,
+                                const double* Q, double* out) {
+  const LinearAxisPower* const p = program.powers;
   const std::size_t j0 = program.joint[0], j1 = program.joint[1], j2 = program.joint[2];
   const Four q0 = all4(Q[j0]), q1 = all4(Q[j1]), q2 = all4(Q[j2]);
   const auto half_turn = [&](auto axis, const Four& q) SERVOMILL_INLINE_LAMBDA {
@@ -142,7 +143,7 @@ SERVOMILL_INLINE bool try_cubic(const StraightProgram& program, const double* ti
 #endif
 
 template <Parts has>
-void one(const StraightProgram& program, const VolumetricPower* tables, const double* tip,
+void one(const LinearAxisProgram& program, const VolumetricPower* tables, const double* tip,
          const double* Q, double* out) {
   bool is_done;
 #ifdef __FMA__

@@ -1,20 +1,20 @@
-#include "plant/geometry/straight_kernel.h"
+#include "plant/geometry/linear_axis_kernel.h"
 
-#include "plant/geometry/straight_many_poses.h"
-#include "plant/geometry/straight_one_pose.h"
+#include "plant/geometry/linear_axis_many_poses.h"
+#include "plant/geometry/linear_axis_one_pose.h"
 
 namespace servomill::plant {
 namespace {
 
 template <Parts has>
-StraightKernel kernel() {
+LinearAxisKernel kernel() {
   return {&one<has>, &many<has>, &lanes<has>};
 }
 
 }  // namespace
 
 template <>
-StraightKernel make_straight_kernel<SERVOMILL_LEVEL>(const StraightProgram& of) {
+LinearAxisKernel make_linear_axis_kernel<SERVOMILL_LEVEL>(const LinearAxisProgram& of) {
   if (!of.functions.is_cubic) {
     return of.functions.has_angles ? kernel<Parts{Way::small, true, true, true}>()
                                    : kernel<Parts{Way::small, false, false, true}>();

@@ -1,11 +1,11 @@
-/// The deviation of the tool behind three linear axes: formulas of the straight kernel, for one
+/// The deviation of the tool behind three linear axes: formulas of the linear-axis kernel, for one
 /// pose and for poses in lanes. Only that kernel includes this.
 #pragma once
 
 #include <cstddef>
 
 #include "plant/geometry/geometric_errors_kernel.h"
-#include "plant/geometry/straight_kernel.h"
+#include "plant/geometry/linear_axis_kernel.h"
 
 namespace servomill::plant {
 namespace {  // one copy for each instruction set
@@ -54,7 +54,7 @@ constexpr bool is_factor_last(std::size_t axis) { return axis == 0; }
 
 // Powers of q beyond the zeroth. values(power): coefficients along three directions.
 template <Parts has, class N, class F>
-SERVOMILL_INLINE Vector<N> slope(const StraightProgram& program, const N& q, F values) {
+SERVOMILL_INLINE Vector<N> slope(const LinearAxisProgram& program, const N& q, F values) {
   const std::size_t degree = has.way == Way::cubic ? 3 : program.functions.degree;
   const auto first = values(degree);
   Vector<N> p{all<N>(first[0]), all<N>(first[1]), all<N>(first[2])};
@@ -74,12 +74,12 @@ SERVOMILL_INLINE Vector<N> slope(const StraightProgram& program, const N& q, F v
 // The deviation D behind an axis. terms(component): of harmonics and tables. t2_max: of all axes so
 // far, squares of half their turns.
 template <Parts has, std::size_t axis, class N, class Terms>
-SERVOMILL_INLINE void pass(const StraightProgram& program, const N& q, const Vector<N>& P,
+SERVOMILL_INLINE void pass(const LinearAxisProgram& program, const N& q, const Vector<N>& P,
                            Terms terms, Vector<N>& D, N& t2_max) {
-  const StraightPower* const powers = program.powers;
+  const LinearAxisPower* const powers = program.powers;
   Vector<N> u = P;
   if constexpr (has.levers) {
-    const StraightLever& lever = program.levers[axis];
+    const LinearAxisLever& lever = program.levers[axis];
     repeat<3>([&](auto i) SERVOMILL_INLINE_LAMBDA {
       u.v[i] = u.v[i] + fms(q, all<N>(lever.slope[i]), all<N>(lever.centre[i]));
     });
@@ -141,7 +141,7 @@ struct NoTerms {};
 
 // False where this way does not lead to the end. P: the tip before it passes the first axis.
 template <Parts has, class N, class Terms>
-SERVOMILL_INLINE bool try_offset(const StraightProgram& program, const Vector<N>& q, Vector<N> P,
+SERVOMILL_INLINE bool try_offset(const LinearAxisProgram& program, const Vector<N>& q, Vector<N> P,
                                  Terms terms, Vector<N>& D) {
   N t2_max{};
   pass<has, 0>(program, q.v[0], P, terms, D, t2_max);
