@@ -56,7 +56,7 @@ std::string common_key(const std::string& section, const std::string& key) {
   if (section == "errors") return "NAME";
   if (section == "program.subroutines") return "NAME";
   if (section == "program.parameters") return "#101";
-  if (section.ends_with("work_offset") || section.ends_with("start")) {
+  if (section.ends_with("work_offset") || section.ends_with("start") || section == "test.at") {
     return key.ends_with("_mm") ? "X_mm" : "C_deg";
   }
   return common_name(key);

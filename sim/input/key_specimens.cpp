@@ -384,6 +384,8 @@ name = "nominal"
 
 }  // namespace
 
-std::array<std::string_view, 3> key_specimens() { return {kFirst, kSecond, third_specimen()}; }
+std::array<std::string_view, 4> key_specimens() {
+  return {kFirst, kSecond, third_specimen(), test_specimen()};
+}
 
 }  // namespace servomill::sim::input

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -73,6 +74,20 @@ void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& pro
   refuse_unwritable(program.file, program.text());
 }
 
+// The program of tests; a resolved document holds it, too.
+void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
+                    config::Reader& table, model::ProgramSpec& program) {
+  table.raw("text");
+  if (table.raw("file") != nullptr)
+    table.fault("file", "has no effect: [[test]] makes the program");
+  program.file = "[[test]]";
+  if (std::any_of(tests.begin(), tests.end(),
+                  [](const auto& one) { return one->cycle.targets.empty(); })) {
+    return;  // its faults are reported
+  }
+  program.shared_text = std::make_shared<const std::string>(model::program_of(tests, layout));
+}
+
 // "#101", "#<name>" or "Q5"
 bool is_parameter_name(std::string_view key) {
   if (key.starts_with('Q')) return controllers::conversational::is_parameter_name(key);
@@ -127,9 +142,13 @@ std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fal
 }
 
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
-                                InputFiles& files) {
+                                InputFiles& files, const model::MachineTests& tests) {
   model::ProgramSpec program;
-  read_text(table, files, program);
+  if (tests.empty()) {
+    read_text(table, files, program);
+  } else {
+    use_program_of(tests, machine.chain.layout, table, program);
+  }
   const model::NcSettings& nc = machine.nc;
   program.reader = static_cast<controllers::Reader>(table.choice_or(
       "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));

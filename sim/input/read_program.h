@@ -7,15 +7,17 @@
 #include "sim/config/reader.h"
 #include "sim/input/input_files.h"
 #include "sim/model/machine.h"
+#include "sim/model/machine_test.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 
 /// Table [program]: file, reader, parameters, work offset, start and tools. A resolved document
 /// holds the texts of all files.
+/// @param tests  of the scenario; if there are any, the program is theirs, and there is no file
 /// @throws InputError if a file cannot be read or its text cannot be stored in a result file
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
-                                InputFiles& files);
+                                InputFiles& files, const model::MachineTests& tests);
 
 /// Program words such as X_mm = 1.5.
 /// @param layout  of the machine; empty where that could not be read: any words are then taken

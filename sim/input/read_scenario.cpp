@@ -18,6 +18,7 @@
 #include "sim/input/read_design.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/read_machine_test.h"
 #include "sim/input/read_nominal_part.h"
 #include "sim/input/read_probes.h"
 #include "sim/input/read_program.h"
@@ -53,8 +54,7 @@ class ScenarioReader {
     config::Reader machine = root.table("machine");
     out_.machine = read_machine(machine, &out_.errors);
     read_covariance(machine);
-    config::Reader program = root.table("program");
-    out_.program = read_program(program, out_.machine, files_);
+    read_tests_and_program(root);
     read_error_models(root);
     read_hardware(root);
     read_record(root, out_);
@@ -131,6 +131,17 @@ class ScenarioReader {
       toml += "[[sweep.samples.identified]]\n" + table_lines(one);
     }
     return config::Document::from_text(toml, "");
+  }
+
+  void read_tests_and_program(config::Reader& root) {
+    out_.tests = read_machine_tests(root, out_.machine.chain.layout);
+    config::Reader program =
+        out_.tests.empty() ? root.table("program") : root.table_or_empty("program");
+    const std::size_t before = root.faults();
+    out_.program = read_program(program, out_.machine, files_, out_.tests);
+    if (root.faults() > before) return;
+    auto faults = faults_of_travel(out_.tests, out_.machine, out_.program.work_offset);
+    if (!faults.empty()) throw InputError(std::move(faults));
   }
 
   // [machine.identified], which is there where a quantity needs it.

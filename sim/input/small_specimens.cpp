@@ -32,6 +32,79 @@ text = "M2\n"
 name = "nominal"
 )";
 
+// Tests of a machine, which make their own program.
+constexpr std::string_view kTests = R"(
+title = "tests"
+
+[machine]
+structure = "[w X b Z t]"
+[machine.nc]
+Kv = 50.0
+[machine.axis.X]
+drive = "rigid"
+lead_mm = 10.0
+motor_inertia = 9.6e-3
+moving_mass = 300.0
+Kt = 1.6
+i_max_A = 50.0
+velocity_bandwidth = 200.0
+travel_mm = [-100.0, 100.0]
+v_max = 0.6
+a_max = 6.0
+j_max = 100.0
+[machine.axis.Z]
+drive = "rigid"
+lead_mm = 10.0
+motor_inertia = 9.6e-3
+moving_mass = 300.0
+Kt = 1.6
+i_max_A = 50.0
+velocity_bandwidth = 200.0
+travel_mm = [-100.0, 100.0]
+v_max = 0.6
+a_max = 6.0
+j_max = 100.0
+
+[[test]]
+name = "X"
+standard = "iso230-2"
+axis = "X"
+from_mm = 0.0
+to_mm = 50.0
+target_count = 5
+target_spread_mm = 1.0
+runs = 5
+overrun_mm = 1.0
+feed = 0.02
+dwell_s = 1.0
+tool = 0
+seed = 1
+[test.at]
+Z_mm = 10.0
+[test.device]
+scale_uncertainty_um_per_m = 0.3
+target_uncertainty_um = 0.1
+resolution_um = 0.01
+misalignment_mrad = 0.5
+coefficient_per_K = 11.7e-6
+coefficient_uncertainty_per_K = 0.6e-6
+temperature_degC = 21.0
+temperature_uncertainty_K = 0.3
+variation_um = 0.4
+drift_um = 0.5
+set_up_um = 0.1
+
+[[test]]
+name = "Z"
+standard = "iso230-2"
+axis = "Z"
+targets_mm = [0.0, 10.0]
+feed = 0.02
+
+[[case]]
+name = "nominal"
+)";
+
 // A machine file with identified values, as a table of a scenario.
 constexpr std::string_view kIdentified = R"([machine]
 based_on = "start_machine.toml"
@@ -42,6 +115,8 @@ identified = { keys = ["solver_tolerance_nm"], units = ["nm"], values = [0.002],
 }  // namespace
 
 std::string_view third_specimen() { return kThird; }
+
+std::string_view test_specimen() { return kTests; }
 
 std::string_view identified_specimen() { return kIdentified; }
 

@@ -37,6 +37,8 @@ class TriangleMesh;
 
 namespace servomill::sim::model {
 
+struct MachineTest;  // sim/model/machine_test.h
+
 struct ProgramSpec {
   std::string file;  // as messages name it
   // of the program; what is made of a scenario shares it
@@ -148,6 +150,8 @@ struct Scenario {
   std::vector<metrology::ProbeSpec> probes;  // measured on the part of every case
   metrology::Cmm cmm;
   std::shared_ptr<const TouchProbe> touch_probe;  // in the spindle, for G38.2 ...; or none
+  // tests of the machine; if there are any, the program is theirs
+  std::vector<std::shared_ptr<const MachineTest>> tests;
   Tick record_period = 100;
   RecordSpec record;
   double settle_time = 0.1;  // s

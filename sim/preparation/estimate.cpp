@@ -1,4 +1,5 @@
 #include "sim/preparation/estimate.h"
+#include "sim/model/machine_test.h"
 
 #include <fmt/format.h>
 
@@ -139,12 +140,15 @@ std::vector<bool> sections_kept_whole(const model::Scenario& scenario,
                                       const std::vector<std::string>& sections) {
   std::vector<bool> out;
   for (const std::string& name : sections) {
-    out.push_back(std::any_of(scenario.quantities.begin(), scenario.quantities.end(),
-                              [&](const model::QuantitySpec& one) {
-                                return needs_every_row(one) &&
-                                       std::find(one.sections.begin(), one.sections.end(), name) !=
-                                           one.sections.end();
-                              }));
+    const auto& tests = scenario.tests;
+    const auto& quantities = scenario.quantities;
+    out.push_back(
+        std::any_of(tests.begin(), tests.end(),
+                    [&](const auto& one) { return one->name == name; }) ||
+        std::any_of(quantities.begin(), quantities.end(), [&](const model::QuantitySpec& one) {
+          return needs_every_row(one) &&
+                 std::find(one.sections.begin(), one.sections.end(), name) != one.sections.end();
+        }));
   }
   return out;
 }

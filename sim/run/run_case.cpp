@@ -5,7 +5,7 @@
 #include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
-
+#include "sim/run/machine_tests.h"
 namespace servomill::sim::run {
 namespace {
 
@@ -46,6 +46,11 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
+  if (out.result.outcome.finished) {
+    for (const auto& test : p.scenario.tests) {
+      out.tests.push_back(std::make_shared<const TestResult>(evaluate_test(*test, out.data())));
+    }
+  }
   for (std::string& note : notes_of_run(p, out.result.saturations)) {
     out.notes.push_back(std::move(note));
   }

@@ -13,12 +13,13 @@
 #include "sim/evaluation/probed_part.h"
 #include "sim/model/tip_uncertainty.h"
 #include "sim/preparation/touch.h"
-
 namespace servomill::sim::preparation {
 class PreparedCase;
 }  // namespace servomill::sim::preparation
 
 namespace servomill::sim::run {
+
+struct TestResult;  // sim/run/machine_tests.h
 
 struct CaseOutput {
   std::string name;
@@ -34,6 +35,7 @@ struct CaseOutput {
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
   std::vector<preparation::Touch> touches;        // of the program's probing moves
+  std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   evaluation::CaseData data() const;
 };
 

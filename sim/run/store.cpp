@@ -14,6 +14,7 @@
 #include "sim/records/series_writer.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
+#include "sim/run/store_tests.h"
 #include "sim/run/touch_record.h"
 
 namespace servomill::sim::run {
@@ -258,6 +259,7 @@ void RunStore::add(const CaseOutput& one) {
   }
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
+  if (!one.tests.empty()) write_tests(group.group("tests"), one.tests);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);

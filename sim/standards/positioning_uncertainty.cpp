@@ -5,6 +5,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/config/document.h"
 #include "sim/config/reader.h"
@@ -26,13 +27,20 @@ class ErrorTrials {
   }
 
   PositioningValues next() {
+    draw(-1.0);
+    return positioning_parameters(up_, down_);
+  }
+
+  // Deviations with the errors of one trial, times a sign.
+  void draw(double sign) {
     draw_common();
     up_ = test_.up;
     down_ = test_.down;
-    take_away(up_, test_.time_up);
-    take_away(down_, test_.time_down);
-    return positioning_parameters(up_, down_);
+    add(sign, up_, test_.time_up);
+    add(sign, down_, test_.time_down);
   }
+  const Eigen::ArrayXXd& up() const { return up_; }
+  const Eigen::ArrayXXd& down() const { return down_; }
 
  private:
   double normal(const std::optional<double>& standard) {
@@ -63,7 +71,7 @@ class ErrorTrials {
     drift_ = has(sources_, Source::drift) ? rectangular(c_.drift.value_or(0.0)) : 0.0;
   }
 
-  void take_away(Eigen::ArrayXXd& deviations, const Eigen::ArrayXXd& times) {
+  void add(double sign, Eigen::ArrayXXd& deviations, const Eigen::ArrayXXd& times) {
     const bool noise = has(sources_, Source::variation) || has(sources_, Source::resolution);
     const double variation =
         has(sources_, Source::variation) ? 0.5 * c_.variation.value_or(0.0) : 0.0;
@@ -73,7 +81,7 @@ class ErrorTrials {
       for (Eigen::Index i = 0; i < deviations.rows(); ++i) {
         double error = target_[i] + drift_ * (times(i, j) - 0.5);
         if (noise) error += rectangular(variation) + rectangular(resolution);
-        deviations(i, j) -= error;
+        deviations(i, j) += sign * error;
       }
     }
   }
@@ -161,16 +169,27 @@ PositioningUncertainty positioning_uncertainty(const PositioningTest& test,
   return out;
 }
 
-PositioningContributions read_contributions(const std::string& path) {
+PositioningTest read_by_device(PositioningTest test, const PositioningContributions& device,
+                               std::uint64_t seed) {
+  Sources all;
+  all.fill(true);
+  ErrorTrials errors(test, device, all, seed);
+  errors.draw(1.0);
+  Eigen::ArrayXXd up = errors.up(), down = errors.down();  // it refers to the test
+  test.up = std::move(up);
+  test.down = std::move(down);
+  return test;
+}
+
+PositioningContributions contributions_of(config::Reader& table, bool takes_angles) {
   using config::at_least;
-  const config::Document document = config::Document::from_file(path);
-  config::Reader table(document);
   const auto read = [&](std::string_view key, config::Quantity quantity) -> std::optional<double> {
     if (!table.has(key)) return std::nullopt;
     return table.real(key, quantity, {at_least(0.0)});
   };
   const auto deviation = [&](std::string_view length, std::string_view angle) {
-    return table.has(angle) ? read(angle, config::kAngle) : read(length, config::kLength);
+    return takes_angles && table.has(angle) ? read(angle, config::kAngle)
+                                            : read(length, config::kLength);
   };
   PositioningContributions out;
   out.scale = read("scale_uncertainty_um_per_m", config::kNumber);
@@ -190,6 +209,13 @@ PositioningContributions read_contributions(const std::string& path) {
   out.variation = deviation("variation_um", "variation_urad");
   out.drift = deviation("drift_um", "drift_urad");
   out.set_up = deviation("set_up_um", "set_up_urad");
+  return out;
+}
+
+PositioningContributions read_contributions(const std::string& path) {
+  const config::Document document = config::Document::from_file(path);
+  config::Reader table(document);
+  PositioningContributions out = contributions_of(table);
   table.finish();
   return out;
 }

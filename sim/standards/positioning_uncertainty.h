@@ -19,6 +19,10 @@
 
 #include "sim/standards/axis_positioning.h"
 
+namespace servomill::sim::config {
+class Reader;
+}  // namespace servomill::sim::config
+
 namespace servomill::sim::standards {
 
 /// Nothing: not known. Standard uncertainties (k = 1) unless said otherwise.
@@ -73,6 +77,14 @@ struct MonteCarloSettings {
 PositioningUncertainty positioning_uncertainty(const PositioningTest& test,
                                                const PositioningContributions& contributions,
                                                const MonteCarloSettings& settings);
+
+/// The test as a device reads it: each reading with the error of one trial added.
+PositioningTest read_by_device(PositioningTest test, const PositioningContributions& device,
+                               std::uint64_t seed);
+
+/// Contributions as keys of a table.
+/// @param takes_angles  false: of linear axes only, keys in urad are not known
+PositioningContributions contributions_of(config::Reader& table, bool takes_angles = true);
 
 /// Reads a file of contributions; keys: sim/standards/README.md.
 /// @throws InputError with all faults

@@ -5,12 +5,15 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/plugins.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine_test.h"
 #include "sim/preparation/estimate.h"
+#include "sim/run/machine_tests.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
 #include "sim/run/touch_record.h"
@@ -96,20 +99,58 @@ void write_touches(const sim::run::RunOutput& output, const Options& options) {
   }
 }
 
+void write_readings(const sim::run::RunOutput& output, const Options& options) {
+  const std::filesystem::path folder = options.get<std::string>("readings");
+  std::filesystem::create_directories(folder);
+  for (const sim::run::CaseOutput& one : output.cases) {
+    for (const auto& test : one.tests) {
+      sim::system::write_text_file(
+          (folder / fmt::format("{} {}.csv", one.name, test->name)).string(),
+          sim::run::readings_csv(test->readings), options.has("force"));
+    }
+  }
+}
+
+// Parameters of each test, the cases that finished side by side.
+void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& scenario) {
+  for (std::size_t k = 0; k < scenario.tests.size(); ++k) {
+    std::vector<std::string> names;
+    std::vector<const sim::run::TestResult*> results;
+    for (const sim::run::CaseOutput& one : output.cases) {
+      if (one.tests.empty()) continue;
+      names.push_back(one.name);
+      results.push_back(one.tests[k].get());
+    }
+    if (results.empty()) return;
+    const sim::standards::Report& report = results.front()->report;
+    fmt::print("\n{}, {}: {}\n{}", report.standard, scenario.tests[k]->name, report.headline,
+               sim::run::side_by_side(names, results));
+    for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
+  }
+}
+
 // Prints what a run has found; the exit status.
 int print_output(const sim::run::RunOutput& output, const Options& options,
                  const sim::model::Scenario& scenario, const std::string& path) {
   const bool json = options.has("json"), quiet = options.has("quiet");
   if (options.has("touches")) write_touches(output, options);
+  if (options.has("readings")) write_readings(output, options);
   bool finished = true;
   for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
   print_notes(output);
   if (json) {
     for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
+    for (const sim::run::CaseOutput& one : output.cases) {
+      for (const auto& test : one.tests) fmt::print("{}\n", sim::standards::json(test->report));
+    }
   } else if (!quiet) {
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
-    fmt::print("\n{}\nwritten to {}\n", sim::evaluation::format_table(output.comparison), path);
+    if (!output.comparison.empty() || scenario.tests.empty()) {
+      fmt::print("\n{}", sim::evaluation::format_table(output.comparison));
+    }
+    print_tests(output, scenario);
+    fmt::print("\nwritten to {}\n", path);
   }
   if (!finished && (json || quiet)) {
     for (const sim::run::CaseOutput& one : output.cases) {
@@ -132,6 +173,9 @@ void add_run_options(Options& options) {
   options.add()("touches", po::value<std::string>()->value_name("FOLDER"),
                 "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
                 "readings of kind touch");
+  options.add()("readings", po::value<std::string>()->value_name("FOLDER"),
+                "writes the readings of every [[test]] to FOLDER/CASE TEST.csv, as `servomill "
+                "evaluate` reads them");
   options.add()("json", "prints the comparison as one JSON object per line");
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
