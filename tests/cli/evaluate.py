@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import numpy as np
 
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
@@ -183,6 +184,48 @@ class Uncertainty(unittest.TestCase):
         self.assertRegex(printed, r"(?m)^A .* 88.8 +-  nm$")
         self.assertIn("U of E_up, E_down, E, M, A_up, A_down, A cannot be stated without scale_uncertainty or target_uncertainty, misalignment, "
                       "coefficient, coefficient_uncertainty, temperature, temperature_uncertainty", printed)
+
+
+class SimulatedTest(unittest.TestCase):
+    """scenarios/standards/positioning.toml: the sheet of the run is that of its readings."""
+
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = temporary.name
+        scenario = os.path.join(ROOT, "scenarios", "standards", "positioning.toml")
+        done = subprocess.run([SERVOMILL, "run", scenario, "-o", "out.h5", "--readings", "readings"], cwd=cls.folder, capture_output=True, text=True,
+                              check=False)
+        assert done.returncode == 0, done.stderr
+        cls.printed = done.stdout
+
+    def path(self, name):
+        return os.path.join(self.folder, "readings", name)
+
+    def test_parameters_of_the_run_are_those_of_its_readings(self):
+        with h5py.File(os.path.join(self.folder, "out.h5")) as file:
+            for case in ("as_it_is", "table"):
+                values, _ = parameters(self.path(f"{case} X.csv"), "--standard", "2")
+                stored = file[f"cases/{case}/tests/X"]
+                for symbol, value in values.items():
+                    self.assertAlmostEqual(stored[symbol][()] * 1e-6, value, delta=2e-12, msg=symbol)
+                deviations = stored["deviation_up"][()], stored["deviation_down"][()]
+                for symbol, value in iso230_2(*deviations).items():
+                    self.assertAlmostEqual(stored[symbol][()], value, delta=1e-9, msg=symbol)
+
+    def test_compensation_lowers_systematic_errors_and_leaves_lost_motion(self):
+        is_now, table = (parameters(self.path(f"{case} X.csv"), "--standard", "2")[0] for case in ("as_it_is", "table"))
+        # 20 um/m over 400 mm less a part of the periodic error of +-1.5 um, and 4 um of lost motion
+        self.assertGreater(is_now["E"], (8 + 4 - 3.5) * 1e-6)
+        self.assertLess(table["E"], (4 + 3.5) * 1e-6)
+        for values in (is_now, table):
+            self.assertAlmostEqual(abs(values["B_mean"]), 4e-6, delta=0.3e-6)
+
+    def test_the_sheets_of_both_cases_are_printed_side_by_side(self):
+        self.assertIn("ISO 230-2, X: 9 targets from 20 to 420 mm, 5 runs in both directions", self.printed)
+        self.assertRegex(self.printed, r"parameter +meaning +as_it_is +U \(k = 2\) +table +U \(k = 2\) +unit")
+        self.assertRegex(self.printed, r"(?m)^A +bi-directional positioning accuracy +[\d.]+ +[\d.]+ +[\d.]+ +[\d.]+ +um$")
 
 
 unittest.main()

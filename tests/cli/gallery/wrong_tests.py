@@ -32,6 +32,28 @@ def rows(direction, angles, more=""):
     return "".join(f"{direction},{angle},0{more}\n" for angle in angles)
 
 
+SIMULATED = """title = "a test"
+machine = "machine.toml"
+[[test]]
+name = "X"
+standard = "iso230-2"
+axis = "X"
+from_mm = 0
+to_mm = 100
+feed = "1 m/min"
+[test.device]
+resolution_um = 0.01
+[[case]]
+name = "nominal"
+"""
+
+
+def simulated(title, old, new):
+    """A scenario with a test of the machine, one thing of it changed."""
+    assert old in SIMULATED, old
+    return typed(title, "servomill check test.toml", write={"test.toml": SIMULATED.replace(old, new, 1)}, about=f"with {new!r} in place of {old!r}")
+
+
 TESTS = [
     readings("evaluate: a run is missing at one target", ("100.004", "")),
     readings("evaluate: one direction only", (GOOD[GOOD.index("backward"):], ""), stdout=True),
@@ -82,4 +104,13 @@ TESTS = [
     table("evaluate: tilt without its lever", "spindle.csv", "angle_deg,x_um,x2_um\n0,1,2\n", "servomill evaluate spindle.csv --standard 7"),
     table("evaluate: a sensor without its unit", "ball.csv", "direction,C_deg,radial\nccw,0,1\n",
           "servomill evaluate ball.csv --standard 10791-6"),
+    simulated("a test of an axis that there is not", 'axis = "X"', 'axis = "W"'),
+    simulated("a test of a rotary axis", 'axis = "X"', 'axis = "C"'),
+    simulated("a test beyond the travel", "to_mm = 100", "to_mm = 10000"),
+    simulated("targets that fall", "to_mm = 100", "to_mm = -100"),
+    simulated("targets spread over each other", "to_mm = 100", "to_mm = 100\ntarget_spread_mm = 15"),
+    simulated("two ways of naming targets", "to_mm = 100", "to_mm = 100\ntargets_mm = [0, 50]"),
+    simulated("a standard that is only evaluated", "iso230-2", "iso230-4"),
+    simulated("a test beside a program", "[[case]]", "[program]\nfile = \"part.ngc\"\n[[case]]"),
+    simulated("a misspelt contribution of the device", "resolution_um", "resolutoin_um"),
 ]
