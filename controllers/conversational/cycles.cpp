@@ -117,6 +117,7 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);
   }
+  open_cycle_ = -1;
   if (!is_one_of(kOfParameters, *number)) {
     fail(words[2].place, fmt::format("CYCL DEF {}: unknown cycle", *number));
   }
@@ -171,13 +172,15 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   const std::span<const HeidenhainWord> all(block.words);
   const auto rest = all.subspan(3);
   if (step == 0) {
+    if (!is_one_of(kOfSteps, number)) {
+      fail(all[2].place, fmt::format("CYCL DEF {}: unknown cycle", number));
+    }
     open_cycle_ = number;
     if (is_old_drilling(number)) {
       cycle_ = Cycle{number, {}, values_of(number), {}};
       is_modal_call_ = false;
     }
-    if (is_one_of(kOfSteps, number)) return;
-    fail(all[2].place, fmt::format("CYCL DEF {}: unknown cycle", number));
+    return;
   }
   if (open_cycle_ != number) {
     fail(all[2].place,

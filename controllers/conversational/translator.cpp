@@ -171,7 +171,7 @@ void Translator::execute(const HeidenhainBlock& block) {
     return;
   }
   if (is_program_word(block, "BEGIN")) fail("a second BEGIN PGM");
-  if (open_cycle_ != 0 && block.words.front().text != "CYCL") open_cycle_ = 0;
+  if (block.words.front().text != "CYCL") open_cycle_ = -1;
   const std::string& first = block.words.front().text;
   if (first == "L") return line(block);
   if (first == "CC") return pole(block);

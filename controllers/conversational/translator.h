@@ -306,7 +306,7 @@ class Translator {
   std::optional<Cycle> cycle_;
   bool is_modal_call_ = false;         // M89
   std::vector<PatternPoint> pattern_;  // of PATTERN DEF, in coordinates of the program
-  int open_cycle_ = 0;                 // of the old form, until its blocks are complete
+  int open_cycle_ = -1;                // of the old form, until its blocks are complete
 };
 
 }  // namespace servomill::controllers::conversational

@@ -148,6 +148,7 @@ void Interpreter::Machine::read_pending_line() {
     return;
   }
   if (!reading_.local_call()) return;
+  is_rewritten_ = false;  // its column is that of the program
   try {
     call_block(*reading_.local_call());
   } catch (const InputError&) {  // a block that fails has moved nothing

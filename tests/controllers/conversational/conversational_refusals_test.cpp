@@ -226,6 +226,14 @@ TEST(ConversationalRefusals, OfPrograms) {
             "t.h:3:1: error: calls nested deeper than 19");
 }
 
+// Steps of a cycle belong to its first block, which another cycle ends.
+TEST(ConversationalRefusals, AStepWithoutTheFirstBlockOfItsCycle) {
+  EXPECT_EQ(fault_of("CYCL DEF 0.2 DEPTH -10\n"),
+            "t.h:4:10: error: CYCL DEF 0.2 without CYCL DEF 0.0 before it");
+  const std::string other = "CYCL DEF 1.0 PECKING\nCYCL DEF 247 Q339=+1\nCYCL DEF 1.1 SET UP 2\n";
+  EXPECT_EQ(fault_of(other), "t.h:6:10: error: CYCL DEF 1.1 without CYCL DEF 1.0 before it");
+}
+
 TEST(ConversationalRefusals, EndlessProgramsEnd) {
   ProgramSetup setup = example_setup();
   setup.most_jumps = 100;

@@ -134,6 +134,13 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
   }
 }
 
+TEST(LocalSubprogram, IsFoundAtFaultWhereItIsCalled) {
+  ProgramSetup setup = usual_setup();
+  setup.reader = Reader::haas;
+  EXPECT_EQ(fault_of("G0 X1. M97 P30\nM2", setup),
+            "p.nc:1:8: error: M97 P30: there is no block N30");
+}
+
 TEST(Subprogram, IsRepeatedByL) {
   EXPECT_EQ(values("#1=1\nM98 P5 L3\n(print,end #1)\nM2\nO5\n(print,#1)\n#1=[#1+1]\nM99"),
             "1 2 3 end 4");
