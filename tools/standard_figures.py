@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws tests as their standards do, from what `servomill evaluate --json` prints.
+"""Draws tests as their standards do, from what `servomill evaluate --json` prints, and `servomill run --json` of tests in a scenario.
 
     servomill evaluate axis.csv --standard iso230-2 --json > axis.json
     tools/standard_figures.py axis.json [-o FOLDER] [--force]
