@@ -159,12 +159,26 @@ void Translator::survey_probe(const HeidenhainBlock& block) {
   }
   Words values(inputs);
   assign_words(values);
+  forget_probed(block.words);
   for (int number = 115; number <= 166; ++number) {
     if (number > 119 && number < 150) continue;
     parameters_.forget({'Q', number}, "is measured by TCH PROBE");
   }
   require_no_compensation("TCH PROBE");
   leave_positions_unknown("TCH PROBE: the measured values are unknown");
+}
+
+// "TCH PROBE 0.0 REF. PLANE Q5 X-": cycles 0 to 4 name the parameter of the result; 3 and 4 store
+// coordinates and a state from it on, four in all (from memory).
+void Translator::forget_probed(std::span<const HeidenhainWord> words) {
+  constexpr long kResults = 4;
+  for (const HeidenhainWord& word : words) {
+    const auto first = word.address == "Q" ? integer_of(word.rest) : std::nullopt;
+    if (!first) continue;
+    for (long number = *first; number < *first + kResults; ++number) {
+      parameters_.forget({'Q', static_cast<int>(number)}, "is measured by TCH PROBE");
+    }
+  }
 }
 
 // CYCL DEF 7.0 DATUM SHIFT / CYCL DEF 7.1 X+10: step 0 names the cycle.
@@ -213,6 +227,11 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
     const auto T = words.take_number("T");
     const double tolerance = T ? length(*T) : 0.0;
     return note(tolerance > 0.0 ? "G64 " + word('P', tolerance) : "G64");
+  }
+  const std::size_t next = cycle_->values.size() + 1;
+  if (static_cast<std::size_t>(step) != next) {
+    fail(all[2].place,
+         fmt::format("CYCL DEF {0}.{1} where CYCL DEF {0}.{2} is next", number, step, next));
   }
   if (!text) fail(fmt::format("cycle {}: expected a number", number));
   std::string number_text = *text;

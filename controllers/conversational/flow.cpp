@@ -144,6 +144,7 @@ void Translator::assign(const QName& name, double value) {
 
 // Q200=2 Q201=-20 after CYCL DEF.
 void Translator::assign_words(Words& words) {
+  bool is_behind_name = false;
   while (const HeidenhainWord* word = words.take_next()) {
     const std::size_t equals = word->text.find('=');
     std::size_t length = 0;
@@ -151,8 +152,14 @@ void Translator::assign_words(Words& words) {
     if (!name || equals != length) {
       if (name || word->address == "Q")
         fail(word->place, fmt::format("'{}' assigns nothing", word->text));
+      if (is_behind_name && word->address.size() <= 2 && !word->rest.empty()) {
+        fail(word->place,
+             fmt::format("'{}' in a cycle definition; program it in a block of its own",
+                         word->text));
+      }
       continue;  // the name of the cycle
     }
+    is_behind_name = true;
     std::string text = word->text.substr(equals + 1);
     if (text.empty()) {
       const HeidenhainWord* more = words.take_next();

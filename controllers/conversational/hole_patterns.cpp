@@ -75,6 +75,7 @@ void Translator::drill_points(const std::vector<Point>& points) {
   const double surface = q(203) * unit(), clearance = surface + q(200) * unit();
   const double second = std::max(clearance, surface + q(204) * unit());
   const double between = parameters_.find({'Q', 301}).value_or(0.0);
+  if (between != 0.0 && between != 1.0) fail(fmt::format("Q301={:g}; must be 0 or 1", between));
   if (between == 0.0 && second > clearance) {
     fail(
         "Q301=0 with a second set-up clearance: no manual found gives the height after the last "

@@ -163,7 +163,9 @@ void Translator::move_to_machine(const Positioning& p) {
   }
   path_.add(motion);
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
-    if (motion.words[i]) work_[i].reset();
+    if (!motion.words[i]) continue;
+    work_[i].reset();
+    is_rotary_zero_left_ |= i >= 3 && *motion.words[i] != 0.0;
   }
   last_element_.reset();
 }
@@ -194,6 +196,12 @@ void Translator::move_to_reference(const Positioning& p) {
 void Translator::retract(const Positioning& p) {
   if (p.has_target()) fail("M140 with coordinates; program them in a separate block");
   if (is_tcp_) fail("M140 with M128: the direction is that of the inclined tool; program L");
+  if (plane_ && !is_tool_in_plane_) {
+    if (can_leave_plane_unknown()) return forget_linear_positions();
+    fail(
+        "MB in a plane with STAY, before the rotary axes turn to it: along the tool, or along Z of "
+        "the plane; turn them first, or program L");
+  }
   Motion motion;
   motion.place = place_;
   motion.feed = p.feed ? *p.feed : Feed{};

@@ -141,6 +141,7 @@ void Translator::survey_plane(const std::string& what) {
   if (plane_) reset_plane("STAY");
   path_.flush();
   plane_turn_.clear();
+  is_tool_in_plane_ = false;
   plane_line_ = "G68.2";
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
   plane_line_ += " I0 J90 K0";
@@ -188,6 +189,7 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
   path_.flush();
   const Eigen::Matrix3d R = rotation_of(angles);
   plane_turn_ = turn_of_plane(R, seq);
+  is_tool_in_plane_ = behaviour != "STAY" || (R.isIdentity(1e-12) && rotary_axes_are_at_zero());
   if (behaviour != "STAY" && !plane_turn_.empty()) lines_.put(plane_turn_, place_);
   const std::array<double, 3> euler = euler_angles(R);
   plane_line_ = "G68.2";
@@ -199,6 +201,7 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
   for (std::size_t i = 3; i < work_.size(); ++i) {
     if (behaviour != "STAY") work_[i].reset();
   }
+  is_rotary_zero_left_ |= behaviour != "STAY" && !R.isIdentity(1e-12);
 }
 
 // SEQ+ and SEQ- want the principal axis at a positive or negative angle: the first rotary axis from
@@ -266,6 +269,7 @@ bool Translator::turn_to_plane(const Positioning& p) {
     }
   }
   was_rapid_ = true;
+  is_tool_in_plane_ = is_rotary_zero_left_ = true;
   forget_linear_positions();
   for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
   return true;
@@ -274,6 +278,7 @@ bool Translator::turn_to_plane(const Positioning& p) {
 // True if no rotary axis stands elsewhere than at zero, where programs begin.
 bool Translator::rotary_axes_are_at_zero() const {
   for (std::size_t i = 3; i < work_.size(); ++i) {
+    if (!work_[i] && is_rotary_zero_left_) return false;
     if (work_[i].value_or(0.0) != 0.0 || frame_.shift[i] != 0.0) return false;
   }
   return true;

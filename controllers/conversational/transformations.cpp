@@ -127,12 +127,18 @@ void Translator::scale_axes(Words& words) {
   words.refuse_rest("cycle 26");
 }
 
-// CYCL DEF 19.1 A+0 B+0 C+0, or without angles: ends the tilting, and no axis moves. Other angles
-// are spatial angles or those of the rotary axes, as MP7500 of the iTNC 530 has it (from memory).
+// CYCL DEF 19.1 A+0 B+0 C+0, or without angles: ends the tilting, and no axis moves, but that with
+// angles the machine may take rotary axes to zero that are not there. Other angles are spatial
+// angles or those of the rotary axes, as MP7500 of the iTNC 530 has it (from memory).
 void Translator::working_plane(Words& words) {
+  std::optional<Operand> zero;
   for (const std::string_view axis : {"A", "B", "C"}) {
     const auto angle = words.take_number(axis);
-    if (!angle || value(*angle) == 0.0) continue;
+    if (!angle) continue;
+    if (value(*angle) == 0.0) {
+      zero = zero ? zero : angle;
+      continue;
+    }
     if (can_leave_plane_unknown()) return survey_plane("cycle 19 with angles");
     fail(angle->place,
          fmt::format("cycle 19 with {}: a spatial angle, or the position of a rotary axis, by a "
@@ -145,7 +151,19 @@ void Translator::working_plane(Words& words) {
     words.take_next();
   }
   words.refuse_rest("cycle 19");
+  if (zero) require_rotary_zero(*zero);
   reset_plane("STAY");
+}
+
+void Translator::require_rotary_zero(const Operand& zero) {
+  const bool may_turn = plane_ ? *plane_ != std::array<double, 3>{} : !rotary_axes_are_at_zero();
+  if (!may_turn) return;
+  const std::string why =
+      "cycle 19 with angles of 0 while rotary axes are not at zero: some machines take them there, "
+      "others leave them; end the tilting without angles, and program L";
+  if (!can_leave_plane_unknown()) fail(zero.place, why);
+  warn_once("cycle 19", why);
+  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
 }
 
 // Presets 1 to 9 are the work systems G54 to G59.3.

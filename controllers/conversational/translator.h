@@ -185,6 +185,7 @@ class Translator {
   void scale(Words& words);
   void scale_axes(Words& words);
   void working_plane(Words& words);
+  void require_rotary_zero(const Operand& zero);
   void set_preset(double number);
   void set_frame(const Frame& frame);
   void tcp_control(bool is_on);
@@ -220,6 +221,7 @@ class Translator {
   // cycles.cpp
   void define_cycle(const HeidenhainBlock& block);
   void survey_probe(const HeidenhainBlock& block);
+  void forget_probed(std::span<const HeidenhainWord> words);
   void define_old_cycle(int number, int step, const HeidenhainBlock& block);
   void survey_cycle(int number, std::string_view why, bool is_called,
                     std::span<const HeidenhainWord> words);
@@ -285,7 +287,9 @@ class Translator {
   int last_normal_ = 2;
   std::optional<double> feed_, tool_call_feed_;  // mm/min
   bool was_rapid_ = false;
-  bool are_feeds_unknown_ = false;  // in surveys: a function changes them
+  bool is_rotary_zero_left_ = false;  // by M91 or PLANE, to positions that `work_` does not hold
+  bool is_tool_in_plane_ = true;      // the rotary axes have turned to `plane_`
+  bool are_feeds_unknown_ = false;    // in surveys: a function changes them
   int side_ = 0;
   std::optional<bool> is_shorter_path_;  // M126, M127
   std::array<double, kAxisWords> revolutions_{};

@@ -4,8 +4,16 @@
 
 #include <cmath>
 
+#include "plant/vocabulary/units.h"
+
 namespace servomill::sim::programs {
 namespace {
+
+// In m/s; in rad/s where only rotary axes move, from F in mm or in inches.
+bool is_feed_unknown(double feed) {
+  return controllers::is_unknown(feed) || controllers::is_unknown(feed / deg * mm) ||
+         controllers::is_unknown(feed / deg * inch);
+}
 
 // The planner stops between rapid and feed: from so many moves on, the next such place ends a part
 // that is planned for itself, so that long programs are not held.
@@ -51,8 +59,9 @@ bool ProgramDuration::refuses(const Move& move) {
   if (move.kind != MoveKind::rapid && !(move.feed > 0.0)) {
     why_unknown_ = fmt::format("line {} feeds per revolution with the spindle off", move.line);
   }
-  if (controllers::is_unknown(move.feed)) {
-    why_unknown_ = fmt::format("line {} feeds before the first F; pass --feed", move.line);
+  if (is_feed_unknown(move.feed)) {
+    why_unknown_ =
+        fmt::format("the feed of line {} is unknown; if no F precedes it, pass --feed", move.line);
   }
   if (!why_unknown_.empty()) moves_ = {};
   return !why_unknown_.empty();

@@ -196,7 +196,7 @@ M30
         self.assertEqual(time("G0 C90\nM2\n"), ["unknown: line 1 moves C, but the machine has no such axis"])
         self.assertEqual(time("G0 X0\nG95 S100 G1 X1 F0.1\nM2\n"), ["unknown: line 2 feeds per revolution with the spindle off"])
         self.assertEqual(time("G0 X0 Y0 Z5\nG1 X1\nG1 X2 F100\nM2\n"),
-                         ["unknown: line 2 feeds before the first F; pass --feed"])
+                         ["unknown: the feed of line 2 is unknown; if no F precedes it, pass --feed"])
         self.write("router.toml", ROUTER.replace('j_max = "30 m/s^3"\n[axis.Z]', "[axis.Z]"))
         self.assertEqual(time("G0 X0\nX1\nM2\n"), ["unknown: the machine file lacks v_max, a_max or j_max of Y"])
 

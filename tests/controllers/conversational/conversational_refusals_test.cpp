@@ -54,6 +54,20 @@ const Refusal kRefusals[] = {
     {"CYCL DEF 19.0\nCYCL DEF 19.1 A+0 B+30\n",
      "t.h:5:19: error: cycle 19 with B: a spatial angle, or the position of a rotary axis, by a "
      "machine parameter (MP7500); use PLANE SPATIAL"},
+    {"L B+45 F1000\nCYCL DEF 19.0\nCYCL DEF 19.1 A+0 B+0 C+0 F2000 ABST10\n",
+     "t.h:6:15: error: cycle 19 with angles of 0 while rotary axes are not at zero: some machines "
+     "take them there, others leave them; end the tilting without angles, and program L"},
+    {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\nPLANE RESET TURN MB+20 F500\n",
+     "t.h:5:1: error: MB in a plane with STAY, before the rotary axes turn to it: along the tool, "
+     "or "
+     "along Z of the plane; turn them first, or program L"},
+    {"L B+45 R0 FMAX M91\nPLANE RESET TURN FMAX\n",
+     "t.h:5:1: error: PLANE RESET TURN: the rotary axes depend on the machine; pass it with "
+     "--machine"},
+    {"CYCL DEF 17.0\nCYCL DEF 17.1 ABST2\nCYCL DEF 17.1 ABST-3\n",
+     "t.h:6:10: error: CYCL DEF 17.1 where CYCL DEF 17.2 is next"},
+    {"CYCL DEF 1.0\nCYCL DEF 1.1 ABST2\nCYCL DEF 1.3 ZUSTLG5\n",
+     "t.h:6:10: error: CYCL DEF 1.3 where CYCL DEF 1.2 is next"},
     {"CYCL DEF 220 Q241=2\n",
      "t.h:4:1: error: CYCL DEF 220 needs a drilling cycle from 200 on before it"},
     {"CYCL DEF 240 Q200=1\nCYCL DEF 220 Q365=1\n",
@@ -66,6 +80,11 @@ const Refusal kRefusals[] = {
      "t.h:5:1: error: Q301=0 with a second set-up clearance: no manual found gives the height "
      "after "
      "the last hole; set Q301=1, or Q204=0"},
+    {"CYCL DEF 240 Q200=1\nCYCL DEF 221 Q225=0 Q226=0 Q237=1 Q238=1 Q242=1 Q243=1 Q224=0 Q203=0 "
+     "Q204=20 Q301=2\n",
+     "t.h:5:1: error: Q301=2; must be 0 or 1"},
+    {"CYCL DEF 240 Q200=1 Q203=0 M99\n",
+     "t.h:4:29: error: 'M99' in a cycle definition; program it in a block of its own"},
     {"CYCL DEF 17.0\nCYCL DEF 17.1 ABST2\nCYCL CALL\n",
      "t.h:6:1: error: cycle 17 is incomplete; CYCL DEF 17.1 to 17.3 are required"},
     {"CYCL DEF 2.0\nCYCL DEF 2.1 ABST2\nCYCL DEF 2.2 T-5\nCYCL DEF 2.3 V.ZEIT0\nCYCL DEF 2.4 "

@@ -183,6 +183,14 @@ TEST(Conversational, ASurveyGoesOnAfterTouchProbeCycles) {
             "1 rapid 0 0 0\n1 rapid 100 200 150\n4 rapid 100 200 5\n5 rapid 40 2 5\n");
   EXPECT_NE(fault_of(probe + "L X+Q151 F100\n", setup).find("Q151 is measured by TCH PROBE"),
             std::string::npos);
+  for (const char* result : {"Q5", "Q8"}) {
+    EXPECT_NE(fault_of(std::string("Q5 = 3\nQ8 = 3\nTCH PROBE 0.0 REF. PLANE Q5 X-\nTCH PROBE 0.1 "
+                                   "X+5 Y+0 Z-5\nL X+") +
+                           result + " F100\n",
+                       setup)
+                  .find(std::string(result) + " is measured by TCH PROBE"),
+              std::string::npos);
+  }
   EXPECT_EQ(framed_moves("CYCL DEF 202 Q200=2 Q201=-9 Q206=50 Q211=0 Q208=0 Q203=0 Q204=0 Q214=1\n"
                          "CYCL CALL M3\n",
                          setup),
