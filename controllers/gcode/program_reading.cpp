@@ -143,11 +143,8 @@ void Interpreter::Machine::read_pending_line() {
     reading_.roll_back();
     throw;
   }
-  if (!pending_lines_.empty()) {
-    ++nth_line_;
-    return;
-  }
-  if (!reading_.local_call()) return;
+  if (!pending_lines_.empty()) ++nth_line_;
+  if (!pending_lines_.empty() || !reading_.local_call()) return;
   is_rewritten_ = false;  // its column is that of the program
   try {
     call_block(*reading_.local_call());

@@ -84,7 +84,7 @@ const Refusal kRefusals[] = {
      "Q204=20 Q301=2\n",
      "t.h:5:1: error: Q301=2; must be 0 or 1"},
     {"CYCL DEF 240 Q200=1 Q203=0 M99\n",
-     "t.h:4:29: error: 'M99' in a cycle definition; program it in a block of its own"},
+     "t.h:4:28: error: 'M99' in a cycle definition; program it in a block of its own"},
     {"CYCL DEF 17.0\nCYCL DEF 17.1 ABST2\nCYCL CALL\n",
      "t.h:6:1: error: cycle 17 is incomplete; CYCL DEF 17.1 to 17.3 are required"},
     {"CYCL DEF 2.0\nCYCL DEF 2.1 ABST2\nCYCL DEF 2.2 T-5\nCYCL DEF 2.3 V.ZEIT0\nCYCL DEF 2.4 "
