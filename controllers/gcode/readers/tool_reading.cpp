@@ -16,6 +16,7 @@ void ReadingStep::tip_control_of_haas() {
   BlockWord* code = words.code('G', 2340);
   if (code == nullptr) return;
   need(ReaderRule::haas_tip_control, code->column);
+  if (!words.has('H')) fail(code->column, "G234 needs H: the number of the tool length offset");
   code->value = 43.4;
   code->is_changed = true;
 }

@@ -305,6 +305,8 @@ TEST(Reader, ProgramsForLinuxCncAreReadAlikeByDefault) {
 }
 
 TEST(Reader, RefusesWhatItsControlDoesNotHave) {
+  EXPECT_EQ(refusal("T1 M6\nG234\n", Reader::haas),
+            "p.nc:2:1: error: G234 needs H: the number of the tool length offset");
   const auto lacks = [](Reader reader, const std::string& text) { return refusal(text, reader); };
   EXPECT_EQ(lacks(Reader::grbl, "O100 sub\nO100 endsub\nM2\n"),
             "p.nc:1:1: error: O-words with keywords are not supported by grbl");
