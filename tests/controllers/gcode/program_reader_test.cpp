@@ -307,15 +307,14 @@ TEST(Reader, ProgramsForLinuxCncAreReadAlikeByDefault) {
 TEST(Reader, RefusesWhatItsControlDoesNotHave) {
   EXPECT_EQ(refusal("T1 M6\nG234\n", Reader::haas),
             "p.nc:2:1: error: G234 needs H: the number of the tool length offset");
-  const auto lacks = [](Reader reader, const std::string& text) { return refusal(text, reader); };
-  EXPECT_EQ(lacks(Reader::grbl, "O100 sub\nO100 endsub\nM2\n"),
+  EXPECT_EQ(refusal("O100 sub\nO100 endsub\nM2\n", Reader::grbl),
             "p.nc:1:1: error: O-words with keywords are not supported by grbl");
-  EXPECT_EQ(lacks(Reader::grbl, "G99 G81 X1. Z-2. R1. F100.\nM2\n"),
+  EXPECT_EQ(refusal("G99 G81 X1. Z-2. R1. F100.\nM2\n", Reader::grbl),
             "p.nc:1:1: error: G99 is not supported by grbl");
-  EXPECT_EQ(lacks(Reader::fanuc, "G64 P.01\nM2\n"),
+  EXPECT_EQ(refusal("G64 P.01\nM2\n", Reader::fanuc),
             "p.nc:1:1: error: G64 with P or Q is not supported by fanuc");
-  EXPECT_EQ(lacks(Reader::haas, "G91.1\nM2\n"), "p.nc:1:1: error: G91.1 is not supported by haas");
-  EXPECT_EQ(lacks(Reader::mach, "G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n"), "");
+  EXPECT_EQ(refusal("G91.1\n", Reader::haas), "p.nc:1:1: error: G91.1 is not supported by haas");
+  EXPECT_EQ(refusal("G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n", Reader::mach), "");
 }
 
 TEST(Reader, TwoReadingsAreRefused) {
