@@ -320,13 +320,12 @@ AxisWords Interpreter::Machine::confused_tap(const AxisWords& end) {
   out[first] = n == 0 ? end[n] : end[second];
   out[second] = n == 0 ? end[first] : end[n];
   out[n] = n == 0 ? end[second] : end[first];
-  const Place place{file(), line(), request().motion.column};
-  if (warnings_.empty() || warnings_.back().place != place) {
-    warnings_.push_back(
-        {place, fmt::format(
-                    "{} outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17",
-                    code_name('G', request().motion_code()))});
-  }
+  const std::string message =
+      fmt::format("{} outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17",
+                  code_name('G', request().motion_code()));
+  const bool is_said = !warnings_.empty() && warnings_.back().place.line == line() &&
+                       warnings_.back().message == message;
+  if (!is_said) warn(request().motion.column, message);
   return out;
 }
 

@@ -163,9 +163,9 @@ void Interpreter::Machine::restore_saved_level(int column) {
   }
   if (!restore_modal_state(saved_level().modes)) return;
   if (block_.words.size() > 1) {
-    warnings_.push_back({{file(), line(), column},
-                         "M72 restores modal state: words in the same block that act later are "
-                         "dropped, as in LinuxCNC"});
+    warn(column,
+         "M72 restores modal state: words in the same block that act later are dropped, as in "
+         "LinuxCNC");
   }
   request_.clear();
 }

@@ -200,9 +200,8 @@ Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   const double length = given.norm();
   if (!(length > kMinVector)) fail_at(first, "the tool axis I J K has length zero");
   if (std::abs(length - 1.0) > kAxisLengthTolerance) {
-    warnings_.push_back(
-        {{file(), line(), request().word(first).column},
-         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length)});
+    warn(request().word(first).column,
+         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length));
   }
   return (state_.direction_in_workpiece(given) / length).normalized();
 }
@@ -238,9 +237,9 @@ void Interpreter::Machine::warn_of_leaning_tool() {
   const double angle = angle_between(k, state_.direction_in_workpiece(Eigen::Vector3d::UnitZ()));
   if (angle < kLeaning) return;
   const bool can_turn = !setup_.machine || setup_.machine->number_of_rotary_axes() > 0;
-  warnings_.push_back({{file(), line(), request().motion.column},
-                       fmt::format("the tool axis is {:.4f} deg off Z of the tilted work plane{}",
-                                   angle / deg, can_turn ? "; G53.1 aligns it" : "")});
+  warn(request().motion.column,
+       fmt::format("the tool axis is {:.4f} deg off Z of the tilted work plane{}", angle / deg,
+                   can_turn ? "; G53.1 aligns it" : ""));
 }
 
 }  // namespace servomill::controllers
