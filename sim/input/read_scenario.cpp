@@ -58,6 +58,7 @@ class ScenarioReader {
     read_error_models(root);
     read_hardware(root);
     read_record(root, out_);
+    check_rows_of_tests(root);
     out_.cmm = read_cmm(root);
     out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);
@@ -197,6 +198,18 @@ class ScenarioReader {
                       out_.machine.nc.periods.seconds(out_.machine.nc.periods.position) / us));
     }
     hardware.model_period = read_ticks(table, "model_period_us", 60 * us, base, 1);
+  }
+
+  // Several rows in the half of each dwell in which the device is read.
+  void check_rows_of_tests(config::Reader& root) {
+    constexpr double kMaxShare = 0.1;  // of the dwell
+    const double period = out_.machine.nc.periods.seconds(out_.record_period);
+    for (const auto& test : out_.tests) {
+      if (period <= kMaxShare * test->dwell) continue;
+      root.table_or_empty("record").fault(
+          fmt::format("period_ms must be at most {:g} ms, a tenth of the dwell of test {}",
+                      kMaxShare * test->dwell / ms, test->name));
+    }
   }
 
   // The static schedule covers one common multiple of all periods.

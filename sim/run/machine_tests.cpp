@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -19,18 +21,18 @@ namespace {
 
 // Rows during which the programmed position stays the same.
 struct Dwell {
-  double position = 0.0;  // m
+  Eigen::Vector3d position;  // m, in the workpiece
   std::size_t begin = 0, end = 0;
 };
 
-// Columns of one axis during one section of the program.
+// Columns of the TCP during one section of the program.
 class TestRows {
  public:
   TestRows(const model::MachineTest& test, const evaluation::CaseData& one)
       : series_(*one.servo),
         time_(column("time", '\0', one)),
-        nominal_(column("tool_position_nominal", letter(test.axis), one)),
-        actual_(column("tool_position_true", letter(test.axis), one)) {
+        nominal_(column("tool_position_nominal", 'X', one)),
+        actual_(column("tool_position_true", 'X', one)) {
     const auto found = std::find(one.sections.begin(), one.sections.end(), test.name);
     const std::size_t section = column("section", '\0', one);
     const auto number = static_cast<double>(found - one.sections.begin());
@@ -39,18 +41,24 @@ class TestRows {
     }
   }
 
-  const std::vector<Dwell>& dwells() const { return dwells_; }
-  double duration(const Dwell& dwell) const { return time(dwell.end - 1) - time(dwell.begin); }
+  // Standstills that last so long, s.
+  std::vector<Dwell> standstills(double least) const {
+    std::vector<Dwell> out;
+    for (const Dwell& one : dwells_) {
+      if (end_of(one) - time(one.begin) >= least) out.push_back(one);
+    }
+    return out;
+  }
   double end_of(const Dwell& dwell) const { return time(dwell.end - 1); }
 
-  // Mean of the true position in the second half, m.
-  double reading(const Dwell& dwell) const {
-    const double middle = 0.5 * (time(dwell.begin) + time(dwell.end - 1));
-    double sum = 0.0;
+  // Mean over the second half of the true TCP minus the programmed one, m.
+  Eigen::Vector3d deviation(const Dwell& dwell) const {
+    const double middle = 0.5 * (time(dwell.begin) + end_of(dwell));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     std::size_t count = 0;
     for (std::size_t row = dwell.begin; row < dwell.end; ++row) {
       if (time(row) < middle) continue;
-      sum += series_.at(row, actual_) * mm;
+      sum += point(row, actual_) - point(row, nominal_);
       ++count;
     }
     return sum / static_cast<double>(count);
@@ -63,12 +71,17 @@ class TestRows {
     return *found;
   }
   double time(std::size_t row) const { return series_.at(row, time_); }
+  Eigen::Vector3d point(std::size_t row, std::size_t first) const {
+    return Eigen::Vector3d(series_.at(row, first), series_.at(row, first + 1),
+                           series_.at(row, first + 2)) *
+           mm;
+  }
 
   void add(std::size_t row) {
     constexpr double kSame = 1e-9;  // m
-    const double position = series_.at(row, nominal_) * mm;
+    const Eigen::Vector3d position = point(row, nominal_);
     if (!dwells_.empty() && dwells_.back().end == row &&
-        std::abs(position - dwells_.back().position) < kSame) {
+        (position - dwells_.back().position).norm() < kSame) {
       ++dwells_.back().end;
     } else {
       dwells_.push_back({position, row, row + 1});
@@ -80,34 +93,62 @@ class TestRows {
   std::vector<Dwell> dwells_;
 };
 
-// Readings of the true position minus the target, in the order of the cycle.
+std::vector<standards::CycleStop> measured_stops(const standards::TestCycle& cycle) {
+  std::vector<standards::CycleStop> out;
+  for (const standards::CycleStop& stop : standards::stops(cycle)) {
+    if (stop.direction != 0) out.push_back(stop);
+  }
+  return out;
+}
+
+// True if standstills from this one on are as far from each other as the stops are. Where the
+// targets are in the workpiece depends on work offset, tool and rotary axes; their distances do
+// not.
+bool are_apart_like(std::span<const standards::CycleStop> stops, std::span<const Dwell> found) {
+  constexpr double kTolerance = 1e-7;  // m
+  for (std::size_t i = 1; i < stops.size(); ++i) {
+    const double wanted = std::abs(stops[i].position - stops[i - 1].position);
+    const double distance = (found[i].position - found[i - 1].position).norm();
+    if (std::abs(distance - wanted) > kTolerance) return false;
+  }
+  return true;
+}
+
+// The standstills at all stops. Before and after the cycle the axes may be at rest, too.
+std::vector<Dwell> dwells_at(std::span<const standards::CycleStop> stops,
+                             const std::vector<Dwell>& found) {
+  for (std::size_t first = 0; first + stops.size() <= found.size(); ++first) {
+    const std::span<const Dwell> some(found.data() + first, stops.size());
+    if (are_apart_like(stops, some)) return {some.begin(), some.end()};
+  }
+  return {};
+}
+
+// Readings of the true TCP minus the target, along the line of the targets, in the order of the
+// cycle.
 std::vector<standards::TargetReading> true_readings(const model::MachineTest& test,
                                                     const evaluation::CaseData& one) {
-  constexpr double kAtTarget = 1e-7;  // m
   const TestRows rows(test, one);
+  const std::vector<standards::CycleStop> stops = measured_stops(test.cycle);
+  const std::vector<Dwell> dwells = dwells_at(stops, rows.standstills(0.5 * test.dwell));
+  if (dwells.empty()) {
+    throw InputError(test.place,
+                     fmt::format("case {}: the recording does not show the {} standstills of test "
+                                 "{}; lower record.period_ms",
+                                 one.name, stops.size(), test.name));
+  }
+  const std::size_t last = test.cycle.targets.size() - 1;
+  const Eigen::Vector3d along = (dwells[last].position - dwells[0].position).normalized();
   std::vector<standards::TargetReading> out;
-  auto dwell = rows.dwells().begin();
-  for (const standards::CycleStop& stop : standards::stops(test.cycle)) {
-    if (stop.direction == 0) continue;
-    dwell = std::find_if(dwell, rows.dwells().end(), [&](const Dwell& d) {
-      return std::abs(d.position - stop.position) < kAtTarget &&
-             rows.duration(d) > 0.5 * test.dwell;
-    });
-    if (dwell == rows.dwells().end()) {
-      throw InputError(test.place,
-                       fmt::format("case {}: the recording has no standstill at {:g} mm in run {}; "
-                                   "set record.period_ms",
-                                   one.name, stop.position / mm, stop.run + 1));
-    }
+  for (std::size_t k = 0; k < stops.size(); ++k) {
     standards::TargetReading reading;
-    reading.target = stop.position;
-    reading.direction = stop.direction;
-    reading.run = stop.run;
-    reading.deviation = rows.reading(*dwell) - stop.position;
-    reading.time = rows.end_of(*dwell);
+    reading.target = stops[k].position;
+    reading.direction = stops[k].direction;
+    reading.run = stops[k].run;
+    reading.deviation = rows.deviation(dwells[k]).dot(along);
+    reading.time = rows.end_of(dwells[k]);
     reading.place = test.place;
     out.push_back(reading);
-    ++dwell;
   }
   const double zero = out.front().deviation;
   for (standards::TargetReading& reading : out) reading.deviation -= zero;

@@ -74,6 +74,18 @@ TEST(MachineTest, MeasuresAtTheTcpWhereTheOtherAxesAre) {
   EXPECT_NEAR(value(tested(pitch, tool), Positioning::E), low, 1 * nm);
 }
 
+// Neither a work offset nor a rotated table changes where the axis is bad: with C at 90 degrees the
+// TCP moves along Y of the workpiece.
+TEST(MachineTest, FollowsWorkOffsetAndRotaryAxes) {
+  const std::string errors = "EXX = { um_per_m = 100.0 }";
+  for (const std::string more :
+       {"[program.work_offset]\nX_mm = 30.0\nY_mm = -20.0\n", "at = { C_deg = 90.0 }\n"}) {
+    const TestResult result = tested(errors, more);
+    EXPECT_NEAR(value(result, Positioning::E), 100e-6 * 85.0 * mm, 1 * nm) << more;
+    EXPECT_NEAR(result.readings.up(4, 0), 100e-6 * 85.0 * mm, 1 * nm) << more;
+  }
+}
+
 const std::string kDevice =
     "seed = 7\n[test.device]\nresolution_um = 0.1\nvariation_um = 1.0\nscale_uncertainty_um_per_m "
     "= "
@@ -148,6 +160,8 @@ TEST(MachineTest, IsRefusedWithTheRule) {
       refusal(changed("\"X\"", "\"a (b)\"")),
       "test[0].name = \"a (b)\"; must not contain ( ) / or line breaks: it names a section of "
       "the program");
+  EXPECT_EQ(refusal(kTest + "[record]\nperiod_ms = 25.0\n"),
+            "record: period_ms must be at most 20 ms, a tenth of the dwell of test X");
   EXPECT_EQ(refusal(kTest + "at = { X_mm = 1.0 }\n"),
             "test[0].at.X_mm = 1.0; is the axis under test");
   EXPECT_EQ(refusal(kTest + "[program]\nfile = \"a.ngc\"\n"),
