@@ -7,6 +7,7 @@ What a file holds is drawn; why a figure is not is said of those in `--figures`,
 0 drawn, 2 a file cannot be read or nothing can be drawn, 3 the system failed.
 """
 import argparse
+import contextlib
 import dataclasses
 import difflib
 import mmap
@@ -245,8 +246,13 @@ def run_apart(arguments):
     child = os.fork()
     if child == 0:
         sys.exit(run(main, arguments))
+
+    def pass_on(number, _):
+        with contextlib.suppress(ProcessLookupError):   # an interrupt from a terminal has ended it already
+            os.kill(child, number)
+
     for passed_on in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(passed_on, lambda number, _: os.kill(child, number))
+        signal.signal(passed_on, pass_on)
     _, status = os.waitpid(child, 0)
     if not os.WIFSIGNALED(status):
         return os.waitstatus_to_exitcode(status)
