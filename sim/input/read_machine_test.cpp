@@ -26,8 +26,14 @@ std::string read_name(config::Reader& table, std::set<std::string>& names) {
   if (name.empty() && table.is("name", config::Value::Type::text)) {
     table.fault("name", "must not be empty");
   }
-  if (name.find_first_of("()/\n") != std::string::npos) {
+  constexpr std::string_view kBlanks = " \t";
+  if (name.find_first_of("()/\r\n") != std::string::npos) {
     table.fault("name", "must not contain ( ) / or line breaks: it names a section of the program");
+  } else if (!name.empty() && (kBlanks.find(name.front()) != std::string_view::npos ||
+                               kBlanks.find(name.back()) != std::string_view::npos)) {
+    table.fault("name", "must not begin or end with blanks");
+  } else if (name == "." || name == "..") {
+    table.fault("name", "must not be . or ..: it names a group of the result file");
   }
   if (!name.empty() && !names.insert(name).second) {
     table.fault("name", "is already the name of an earlier test");

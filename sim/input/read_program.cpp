@@ -152,6 +152,10 @@ model::ProgramSpec read_program(config::Reader& table, const model::MachineSetti
   const model::NcSettings& nc = machine.nc;
   program.reader = static_cast<controllers::Reader>(table.choice_or(
       "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
+  if (!tests.empty() && program.reader == controllers::Reader::heidenhain) {
+    if (table.has("reader")) table.fault("reader", "must read G-code, which [[test]] makes");
+    program.reader = controllers::Reader::any;
+  }
   program.decimal_point = static_cast<controllers::DecimalPoint>(table.choice_or(
       "decimal_point", static_cast<std::size_t>(nc.decimal_point), controllers::kDecimalPoints));
   program.ignored_codes = read_ignored_codes(table, nc.ignored_codes);

@@ -17,9 +17,16 @@ void append_approach(const MachineTest& test, const JointLayout& layout, std::st
   if (!words.empty()) out += fmt::format("G0{}\n", words);
 }
 
+// The nose after a test with a tool: that is unloaded, its length would stay compensated.
+void append_tool(int tool, int tool_before, std::string& out) {
+  if (tool > 0) {
+    out += fmt::format("T{0} M6\nG43 H{0}\n", tool);
+  } else if (tool_before > 0) {
+    out += "G49\nT0 M6\n";
+  }
+}
+
 void append_test(const MachineTest& test, const JointLayout& layout, std::string& out) {
-  out += fmt::format("(MSG, {})\n", test.name);
-  if (test.tool > 0) out += fmt::format("T{0} M6\nG43 H{0}\n", test.tool);
   append_approach(test, layout, out);
   const char* motion = "G0";
   for (const standards::CycleStop& stop : standards::stops(test.cycle)) {
@@ -34,7 +41,13 @@ void append_test(const MachineTest& test, const JointLayout& layout, std::string
 
 std::string program_of(const MachineTests& tests, const JointLayout& layout) {
   std::string out = "G21 G90 G17 G94 G54 G61\n";
-  for (const auto& test : tests) append_test(*test, layout, out);
+  int tool = 0;
+  for (const auto& test : tests) {
+    out += fmt::format("(MSG, {})\n", test->name);
+    append_tool(test->tool, tool, out);
+    append_test(*test, layout, out);
+    tool = test->tool;
+  }
   return out + "M2\n";
 }
 

@@ -1,6 +1,7 @@
 /// Tests of the machine in a run: readings of a simulated device, evaluated as those of a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct TestResult {
   std::string name;                     // of the test
   standards::PositioningTest readings;  // with the errors of the device
   standards::Report report;
+  double creep = 0.0;  // m; largest change of the position while the device is read
 };
 
 /// Reads the device in the second half of every dwell at a target, and evaluates the readings. The
@@ -27,6 +29,9 @@ struct TestResult {
 /// @throws InputError if the recording does not hold every standstill
 TestResult evaluate_test(const model::MachineTest& test, const evaluation::CaseData& one);
 
+/// "test X: the axis still moved by 0.40 um ..."; nothing if it was at rest.
+std::optional<std::string> note_of_creep(const TestResult& result, double dwell);
+
 /// Readings in the format that `servomill evaluate` reads.
 std::string readings_csv(const standards::PositioningTest& readings);
 
@@ -35,5 +40,10 @@ std::string readings_csv(const standards::PositioningTest& readings);
 /// @param results  of the same test, a case each
 std::string side_by_side(const std::vector<std::string>& names,
                          const std::vector<const TestResult*>& results);
+
+/// Remarks of the results, each once; what does not hold for all of them with the names of its
+/// cases.
+std::vector<std::string> remarks_of(const std::vector<std::string>& names,
+                                    const std::vector<const TestResult*>& results);
 
 }  // namespace servomill::sim::run

@@ -49,6 +49,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   if (out.result.outcome.finished) {
     for (const auto& test : p.scenario.tests) {
       out.tests.push_back(std::make_shared<const TestResult>(evaluate_test(*test, out.data())));
+      if (auto note = note_of_creep(*out.tests.back(), test->dwell)) out.notes.push_back(*note);
     }
   }
   for (std::string& note : notes_of_run(p, out.result.saturations)) {

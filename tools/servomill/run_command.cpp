@@ -125,7 +125,9 @@ void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& 
     const sim::standards::Report& report = results.front()->report;
     fmt::print("\n{}, {}: {}\n{}", report.standard, scenario.tests[k]->name, report.headline,
                sim::run::side_by_side(names, results));
-    for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
+    for (const std::string& remark : sim::run::remarks_of(names, results)) {
+      fmt::print("{}\n", remark);
+    }
   }
 }
 

@@ -21,18 +21,21 @@ using standards::Positioning;
 const std::string kTest =
     "[[test]]\nname = \"X\"\nstandard = \"iso230-2\"\naxis = \"X\"\ntargets_mm = [-40, -15, 3, 20, "
     "45]\nruns = 2\nfeed = \"6 m/min\"\ndwell_s = 0.2\n";
-const std::string kCase = "[[case]]\nname = \"ideal\"\nservo = \"ideal\"\n";
+const std::string kIdeal = "servo = \"ideal\"\n";
+const std::string kCase = "[[case]]\nname = \"ideal\"\n";
 
-model::Scenario machine_under_test(const std::string& errors, const std::string& more = "") {
+model::Scenario machine_under_test(const std::string& errors, const std::string& more = "",
+                                   const std::string& servo = kIdeal) {
   return input::read_resolved_scenario(
       "machine = \"machines/hsm600u.toml\"\n"
       "machine_errors = \"actual\"\n[errors.actual]\n" +
-          errors + "\n" + kTest + more + kCase,
+          errors + "\n" + kTest + more + kCase + servo,
       SERVOMILL_SOURCE_DIR "/scenarios/small.toml");
 }
 
-TestResult tested(const std::string& errors, const std::string& more = "") {
-  return *run_named_case(machine_under_test(errors, more), "ideal").tests.at(0);
+TestResult tested(const std::string& errors, const std::string& more = "",
+                  const std::string& servo = kIdeal) {
+  return *run_named_case(machine_under_test(errors, more, servo), "ideal").tests.at(0);
 }
 
 double value(const TestResult& result, Positioning which) {
@@ -84,6 +87,47 @@ TEST(MachineTest, FollowsWorkOffsetAndRotaryAxes) {
     EXPECT_NEAR(value(result, Positioning::E), 100e-6 * 85.0 * mm, 1 * nm) << more;
     EXPECT_NEAR(result.readings.up(4, 0), 100e-6 * 85.0 * mm, 1 * nm) << more;
   }
+}
+
+// A program that a strategy has rewritten stops where the errors cancel, up to their square.
+TEST(MachineTest, ReadsRewrittenPrograms) {
+  const TestResult result =
+      tested("EXX = { um_per_m = 1000.0 }", "",
+             kIdeal +
+                 "[[case.strategy]]\ntype = \"gcode\"\naction = \"compensate\"\nmodel = "
+                 "\"actual\"\n");
+  EXPECT_NEAR(value(result, Positioning::E), 1e-3 * 1e-3 * 85.0 * mm, 2 * nm);
+}
+
+TEST(MachineTest, ReadsTheNoseAfterATool) {
+  std::string nose = kTest;
+  nose.replace(nose.find("\"X\""), 3, "\"nose\"");
+  const model::Scenario scenario =
+      machine_under_test("EXX = { um_per_m = 100.0 }",
+                         "tool = 1\n" + nose + "[[program.tool]]\nnumber = 1\nlength_mm = 100.0\n");
+  const std::string program = scenario.program.text();
+  EXPECT_NE(program.find("(MSG, nose)\nG49\nT0 M6\n"), std::string::npos);
+  EXPECT_EQ(run_named_case(scenario, "ideal").tests.size(), 2U);
+}
+
+TEST(NoteOfCreep, SaysThatTheAxisStillMovedWhenItWasRead) {
+  TestResult result;
+  result.name = "X";
+  result.creep = 0.01 * um;
+  EXPECT_EQ(note_of_creep(result, 0.1), std::nullopt);
+  result.creep = 0.4 * um;
+  EXPECT_EQ(note_of_creep(result, 0.1),
+            "test X: the axis still moved by up to 0.4 um while the device was read, which counts "
+            "as its error; a dwell_s above 0.1 lets it settle");
+  EXPECT_LT(tested("EXX = { um_per_m = 100.0 }").creep, 20 * kRounding);
+  EXPECT_GT(tested("EXX = { um_per_m = 100.0 }", "", "servo = \"cascade\"\n").creep, 1 * nm);
+}
+
+TEST(RemarksOf, NamesTheCasesOfWhatDoesNotHoldForAll) {
+  TestResult one, other;
+  one.report.remarks = {"common", "own"};
+  other.report.remarks = {"common"};
+  EXPECT_EQ(remarks_of({"a", "b"}, {&one, &other}), (std::vector<std::string>{"common", "a: own"}));
 }
 
 const std::string kDevice =
@@ -166,6 +210,12 @@ TEST(MachineTest, IsRefusedWithTheRule) {
             "test[0].at.X_mm = 1.0; is the axis under test");
   EXPECT_EQ(refusal(kTest + "[program]\nfile = \"a.ngc\"\n"),
             "program.file = \"a.ngc\"; has no effect: [[test]] makes the program");
+  EXPECT_EQ(refusal(changed("\"X\"", "\"X \"")),
+            "test[0].name = \"X \"; must not begin or end with blanks");
+  EXPECT_EQ(refusal(changed("\"X\"", "\".\"")),
+            "test[0].name = \".\"; must not be . or ..: it names a group of the result file");
+  EXPECT_EQ(refusal(kTest + "[program]\nreader = \"heidenhain\"\n"),
+            "program.reader = \"heidenhain\"; must read G-code, which [[test]] makes");
 }
 
 }  // namespace
