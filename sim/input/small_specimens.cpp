@@ -37,22 +37,10 @@ constexpr std::string_view kTests = R"(
 title = "tests"
 
 [machine]
-structure = "[w X b Z t]"
+structure = "[w X b t]"
 [machine.nc]
 Kv = 50.0
 [machine.axis.X]
-drive = "rigid"
-lead_mm = 10.0
-motor_inertia = 9.6e-3
-moving_mass = 300.0
-Kt = 1.6
-i_max_A = 50.0
-velocity_bandwidth = 200.0
-travel_mm = [-100.0, 100.0]
-v_max = 0.6
-a_max = 6.0
-j_max = 100.0
-[machine.axis.Z]
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
@@ -80,7 +68,6 @@ dwell_s = 1.0
 tool = 0
 seed = 1
 [test.at]
-Z_mm = 10.0
 [test.device]
 scale_uncertainty_um_per_m = 0.3
 target_uncertainty_um = 0.1
@@ -95,9 +82,9 @@ drift_um = 0.5
 set_up_um = 0.1
 
 [[test]]
-name = "Z"
+name = "given targets"
 standard = "iso230-2"
-axis = "Z"
+axis = "X"
 targets_mm = [0.0, 10.0]
 feed = 0.02
 

@@ -6,19 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/sim/numerics/second_difference.h"
+
 namespace servomill::sim::numerics::decompositions_test {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// 2 on the diagonal, -1 beside it: eigenvalues 2 - 2 cos(k pi / (n + 1)), k = 1 ... n.
-MatrixXd second_difference(int n) {
-  MatrixXd A = 2.0 * MatrixXd::Identity(n, n);
-  A.diagonal(1).setConstant(-1.0);
-  A.diagonal(-1).setConstant(-1.0);
-  return A;
-}
 
 TEST(SymmetricEigen, HasTheEigenvaluesOfASecondDifferenceInAscendingOrder) {
   const int n = 6;

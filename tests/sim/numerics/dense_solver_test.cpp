@@ -2,19 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/sim/numerics/second_difference.h"
+
 namespace servomill::sim::numerics::dense_solver_test {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// 2 on the diagonal, -1 beside it: eigenvalues 2 - 2 cos(k pi / (n + 1)), k = 1 ... n.
-MatrixXd second_difference(int n) {
-  MatrixXd A = 2.0 * MatrixXd::Identity(n, n);
-  A.diagonal(1).setConstant(-1.0);
-  A.diagonal(-1).setConstant(-1.0);
-  return A;
-}
 
 TEST(SolveSymmetric, GivesTheParabolaOfAConstantSecondDifference) {
   const int n = 7;
