@@ -200,13 +200,13 @@ class SimulatedTest(unittest.TestCase):
         assert done.returncode == 0, done.stderr
         cls.printed = done.stdout
 
-    def path(self, name):
-        return os.path.join(self.folder, "readings", name)
+    def path(self, case):
+        return os.path.join(self.folder, "readings", case, "X.csv")
 
     def test_parameters_of_the_run_are_those_of_its_readings(self):
         with h5py.File(os.path.join(self.folder, "out.h5")) as file:
             for case in ("as_it_is", "table"):
-                values, _ = parameters(self.path(f"{case} X.csv"), "--standard", "2")
+                values, _ = parameters(self.path(case), "--standard", "2")
                 stored = file[f"cases/{case}/tests/X"]
                 for symbol, value in values.items():
                     self.assertAlmostEqual(stored[symbol][()] * 1e-6, value, delta=2e-12, msg=symbol)
@@ -215,7 +215,7 @@ class SimulatedTest(unittest.TestCase):
                     self.assertAlmostEqual(stored[symbol][()], value, delta=1e-9, msg=symbol)
 
     def test_compensation_lowers_systematic_errors_and_leaves_lost_motion(self):
-        is_now, table = (parameters(self.path(f"{case} X.csv"), "--standard", "2")[0] for case in ("as_it_is", "table"))
+        is_now, table = (parameters(self.path(case), "--standard", "2")[0] for case in ("as_it_is", "table"))
         # 20 um/m over 400 mm less a part of the periodic error of +-1.5 um, and 4 um of lost motion
         self.assertGreater(is_now["E"], (8 + 4 - 3.5) * 1e-6)
         self.assertLess(table["E"], (4 + 3.5) * 1e-6)

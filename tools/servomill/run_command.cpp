@@ -100,13 +100,12 @@ void write_touches(const sim::run::RunOutput& output, const Options& options) {
 }
 
 void write_readings(const sim::run::RunOutput& output, const Options& options) {
-  const std::filesystem::path folder = options.get<std::string>("readings");
-  std::filesystem::create_directories(folder);
   for (const sim::run::CaseOutput& one : output.cases) {
+    const auto folder = std::filesystem::path(options.get<std::string>("readings")) / one.name;
+    std::filesystem::create_directories(folder);
     for (const auto& test : one.tests) {
-      sim::system::write_text_file(
-          (folder / fmt::format("{} {}.csv", one.name, test->name)).string(),
-          sim::run::readings_csv(test->readings), options.has("force"));
+      sim::system::write_text_file((folder / (test->name + ".csv")).string(),
+                                   sim::run::readings_csv(test->readings), options.has("force"));
     }
   }
 }
@@ -176,7 +175,7 @@ void add_run_options(Options& options) {
                 "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
                 "readings of kind touch");
   options.add()("readings", po::value<std::string>()->value_name("FOLDER"),
-                "writes the readings of every [[test]] to FOLDER/CASE TEST.csv, as `servomill "
+                "writes the readings of every [[test]] to FOLDER/CASE/TEST.csv, as `servomill "
                 "evaluate` reads them");
   options.add()("json", "prints the comparison as one JSON object per line");
   options.add()("quiet,q", "prints only warnings and faults");
