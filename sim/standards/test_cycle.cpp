@@ -34,8 +34,8 @@ std::vector<double> spaced_targets(double from, double to, int count, double spr
 }
 
 int usual_target_count(double travel) {
-  constexpr double kPerMetre = 5.0;
-  return std::max(5, static_cast<int>(std::ceil(kPerMetre * travel)));
+  constexpr double kPerMetre = 5.0, kMin = 5.0, kMax = 1000.0;
+  return static_cast<int>(std::ceil(std::clamp(kPerMetre * travel, kMin, kMax)));
 }
 
 }  // namespace servomill::sim::standards

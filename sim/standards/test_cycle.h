@@ -30,7 +30,7 @@ std::vector<CycleStop> stops(const TestCycle& cycle);
 std::vector<double> spaced_targets(double from, double to, int count, double spread,
                                    std::uint64_t seed);
 
-/// Number of targets that ISO 230-2, 5.3.2 asks for: five a metre, five at least.
+/// Number of targets that ISO 230-2, 5.3.2 asks for: five a metre, five at least; 1000 at most.
 int usual_target_count(double travel);
 
 }  // namespace servomill::sim::standards
