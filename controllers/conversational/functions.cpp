@@ -9,7 +9,7 @@
 namespace servomill::controllers::conversational {
 namespace {
 
-// `feed`: refused, but a survey goes on with unknown feeds.
+// `feed`: refused, but a survey continues with unknown feeds.
 enum class Effect { start, end, none, refused, feed };
 
 struct Function {

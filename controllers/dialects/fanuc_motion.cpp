@@ -127,7 +127,7 @@ void FanucMachine::run_reference_return() {
 }
 
 // G31: along a line at feed until the skip signal comes; without it to the end (Series
-// 15i/150i-MA, Programming, p. 564). One-shot; the axes stand where the signal stopped them.
+// 15i/150i-MA, Programming, p. 564). One-shot; the axes rest where the signal stopped them.
 void FanucMachine::run_skip() {
   const int at = column(Group::one_shot);
   if (!names_axis()) fail(at, "G31 without an axis");

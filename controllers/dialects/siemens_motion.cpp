@@ -77,7 +77,7 @@ class Motion {
   }
 
   // MEAS=1: to the first signal of probe 1, which deletes the distance to go (840D sl, Job
-  // planning 03/2006, 6FC5398-2BP10-1BA0, section 5.7). The axes of the block stand where it
+  // planning 03/2006, 6FC5398-2BP10-1BA0, section 5.7). The axes of the block come to rest where it
   // stopped them.
   void measure() {
     if (block_.MEAS->value != 1.0) {

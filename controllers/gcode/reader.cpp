@@ -220,7 +220,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {subprogram_behind_end, "a subprogram behind the closing '%'", "read as one before it",
      "no control documents it, and without it the program stops at its call", kFanuc | kHaas,
      "none found"},
-    {repeated_word, "a word that stands twice in a block",
+    {repeated_word, "a word that is repeated in a block",
      "the last F or S counts; other words only where both have the same number", "Fanuc", kFanuc,
      "Fanuc, parameter 3403#6 (AD2) = 0: the next one is enabled, from memory"},
     {haas_tip_control, "G234", "read as G43.4", "Haas", kHaas,

@@ -35,7 +35,7 @@ PlainWord word_at(const std::string& text, std::size_t begin) {
 
 }  // namespace
 
-// G and M words may stand several times. Other words that differ are left to the parser, which
+// G and M words may be repeated. Other words that differ are left to the parser, which
 // refuses them, but for feed and speed.
 void drop_repeated_words(TolerantLine& line, Reader reader) {
   std::string& text = line.text;

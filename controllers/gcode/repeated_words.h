@@ -1,4 +1,4 @@
-/// Words that stand twice in a block.
+/// Words that are repeated in a block.
 #pragma once
 
 #include "controllers/gcode/line_reader.h"

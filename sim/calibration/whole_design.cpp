@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A mean of some order stands for the worst: one candidate alone seldom lowers several worst ones.
+// A power mean approximates the worst: one candidate alone seldom lowers several worst ones.
 constexpr double kOrder = 32.0;
 constexpr double kRank = 1e-10;        // of the largest eigenvalue of an information
 constexpr std::size_t kLookedAt = 48;  // candidates of the steepest gains, a step

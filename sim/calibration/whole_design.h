@@ -16,6 +16,7 @@ namespace servomill::sim::calibration {
 /// Experiments, 1972, exchanges). Random numbers have a fixed seed: the same problem has the same
 /// plan.
 /// @param relaxed  counts (one a candidate) that need not be whole
+/// @pre there are candidates, each takes time; no quantity is without variance
 std::vector<double> whole_counts(const std::vector<Candidate>& candidates,
                                  const Eigen::MatrixXd& known,
                                  const std::vector<Eigen::MatrixXd>& quantities,

@@ -11,7 +11,7 @@
 namespace servomill::sim::tables {
 
 /// Component errors and squarenesses of the machine that have neither an identified number nor a
-/// value in the model. A squareness may stand at either of its two axes: EC0X or EC0Y.
+/// value in the model. A squareness may be given for either of its two axes: EC0X or EC0Y.
 std::vector<plant::ErrorName> unknown_errors(const plant::ErrorModel& errors,
                                              const model::UncertainErrors& identified,
                                              const JointLayout& layout);

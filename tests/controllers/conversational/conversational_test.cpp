@@ -149,7 +149,7 @@ TEST(Conversational, TheBuildersReferencePointIsUnknown) {
             "t.h:5:3: error: IZ: the position of Z is unknown here; program an absolute position");
 }
 
-// The path of a pocket is the control's own: a survey goes on, and positions are unknown behind it.
+// The path of a pocket is internal to the control: a survey continues, with unknown positions.
 TEST(Conversational, ASurveyLeavesOutCyclesOfUnknownPath) {
   ProgramSetup setup = example_setup();
   setup.accepts_unknown_positions = true;
@@ -172,7 +172,7 @@ TEST(Conversational, ASurveyLeavesOutCyclesOfUnknownPath) {
             "5 rapid 1 0 0\n");
 }
 
-// Measured values are unknown, and so are the positions behind the cycle; Q115 to Q119 and Q150 to
+// Measured values are unknown, and so are the positions after the cycle; Q115 to Q119 and Q150 to
 // Q166 are its results.
 TEST(Conversational, ASurveyGoesOnAfterTouchProbeCycles) {
   ProgramSetup setup = example_setup();
