@@ -131,8 +131,8 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
   assign_words(values);
 }
 
-// A survey continues after a cycle whose path is the control's own: where it is called, positions are
-// unknown.
+// A survey continues after a cycle whose path is the control's own: where it is called, positions
+// are unknown.
 void Translator::survey_cycle(int number, std::string_view why, bool is_called,
                               std::span<const HeidenhainWord> words) {
   if (is_called) {
@@ -149,8 +149,8 @@ void Translator::survey_cycle(int number, std::string_view why, bool is_called,
   assign_words(values);
 }
 
-// A survey continues after a touch probe cycle: positions and results are unknown, and a preset that
-// it sets counts as the one in force.
+// A survey continues after a touch probe cycle: positions and results are unknown, and a preset
+// that it sets counts as the one in force.
 void Translator::survey_probe(const HeidenhainBlock& block) {
   std::vector<HeidenhainWord> inputs;
   for (const HeidenhainWord& word : block.words) {
