@@ -105,6 +105,28 @@ double driving_force(const FeedDriveParams& p, const LaneState& s, double F) {
   return screw_force(p, s) - against;
 }
 
+double slide_acceleration(const FeedDriveParams& p, const LaneState& state, double command,
+                          double F) {
+  LaneState s = state;
+  if (p.current_is_command()) s.i = command;
+  const double force = driving_force(p, s, F);
+  const FrictionParams& f = p.friction;
+  const auto of_slide = [&](double friction) { return (force - friction) / p.slide_mass(); };
+  switch (f.kind) {
+    case FrictionKind::none:
+      break;
+    case FrictionKind::set_valued:
+      if (s.slide == SlideMode::sticking) return 0.0;
+      return of_slide(s.slide == SlideMode::positive ? sliding_force(f, true, s.v)
+                                                     : -sliding_force(f, false, s.v));
+    case FrictionKind::regularised:
+      return of_slide(regularised_force(f, s.v));
+    case FrictionKind::lugre:
+      return of_slide(bristle_force(f, s.v, s.z));
+  }
+  return of_slide(0.0);
+}
+
 double cogging_force(const FeedDriveParams& p, double x) {
   if (p.cogging.T == 0.0) return 0.0;
   return p.cogging.T / p.r * std::sin(p.cogging.n * x / p.r + p.cogging.phase);

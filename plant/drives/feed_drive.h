@@ -106,6 +106,12 @@ ContactMode contact_after(const FeedDriveParams& params, const LaneState& state)
 /// @param F  N, external force against the slide beside F_load
 double driving_force(const FeedDriveParams& params, const LaneState& state, double F);
 
+/// Acceleration of the slide (m/s^2) by all forces on it.
+/// @param command  A; counts where current_is_command()
+/// @param F        N, external force against the slide beside F_load
+double slide_acceleration(const FeedDriveParams& params, const LaneState& state, double command,
+                          double F);
+
 /// Cogging as a force against the slide at x (N): T/r sin(n x / r + phase).
 double cogging_force(const FeedDriveParams& params, double x);
 

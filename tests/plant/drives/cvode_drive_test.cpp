@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tests/plant/drives/drives.h"
+
 namespace servomill::plant::cvode_drive_test {
 namespace {
 
@@ -268,6 +270,45 @@ TEST(CvodeDrive, SaysWhatCvodeRefuses) {
   CvodeDrive drive(p);
   LaneState s;
   EXPECT_THROW(drive.advance(s, std::nan(""), 0.0, 1.0), std::runtime_error);
+}
+
+// What CVODE makes of the speed within a microsecond, extrapolated to its beginning.
+TEST(CvodeDrive, SlideAccelerationIsTheDerivativeOfTheSpeed) {
+  constexpr double kShort = 1e-6;            // s
+  constexpr double kAccelerationTol = 1e-5;  // m/s^2, of the curvature within twice that
+  for (const FrictionKind kind : {FrictionKind::none, FrictionKind::set_valued,
+                                  FrictionKind::regularised, FrictionKind::lugre}) {
+    for (const bool rigid : {false, true}) {
+      FeedDriveParams p = x_axis_with(kind);
+      if (rigid) p.kind = DriveKind::rigid;
+      if (rigid) p.T_i = 0.0;
+      LaneState begin = at_rest(p, 0.1);
+      begin.v = -0.05;
+      begin.w = begin.v / p.r;
+      begin.i = rigid ? 12.0 : 8.0;
+      begin.delta += rigid ? 0.0 : 20e-6;
+      begin.z = -9e-6;
+      begin.slide = SlideMode::negative;
+      constexpr double kCommand = 12.0, kForce = 100.0;
+      const auto speed_after = [&](double t) {
+        CvodeDrive drive(p);
+        LaneState s = begin;
+        drive.advance(s, kCommand, kForce, t);
+        return s.v;
+      };
+      const double a =
+          (4.0 * speed_after(kShort) - speed_after(2.0 * kShort) - 3.0 * begin.v) / (2.0 * kShort);
+      EXPECT_NEAR(slide_acceleration(p, begin, kCommand, kForce), a, kAccelerationTol)
+          << int(kind) << " " << rigid;
+    }
+  }
+}
+
+TEST(CvodeDrive, SlideThatSticksDoesNotAccelerate) {
+  const FeedDriveParams p = x_axis_with(FrictionKind::set_valued);
+  LaneState s = at_rest(p, 0.1);
+  s.delta += 1e-6;  // 220 N, below the breakaway force
+  EXPECT_EQ(slide_acceleration(p, s, 0.0, 0.0), 0.0);
 }
 
 }  // namespace
