@@ -13,6 +13,7 @@
 #include "strategies/linearisation.h"
 #include "strategies/pose_compensation.h"
 #include "strategies/programmed_way.h"
+#include "strategies/reversal_correction.h"
 
 namespace servomill::strategies {
 namespace {
@@ -83,7 +84,7 @@ class Rewriter {
         out_(out),
         Q_(identified.reference),
         out_at_(identified.layout.words(identified.reference)),
-        directions_(identified.model.plays().size(), 0.0) {}
+        reversal_(identified, params.action, identified.reference - params.shift) {}
 
   void rewrite(const Move& move) {
     const ProgrammedWay way(inverse_, identified_.p_ST, Q_, move);
@@ -95,16 +96,14 @@ class Rewriter {
       cut();
     } else if (move.kind == MoveKind::rapid) {
       // displaced at its end only: nothing is cut on the way
-      change_directions(Q_, way.end());
-      emit(place(1.0, Q_));
+      reach(place(1.0, Q_));
     } else if (way.length() == 0.0 && way.turn().any()) {
       // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
       // move takes them to where they belong.
-      change_directions(Q_, way.end());
       Place target = place(1.0, Q_);
       if (!displaces_all()) target.words = move.end_machine;
       target.words.head<3>() = out_at_.head<3>();
-      emit(target);
+      reach(target);
     } else {
       cut();
     }
@@ -115,9 +114,10 @@ class Rewriter {
   static constexpr int kMaxSplits = 24;
 
   struct Place {
-    double t = 0.0;   // of the move
-    Joints Q;         // as programmed
-    AxisWords words;  // displaced
+    double t = 0.0;                                      // of the move
+    Joints Q;                                            // as programmed
+    AxisWords words;                                     // displaced
+    Eigen::Vector3d reversal = Eigen::Vector3d::Zero();  // m; share of the directions of travel
   };
 
   bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
@@ -132,64 +132,67 @@ class Rewriter {
     Place a = place(0.0, Q_);
     for (std::int64_t i = 0; i < pieces; ++i) {
       throw_if_interrupted();
-      Place b = place(i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt, a.Q);
-      if (const double develops = change_directions(a.Q, b.Q); develops > 0.0) {
-        b = place(b.t, a.Q);
-        a = place(a.t, a.Q);
-        if (develops < 1.0) {  // a block in which the error goes over to the new direction
-          a = place(a.t + develops * (b.t - a.t), a.Q);
-          emit(a);
-        }
+      const double end = i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt;
+      for (const double t : ends_of_pieces(a, end)) {
+        const Place b = place(t, a.Q);
+        split(a, b, kMaxSplits);
+        travel(b);
+        a = b;
       }
-      split(a, b, kMaxSplits);
-      a = b;
     }
   }
 
-  // Directions of travel from a to b.
-  // @return share of the way that the slowest change of direction takes; 0: no axis has turned
-  double change_directions(const Joints& a, const Joints& b) {
-    constexpr double kStill = 1e-12;  // m, rad
-    const std::vector<plant::Play>& plays = identified_.model.plays();
-    double share = 0.0;
-    for (std::size_t i = 0; i < plays.size(); ++i) {
-      const double way = b[plays[i].joint] - a[plays[i].joint];
-      const double direction = way > 0.0 ? 1.0 : -1.0;
-      if (std::abs(way) <= kStill || direction == directions_[i]) continue;
-      directions_[i] = direction;
-      share = std::max(share, plays[i].distance / std::abs(way));
+  // Shares of the way at which an axis with hysteresis reverses, and the end.
+  std::vector<double> ends_of_pieces(const Place& a, double end) const {
+    std::vector<double> out;
+    for (const plant::Play& play : identified_.model.plays()) {
+      for (const double t : way_->turning_points(play.joint, a.t, end, a.Q)) out.push_back(t);
     }
-    return share;
-  }
-
-  // Displacement that the direction of travel adds to the mean, to first order in the errors.
-  Eigen::Vector3d reversal(const Joints& Q) const {
-    const plant::VolumetricModel& model = identified_.model;
-    const Eigen::Vector3d e =
-        model.error(Q, identified_.p_ST, directions_).dp_W - model.error(Q, identified_.p_ST).dp_W;
-    const Eigen::Matrix3d J = plant::linear_jacobian(model.chain(), Q);
-    const Eigen::Vector3d d = plant::least_squares(J, e).x;
-    return params_.action == Action::impose ? d : Eigen::Vector3d(-d);
+    std::sort(out.begin(), out.end());
+    constexpr double kSame = 1e-6;
+    double before = a.t;
+    std::erase_if(out, [&](double t) {
+      const bool is_same = std::min(t - before, end - t) < kSame * (end - a.t);
+      if (!is_same) before = t;
+      return is_same;
+    });
+    out.push_back(end);
+    return out;
   }
 
   Place place(double t, const Joints& Q_near) const {
     Place out{t, way_->at(t, Q_near), {}};
     out.words = identified_.layout.words(out.Q);
     const Joints Q_then = out.Q - params_.shift;
+    AxisWords d = AxisWords::Zero();
     if (displaces_all()) {
-      out.words += identified_.layout.words(all_.of_setpoint(params_.action, Q_then));
+      d = identified_.layout.words(all_.of_setpoint(params_.action, Q_then));
     } else {
-      out.words.head<3>() +=
-          setpoint_displacement(identified_, params_.action, params_.iterations, Q_then);
+      d.head<3>() = setpoint_displacement(identified_, params_.action, params_.iterations, Q_then);
     }
-    if (!directions_.empty()) out.words.head<3>() += reversal(Q_then);
+    if (reversal_.is_needed()) {
+      out.reversal = reversal_.displacement(Q_then, identified_.layout.joints(d));
+      d.head<3>() += out.reversal;
+    }
+    out.words += d;
     return out;
+  }
+
+  void travel(const Place& target) {
+    if (!reversal_.is_needed()) return;
+    const AxisWords d = target.words - identified_.layout.words(target.Q);
+    reversal_.travel(target.Q - params_.shift, identified_.layout.joints(d), target.reversal);
+  }
+
+  void reach(const Place& target) {
+    travel(target);
+    emit(target);
   }
 
   // Halves the way from a to b until the chord is within tolerance at a quarter, the half and three
   // quarters.
   void split(const Place& a, const Place& b, int splits_left) {
-    const bool is_within = is_within_tolerance(a, b);
+    const bool is_within = is_within_tolerance(a, b) || is_step(a, b);
     if (splits_left == 0 || is_within) {
       // a rapid may turn where it stands: it cuts nothing
       if (!is_within && way_->controls_tip() && move_->kind != MoveKind::rapid) {
@@ -203,6 +206,12 @@ class Rewriter {
     const Place middle = place(0.5 * (a.t + b.t), a.Q);
     split(a, middle, splits_left - 1);
     split(middle, b, splits_left - 1);
+  }
+
+  // Lost motion is taken up at once, where an axis reverses.
+  bool is_step(const Place& a, const Place& b) const {
+    return reversal_.is_needed() && (b.t - a.t) * way_->length() < params_.tolerance &&
+           (b.reversal - a.reversal).norm() > params_.tolerance;
   }
 
   bool is_within_tolerance(const Place& a, const Place& b) const {
@@ -263,8 +272,8 @@ class Rewriter {
   Joints Q_;  // as programmed, where the move begins
   const Move* move_ = nullptr;
   const ProgrammedWay* way_ = nullptr;
-  AxisWords out_at_;                // displaced end of the block before
-  std::vector<double> directions_;  // of travel, of each play of the identified model; 0: not yet
+  AxisWords out_at_;  // displaced end of the block before
+  ReversalCorrection reversal_;
   double s_ = 0.0, t_ = 0.0;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/axes.h"
@@ -30,8 +31,15 @@ class ProgrammedWay {
   /// @param Q_near  joints on the way nearby
   Joints at(double t, const Joints& Q_near) const;
 
+  /// Shares of the way at which the joint reverses, rising.
+  /// @param from, to  shares of the way; both excluded
+  /// @param Q_near    joints at `from`
+  std::vector<double> turning_points(int joint, double from, double to, const Joints& Q_near) const;
+
  private:
   const JointLayout& layout() const { return inverse_.chain().layout; }
+  int rate_sign(int joint, double t, double h, const Joints& Q_near) const;
+  double reversal_between(int joint, double a, double b, double h, const Joints& Q_near) const;
   Joints with_tip(const Eigen::Vector3d& p_WT, const Joints& Q_rotary) const;
 
   const plant::InverseKinematics& inverse_;

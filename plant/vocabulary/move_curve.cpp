@@ -36,6 +36,8 @@ AxisWords MoveCurve::at(double t) const {
   return p;
 }
 
+double MoveCurve::sweep() const { return arc_ ? std::abs(arc_->sweep) : 0.0; }
+
 double MoveCurve::closest(const Eigen::Vector3d& point) const {
   if (!arc_) {
     const Eigen::Vector3d d = (to_ - from_).head<3>();

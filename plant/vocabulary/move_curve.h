@@ -27,6 +27,8 @@ class MoveCurve {
 
   /// Length of the path of X, Y, Z (m).
   double length() const { return length_; }
+  /// Angle of an arc (rad, positive); 0 of a straight move.
+  double sweep() const;
 
   /// t in [0, 1] of the point of the curve of X, Y, Z that is closest to p (3; m). For helices the
   /// axial distance does not count in the choice of the angle.

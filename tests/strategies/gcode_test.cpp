@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "plant/geometry/reversal_memory.h"
 #include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::gcode_test {
@@ -11,42 +15,176 @@ namespace {
 using plant::operator""_err;
 
 constexpr double kWidth = 10e-6, kDistance = 0.1 * mm;
+constexpr double kTolerance = 0.1e-6;  // m, chord tolerance of the blocks: the default
 
-std::vector<Move> there_and_back() {
+Move feed_to(const Eigen::Vector3d& end, double s_begin, double s_end) {
   Move out;
   out.kind = MoveKind::feed;
   out.feed = 10.0 * mm;
-  out.end_machine << 5.0 * mm, 0.0, 0.0, 0.0, 0.0, 0.0;
+  out.end_machine.head<3>() = end;
   out.end = out.end_machine;
-  out.s_end = 5.0 * mm;
-  Move back = out;
-  back.end_machine[0] = back.end[0] = 0.0;
-  back.s_begin = out.s_end;
-  back.s_end = 10.0 * mm;
-  return {out, back};
+  out.s_begin = s_begin;
+  out.s_end = s_end;
+  return out;
 }
 
-std::vector<Move> rewritten(Action action) {
-  plant::ErrorModel errors;
-  errors.component("EXX"_err) = plant::reversal({kWidth}, kDistance);
+std::vector<Move> there_and_back() {
+  return {feed_to({5.0 * mm, 0.0, 0.0}, 0.0, 5.0 * mm), feed_to({0, 0, 0}, 5.0 * mm, 10.0 * mm)};
+}
+
+// The identified model starts at zero.
+IdentifiedMachine machine_with(const plant::ErrorModel& errors) {
   IdentifiedMachine identified = identified_with(errors, "[w b X Y Z (C1) t]");
   identified.reference.setZero();
-  const Entry entry = gcode_entry();
-  return entry.make(default_parameters(entry), action, identified)->rewrite(there_and_back());
+  return identified;
 }
+
+std::vector<Move> rewritten(const IdentifiedMachine& identified, const std::vector<Move>& moves,
+                            Action action = Action::compensate, double max_block = 1.0 * mm) {
+  const Entry entry = gcode_entry();
+  Parameters parameters = default_parameters(entry);
+  parameters.set("max_block_mm", max_block);
+  return entry.make(parameters, action, identified)->rewrite(moves);
+}
+
+// Machine that goes straight from block to block, with the hysteresis of its true positions.
+class TrueMachine {
+ public:
+  explicit TrueMachine(const IdentifiedMachine& machine)
+      : machine_(machine),
+        memory_(machine.model.plays(), machine.reference),
+        directions_(memory_.size()),
+        at_(machine.reference) {}
+
+  // TCP (m) at steps of the way to the end of a block.
+  std::vector<Eigen::Vector3d> go(const Move& block) {
+    constexpr int kSteps = 10;
+    const Joints end = machine_.layout.joints(block.end_machine), begin = at_;
+    std::vector<Eigen::Vector3d> out;
+    for (int i = 1; i <= kSteps; ++i) {
+      at_ = begin + (end - begin) * i / kSteps;
+      memory_.travel(at_);
+      memory_.directions(at_, directions_);
+      out.push_back(at_.head<3>() + machine_.model.error(at_, machine_.p_ST, directions_).dp_W);
+    }
+    return out;
+  }
+
+ private:
+  const IdentifiedMachine& machine_;
+  plant::ReversalMemory memory_;
+  std::vector<double> directions_;
+  Joints at_;
+};
 
 // Up, the axis goes 5 um too far; down, 5 um too little; in between as long as the change takes.
 TEST(Gcode, CorrectsReversalForTheDirectionOfTravel) {
+  plant::ErrorModel errors;
+  errors.component("EXX"_err) = plant::reversal({kWidth}, kDistance);
+  const IdentifiedMachine identified = machine_with(errors);
   for (const Action action : {Action::compensate, Action::impose}) {
     const double up = (action == Action::compensate ? -0.5 : 0.5) * kWidth;
-    const std::vector<Move> moves = rewritten(action);
-    ASSERT_EQ(moves.size(), 12U);  // five blocks of 1 mm each way, and two changes
-    EXPECT_NEAR(moves[0].end_machine[0], kDistance + up, 1e-12);
-    EXPECT_NEAR(moves[1].end_machine[0], 1.0 * mm + up, 1e-12);
-    EXPECT_NEAR(moves[5].end_machine[0], 5.0 * mm + up, 1e-12);
-    EXPECT_NEAR(moves[6].end_machine[0], 5.0 * mm - kDistance - up, 1e-12);
-    EXPECT_NEAR(moves[7].end_machine[0], 4.0 * mm - up, 1e-12);
-    EXPECT_NEAR(moves[11].end_machine[0], -up, 1e-12);
+    const std::vector<Move> moves = rewritten(identified, there_and_back(), action);
+    for (const Move& move : moves) {
+      const bool goes_up = move.s_end <= 5.0 * mm;
+      const double x = goes_up ? move.s_end : 10.0 * mm - move.s_end;
+      const double travelled = goes_up ? move.s_end : move.s_end - 5.0 * mm;
+      if (travelled < 1.1 * kDistance) continue;
+      EXPECT_NEAR(move.end_machine[0], x + (goes_up ? up : -up), 1e-12) << move.s_end;
+    }
+    EXPECT_LT(moves.size(), 60U);
+  }
+}
+
+// Block ends are exact, chords within the tolerance.
+TEST(Gcode, CorrectsReversalWhileItDevelops) {
+  for (const double width : {kWidth, -kWidth}) {
+    plant::ErrorModel errors;
+    errors.component("EXX"_err) = plant::reversal({width}, kDistance);
+    const IdentifiedMachine identified = machine_with(errors);
+    TrueMachine machine(identified);
+    for (const Move& block : rewritten(identified, there_and_back())) {
+      const double x = block.s_end <= 5.0 * mm ? block.s_end : 10.0 * mm - block.s_end;
+      EXPECT_NEAR(machine.go(block).back()[0], x, 1e-9) << block.s_end;
+    }
+  }
+}
+
+// A full circle of 20 mm about (20, 0) mm, begun where the tool has come to it along X; `turns` as
+// in Arc.
+std::vector<Move> circle(int turns, double begin_angle) {
+  constexpr double kRadius = 20.0 * mm;
+  const Eigen::Vector3d centre(20.0 * mm, 0.0, 0.0);
+  const Eigen::Vector3d begin =
+      centre + kRadius * Eigen::Vector3d(std::cos(begin_angle), std::sin(begin_angle), 0.0);
+  const double lead = begin.norm();
+  Move arc = feed_to(begin, lead, lead + 2.0 * std::numbers::pi * kRadius);
+  arc.kind = MoveKind::arc;
+  arc.arc.normal_axis = 2;
+  arc.arc.turns = turns;
+  arc.arc.centre = arc.centre_machine = centre;
+  return {feed_to(begin, 0.0, lead), arc};
+}
+
+// Greatest less smallest distance from the centre, after the motion to the circle.
+double roundness(const IdentifiedMachine& identified, const std::vector<Move>& program,
+                 const std::vector<Move>& blocks) {
+  const Eigen::Vector3d centre = program.back().centre_machine;
+  TrueMachine machine(identified);
+  double least = 1.0, most = 0.0;
+  for (const Move& block : blocks) {
+    for (const Eigen::Vector3d& p : machine.go(block)) {
+      if (block.s_end <= program.front().s_end) continue;
+      const double r = (p - centre).norm();
+      least = std::min(least, r);
+      most = std::max(most, r);
+    }
+  }
+  return most - least;
+}
+
+// Lost motion of w on both axes displaces the quarters of a circle along its diagonals, in and out:
+// its roundness is w without correction, the chord tolerances with it. Blocks of a quarter and of
+// more than the circle are divided where an axis reverses, as short ones are.
+TEST(Gcode, DividesArcsWhereAnAxisReverses) {
+  constexpr double kLost = -3.0 * um;
+  for (const double distance : {0.5 * mm, 0.05 * mm, 0.01 * mm}) {
+    plant::ErrorModel errors;
+    errors.component("EXX"_err) = plant::reversal({kLost}, distance);
+    errors.component("EYY"_err) = plant::reversal({kLost}, distance);
+    const IdentifiedMachine identified = machine_with(errors);
+    const IdentifiedMachine unaware = machine_with(plant::ErrorModel());
+    for (const int turns : {1, -1}) {
+      for (const double begin : {0.3, 0.0, 2.5}) {
+        const std::vector<Move> program = circle(turns, begin);
+        EXPECT_GT(roundness(identified, program, rewritten(unaware, program)), 2.0 * um);
+        for (const double block : {1.0 * mm, 30.0 * mm, 500.0 * mm}) {
+          const std::vector<Move> blocks =
+              rewritten(identified, program, Action::compensate, block);
+          EXPECT_LT(roundness(identified, program, blocks), 2.0 * kTolerance)
+              << distance << " " << turns << " " << begin << " " << block;
+        }
+      }
+    }
+  }
+}
+
+// Taken up in less travel than its width, lost motion is a step of the axis at its reversal.
+TEST(Gcode, TakesUpSteepLostMotionAtOnce) {
+  plant::ErrorModel errors;
+  errors.component("EXX"_err) = plant::reversal({-3.0 * um}, 0.5 * um);
+  const IdentifiedMachine identified = machine_with(errors);
+  const IdentifiedMachine unaware = machine_with(plant::ErrorModel());
+  for (const int turns : {1, -1}) {
+    const std::vector<Move> program = circle(turns, 0.3);
+    const std::vector<Move> blocks = rewritten(identified, program);
+    EXPECT_LT(blocks.size(), rewritten(unaware, program).size() + 100);
+    TrueMachine machine(identified);
+    for (const Move& block : blocks) {
+      const Eigen::Vector3d end = machine.go(block).back();
+      if (block.s_end <= program.front().s_end) continue;
+      EXPECT_NEAR((end - program.back().centre_machine).norm(), 20.0 * mm, kTolerance);
+    }
   }
 }
 

@@ -221,5 +221,48 @@ TEST(Hysteresis, IsRefusedWhereItCannotBe) {
             "errors.machine.EXC.reversal.distance_mm is not known; did you mean 'distance_deg'?\n");
 }
 
+// Largest less smallest distance (um) of the TCP from the centre of a circle, on it.
+double roundness(const model::Scenario& scenario, const std::string& name) {
+  const CaseOutput output = run_named_case(scenario, name);
+  const records::Series& series = output.result.servo;
+  const std::size_t section = series.column("section").value();
+  const std::size_t x = series.column("tool_position_true", 'X').value();
+  const std::size_t y = series.column("tool_position_true", 'Y').value();
+  double least = 1e9, most = 0.0;
+  for (std::size_t n = 0; n < series.rows(); ++n) {
+    if (series.at(n, section) < 1.0) continue;
+    const double r = std::hypot(series.at(n, x), series.at(n, y));
+    least = std::min(least, r);
+    most = std::max(most, r);
+  }
+  return (most - least) * 1e3;
+}
+
+// Lost motion alone, on a circle that begins and ends at 30 degrees: uncorrected it is out of round
+// by its width, corrected by the chords of the blocks and by what the servo loops leave without
+// errors, too.
+TEST(Hysteresis, IsCompensatedOnCirclesByARewrittenProgram) {
+  constexpr double kChords = 0.2;  // um, two tolerances
+  for (const std::string turn : {"G2", "G3"}) {
+    const std::string program = "G17 G21 G90 G94 G61\nG0 X17.320508 Y10\nG1 F600\n" + turn +
+                                " X17.320508 Y10 I-17.320508 J-10\n(MSG, circle)\n" + turn +
+                                " X17.320508 Y10 I-17.320508 J-10\nM30\n";
+    const std::string gcode =
+        "[[case.strategy]]\ntype = \"gcode\"\nmodel = \"machine\"\naction = \"compensate\"\n";
+    const std::string cases =
+        "[[case]]\nname = \"as_it_is\"\nservo = \"ideal\"\n"
+        "[[case]]\nname = \"ideal\"\nservo = \"ideal\"\n" +
+        gcode + "[[case]]\nname = \"servo\"\n" + gcode +
+        "[[case]]\nname = \"perfect\"\nmachine_errors = \"\"\n";
+    const model::Scenario scenario = machine_with_hysteresis(
+        program, "[record]\nperiod_ms = 3.0\n" + cases,
+        "[errors.machine]\nEXX = { reversal = { width_um = -3.0, distance_mm = 0.05 } }\n"
+        "EYY = \"EXX\"\n");
+    EXPECT_GT(roundness(scenario, "as_it_is"), 2.5) << turn;
+    EXPECT_LT(roundness(scenario, "ideal"), kChords) << turn;
+    EXPECT_LT(roundness(scenario, "servo"), roundness(scenario, "perfect") + kChords) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim::run::hysteresis_test
