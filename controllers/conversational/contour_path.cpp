@@ -70,8 +70,7 @@ void ContourPath::add(Motion motion) {
   held_ = std::move(motion);
 }
 
-void ContourPath::note(std::string text, const Place& place) {
-  GcodeLine note{std::move(text), place};
+void ContourPath::note(GcodeLine note) {
   if (held_) {
     behind_held_.emplace_back(std::move(note));
   } else {
@@ -150,7 +149,7 @@ void ContourPath::compensate(Entry entry) {
   if (side_ != 0 || approach_) {
     waiting_.push_back(std::move(entry));
   } else {
-    lines_.put(std::get<GcodeLine>(entry).text, std::get<GcodeLine>(entry).place);
+    lines_.put(std::get<GcodeLine>(entry));
   }
 }
 
@@ -271,7 +270,7 @@ void ContourPath::put_waiting() {
     if (const Motion* motion = std::get_if<Motion>(&entry)) {
       lines_.put(*motion);
     } else {
-      lines_.put(std::get<GcodeLine>(entry).text, std::get<GcodeLine>(entry).place);
+      lines_.put(std::get<GcodeLine>(entry));
     }
   }
 }

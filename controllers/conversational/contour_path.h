@@ -46,7 +46,7 @@ class ContourPath {
 
   void add(Motion motion);
   /// Adds a line of G-code after the motions added so far.
-  void note(std::string text, const Place& place);
+  void note(GcodeLine note);
   /// Adds RND (radius) or CHF (length on each side) between the last element and the next.
   /// @throws InputError if nothing precedes it
   void corner(bool is_rounding, double size, const std::optional<Feed>& feed, const Place& place);

@@ -128,12 +128,15 @@ class Source final : public LineSource {
     if (!made) return false;
     line = std::move(made->text);
     place = std::move(made->place);
+    unknowns_ = std::move(made->unknowns);
     return true;
   }
+  LineUnknowns unknowns() const override { return unknowns_; }
   std::vector<Fault> take_warnings() override { return translator_.take_warnings(); }
 
  private:
   Translator translator_;
+  LineUnknowns unknowns_;
 };
 
 }  // namespace

@@ -165,7 +165,7 @@ void Translator::survey_probe(const HeidenhainBlock& block) {
     parameters_.forget({'Q', number}, "is measured by TCH PROBE");
   }
   require_no_compensation("TCH PROBE");
-  leave_positions_unknown("TCH PROBE: the measured values are unknown");
+  leave_positions_unknown("TCH PROBE", "the measured values are unknown");
 }
 
 // "TCH PROBE 0.0 REF. PLANE Q5 X-": cycles 0 to 4 name the parameter of the result; 3 and 4 store

@@ -69,8 +69,7 @@ void Translator::drill() {
   require_no_compensation("a drilling cycle");
   if (is_tcp_) fail("a drilling cycle with M128; end it with M129");
   if (!cycle_->why_unknown.empty()) {
-    return leave_positions_unknown(
-        fmt::format("CYCL DEF {}: {}", cycle_->number, cycle_->why_unknown));
+    return leave_positions_unknown(fmt::format("CYCL DEF {}", cycle_->number), cycle_->why_unknown);
   }
   if (frame_.scale != 1.0) fail("a drilling cycle while cycle 11 is active");
   last_element_.reset();
@@ -78,11 +77,17 @@ void Translator::drill() {
   was_rapid_ = true;
 }
 
+// The line holds the place of moves that a survey does not know.
+void Translator::leave_moves_out(const std::string& whose, std::string line) {
+  path_.note({std::move(line), place_, {false, false, whose}});
+}
+
 // The call of a cycle that a survey cannot follow. Surveys take the second home of G30 for a
 // position that is not known.
-void Translator::leave_positions_unknown(const std::string& why) {
-  warn_once(why, why + "; extent and cycle time are without its moves");
-  for (const char* text : {"G91 G30 X0 Y0 Z0", "G90"}) note(text);
+void Translator::leave_positions_unknown(const std::string& whose, const std::string& why) {
+  warn_once(whose, fmt::format("{}: {}; extent and cycle time are without its moves", whose, why));
+  leave_moves_out(whose, "G91 G30 X0 Y0 Z0");
+  note("G90");
   forget_linear_positions();
 }
 
@@ -224,6 +229,7 @@ void Translator::bore_202() {
         "the moves";
     if (!setup_.accepts_unknown_positions) fail(why);
     warn_once("Q214", why + "; extent and cycle time are without it");
+    leave_moves_out("CYCL DEF 202", "G90");
   }
   warn_once("cycle 202",
             "CYCL DEF 202: the spindle orientation at the bottom is ignored: no effect on motion");

@@ -18,6 +18,7 @@ int started_turns(double sweep) {
 
 std::string feed_word(const Feed& feed) {
   if (feed.kind == Feed::Kind::rapid) return {};
+  if (feed.kind == Feed::Kind::unknown) return " F1";
   const double value = feed.kind == Feed::Kind::time ? 60.0 / feed.value : feed.value;
   return " " + word('F', value);
 }
@@ -66,7 +67,7 @@ void GcodeLines::put(const Motion& motion) {
   }
   text += feed_word(motion.feed);
   if (motion.is_incremental) put("G91", motion.place);
-  put(std::move(text), motion.place);
+  put({std::move(text), motion.place, {false, motion.feed.kind == Feed::Kind::unknown, {}}});
   if (motion.is_incremental) put("G90", motion.place);
   if (motion.feed.kind == Feed::Kind::time) put("G94", motion.place);
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "controllers/conversational/contour.h"
+#include "controllers/gcode/program_text.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 
@@ -18,7 +19,7 @@ namespace servomill::controllers::conversational {
 using Values = std::array<std::optional<double>, kAxisWords>;
 
 struct Feed {
-  enum class Kind { rapid, per_minute, time } kind = Kind::rapid;
+  enum class Kind { rapid, per_minute, time, unknown } kind = Kind::rapid;
   double value = 0.0;  // mm/min (deg/min), s
   bool operator==(const Feed&) const = default;
 };
@@ -40,6 +41,7 @@ struct Motion {
 struct GcodeLine {
   std::string text;
   Place place;
+  LineUnknowns unknowns = {};
 };
 
 /// First and second axis of a plane.
@@ -49,7 +51,8 @@ constexpr std::array<std::size_t, 2> plane_axes(int normal) {
 
 class GcodeLines {
  public:
-  void put(std::string text, const Place& place) { lines_.push_back({std::move(text), place}); }
+  void put(std::string text, const Place& place) { put({std::move(text), place}); }
+  void put(GcodeLine line) { lines_.push_back(std::move(line)); }
   void put(const Motion& motion);
   bool is_empty() const { return lines_.empty(); }
   GcodeLine take();

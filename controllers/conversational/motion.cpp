@@ -115,7 +115,7 @@ void Translator::store_end(const Motion& motion) {
 void Translator::add(Motion motion) {
   motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
   if (are_feeds_unknown_ && motion.feed.kind != Feed::Kind::rapid) {
-    motion.feed = {Feed::Kind::per_minute, kUnknownFeed / mm_per_min};
+    motion.feed = {Feed::Kind::unknown};
   }
   const auto axes = plane_axes(motion.normal);
   const bool names_first = motion.words[axes[0]].has_value();

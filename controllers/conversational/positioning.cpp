@@ -156,7 +156,7 @@ Feed Translator::modal_feed() {
   if (!feed_ && !setup_.accepts_unknown_feeds) fail(why);
   if (!feed_) {
     warn_once("feed", why + "; the cycle time stays unknown");
-    return {Feed::Kind::per_minute, kUnknownFeed / mm_per_min};
+    return {Feed::Kind::unknown};
   }
   return {Feed::Kind::per_minute, *feed_};
 }

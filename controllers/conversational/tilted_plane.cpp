@@ -145,7 +145,7 @@ void Translator::survey_plane(const std::string& what) {
   plane_line_ = "G68.2";
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
   plane_line_ += " I0 J90 K0";
-  lines_.put(plane_line_, place_);
+  lines_.put({plane_line_, place_, {true, false, {}}});
   enter_plane({90.0, 0.0, 0.0});
   for (const int number : {120, 121, 122}) {
     parameters_.forget({'Q', number}, "is the angle of a rotary axis after PLANE");

@@ -91,7 +91,7 @@ class Translator {
     throw InputError(place, std::move(message));
   }
   void warn_once(const std::string& key, std::string message);
-  void note(std::string text) { path_.note(std::move(text), place_); }
+  void note(std::string text) { path_.note({std::move(text), place_}); }
   double value(const Operand& operand) const { return parameters_.value(operand); }
   double unit() const { return is_inch_ ? 25.4 : 1.0; }  // mm
   double length(const Operand& operand) const { return value(operand) * unit(); }
@@ -228,7 +228,8 @@ class Translator {
   void call_cycle(const HeidenhainBlock& block);
   void drill();
   void run_drilling_cycle();
-  void leave_positions_unknown(const std::string& why);
+  void leave_moves_out(const std::string& whose, std::string line);
+  void leave_positions_unknown(const std::string& whose, const std::string& why);
   void drill_old();
   void tap_old(bool is_rigid);
   void drill_200();

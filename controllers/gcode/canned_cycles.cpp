@@ -226,7 +226,7 @@ CycleHole Interpreter::Machine::cycle_hole(bool goes_on) {
   hole.clear = state_.retracts_to_r ? hole.r : std::max(kept.level, hole.r);
   if (has_dwell(code) || is_tapping(code)) {
     kept.dwell = cycle_word('P', kept.dwell, goes_on || is_tapping(code));
-    if (request().has('P') && has_unknown_dwell()) kept.dwell = kUnknownDwell;
+    if (request().has('P') && has_unknown_dwell()) kept.dwell = kUnknownValue;
     if (kept.dwell < 0.0) fail_at('P', fmt::format("P{}; must be >= 0", kept.dwell));
     hole.dwell = kept.dwell;
   }

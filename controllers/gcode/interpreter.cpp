@@ -173,7 +173,11 @@ void Interpreter::Machine::feed() {
   if (!request().has('F')) return;
   const double F = request()['F'];
   if (F < 0.0) fail_at('F', fmt::format("F{}; must be >= 0", F));
-  set_feed(F);
+  set_feed(has_unknown_feed() ? kUnknownValue : F);
+}
+
+bool Interpreter::Machine::has_unknown_feed() const {
+  return unknowns_.feed || (is_rewritten_ && reading_.has_unknown_feed());
 }
 
 void Interpreter::Machine::set_feed(double F) {
@@ -324,6 +328,7 @@ MoveList Interpreter::rest_held() {
   return out;
 }
 const std::vector<Fault>& Interpreter::warnings() const { return machine_->warnings(); }
+int Interpreter::unread_behind() const { return machine_->unread_behind(); }
 
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup) {
   return Interpreter(std::move(text), std::move(file), std::move(setup)).rest();

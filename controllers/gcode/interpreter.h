@@ -78,6 +78,9 @@ struct ExecutedBlock {
   const PlaneFrame* frame = nullptr;  // behind the block
   /// Number (0 for a named one) and new value of the parameter of each assignment.
   std::span<const std::pair<int, double>> assigned = {};
+  /// Whose moves a survey does not know, for which the block only holds their place: "CYCL DEF
+  /// 251".
+  std::string_view unknown_moves = {};
 };
 
 /// Reads a program block by block, so that a long one is never held: neither its text nor its
@@ -111,6 +114,8 @@ class Interpreter {
   /// Warnings of the blocks so far: tool axes that were not of unit length,
   /// tools that cut in a tilted plane without standing along its Z.
   const std::vector<Fault>& warnings() const;
+  /// Line of the closing '%' that ended the program although blocks follow it; 0: none did.
+  int unread_behind() const;
 
  private:
   class Machine;

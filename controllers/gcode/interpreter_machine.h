@@ -32,7 +32,7 @@
 
 namespace servomill::controllers {
 
-inline constexpr double kUnknownDwell = std::numeric_limits<double>::quiet_NaN();  // s
+inline constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();  // in surveys
 inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
 
 /// An axis word as it stands in a parameter, in mm or degrees, and back.
@@ -86,6 +86,7 @@ class Interpreter::Machine {
   }
 
   const std::vector<Fault>& warnings() const { return warnings_; }
+  int unread_behind() const { return unread_behind_; }
 
   /// A system variable of Fanuc and Haas, behind the block that ran last.
   /// @param why  set to the reason where a simulation cannot know it
@@ -199,6 +200,7 @@ class Interpreter::Machine {
   }
   int integer(char letter, double tolerance = kIntegerTol) const;
   bool has_unknown_dwell() const { return is_rewritten_ && reading_.has_unknown_dwell(); }
+  bool has_unknown_feed() const;
 
   // ---- steps of a block, in the order of execution
   // Due if the block has the letter or a code of the group: the lowest bits are letters, the next
@@ -285,10 +287,7 @@ class Interpreter::Machine {
   void orient_tool();  // G53.1
   void refuse_while_tip_is_controlled() const;
   void refuse_rotary_words() const;
-  bool has_vector() const {
-    return state_.tool_control == ToolControl::tool_axis &&
-           (request_.has('I') || request_.has('J') || request_.has('K'));
-  }
+  bool has_vector() const;
   Eigen::Vector3d programmed_axis();
   double turn_towards(const Eigen::Vector3d& k, AxisWords& end) const;
   void warn_of_leaning_tool();
@@ -373,6 +372,7 @@ class Interpreter::Machine {
   std::string pending_line_;               // that runs
   std::size_t nth_line_ = 0;               // of those of the block
   bool is_rewritten_ = false;              // `line_` is one of them
+  LineUnknowns unknowns_;                  // of `line_`, which another language's block became
   bool has_warned_of_points_ = false;
   std::set<ReaderRule> tolerated_;
   std::set<std::string> noted_;
@@ -387,6 +387,7 @@ class Interpreter::Machine {
   ModalState before_;              // the block
   std::vector<SavedLevel> saved_;  // by level of calls
   bool ended_ = false;
+  int unread_behind_ = 0;  // line of a closing '%'
   std::vector<Move> out_;
   std::size_t given_ = 0;
   std::vector<std::pair<int, double>> new_numbers_;

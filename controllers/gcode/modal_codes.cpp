@@ -19,7 +19,7 @@ void Interpreter::Machine::dwell() {
   if (motion_code == 20 || motion_code == 30) {
     fail(column, "G4 and an arc in one block: both use the P word");
   }
-  emit(MoveKind::dwell).value = has_unknown_dwell() ? kUnknownDwell : P;
+  emit(MoveKind::dwell).value = has_unknown_dwell() ? kUnknownValue : P;
 }
 
 void Interpreter::Machine::plane() {

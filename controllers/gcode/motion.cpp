@@ -17,8 +17,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr double kSpiralLimit = 0.5 * mm, kSpiralShare = 0.05;  // between the radii of an arc
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTurnsTol = 1e-3;  // as LinuxCNC, for P of an arc
+constexpr double kTurnsTol = 1e-3;                              // as LinuxCNC, for P of an arc
 
 }  // namespace
 
@@ -290,15 +289,15 @@ void Interpreter::Machine::describe(Move& move, MoveKind kind) const {
     move.tool_control = ToolControl::work_plane;
   }
   // neither is a number that anything may be computed from
-  if (state_.is_height_unknown) move.end[2] = kUnknown;
-  if (state_.is_height_unknown || state_.is_length_unknown) move.end_machine[2] = kUnknown;
+  if (state_.is_height_unknown) move.end[2] = kUnknownValue;
+  if (state_.is_height_unknown || state_.is_length_unknown) move.end_machine[2] = kUnknownValue;
 }
 
 void Interpreter::Machine::describe_arc(Move& move, const AxisWords& centre, int turns) const {
   move.arc = {state_.normal_axis, centre.head<3>(), turns};
   if (state_.plane) move.plane = std::make_shared<const WorkPlane>(state_.plane_in_workpiece());
   move.centre_machine = state_.to_machine(centre).head<3>();
-  if (std::isnan(move.end_machine[2])) move.centre_machine.z() = kUnknown;
+  if (std::isnan(move.end_machine[2])) move.centre_machine.z() = kUnknownValue;
 }
 
 void Interpreter::Machine::move_to(MoveKind kind, const AxisWords& end, double length,

@@ -27,13 +27,6 @@ struct SharedTrials {
 };
 
 /// Data of the machine before the first block.
-/// Feed of surveys before the first F (m/s), which no program has.
-inline constexpr double kUnknownFeed = 1.23456789e-2;
-/// True for that feed, after it was written in a program's unit and read again.
-constexpr bool is_unknown(double feed) {
-  return feed > kUnknownFeed * (1.0 - 1e-6) && feed < kUnknownFeed * (1.0 + 1e-6);
-}
-
 struct ProgramSetup {
   std::map<int, double> stored;  // of the parameter file, in mm and degrees
   /// "#101", "#<name>" or "#<_name>", in program terms (whatever unit the program gives them).
@@ -59,7 +52,7 @@ struct ProgramSetup {
   /// G54.1 P lies at the work system in force, M140 MB MAX goes to the stored position of G28,
   /// G53.1 and G43.5 leave the rotary axes, and the tip is reckoned with these at zero.
   bool accepts_unknown_positions = false;
-  /// For surveys: moves before the first F have the feed `kUnknownFeed`.
+  /// For surveys: feeds may be unknown (NaN), as those of moves before the first F.
   bool accepts_unknown_feeds = false;
   /// Finds out whether the reader would read the program, not how: what stops servomill and not
   /// the control is thrown as `Undetermined`.

@@ -14,6 +14,14 @@ namespace servomill::controllers {
 
 class ProgramText;
 
+/// Parts of a line that a survey does not know. They travel with the line, since no number in it
+/// can say so.
+struct LineUnknowns {
+  bool tilt = false;        ///< the angles of the work plane only hold their place
+  bool feed = false;        ///< the number of F only holds its place
+  std::string motion = {};  ///< cycle whose moves are unknown; the line only holds their place
+};
+
 /// Writes the lines of a program in another language as lines in G-code.
 class LineSource {
  public:
@@ -28,6 +36,8 @@ class LineSource {
   virtual bool is_of_control() const { return false; }
   /// Column in the program as written of one in the line that came last.
   virtual int original_column(int column) const { return column; }
+  /// Unknown parts of the line that came last.
+  virtual LineUnknowns unknowns() const { return {}; }
   /// Programs that call each other: how many, and "; in O9010, called in part.nc:12".
   virtual int call_depth() const { return 0; }
   virtual std::string call_stack() const { return {}; }

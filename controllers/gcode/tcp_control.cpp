@@ -113,6 +113,7 @@ void Interpreter::Machine::work_plane() {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
   plane.R = turn('I', z) * turn('J', x) * turn('K', z);
   state_.plane = std::make_shared<const WorkPlane>(plane);
+  if (unknowns_.tilt) cut_plane_ = state_.plane;
   stand_at(machine, column);
 }
 
@@ -126,6 +127,7 @@ void Interpreter::Machine::orient_tool() {
     const std::string why =
         "G53.1: the rotary axis positions depend on the machine; pass it with --machine";
     if (!setup_.accepts_unknown_positions) fail(column, why);
+    cut_plane_ = state_.plane;  // the tool is normal to it, although no axis is known to turn
     return note_without_machine(column, why);
   }
   if (setup_.machine->number_of_rotary_axes() == 0) {
@@ -187,6 +189,11 @@ void Interpreter::Machine::refuse_rotary_words() const {
   }
 }
 
+bool Interpreter::Machine::has_vector() const {
+  return state_.tool_control == ToolControl::tool_axis &&
+         (request_.has('I') || request_.has('J') || request_.has('K'));
+}
+
 // The tool axis of a block under G43.5, in W.
 Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   if (!has_vector()) {
@@ -222,7 +229,7 @@ double Interpreter::Machine::turn_towards(const Eigen::Vector3d& k, AxisWords& e
   return turn.angle;
 }
 
-// Once for each tilted plane in which it cuts.
+// Once for each tilted plane in which it cuts, and whose tilt is known.
 void Interpreter::Machine::warn_of_leaning_tool() {
   if (!state_.plane || state_.tool_control != ToolControl::none || cut_plane_ == state_.plane)
     return;

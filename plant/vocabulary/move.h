@@ -69,8 +69,9 @@ struct Move {
   AxisWords end_machine = AxisWords::Zero();                 // m, rad
   Arc arc;                                                   // kind arc, centre in work coordinates
   Eigen::Vector3d centre_machine = Eigen::Vector3d::Zero();  // kind arc, m
-  double feed = 0.0;  // m/s if X, Y or Z moves, else rad/s; not for rapid. Per revolution: what it
-                      // is at the speed of the spindle, 0 while that stands still
+  double feed =
+      0.0;  // m/s if X, Y or Z moves, else rad/s; not for rapid. Per revolution: what it
+            // is at the speed of the spindle, 0 while that stands still. NaN in a survey: unknown
   FeedMode feed_mode =
       FeedMode::units_per_minute;  // how it was programmed; `feed` is the same quantity
   PathMode path_mode = PathMode::continuous;

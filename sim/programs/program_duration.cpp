@@ -4,16 +4,8 @@
 
 #include <cmath>
 
-#include "plant/vocabulary/units.h"
-
 namespace servomill::sim::programs {
 namespace {
-
-// In m/s; in rad/s where only rotary axes move, from F in mm or in inches.
-bool is_feed_unknown(double feed) {
-  return controllers::is_unknown(feed) || controllers::is_unknown(feed / deg * mm) ||
-         controllers::is_unknown(feed / deg * inch);
-}
 
 // The planner stops between rapid and feed: from so many moves on, the next such place ends a part
 // that is planned for itself, so that long programs are not held.
@@ -56,10 +48,10 @@ bool ProgramDuration::refuses(const Move& move) {
         "line {} is under tool-centre-point control or in a tilted plane; a scenario simulates it",
         move.line);
   }
-  if (move.kind != MoveKind::rapid && !(move.feed > 0.0)) {
+  if (move.kind != MoveKind::rapid && move.feed == 0.0) {
     why_unknown_ = fmt::format("line {} feeds per revolution with the spindle off", move.line);
   }
-  if (is_feed_unknown(move.feed)) {
+  if (std::isnan(move.feed)) {
     why_unknown_ =
         fmt::format("the feed of line {} is unknown; if no F precedes it, pass --feed", move.line);
   }
@@ -98,6 +90,15 @@ void ProgramDuration::add(const Move& move) {
   if (is_unknown) ++unknown_dwells_;
   if (is_unknown || move.kind == MoveKind::message) return;
   if (why_unknown_.empty()) moves_.push_back(move);
+}
+
+void ProgramDuration::add_unknown_moves(std::string_view whose, int line) {
+  const auto found = unknown_moves_.find(whose);
+  if (found == unknown_moves_.end()) {
+    unknown_moves_.emplace(whose, std::vector<int>{line});
+  } else if (found->second.back() != line) {
+    found->second.push_back(line);
+  }
 }
 
 void ProgramDuration::finish() { plan(); }

@@ -1,7 +1,10 @@
 /// Cycle time of a program on a machine: the time of its motion, planned as in a simulation.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "controllers/path/trajectory.h"
@@ -20,11 +23,18 @@ class ProgramDuration {
 
   void add(const Move& move, const MoveKnowledge& known);  ///< a motion
   void add(const Move& move);                              ///< anything else
+  /// Moves that are not known: those of a cycle whose path is the control's own.
+  void add_unknown_moves(std::string_view whose, int line);
   /// Plans the moves that are left.
   void finish();
 
-  double duration() const { return duration_; }                    ///< s
-  const std::vector<int>& left_out() const { return left_out_; }   ///< lines
+  double duration() const { return duration_; }                   ///< s
+  const std::vector<int>& left_out() const { return left_out_; }  ///< lines
+  /// Lines of moves that are not known, by whose they are. With any, the time is longer than
+  /// `duration`.
+  const std::map<std::string, std::vector<int>, std::less<>>& unknown_moves() const {
+    return unknown_moves_;
+  }
   const std::string& why_unknown() const { return why_unknown_; }  ///< empty: it is known
   int unknown_dwells() const { return unknown_dwells_; }
   int tool_changes() const { return tool_changes_; }
@@ -42,6 +52,7 @@ class ProgramDuration {
   Joints at_ = Joints::Zero();
   double duration_ = 0.0;
   std::vector<int> left_out_;
+  std::map<std::string, std::vector<int>, std::less<>> unknown_moves_;
   std::string why_unknown_;
   int tool_changes_ = 0, stops_ = 0, unknown_dwells_ = 0;
   MoveKind last_ = MoveKind::dwell;

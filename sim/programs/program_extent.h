@@ -7,9 +7,13 @@
 #include <map>
 
 #include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/units.h"
 #include "sim/programs/known_positions.h"
 
 namespace servomill::sim::programs {
+
+/// Unit in which reports give the positions of an axis.
+inline double unit_of(Axis axis) { return is_linear(axis) ? mm : deg; }
 
 /// Positions from `lower` to `upper` (m, rad).
 struct AxisRange {

@@ -87,6 +87,9 @@ class Surveyor {
     note_words(block);
     note_tools(block);
     positions_.begin_line(block);
+    if (duration_ && !block.unknown_moves.empty()) {
+      duration_->add_unknown_moves(block.unknown_moves, block.line);
+    }
     const Move* last = nullptr;
     for (const Move& move : block.moves) {
       if (is_motion(move.kind)) last = &move;
@@ -98,8 +101,8 @@ class Surveyor {
     if (!duration_) return;
     duration_->finish();
     out_.cycle_time =
-        CycleTime{inputs_.machine->name, duration_->duration(), duration_->why_unknown(),
-                  duration_->left_out(), duration_->unknown_dwells()};
+        CycleTime{inputs_.machine->name, duration_->duration(),       duration_->why_unknown(),
+                  duration_->left_out(), duration_->unknown_dwells(), duration_->unknown_moves()};
   }
 
  private:

@@ -219,6 +219,35 @@ M30
         self.assertIn("extent and cycle time are without its moves", warnings)
         self.assertNotIn("LinuxCNC", warnings)
 
+    # What a pocket cycle moves is not known, so neither is the time: 10 mm at F600 is a part of it.
+    # A cycle that is defined and not called moves nothing.
+    def test_time_with_moves_that_are_not_known(self):
+        def program(call):
+            return ("BEGIN PGM P MM\nL X+0 Y+5 Z+9 A+0 C+0 FMAX\nCYCL DEF 251 RECTANGULAR POCKET Q218=9\n"
+                    f"L X+10 F600{call}\nL X+0 Y+5 Z+9 FMAX{call}\nTCH PROBE 412 Q321=+0\nEND PGM P MM\n")
+        time = self.json(program(" M99"), "--machine", "router.toml")["cycle_time"]
+        self.assertIsNone(time["s"])
+        self.assertEqual(time["unknown_moves"], [{"of": "CYCL DEF 251", "lines": [4, 5]}, {"of": "TCH PROBE", "lines": [6]}])
+        least = 1.0 + 2.0 * (0.01 / 30.0) ** 0.5
+        self.assertAlmostEqual(time["at_least_s"], least, delta=1e-3)
+        self.assertEqual(self.lines(program(" M99"), "cycle time", "--machine", "router.toml")[:3],
+                         [f"unknown: at least {least:.1f} s on router", "the moves of CYCL DEF 251 are not known (lines 4, 5)",
+                          "the moves of TCH PROBE are not known (line 6)"])
+        known = self.json(program("").replace("TCH PROBE 412 Q321=+0\n", ""), "--machine", "router.toml")["cycle_time"]
+        self.assertEqual(known["unknown_moves"], [])
+        self.assertEqual(known["s"], known["at_least_s"])
+
+    # F 468.97... mm/min is a feed like any other, although surveys once took it for an unknown one.
+    def test_a_feed_is_unknown_by_the_move(self):
+        def time(program):
+            return self.json(program, "--machine", "router.toml")["cycle_time"]
+        for feed in (740.740734, 29.16302890 * 25.4):
+            known = time(f"G21 G90 G0 X0 Y0 Z0\nG1 X10 F{feed}\nM2\n")
+            self.assertAlmostEqual(known["s"], 600.0 / feed, delta=0.1)
+        unknown = time("G21 G90 G0 X0 Y0 Z0\nG1 X10\nX20 F600\nM2\n")
+        self.assertIsNone(unknown["s"])
+        self.assertIn("the feed of line 2 is unknown", unknown["why_unknown"])
+
     # The run begins where the program has named all axes.
     def test_cycle_time_is_that_of_a_run(self):
         arcs = "".join(f"G1 X{10 + i} Y{i % 3}\nG2 X{11 + i} Y{i % 3} I0.5 J0\n" for i in range(40))

@@ -115,6 +115,8 @@ class BlockReading {
   const std::vector<ReadingNote>& notes() const { return notes_; }
   /// P of the block, of a dwell or a canned cycle, is in an unknown unit.
   bool has_unknown_dwell() const { return has_unknown_dwell_; }
+  /// F of the block only holds the place of a feed that no block gives.
+  bool has_unknown_feed() const { return has_unknown_feed_; }
   const std::optional<LocalCall>& local_call() const { return local_call_; }
   const PlaneFrame& frame() const { return memory_.frame; }
   /// Column in the line as written.
@@ -138,7 +140,7 @@ class BlockReading {
   std::optional<BlockWords> words_;
   std::vector<AppliedRule> applied_;
   std::vector<ReadingNote> notes_;
-  bool has_unknown_dwell_ = false;
+  bool has_unknown_dwell_ = false, has_unknown_feed_ = false;
   std::optional<LocalCall> local_call_;
   std::optional<CornerToNext> corner_;
   std::optional<BlockWords> next_words_;  // of the block behind the corner

@@ -140,7 +140,8 @@ void ReadingStep::feed() {
         code_name('G', motion));
     if (!options.accepts_unknown_feeds) fail(column, why);
     reading_.notes_.push_back({column, why + "; the cycle time stays unknown"});
-    return before.push_back(word_text('F', kUnknownFeed * minute / state.unit));
+    reading_.has_unknown_feed_ = true;
+    return before.push_back(word_text('F', 1.0));
   }
   if (!apply(ReaderRule::given_feed, column)) return;
   words.add('F', *options.feed * minute / state.unit, column);

@@ -257,6 +257,15 @@ void add_report(const VerificationReport& verified, const JointLayout& layout, C
   out.json = summary.json(layout, has_uncertainty ? out.uncertainty->json() : "null");
 }
 
+// The program that is written would lack them.
+void refuse_unread_blocks(const controllers::Interpreter& interpreter,
+                          const CompensateRequest& request) {
+  if (interpreter.unread_behind() == 0) return;
+  throw InputError({request.program_file, interpreter.unread_behind(), 1},
+                   "the program ends at this '%', but blocks follow it; remove the '%', or end the "
+                   "program with M30 before it");
+}
+
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
@@ -290,6 +299,7 @@ Compensated compensate(const CompensateRequest& request) {
     }
     writer->write(*block);
   }
+  refuse_unread_blocks(interpreter, request);
 
   const std::optional<double> retract = retract_of(request, prepared.described);
   if (prepared.options.is_for_other_control && retract) {

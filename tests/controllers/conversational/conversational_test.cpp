@@ -229,6 +229,19 @@ TEST(Conversational, ASurveyGoesOnInPlanesOfUnknownTilt) {
   EXPECT_NE(fault_of("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n", setup), "");
 }
 
+// The tool is normal to a plane that it was turned to, although the survey knows no angle.
+TEST(Conversational, ASurveyKnowsNoAngleOfAToolInAPlane) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = setup.accepts_unknown_feeds = true;
+  for (const char* plane : {"PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN FMAX\n",
+                            "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+45\n"}) {
+    for (const std::string& warning :
+         warnings_of(with_frame(std::string(plane) + "L X+1 Y+2 Z+3 FMAX\nL X+5 F100\n"), setup)) {
+      EXPECT_EQ(warning.find("off Z of the tilted"), std::string::npos) << warning;
+    }
+  }
+}
+
 // The end of a move does not depend on its feed.
 TEST(Conversational, ASurveyGoesOnWithoutAFeed) {
   ProgramSetup setup = example_setup();

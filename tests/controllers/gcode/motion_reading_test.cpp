@@ -2,6 +2,7 @@
 // centre.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -65,7 +66,7 @@ TEST(Surveys, GoOnBeforeTheFirstFeed) {
     Interpreter interpreter(unit + "G1 X1.\nX2.\nF100. X3.\nM2\n", "p.nc", setup);
     std::vector<bool> unknown;
     while (const Move* move = interpreter.next()) {
-      if (move->kind == MoveKind::feed) unknown.push_back(is_unknown(move->feed));
+      if (move->kind == MoveKind::feed) unknown.push_back(std::isnan(move->feed));
     }
     EXPECT_EQ(unknown, (std::vector<bool>{true, true, false}));
     EXPECT_EQ(to_string(interpreter.warnings().front()),

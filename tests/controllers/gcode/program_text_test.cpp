@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers::program_text_test {
@@ -111,6 +112,23 @@ TEST(ProgramText, SaysThatAFileCannotBeRead) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "/nowhere/p.ngc: error: cannot be read: No such file or directory");
   }
+}
+
+// LinuxCNC ends there without a word, and so does the reader that is strict; here no line is lost
+// in silence.
+TEST(ProgramText, BlocksBehindAClosingPercentAreReported) {
+  ProgramSetup setup;
+  const auto warnings = [&](const char* text) {
+    Interpreter interpreter(text, "p.ngc", setup);
+    EXPECT_EQ(interpreter.rest().size(), 1u);
+    EXPECT_EQ(interpreter.unread_behind(), interpreter.warnings().empty() ? 0 : 3);
+    return interpreter.warnings();
+  };
+  const auto found = warnings("%\nG0 X1\n%\n(END)\nG0 X2\nM2\n");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(to_string(found[0]),
+            "p.ngc:3:1: error: the program ends here: lines after this '%' are not read");
+  EXPECT_TRUE(warnings("%\nG0 X1\n%\n(END)\n; of file\n\n").empty());
 }
 
 }  // namespace

@@ -224,6 +224,9 @@ TEST(Compensate, RefusesWhatUnrollingOrCorrectingWouldChange) {
             "part.ngc:2:1: error: G28.1 would store the corrected position as a machine position");
   EXPECT_EQ(refusal(for_linuxcnc("G0 X0 Y0 Z0\nG10 L20 P2 X0\nM2\n")),
             "part.ngc:2:1: error: G10 L20 P2 of an inactive work offset cannot be corrected");
+  EXPECT_EQ(refusal(for_linuxcnc("%\nG0 X0 Y0 Z0\n%\nG0 X1\nM2\n%\n")),
+            "part.ngc:3:1: error: the program ends at this '%', but blocks follow it; remove the "
+            "'%', or end the program with M30 before it");
 }
 
 TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {

@@ -1,0 +1,101 @@
+// The end of a program: a '%', or that of its text.
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "controllers/gcode/interpreter_machine.h"
+
+namespace servomill::controllers {
+namespace {
+
+constexpr std::string_view kMisplacedPercent =
+    "'%' ends a program only if another '%' is its first line";
+constexpr std::string_view kPercentInside =
+    "Fanuc ends the program at this '%', other controls continue after it; choose with --reader";
+constexpr std::string_view kUnread = "the program ends here: lines after this '%' are not read";
+constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
+
+}  // namespace
+
+void Interpreter::Machine::saw_percent() {
+  const Percent meaning = texts_[text_].percent.saw_percent();
+  if (meaning == Percent::start && texts_[text_].has_title &&
+      !tolerates(ReaderRule::percent_title, 1)) {
+    fail(1, std::string(kMisplacedPercent));
+  }
+  if (meaning == Percent::misplaced) {
+    if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
+      fail(1, std::string(kMisplacedPercent));
+    }
+    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
+    return run_end(ReaderRule::percent_at_end);
+  }
+  if (meaning != Percent::end) return;
+  if (flow_.skip_to || text_ != 0) fail_at_end();
+  if (has_more_words()) {
+    warn(1, std::string(kUnread));
+    unread_behind_ = line();
+  }
+  ended_ = true;
+}
+
+// The text ends although the program does not.
+void Interpreter::Machine::end_of_text() {
+  const bool is_empty = texts_[0].percent.saw_nothing();
+  const bool is_main = !is_empty && !flow_.skip_to && flow_.calls.empty() && text_ == 0;
+  if (!is_main || !has_rule(setup_.reader, ReaderRule::end_of_text)) fail_at_end();
+  run_end(ReaderRule::end_of_text);
+}
+
+// M2 in place of a line, so that writers of programs see it.
+void Interpreter::Machine::run_end(ReaderRule rule) {
+  tolerates(rule, 0);
+  line_ = "M2";
+  reader_.parse(line_, file(), line(), block_);
+  execute();
+}
+
+// The subprogram that is looked for may stand behind the closing '%' in this file.
+bool Interpreter::Machine::goes_on_behind_end() {
+  const bool may_go_on = flow_.skips_to_sub && text_ == 0 && has_more_words();
+  return may_go_on && tolerates(ReaderRule::subprogram_behind_end, 1);
+}
+
+// Comments are no words.
+bool Interpreter::Machine::has_more_words() {
+  if (text().is_generated()) return false;
+  const ProgramText::Mark here = text().mark();
+  std::string_view next;
+  bool found = false;
+  while (!found && text().next(next)) {
+    const std::size_t first = next.find_first_not_of(" \t\r%");
+    const std::size_t close = next.find_last_of(')');
+    const bool is_comment =
+        first != next.npos &&
+        (next[first] == ';' ||
+         (next[first] == '(' && (close == next.npos || is_blank(next.substr(close + 1)))));
+    found = first != next.npos && !is_comment;
+  }
+  text().go_to(here);
+  return found;
+}
+
+void Interpreter::Machine::fail_at_end() {
+  ended_ = true;
+  std::string message(kNoEnd);
+  if (flow_.skips_to_sub) {
+    message = fmt::format(
+        "no subroutine O<{0}> up to here, which line {1} calls{2}", *flow_.skip_to, flow_.skip_from,
+        text_ == flow_.calls.back().return_to.text
+            ? fmt::format(", and no file {}.ngc (--subs names its folder)", *flow_.skip_to)
+            : "");
+    flow_.calls.pop_back();  // it has not begun
+  } else if (flow_.skip_to) {
+    const std::string label = flow_.skip_to->substr(flow_.skip_to->find('#') + 1);
+    message =
+        fmt::format("the program ends while skipping to O{} from line {}", label, flow_.skip_from);
+  }
+  fail(0, message + call_stack());
+}
+
+}  // namespace servomill::controllers
