@@ -161,8 +161,13 @@ class Search {
     plan.left -= candidates_[i].time;
   }
 
+  struct Slope {
+    std::size_t candidate = 0;
+    double gain = 0.0;  // of size by time, at the first moment of its time
+  };
+
   // Candidates that fit into what is left, those with the steepest gains first.
-  std::vector<std::size_t> steepest(const Plan& plan) const {
+  std::vector<Slope> steepest(const Plan& plan) const {
     const VectorXd share = (plan.v / plan.v.maxCoeff()).array().pow(kOrder - 1.0);
     VectorXd weight(K_.rows());
     for (Index k = 0; k < K_.rows(); ++k) weight[k] = share[owner_[std::size_t(k)]];
@@ -174,22 +179,27 @@ class Search {
       gains.emplace_back(-gain / candidates_[i].time, i);
     }
     std::sort(gains.begin(), gains.end());
-    std::vector<std::size_t> out;
+    // derivative of the size: (v/size)^(order-1) over the number of quantities
+    const double scale =
+        std::pow(plan.v.maxCoeff() / plan.size, kOrder - 1.0) / double(quantity_count_);
+    std::vector<Slope> out;
     for (std::size_t k = 0; k < std::min(gains.size(), kLookedAt); ++k) {
-      out.push_back(gains[k].second);
+      out.push_back({gains[k].second, -gains[k].first * scale});
     }
     return out;
   }
 
   // Adds what lowers the size most for its time as long as there is time. Gains are multiplied by
   // random factors of this spread: what is best alone is not always best together.
+  // The size is convex: no candidate gains more than its slope promises.
   void fill(Plan& plan, double spread) {
     for (;;) {
       double best_gain = 0.0;
       std::size_t best = candidates_.size();
-      for (const std::size_t i : steepest(plan)) {
-        double gain = (plan.size - size_of(with(plan, i))) / candidates_[i].time;
-        if (spread > 0.0) gain *= std::exp(spread * normal_(generator_));
+      for (const auto& [i, slope] : steepest(plan)) {
+        const double factor = spread > 0.0 ? std::exp(spread * normal_(generator_)) : 1.0;
+        if (slope * factor * (1.0 + kGain) < best_gain) continue;
+        const double gain = factor * (plan.size - size_of(with(plan, i))) / candidates_[i].time;
         if (gain > best_gain) std::tie(best_gain, best) = std::pair(gain, i);
       }
       if (best == candidates_.size()) break;

@@ -13,6 +13,7 @@
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
 #include "sim/programs/measuring/measuring_program.h"
+#include "sim/system/write_file.h"
 #include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
@@ -99,10 +100,18 @@ programs::ProbingSettings probing_of(const Options& options) {
   return out;
 }
 
+// Planning takes seconds to minutes: what cannot be written is refused before it.
+void refuse_unwritable_plan(const std::string& folder, bool force) {
+  if (!std::filesystem::is_directory(folder)) return;
+  sim::system::refuse_unwritable_text((std::filesystem::path(folder) / "readings.toml").string(),
+                                      force);
+}
+
 // Measuring programs of the spheres that the plan has, and readings.toml of kind touch for them.
 void write_programs(const std::string& folder, const sim::readings::Readings& plan,
-                    const sim::model::MachineSettings& machine, const Options& options) {
-  const programs::ProbingSettings settings = probing_of(options);
+                    const sim::model::MachineSettings& machine,
+                    const programs::ProbingSettings& settings,
+                    const std::vector<programs::Dialect>& controls, const Options& options) {
   const auto is_sphere = [](const auto& group) {
     return group.kind == sim::readings::Kind::sphere;
   };
@@ -114,7 +123,7 @@ void write_programs(const std::string& folder, const sim::readings::Readings& pl
     const programs::MeasuringMoves moves =
         programs::measuring_moves(plan, machine, settings, length * um);
     for (const std::string& note : moves.notes) fmt::print("note: {}\n", note);
-    for (const programs::Dialect dialect : controls_of(options)) {
+    for (const programs::Dialect dialect : controls) {
       const std::string name = programs::measuring_file(dialect, length * um);
       for (const std::string& clause : programs::write_measuring_program(
                (std::filesystem::path(folder) / name).string(), moves, machine, settings,
@@ -144,6 +153,11 @@ int plan_calibration_command(const Arguments& arguments) {
   const std::string machine_file =
       measured_machine(options, options.words().empty() ? "" : options.word());
   const calibration::PlanSettings settings = settings_of(options);
+  const programs::ProbingSettings probing = probing_of(options);
+  const std::vector<programs::Dialect> controls = controls_of(options);
+  if (options.has("output")) {
+    refuse_unwritable_plan(options.get<std::string>("output"), options.has("force"));
+  }
   const auto machine = sim::input::read_machine_description(machine_file).machine;
   std::optional<sim::readings::Readings> taken;
   if (has_readings) {
@@ -158,7 +172,7 @@ int plan_calibration_command(const Arguments& arguments) {
     std::filesystem::create_directories(folder);
     const sim::readings::Readings planned = calibration::planned_readings(plan);
     calibration::write_plan(folder, planned, machine.chain, machine_file, options.has("force"));
-    write_programs(folder, planned, machine, options);
+    write_programs(folder, planned, machine, probing, controls, options);
     fmt::print("written to {}\n", folder);
   }
   return kDone;
