@@ -124,7 +124,7 @@ class Way(unittest.TestCase):
 
     def test_a_plan_is_measured_and_calibrates_the_machine(self):
         machine = "../../machines/router_3axis.toml"
-        arguments = ("plan-calibration", "--machine", machine, "--instruments", "square,ballbar", "--hours", "4")
+        arguments = ("plan-calibration", "--machine", machine, "--instruments", "square,ballbar", "--hours", "1")
         printed = self.run_in("router", *arguments, "-o", "plan").stdout
         self.assertRegex(printed, r"this plan +[\d.]+ um")
         self.assertIn("exists", self.run_in("router", *arguments, "-o", "plan", status=2).stderr)
@@ -138,7 +138,7 @@ class Way(unittest.TestCase):
 
     def test_a_plan_for_the_probe_writes_programs_for_four_controls(self):
         machine = "../../machines/generic_trunnion_ac.toml"
-        arguments = ("plan-calibration", "--machine", machine, "--instruments", "probe", "--hours", "1", "-o", "touch")
+        arguments = ("plan-calibration", "--machine", machine, "--instruments", "probe", "--hours", "0.5", "-o", "touch")
         printed = self.run_in("router", *arguments).stdout
         self.assertRegex(printed, r"\d+ touches with a probe of \d+ mm: programs for linuxcnc,heidenhain,fanuc,siemens")
         names = sorted(os.listdir(self.path("router", "touch")))

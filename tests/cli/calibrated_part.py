@@ -43,7 +43,7 @@ SCENARIO = f"""machine = "machine.toml"
 machine_errors = "drawn"
 [program]
 file = "{os.path.abspath(SCENARIOS)}/programs/block.ngc"
-parameters = {{ "#101" = 800.0 }}
+parameters = {{ "#101" = 2400.0 }}
 work_offset = {{ X_mm = 300.0, Y_mm = 200.0, Z_mm = -140.0 }}
 start = {{ X_mm = -10.0, Y_mm = -10.0, Z_mm = 60.0 }}
 [[program.tool]]
@@ -283,7 +283,7 @@ class CalibratedPart(unittest.TestCase):
         self.write("walls.ngc", WALLS)
         text = SCENARIO[:SCENARIO.index("[[probe]]")].replace("UNCERTAINTY", "0.0").replace("machine.toml", "reversal.toml")
         text = re.sub(r'file = ".*"', 'file = "walls.ngc"', text)
-        text = text.replace('parameters = { "#101" = 800.0 }\n', "")
+        text = text.replace('parameters = { "#101" = 2400.0 }\n', "")
         for name, x, normal in (("left", 0.0, -1), ("right", 100.0, 1)):
             text += f'[[probe]]\nname = "{name}"\nline = {{ from_mm = [{x}, 10.0, -8.0], to_mm = [{x}, 50.0, -8.0], normal = [{normal}, 0, 0], points = 5 }}\n'
         text += SCENARIO[SCENARIO.index("[[case]]"):SCENARIO.index("[[quantity]]")]

@@ -2,6 +2,7 @@
 """What the scenarios about statements of [G] say at their heads, and what is identified with its intervals.
 statements.py SERVOMILL"""
 import csv
+import functools
 import json
 import math
 import os
@@ -28,11 +29,16 @@ class Statements(unittest.TestCase):
         return subprocess.run([SERVOMILL, command, os.path.join(STATEMENTS, name), "-o", self.out, "--force", *arguments],
                               capture_output=True, text=True, check=False)
 
-    def values(self, name, quantity, statistic="max"):
-        """{case: value} of a quantity of a run."""
+    @functools.cache
+    def run_of(self, name):
+        """A run of the scenario, once a test."""
         done = self.servomill("run", name, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        rows = [json.loads(line) for line in done.stdout.splitlines()]
+        return done
+
+    def values(self, name, quantity, statistic="max"):
+        """{case: value} of a quantity of a run."""
+        rows = [json.loads(line) for line in self.run_of(name).stdout.splitlines()]
         return {row["case"]: row["value"] for row in rows
                 if row["quantity"] == quantity and row["statistic"] in (None, statistic)}
 
@@ -69,7 +75,7 @@ class Statements(unittest.TestCase):
     def test_saturation_limits_take_what_they_must_and_say_so(self):
         found = self.values("saturation.toml", "imposed_error_residual")
         self.near(found, wide=4.87, displacement=50.0, rate=20.8, short_table=117.6)
-        said = self.servomill("run", "saturation.toml").stderr.splitlines()
+        said = self.run_of("saturation.toml").stderr.splitlines()
         self.assertEqual(len(said), 4, said)
         self.assertRegex(said[0], r"flank\.ngc:\d+: warning: case displacement: strategy feedback: virtual displacement "
                                   r"of Y saturated at 100 um, first here, [0-9.]+ s in all$")
