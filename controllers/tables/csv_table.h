@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controllers/tables/control_table.h"
+#include "controllers/tables/error_grid.h"
 
 namespace servomill::controllers {
 
@@ -28,6 +29,7 @@ struct LocationValue {
 struct ErrorColumns {
   std::vector<ErrorColumn> components;
   std::map<std::string, LocationValue, std::less<>> locations;  // by name
+  std::vector<ErrorGrid> grids = {};       // component errors over other axes than their own
   std::vector<std::string> not_read = {};  // parameters of the file that are no errors
 };
 

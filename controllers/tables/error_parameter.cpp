@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "controllers/tables/table_text.h"
 #include "plant/vocabulary/units.h"
 
@@ -24,12 +26,26 @@ std::optional<ErrorParameter> error_parameter_of(std::string_view name) {
 
 double coordinate_unit(Axis axis) { return is_linear(axis) ? mm : deg; }
 
-void add_component(ErrorColumns& errors, ErrorColumn column, int line) {
-  for (const ErrorColumn& one : errors.components) {
-    if (one.name == column.name) {
-      refuse(column.file, line, fmt::format("{} appears twice", column.name));
-    }
+namespace {
+
+void refuse_repeated(const ErrorColumns& errors, const std::string& file, const std::string& name,
+                     int line) {
+  const auto is_it = [&](const auto& one) { return one.name == name; };
+  if (std::any_of(errors.components.begin(), errors.components.end(), is_it) ||
+      std::any_of(errors.grids.begin(), errors.grids.end(), is_it)) {
+    refuse(file, line, fmt::format("{} appears twice", name));
   }
+}
+
+}  // namespace
+
+void add_grid(ErrorColumns& errors, ErrorGrid grid) {
+  refuse_repeated(errors, grid.file, grid.name, grid.line);
+  errors.grids.push_back(std::move(grid));
+}
+
+void add_component(ErrorColumns& errors, ErrorColumn column, int line) {
+  refuse_repeated(errors, column.file, column.name, line);
   if (column.points.size() < 2) {
     refuse(column.file, line,
            fmt::format("{}: {} points; must be >= 2", column.name, column.points.size()));

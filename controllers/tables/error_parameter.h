@@ -32,6 +32,9 @@ double coordinate_unit(Axis axis);
 /// positions that do not increase
 void add_component(ErrorColumns& errors, ErrorColumn column, int line);
 
+/// Adds a component error over several axes. @throws InputError if it is there already
+void add_grid(ErrorColumns& errors, ErrorGrid grid);
+
 /// Adds a position error. @throws InputError if it is there already
 void add_location(ErrorColumns& errors, const std::string& file, const ErrorParameter& parameter,
                   LocationValue value);

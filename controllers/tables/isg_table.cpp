@@ -60,12 +60,14 @@ std::vector<Axis> arguments_of(const Block& block, const TableText& file) {
     if (!axis) refuse(file.name, block.line, fmt::format("'{}' is not an axis", word));
     arguments.push_back(*axis);
   }
-  if (arguments.size() > 1) {
-    refuse(file.name, block.line,
-           fmt::format("a table over {} arguments; only tables over one axis are supported",
-                       arguments.size()));
-  }
   return arguments;
+}
+
+// @pre the block has that argument
+std::size_t column_of(const Block& block, Axis argument) {
+  const auto place =
+      std::find(block.header.begin(), block.header.end(), std::string(1, letter(argument)));
+  return static_cast<std::size_t>(place - block.header.begin());
 }
 
 void check_not_repeated(const Block& block, const TableText& file) {
@@ -89,23 +91,32 @@ void read_location(const Block& block, const TableText& file, std::size_t column
 
 void read_component(const Block& block, const TableText& file, std::size_t column,
                     const ErrorParameter& parameter, ErrorColumns& out) {
-  const std::string argument(1, letter(parameter.axis));
-  const auto place = std::find(block.header.begin(), block.header.end(), argument);
-  if (place == block.header.end()) {
-    refuse(
-        file.name, block.line,
-        fmt::format(
-            "{} is not a function of {}; only component errors over their own axis are supported",
-            block.header[column], argument));
-  }
+  const std::size_t at = column_of(block, parameter.axis);
   ErrorColumn error{.file = file.name, .name = parameter.iso_name(), .base_axis = parameter.axis};
-  const auto at = static_cast<std::size_t>(place - block.header.begin());
   for (const Record& record : block.records) {
     const double value = record.values[column] * parameter.unit();
     error.points.push_back(
         {record.values[at] * coordinate_unit(parameter.axis), value, value, record.line});
   }
   add_component(out, std::move(error), block.line);
+}
+
+void read_grid(const Block& block, const TableText& file, std::size_t column,
+               const ErrorParameter& parameter, const std::vector<Axis>& arguments,
+               ErrorColumns& out) {
+  std::vector<GridRecord> records;
+  for (const Record& record : block.records) {
+    GridRecord& one =
+        records.emplace_back(GridRecord{{}, record.values[column] * parameter.unit(), record.line});
+    for (const Axis axis : arguments) {
+      one.position.push_back(record.values[column_of(block, axis)] * coordinate_unit(axis));
+    }
+  }
+  add_grid(
+      out,
+      grid_of(
+          {.file = file.name, .name = parameter.iso_name(), .axes = arguments, .line = block.line},
+          records));
 }
 
 void read_other(const Block& block, const TableText& file, std::size_t column, ErrorColumns& out) {
@@ -136,8 +147,14 @@ void read_block(const Block& block, const TableText& file, ErrorColumns& out) {
     const auto parameter = error_parameter_of(block.header[i]);
     if (!parameter) {
       read_other(block, file, i, out);
-    } else if (!parameter->is_location) {
+    } else if (!parameter->is_location && arguments.empty()) {
+      refuse(file.name, block.line,
+             fmt::format("{} has no argument; must be a function of the position of an axis",
+                         block.header[i]));
+    } else if (!parameter->is_location && arguments == std::vector{parameter->axis}) {
       read_component(block, file, i, *parameter, out);
+    } else if (!parameter->is_location) {
+      read_grid(block, file, i, *parameter, arguments, out);
     } else if (arguments.empty()) {
       read_location(block, file, i, *parameter, out);
     } else {
@@ -185,7 +202,7 @@ ErrorColumns read_isg_table(const TableText& file) {
     }
   }
   read_block(block, file, out);
-  if (out.components.empty() && out.locations.empty()) {
+  if (out.components.empty() && out.locations.empty() && out.grids.empty()) {
     refuse(file.name, 0, "contains no geometric error");
   }
   return out;

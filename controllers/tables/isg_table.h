@@ -14,11 +14,13 @@ namespace servomill::controllers {
 ///   - words are separated by blanks, as in the examples of the document; // begins a comment; a
 ///     line with # ends the block, and a new header follows
 ///   - position errors (C0Y) are constants, one record without an argument
-///   - component errors (EYX) are functions of their axis; arguments in mm or deg, values in mm or
-///     rad
+///   - component errors (EYX) are functions of any arguments, in mm or deg; values in mm or rad.
+///   Over
+///     other axes than their own the records lie on a grid, in any order, and are interpolated
+///     linearly (interpolation GRID, the default: P-VOLC-00014; error 70471 if they do not)
 ///
-/// Not read, and refused by name: parameters over several arguments, or over another axis; axes of
-/// modified orientation (V..) and offsets of the programmed values (ID.) other than zero.
+/// Not read, and refused by name: axes of modified orientation (V..) and offsets of the programmed
+/// values (ID.) other than zero.
 /// Parameters of the kinematics (P.., N0.) and logical axis numbers (LN.) are listed in
 /// `ErrorColumns::not_read`.
 /// @throws InputError with file and line

@@ -59,13 +59,30 @@ double Reversal::value(double s) const { return polynomial_at(width, s); }
 bool Reversal::is_zero() const { return all_zero(width); }
 
 double ErrorFunction::value(double s) const {
+  assert(grids.empty());
+  return value(s, AxisWords::Zero());
+}
+
+double ErrorFunction::value(double s, const AxisWords& q) const {
   double sum = polynomial_at(polynomial, s);
   for (const Harmonic& h : harmonics) sum += h.value(s);
   for (const LinearTable& t : tables) sum += t.value(s);
+  for (const GridFunction& g : grids) sum += g.value(q);
   return sum;
 }
 
+std::vector<Axis> ErrorFunction::grid_axes() const {
+  std::vector<Axis> axes;
+  for (const Axis axis : kAllAxes) {
+    const bool is_named = std::any_of(grids.begin(), grids.end(),
+                                      [&](const GridFunction& g) { return g.depends_on(axis); });
+    if (is_named) axes.push_back(axis);
+  }
+  return axes;
+}
+
 double ErrorFunction::derivative(double s) const {
+  assert(grids.empty());
   double sum = 0.0;
   for (std::size_t i = polynomial.size(); i-- > 1;) {
     sum = sum * s + static_cast<double>(i) * polynomial[i];
@@ -87,29 +104,32 @@ bool ErrorFunction::is_zero() const {
                      [](const Harmonic& h) { return h.amplitude == 0.0; }) &&
          std::all_of(tables.begin(), tables.end(),
                      [](const LinearTable& t) { return all_zero(t.error); }) &&
-         std::all_of(reversals.begin(), reversals.end(), std::mem_fn(&Reversal::is_zero));
+         std::all_of(reversals.begin(), reversals.end(), std::mem_fn(&Reversal::is_zero)) &&
+         std::all_of(grids.begin(), grids.end(), std::mem_fn(&GridFunction::is_zero));
 }
 
 ErrorFunction constant(double c) { return polynomial({c}); }
 
 ErrorFunction polynomial(std::vector<double> coefficients) {
-  return {std::move(coefficients), {}, {}, {}};
+  return {.polynomial = std::move(coefficients)};
 }
 
 ErrorFunction harmonic(double amplitude, double period, double phase) {
   assert(period > 0.0);
-  return {{}, {{amplitude, period, phase}}, {}, {}};
+  return {.harmonics = {{amplitude, period, phase}}};
 }
 
 ErrorFunction reversal(std::vector<double> width, double distance) {
   assert(distance > 0.0);
-  return {{}, {}, {}, {{std::move(width), distance}}};
+  return {.reversals = {{std::move(width), distance}}};
 }
 
 ErrorFunction linear_table(std::vector<double> s, std::vector<double> error) {
   assert(!table_fault(s, error));
-  return {{}, {}, {{std::move(s), std::move(error)}}, {}};
+  return {.tables = {{std::move(s), std::move(error)}}};
 }
+
+ErrorFunction grid(GridPoints points) { return {.grids = {GridFunction(std::move(points))}}; }
 
 std::optional<std::string> table_fault(const std::vector<double>& s,
                                        const std::vector<double>& error) {
@@ -137,6 +157,7 @@ ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g) {
   sum.harmonics.insert(sum.harmonics.end(), g.harmonics.begin(), g.harmonics.end());
   sum.tables.insert(sum.tables.end(), g.tables.begin(), g.tables.end());
   sum.reversals.insert(sum.reversals.end(), g.reversals.begin(), g.reversals.end());
+  sum.grids.insert(sum.grids.end(), g.grids.begin(), g.grids.end());
   return sum;
 }
 
@@ -150,6 +171,7 @@ ErrorFunction scaled(const ErrorFunction& f, double factor) {
   for (Reversal& r : out.reversals) {
     for (double& w : r.width) w *= factor;
   }
+  for (GridFunction& g : out.grids) g = g.scaled(factor);
   return out;
 }
 

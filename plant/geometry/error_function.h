@@ -1,9 +1,12 @@
-/// Geometric error as a function of the coordinate of its axis.
+/// Geometric error as a function of the coordinate of its axis, and of other axes on request.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "plant/geometry/grid_function.h"
+#include "plant/vocabulary/axes.h"
 
 namespace servomill::plant {
 
@@ -41,18 +44,27 @@ struct Reversal {
   bool operator==(const Reversal&) const = default;
 };
 
-/// Sum of a polynomial, harmonics and tables, the mean of both directions of travel, and of
-/// reversals; zero when empty. Values are m for errors along X, Y, Z and rad for errors about A, B,
-/// C; the coordinate s is m for linear axes and rad for rotary ones.
+/// Sum of a polynomial, harmonics and tables over the coordinate of its axis and of grids over the
+/// coordinates of any axes, the mean of both directions of travel, and of reversals; zero when
+/// empty. Values are m for errors along X, Y, Z and rad for errors about A, B, C; the coordinate s
+/// is m for linear axes and rad for rotary ones.
 struct ErrorFunction {
-  std::vector<double> polynomial;  // c0 + c1 s + c2 s^2 + ...
-  std::vector<Harmonic> harmonics;
-  std::vector<LinearTable> tables;
-  std::vector<Reversal> reversals;
+  std::vector<double> polynomial = {};  // c0 + c1 s + c2 s^2 + ...
+  std::vector<Harmonic> harmonics = {};
+  std::vector<LinearTable> tables = {};
+  std::vector<Reversal> reversals = {};
+  std::vector<GridFunction> grids = {};
 
   /// Mean of both directions of travel, as for its derivative.
+  /// @pre grids.empty()
   double value(double s) const;
   double derivative(double s) const;
+  /// The same of an error with grids.
+  /// @param s  coordinate of its axis
+  /// @param q  coordinates of all axes (6; m, rad)
+  double value(double s, const AxisWords& q) const;
+  /// Axes that the grids name, in the order of kAllAxes.
+  std::vector<Axis> grid_axes() const;
   /// Error travelling up minus error travelling down, long after a change of direction.
   double width(double s) const;
 
@@ -68,6 +80,8 @@ ErrorFunction harmonic(double amplitude, double period, double phase = 0.0);
 ErrorFunction reversal(std::vector<double> width, double distance);
 /// @pre table_fault(s, error) is nullopt
 ErrorFunction linear_table(std::vector<double> s, std::vector<double> error);
+/// @pre grid_fault(points) is nullopt
+ErrorFunction grid(GridPoints points);
 
 /// Rule that a table breaks, to be put behind the name of its key, or nullopt.
 std::optional<std::string> table_fault(const std::vector<double>& s,

@@ -16,8 +16,17 @@ void PreparedFunctions::add(std::size_t axis, std::size_t component, std::size_t
     all_waves_.push_back({axis, component, h.amplitude, h.omega(), h.phase});
   }
   for (const LinearTable& t : f.tables) tables_.push_back({axis, component, joint, TableLookup(t)});
+  for (const GridFunction& g : f.grids) grids_.push_back({axis, component, joints_of(g), g});
   functions_.axes = std::max(functions_.axes, axis + 1);
   functions_.has_angles = functions_.has_angles || component >= 3;
+}
+
+std::vector<std::size_t> PreparedFunctions::joints_of(const GridFunction& grid) const {
+  std::vector<std::size_t> joints;
+  for (const Axis axis : grid.axes()) {
+    joints.push_back(static_cast<std::size_t>(layout_.joint_of(axis).value()));
+  }
+  return joints;
 }
 
 void PreparedFunctions::add_reversals(std::size_t axis, std::size_t component, std::size_t joint,
@@ -75,7 +84,7 @@ VolumetricFunctions PreparedFunctions::finish() {
   functions_.degree = powers_.size() - 1;
   functions_.waves = waves_.data();
   functions_.harmonics = harmonics_.data();
-  functions_.has_terms = !waves_.empty() || !tables_.empty() || !reversals_.empty();
+  functions_.has_terms = !waves_.empty() || has_tables() || !reversals_.empty();
   functions_.is_cubic = powers_.size() == kCubic && !functions_.has_terms;
   return functions_;
 }

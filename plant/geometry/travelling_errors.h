@@ -1,4 +1,4 @@
-/// Errors of a machine one axis of which travels on and on in one direction.
+/// Errors of a machine one axis of which travels on and on in one direction, or moves alone.
 #pragma once
 
 #include "plant/geometry/error_model.h"
@@ -9,5 +9,10 @@ namespace servomill::plant {
 /// reversals keep their mean.
 /// @param direction  1: up, -1: down, 0: the mean
 ErrorModel travelling(const ErrorModel& errors, Axis axis, double direction);
+
+/// The component errors of that axis are functions of its own coordinate only, those of its grids
+/// where the other axes are held at q; the errors of the other axes stay as they are.
+/// @param q  coordinates of all axes (6; m, rad)
+ErrorModel held(const ErrorModel& errors, Axis axis, const AxisWords& q);
 
 }  // namespace servomill::plant

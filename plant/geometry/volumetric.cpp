@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -66,6 +67,8 @@ VolumetricModel::VolumetricModel(const MachineChain& chain, const ErrorModel& er
 VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
                                                    const ErrorModel& errors) const {
   Prepared out;
+  out.joint = axis.joint;
+  out.joints = {axis.joint};
   for (const Axis direction : kAllAxes) {
     const int lane = lane_of(direction);
     const ErrorFunction& f = errors.component({direction, axis.axis, false});
@@ -83,6 +86,15 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
       const auto play = std::find(plays().begin(), plays().end(), Play{axis.joint, r.distance});
       out.reversals.push_back({lane, static_cast<std::size_t>(play - plays().begin()), r});
     }
+    for (const GridFunction& g : f.grids) {
+      auto& grid = out.grids.emplace_back(Prepared::PreparedGrid{lane, {}, g});
+      for (const Axis a : g.axes()) {
+        const int joint = chain_.layout.joint_of(a).value();
+        grid.joints.push_back(joint);
+        const auto end = out.joints.end();
+        if (std::find(out.joints.begin(), end, joint) == end) out.joints.push_back(joint);
+      }
+    }
   }
   for (const Axis direction : kAllAxes) {
     out.location[lane_of(direction)] = errors.location({direction, axis.axis, true});
@@ -91,7 +103,20 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
   return out;
 }
 
-VolumetricModel::Screw VolumetricModel::values(const Prepared& errors, double q) {
+namespace {
+
+using GridArguments = std::array<double, GridFunction::kMaxArguments>;
+
+std::span<const double> arguments_at(const std::vector<int>& joints, const Joints& Q,
+                                     GridArguments& out) {
+  for (std::size_t k = 0; k < joints.size(); ++k) out[k] = Q[joints[k]];
+  return std::span(out).first(joints.size());
+}
+
+}  // namespace
+
+VolumetricModel::Screw VolumetricModel::values(const Prepared& errors, const Joints& Q) {
+  const double q = Q[errors.joint];
   Screw e = Screw::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 0;) e = e * q + errors.polynomial[i];
   double sine = 0.0;
@@ -100,10 +125,26 @@ VolumetricModel::Screw VolumetricModel::values(const Prepared& errors, double q)
     e[h.lane] += h.amplitude * sine;
   }
   for (const auto& t : errors.tables) e[t.lane] += t.table.value(q);
+  GridArguments at;
+  for (const auto& g : errors.grids) e[g.lane] += g.function.value(arguments_at(g.joints, Q, at));
   return e;
 }
 
-VolumetricModel::Screw VolumetricModel::derivatives(const Prepared& errors, double q) {
+VolumetricModel::Screw VolumetricModel::derivatives(const Prepared& errors, const Joints& Q,
+                                                    int joint) {
+  Screw e = Screw::Zero();
+  if (joint == errors.joint) e = derivatives_of_axis(errors, Q[joint]);
+  GridArguments at;
+  for (const auto& g : errors.grids) {
+    const auto by = std::find(g.joints.begin(), g.joints.end(), joint);
+    if (by == g.joints.end()) continue;
+    e[g.lane] += g.function.derivative(arguments_at(g.joints, Q, at),
+                                       static_cast<std::size_t>(by - g.joints.begin()));
+  }
+  return e;
+}
+
+VolumetricModel::Screw VolumetricModel::derivatives_of_axis(const Prepared& errors, double q) {
   Screw e = Screw::Zero();
   for (std::size_t i = errors.polynomial.size(); i-- > 1;) {
     e = e * q + static_cast<double>(i) * errors.polynomial[i];
@@ -174,13 +215,13 @@ void VolumetricModel::poses(std::span<const Joints> Q, const Vector3d& p_ST,
 }
 
 VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST) const {
-  return first_order(Q, p_ST, [](const Prepared& e, double q) { return values(e, q); });
+  return first_order(Q, p_ST, [&Q](const Prepared& e) { return values(e, Q); });
 }
 
 VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector3d& p_ST,
                                                    std::span<const double> directions) const {
-  return first_order(Q, p_ST, [directions](const Prepared& e, double q) -> Screw {
-    return values(e, q) + reversals(e, q, directions);
+  return first_order(Q, p_ST, [&Q, directions](const Prepared& e) -> Screw {
+    return values(e, Q) + reversals(e, Q[e.joint], directions);
   });
 }
 
@@ -191,7 +232,7 @@ VolumetricError VolumetricModel::first_order(const Joints& Q, const Vector3d& p_
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
     const ChainAxis& a = chain_.axes[i];
-    const Screw component = values_at(errors_[i], Q[a.joint]);
+    const Screw component = values_at(errors_[i]);
     const JointMotion m = motion_at(a, Q[a.joint]);
     const auto add_screw = [&](const Screw& screw) {
       const Vector3d shift = a.R_MA * shift_of(screw), turn = a.R_MA * turn_of(screw);
@@ -261,13 +302,16 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     const ChainAxis& a = chain_.axes[i];
     const Prepared& errors = errors_[i];
     const JointMotion m = motion_at(a, Q[a.joint]);
-    const Screw e = values(errors, Q[a.joint]), de = derivatives(errors, Q[a.joint]);
+    const Screw e = values(errors, Q);
     const auto apply_components = [&] {
       const TurnOf R(turn_of(e));
       tool.turn(R.matrix());
-      tool.turn_with(a.joint, R.velocity(turn_of(de)));
+      for (const int joint : errors.joints) {
+        const Screw de = derivatives(errors, Q, joint);
+        tool.turn_with(joint, R.velocity(turn_of(de)));
+        tool.move_with(joint, shift_of(de));
+      }
       tool.shift(shift_of(e));
-      tool.move_with(a.joint, shift_of(de));
     };
     tool.shift(-a.centre);
     if (a.is_inclined) tool.turn(a.R_MA.transpose());

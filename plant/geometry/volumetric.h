@@ -128,6 +128,14 @@ class VolumetricModel {
       Reversal reversal;
     };
     std::vector<PreparedReversal> reversals;
+    struct PreparedGrid {
+      int lane;
+      std::vector<int> joints;  // of the arguments
+      GridFunction function;
+    };
+    std::vector<PreparedGrid> grids;
+    int joint = 0;            // of the axis
+    std::vector<int> joints;  // of the axis and of the arguments of its grids, each once
     Screw location = Screw::Zero();
     Eigen::Matrix3d R_location = Eigen::Matrix3d::Identity();  // of L
   };
@@ -138,11 +146,13 @@ class VolumetricModel {
   static Eigen::Vector3d shift_of(const Screw& e) { return e.head<3>(); }
   static Eigen::Vector3d turn_of(const Screw& e) { return e.segment<3>(4); }
   Prepared prepare(const ChainAxis& axis, const ErrorModel& errors) const;
-  static Screw values(const Prepared& errors, double q);
+  static Screw values(const Prepared& errors, const Joints& Q);
   static Screw reversals(const Prepared& errors, double q, std::span<const double> directions);
   template <class Values>
   VolumetricError first_order(const Joints& Q, const Eigen::Vector3d& p_ST, Values values) const;
-  static Screw derivatives(const Prepared& errors, double q);
+  // With respect to one joint.
+  static Screw derivatives(const Prepared& errors, const Joints& Q, int joint);
+  static Screw derivatives_of_axis(const Prepared& errors, double q);
 
   MachineChain chain_;
   std::vector<Prepared> errors_;     // in the order of chain_.axes

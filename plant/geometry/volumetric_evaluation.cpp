@@ -42,7 +42,9 @@ LinearAxisKernel linear_axis_kernel_of(const LinearAxisProgram& program, SimdLev
 VolumetricEvaluation::VolumetricEvaluation(const MachineChain& chain, const ErrorModel& errors,
                                            SimdLevel level)
     : kernel_(kernel_of(level, std::any_of(chain.axes.begin(), chain.axes.end(),
-                                           [](const ChainAxis& a) { return a.is_inclined; }))) {
+                                           [](const ChainAxis& a) { return a.is_inclined; }))),
+      functions_(chain.layout),
+      linear_axis_functions_(chain.layout) {
   for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
     add(*a, errors);
     if (!is_linear(a->axis)) rotary_.push_back(*a);

@@ -243,6 +243,42 @@ std::vector<std::vector<double>> Reader::rows(std::string_view key) {
   return out;
 }
 
+namespace {
+
+bool append_nested(const Value& value, std::span<const std::size_t> shape,
+                   std::vector<double>& out) {
+  if (shape.empty()) {
+    const bool is_integer = value.type == Value::Type::integer;
+    out.push_back(is_integer ? static_cast<double>(value.integer) : value.real);
+    return (is_integer || value.type == Value::Type::real) && std::isfinite(out.back());
+  }
+  return value.type == Value::Type::list && value.children.size() == shape.front() &&
+         std::all_of(value.children.begin(), value.children.end(), [&](const Value& child) {
+           return append_nested(child, shape.subspan(1), out);
+         });
+}
+
+// "3 lists of 4 lists of 2 numbers"
+std::string shape_text(std::span<const std::size_t> shape) {
+  std::string text;
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    text += fmt::format("{}{} {}", k == 0 ? "" : " of ", shape[k],
+                        k + 1 == shape.size() ? "finite numbers" : "lists");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<double> Reader::nested(std::string_view key, std::span<const std::size_t> shape) {
+  if (logs()) log(key, required_request(KeyType::rows));
+  const Value* list = require(key, Value::Type::list);
+  std::vector<double> out;
+  if (list == nullptr || append_nested(*list, shape, out)) return out;
+  note(*list, joined_key(path_, key), fmt::format("must consist of {}", shape_text(shape)));
+  return {};
+}
+
 std::vector<std::string> Reader::texts(std::string_view key) {
   if (logs()) log(key, required_request(KeyType::texts));
   const Value* list = require(key, Value::Type::list);

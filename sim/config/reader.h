@@ -68,6 +68,9 @@ class Reader {
   std::vector<std::string> texts(std::string_view key);
   /// A matrix as a list of its rows, of any length.
   std::vector<std::vector<double>> rows(std::string_view key);
+  /// Lists in lists, shape[0] of them, each of shape[1] and so on down to numbers; the last index
+  /// of the result is the fastest. Empty where the value has another shape, which is a fault.
+  std::vector<double> nested(std::string_view key, std::span<const std::size_t> shape);
   std::vector<std::string> texts_or(std::string_view key, std::vector<std::string> fallback);
 
   /// A table. Where it is missing or no table, the reader returned finds nothing and complains

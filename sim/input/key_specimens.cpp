@@ -136,13 +136,16 @@ polynomial_um = [0.0, 1.0]
 harmonic = { amplitude_um = 1.0, period_mm = 60.0 }
 table = { at_mm = [0.0, 1.0], value_um = [0.0, 1.0] }
 reversal = { width_um = 1.0, width_polynomial_um = [1.0], distance_mm = 0.1 }
+grid = { axes = "XZ", at_mm = [[-400, 400], [-400, 400]], value_um = [[0, 0], [0, 1]], interpolation = "linear" }
 [errors.NAME.EAX]
 constant_urad = 1.0
 polynomial_urad = [0.0, 1.0]
 harmonic = [{ amplitude_urad = 1.0, period_mm = 60.0 }]
 table = { at_mm = [0.0, 1.0], value_urad = [0.0, 1.0] }
 reversal = { width_urad = 1.0, width_polynomial_urad = [1.0], distance_mm = 0.1 }
+grid = { axes = "XC", at_mm_deg = [[-400, 400], [-1e4, 1e4]], value_urad = [[0, 0], [0, 1]] }
 [errors.NAME.EXC]
+grid = { axes = "C", at_deg = [[-1e4, 1e4]], value_um = [0, 1] }
 harmonic = { amplitude_um = 1.0, period_deg = 360.0 }
 table = { at_deg = [0.0, 1.0], value_um = [0.0, 1.0] }
 reversal = { width_um = 1.0, distance_deg = 0.1 }

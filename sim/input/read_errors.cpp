@@ -123,6 +123,17 @@ bool is_slope(config::Reader& model, std::string_view key) {
   return slope.complaint.empty();
 }
 
+ErrorFunction read_grids(config::Reader& table, bool is_length, const MachineAxes& machine) {
+  ErrorFunction sum;
+  if (table.is("grid", config::Value::Type::list)) {
+    for (config::Reader& one : table.tables("grid")) sum = sum + read_grid(one, is_length, machine);
+  } else if (table.has("grid")) {
+    config::Reader one = table.table("grid");
+    sum = read_grid(one, is_length, machine);
+  }
+  return sum;
+}
+
 // A bare number is in m or rad: one that was meant in um or um/m would pass for kilometres.
 double read_bare_location(config::Reader& model, std::string_view key, const Units& units) {
   double value = 0.0;
@@ -175,7 +186,7 @@ plant::ErrorFunction read_length_function(config::Reader& table) {
   return read_function(table, {true, true});
 }
 
-plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) {
+plant::ErrorModel read_errors(config::Reader& model, const MachineAxes& machine) {
   plant::ErrorModel errors;
   std::map<std::string, std::string> aliases;
   std::set<std::string> known;
@@ -183,7 +194,7 @@ plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) 
     if (key == kRelativeTo) continue;
     std::optional<ErrorName> name;
     try {
-      name = plant::parse_error_name(key, layout, {});
+      name = plant::parse_error_name(key, machine.layout, {});
     } catch (const InputError& error) {
       model.raw(key);
       model.fault(key, error.faults().front().message);
@@ -197,7 +208,8 @@ plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) 
     } else {
       config::Reader table = model.table(key);
       const Units units = units_of(*name);
-      errors.component(*name) = read_function(table, units);
+      errors.component(*name) =
+          read_function(table, units) + read_grids(table, units.value_is_length, machine);
       if (table.has("reversal")) {
         config::Reader reversal = table.table("reversal");
         errors.component(*name) = errors.component(*name) + read_reversal(reversal, units);
@@ -222,13 +234,13 @@ plant::ErrorModel read_errors(config::Reader& model, const JointLayout& layout) 
 }
 
 std::map<std::string, plant::ErrorModel> read_error_models(config::Reader& models,
-                                                           const JointLayout& layout) {
+                                                           const MachineAxes& machine) {
   std::map<std::string, plant::ErrorModel> out;
   std::map<std::string, std::string> base_of;
   for (const std::string& name : models.keys()) {
     config::Reader model = models.table(name);
     base_of[name] = read_base(model, name, models);
-    out[name] = read_errors(model, layout);
+    out[name] = read_errors(model, machine);
   }
   for (const auto& [name, base] : base_of) {
     if (!base.empty()) out[name] = out[base] + out[name];
@@ -237,16 +249,16 @@ std::map<std::string, plant::ErrorModel> read_error_models(config::Reader& model
 }
 
 std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path,
-                                                         const JointLayout& layout) {
+                                                         const MachineAxes& machine) {
   if (is_machine_file(path)) {  // with its own errors
     MachineDescription described = read_machine_description(path);
-    if (described.machine.chain.layout == layout) return std::move(described.errors);
+    if (described.machine.chain.layout == machine.layout) return std::move(described.errors);
     throw InputError({path}, "contains the errors of a machine with other axes");
   }
   const config::Document document = config::Document::from_file(path);
   config::Reader root(document);
   config::Reader models = root.table("errors");
-  auto out = read_error_models(models, layout);
+  auto out = read_error_models(models, machine);
   root.finish();
   return out;
 }

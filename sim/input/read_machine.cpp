@@ -258,10 +258,11 @@ namespace {
 
 using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
-void read_models(config::Reader& machine, const JointLayout& layout, ErrorModels* errors) {
-  if (!machine.has("errors")) return;
-  config::Reader models = machine.table("errors");
-  auto read = read_error_models(models, layout);
+void read_models(config::Reader& table, const model::MachineSettings& machine,
+                 ErrorModels* errors) {
+  if (!table.has("errors")) return;
+  config::Reader models = table.table("errors");
+  auto read = read_error_models(models, MachineAxes(machine));
   if (errors != nullptr) *errors = std::move(read);
 }
 
@@ -309,7 +310,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
     read_travel(axis, j < kLinearJoints, j, machine.nc);
     read_axis_geometry(axis, j, machine);
   }
-  read_models(table, machine.chain.layout, errors);
+  read_models(table, machine, errors);
   return machine;
 }
 
@@ -392,7 +393,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
     read_axis(axis, common, j, machine);
     machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
-  read_models(table, machine.chain.layout, errors);
+  read_models(table, machine, errors);
   return machine;
 }
 

@@ -166,7 +166,7 @@ class ScenarioReader {
       config::Reader models = root.table("errors");
       names = models.keys();
       if (out_.machine.chain.layout != JointLayout{}) {
-        for (auto& [name, model] : input::read_error_models(models, out_.machine.chain.layout)) {
+        for (auto& [name, model] : input::read_error_models(models, MachineAxes(out_.machine))) {
           out_.errors[name] = std::move(model);
         }
       } else {  // their errors have no axes

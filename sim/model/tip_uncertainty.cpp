@@ -10,15 +10,15 @@ using Eigen::Vector3d;
 
 constexpr double kUnitError = 1e-6;  // m, rad; effects are proportional to it
 
-double travelling(const plant::ErrorFunction& f, double s, double direction) {
-  const double mean = f.value(s);
+double travelling(const plant::ErrorFunction& f, double s, const AxisWords& q, double direction) {
+  const double mean = f.value(s, q);
   return f.reversals.empty() ? mean : mean + 0.5 * direction * f.width(s);
 }
 
 }  // namespace
 
 TipUncertainty::TipUncertainty(const plant::MachineChain& chain, const UncertainErrors& errors)
-    : correlation_(errors.correlation) {
+    : layout_(chain.layout), correlation_(errors.correlation) {
   assert(correlation_.rows() == Index(errors.parts.size()));
   for (const std::vector<UncertainPart>& parts : errors.parts) {
     std::vector<Part>& number = numbers_.emplace_back();
@@ -51,6 +51,7 @@ Eigen::Matrix3d TipUncertainty::covariance(const Joints& Q, const Vector3d& p_ST
     shift.col(Index(i)) = units_[i].model.first_order_error(Q, p_ST).dp_W / kUnitError;
   }
   // numbers without effect here, such as most of a table, are left out
+  const AxisWords q = layout_.words(Q);
   Eigen::Matrix3Xd J(3, Index(numbers_.size()));
   std::vector<Index> acting;
   for (std::size_t k = 0; k < numbers_.size(); ++k) {
@@ -58,7 +59,7 @@ Eigen::Matrix3d TipUncertainty::covariance(const Joints& Q, const Vector3d& p_ST
     for (const Part& part : numbers_[k]) {
       const double s = Q[part.joint], direction = directions[part.joint];
       const double change =
-          travelling(part.above, s, direction) - travelling(part.below, s, direction);
+          travelling(part.above, s, q, direction) - travelling(part.below, s, q, direction);
       effect += 0.5 * change * shift.col(Index(part.unit));
     }
     if (effect.isZero(0.0)) continue;

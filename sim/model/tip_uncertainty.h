@@ -65,6 +65,7 @@ class TipUncertainty {
 
   std::size_t unit_of(const plant::MachineChain& chain, const plant::ErrorName& name);
 
+  JointLayout layout_;
   std::vector<UnitError> units_;
   std::vector<std::vector<Part>> numbers_;
   Eigen::MatrixXd correlation_;

@@ -32,7 +32,7 @@ void add(system::MemoKey& key, const controllers::ToolTable& tools) {
 }
 
 void add(system::MemoKey& key, const plant::ErrorFunction& function) {
-  const auto& [polynomial, harmonics, tables, reversals] = function;
+  const auto& [polynomial, harmonics, tables, reversals, grids] = function;
   const auto add_all = [&key](const std::vector<double>& values) {
     key.add(values.size());
     for (const double value : values) key.add(value);
@@ -53,6 +53,15 @@ void add(system::MemoKey& key, const plant::ErrorFunction& function) {
   for (const auto& [width, distance] : reversals) {
     add_all(width);
     key.add(distance);
+  }
+  key.add(grids.size());
+  for (const plant::GridFunction& grid : grids) {
+    const auto& [axes, at, error, interpolation] = grid.points();
+    key.add(axes.size());
+    for (const Axis axis : axes) key.add(axis);
+    for (const auto& positions : at) add_all(positions);
+    add_all(error);
+    key.add(interpolation);
   }
 }
 

@@ -45,6 +45,31 @@ std::vector<double> places_in(const Range& range, bool linear) {
   return out;
 }
 
+// Points of the errors over several axes, which are part of the error over its own axis, too.
+void write_grids(records::Hdf5Group& group, const std::string& error, const plant::ErrorFunction& f,
+                 const char* unit) {
+  for (std::size_t n = 0; n < f.grids.size(); ++n) {
+    const plant::GridPoints& points = f.grids[n].points();
+    records::Hdf5Group grid = group.group(fmt::format("{}_grid_{}", error, n + 1));
+    std::string axes;
+    for (std::size_t k = 0; k < points.axes.size(); ++k) {
+      const Axis axis = points.axes[k];
+      const bool linear = is_linear(axis);
+      axes += letter(axis);
+      std::vector<double> at = points.at[k];
+      for (double& q : at) q /= linear ? mm : deg;
+      grid.list(std::string(1, letter(axis)), at,
+                {linear ? "mm" : "deg", fmt::format("positions of {}", letter(axis))});
+    }
+    std::vector<double> values = points.error;
+    for (double& e : values) e /= um;
+    const bool is_cubic = points.interpolation == plant::GridInterpolation::cubic;
+    grid.list("value", values,
+              {unit, fmt::format("{} at each combination of {}, the last the fastest; {}", error,
+                                 axes, is_cubic ? "cubic spline" : "linear in between")});
+  }
+}
+
 void write_components(records::Hdf5Group& root, const std::string& path,
                       const plant::ErrorModel& model, Axis axis, const model::NcSettings& nc,
                       int joint) {
@@ -68,8 +93,13 @@ void write_components(records::Hdf5Group& root, const std::string& path,
     if (f.is_zero()) continue;
     const char* unit = is_linear(direction) ? "um" : "urad";  // um is urad
     const std::string error = plant::to_string({direction, axis, false});
-    group.list(error, over_axis([&](double at) { return f.value(at); }, um),
-               {unit, "error " + error}, "position");
+    const auto value = [&](double at) {  // the other axes at 0
+      AxisWords words = AxisWords::Zero();
+      words[index_of(axis)] = at;
+      return f.value(at, words);
+    };
+    group.list(error, over_axis(value, um), {unit, "error " + error}, "position");
+    write_grids(group, error, f, unit);
     if (f.reversals.empty()) continue;
     group.list(error + "_width", over_axis([&](double at) { return f.width(at); }, um),
                {unit, error + " travelling up minus travelling down"}, "position");

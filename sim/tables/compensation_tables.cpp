@@ -10,7 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/tables/tool_side_errors.h"
+#include "sim/tables/grid_tables.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -123,18 +123,6 @@ void refuse_jump(const TableSource& source, const CompensationTable& table) {
 }
 
 bool holds_anything(const CompensationTable& table) { return table.largest() > 0.0; }
-
-// One component error of an axis that counts as carrying the tool; mean of both directions.
-double tool_side_error(const TableSource& source, const plant::ErrorName& name, double q) {
-  ComponentErrors ours;
-  for (const Axis a : kAllAxes) {
-    const double value = source.errors.component({a, name.axis, false}).value(q);
-    (is_linear(a) ? ours.shift[index_of(a)] : ours.turn[index_of(a) - index_of(Axis::A)]) = value;
-  }
-  const ComponentErrors theirs = tool_side(source.chain.at(name.axis), ours, q);
-  const Axis a = name.direction;
-  return is_linear(a) ? theirs.shift[index_of(a)] : theirs.turn[index_of(a) - index_of(Axis::A)];
-}
 
 }  // namespace
 
@@ -254,10 +242,15 @@ std::vector<CompensationTable> component_tables_of(const TableSource& source,
       const plant::ErrorName name{direction, axis, false};
       const plant::ErrorFunction& error = source.errors.component(name);
       if (!rules.tool_side && error.is_zero()) continue;
+      if (needs_grid(source, rules, name)) continue;  // grid_tables_of
       const Curve own = [&](double q, int travel) {
-        return plant::travelling(error, travel).value(q);
+        return component_on_line(source, name, q, travel);
       };
-      const Curve converted = [&](double q, int) { return tool_side_error(source, name, q); };
+      const Curve converted = [&](double q, int) {
+        AxisWords words = source.chain.layout.words(source.reference);
+        words[index_of(axis)] = q;
+        return written_error(source, rules, name, words);
+      };
       const bool by_direction = rules.direction != DirectionRule::none && !error.reversals.empty();
       CompensationTable table =
           tabulate(line, rules.tool_side ? converted : own,

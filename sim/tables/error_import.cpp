@@ -8,8 +8,10 @@
 
 #include "controllers/tables/etalon_table.h"
 #include "controllers/tables/isg_table.h"
+#include "plant/geometry/travelling_errors.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/tables/grid_import.h"
 #include "sim/tables/tool_side_errors.h"
 #include "sim/tables/tool_side_poses.h"
 
@@ -37,6 +39,22 @@ void refuse_size(const std::string& name, bool is_length, double value, const Pl
                                    is_length ? "" : "; angles are in rad, not in deg"));
 }
 
+void refuse_meaningless_grids(const ImportedColumns& imported, const JointLayout& layout) {
+  for (const controllers::ErrorGrid& grid : imported.columns.grids) {
+    const Place at{grid.file, grid.line};
+    const plant::ErrorName name = *plant::error_name_of(grid.name);
+    for (const double e : grid.error) refuse_size(grid.name, is_linear(name.direction), e, at);
+    if (const auto why = plant::why_meaningless(name, layout)) {
+      throw InputError(at, fmt::format("{} {}", grid.name, *why));
+    }
+    for (const Axis axis : grid.axes) {
+      if (layout.joint_of(axis)) continue;
+      throw InputError(at, fmt::format("{} is a function of {}, which the machine lacks", grid.name,
+                                       letter(axis)));
+    }
+  }
+}
+
 // The columns that the machine can have and that are not 0 everywhere.
 std::vector<const ErrorColumn*> usable(const ImportedColumns& imported, const JointLayout& layout,
                                        ErrorImport& out) {
@@ -62,6 +80,7 @@ std::vector<const ErrorColumn*> usable(const ImportedColumns& imported, const Jo
       columns.push_back(&column);
     }
   }
+  refuse_meaningless_grids(imported, layout);
   return columns;
 }
 
@@ -95,11 +114,6 @@ void import_as_they_are(const std::vector<const ErrorColumn*>& columns, ErrorImp
     }
     out.errors.component(name_of(*column)) = plant::linear_table(std::move(s), std::move(error));
   }
-}
-
-double& part_of(ComponentErrors& e, Axis direction) {
-  return is_linear(direction) ? e.shift[index_of(direction)]
-                              : e.turn[index_of(direction) - index_of(Axis::A)];
 }
 
 // All errors of one axis that carries the workpiece, at one position.
@@ -154,6 +168,14 @@ void import_converted(const std::vector<const ErrorColumn*>& columns, const plan
   }
 }
 
+void note_conversion(const plant::ChainAxis& axis, ErrorImport& out) {
+  out.notes.push_back(
+      fmt::format("converted: the errors of {}, which {}", letter(axis.axis),
+                  axis.side == plant::Side::workpiece
+                      ? "carries the workpiece, but is treated in the file as carrying the tool"
+                      : "rotate about its centre here and about the machine zero in the file"));
+}
+
 std::string list_text(const std::vector<double>& values, double unit) {
   std::string text;
   for (const double value : values) {
@@ -187,22 +209,25 @@ ErrorImport import_errors(const ImportedColumns& imported, const plant::MachineC
   import_locations(imported, chain.layout, out);
   for (const plant::ChainAxis& axis : chain.axes) {
     const auto own = of_axis(columns, axis.axis);
+    if (has_grids(imported, axis.axis)) {
+      import_grids(imported, axis, out.errors);
+      if (!is_as_ours(axis)) note_conversion(axis, out);
+      continue;
+    }
     if (own.empty()) continue;
     if (!is_tool_side(imported) || is_as_ours(axis)) {
       import_as_they_are(own, out);
       continue;
     }
     import_converted(own, axis, out);
-    out.notes.push_back(
-        fmt::format("converted: the errors of {}, which {}", letter(axis.axis),
-                    axis.side == plant::Side::workpiece
-                        ? "carries the workpiece, but is treated in the file as carrying the tool"
-                        : "rotate about its centre here and about the machine zero in the file"));
+    note_conversion(axis, out);
   }
   if (is_tool_side(imported)) {
-    const std::string file = imported.columns.components.empty()
-                                 ? std::string(name_of(imported.format))
-                                 : imported.columns.components.front().file;
+    const auto& columns_read = imported.columns.components;
+    const auto& grids_read = imported.columns.grids;
+    const std::string file = !columns_read.empty() ? columns_read.front().file
+                             : !grids_read.empty() ? grids_read.front().file
+                                                   : std::string(name_of(imported.format));
     refuse_undocumented_axes(chain, out.errors, name_of(imported.format), {file});
     out.notes.push_back(
         "assumed: workpiece_axes 0 and alternative_model 0; component errors belong to the body "
@@ -236,6 +261,10 @@ std::string errors_toml(const plant::ErrorModel& errors, const std::string& name
                             list_text(table.s, is_linear(axis) ? mm : deg), unit_name,
                             list_text(table.error, unit));
       }
+      for (const plant::GridFunction& grid : errors.component(component).grids) {
+        text += fmt::format("{} = {{ grid = {} }}\n", to_string(component),
+                            grid_toml(grid.points(), is_length));
+      }
     }
   }
   return text;
@@ -244,7 +273,7 @@ std::string errors_toml(const plant::ErrorModel& errors, const std::string& name
 std::size_t verify_import(const ImportedColumns& imported, const plant::MachineChain& chain,
                           const plant::ErrorModel& read_back) {
   constexpr int kPositions = 1000;
-  std::size_t positions = 0;
+  std::size_t positions = verify_grids(imported, chain, read_back);
   const auto check = [&](const std::string& file, int line, const std::string& name, double wanted,
                          double read) {
     ++positions;
@@ -255,7 +284,7 @@ std::size_t verify_import(const ImportedColumns& imported, const plant::MachineC
   };
   for (const Axis axis : kAllAxes) {
     if (!chain.layout.joint_of(axis)) continue;
-    const ToolSidePoses poses(chain, read_back, axis);
+    const ToolSidePoses poses(chain, plant::held(read_back, axis, AxisWords::Zero()), axis);
     for (const ErrorColumn& column : imported.columns.components) {
       if (column.base_axis != axis) continue;
       const plant::ErrorName name = name_of(column);
@@ -263,7 +292,7 @@ std::size_t verify_import(const ImportedColumns& imported, const plant::MachineC
       for (int n = 0; n < kPositions; ++n) {
         const double q = from + (to - from) * n / (kPositions - 1);
         const double read = is_tool_side(imported) ? poses.value(name.direction, q)
-                                                   : read_back.component(name).value(q);
+                                                   : read_back.component(name).value(q);  // csv
         check(column.file, column.points.front().line, column.name, value_at(column, q), read);
       }
     }

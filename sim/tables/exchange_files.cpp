@@ -23,6 +23,10 @@ std::string argument_text(const TableLine& line, std::size_t i) {
   return fmt::format("{:.6f}", line.entry(i) / (line.joint < kLinearJoints ? mm : deg) + 0.0);
 }
 
+std::string argument_text(Axis axis, double position) {
+  return fmt::format("{:.6f}", position / (is_linear(axis) ? mm : deg) + 0.0);
+}
+
 std::string parameter_name(const plant::ErrorName& name) {
   return name.is_location ? fmt::format("{}0{}", letter(name.direction), letter(name.axis))
                           : to_string(name);
@@ -51,6 +55,25 @@ std::vector<const CompensationTable*> tables_over(const TableExport& e, const Ta
   return tables;
 }
 
+// One record for each combination of positions, the last argument the fastest.
+std::string grid_text(const GridTable& grid) {
+  const plant::GridPoints& points = grid.points;
+  std::string text;
+  for (const Axis axis : points.axes) text += fmt::format("{} ", letter(axis));
+  text += parameter_name(grid.name) + "\n";
+  for (std::size_t n = 0; n < points.error.size(); ++n) {
+    std::string arguments;
+    std::size_t rest = n;
+    for (std::size_t k = points.axes.size(); k-- > 0;) {
+      const std::vector<double>& at = points.at[k];
+      arguments = argument_text(points.axes[k], at[rest % at.size()]) + " " + arguments;
+      rest /= at.size();
+    }
+    text += arguments + value_text(points.error[n], grid.is_angle()) + "\n";
+  }
+  return text;
+}
+
 // Axes from the workpiece to the tool.
 std::string chain_text(const TableExport& e) {
   std::string text;
@@ -65,6 +88,7 @@ TextFile notes_file(const TableExport& e, std::string_view name, std::string_vie
       notes.end(),
       {"values: deviation of the tool relative to the workpiece, in mm and rad; arguments in mm "
        "and deg",
+       "tables over several axes lie on a grid: interpolation GRID, the default (P-VOLC-00014)",
        fmt::format("compensation list: chain {}, workpiece_axes 0, alternative_model 0, file[0] "
                    "{}, file_format[0] {}; start-up list: vol_comp[0].max_records >= {}",
                    chain_text(e), name, format, records),
@@ -111,6 +135,11 @@ std::vector<TextFile> isg_files(const TableExport& e) {
       text += "\n";
     }
     records += line.points;
+  }
+  for (const GridTable& grid : e.grids) {
+    if (records > 0) text += "#\n";
+    text += grid_text(grid);
+    records += grid.points.error.size();
   }
   return {{"volcomp.csv", text}, notes_file(e, "volcomp.csv", "ISG_CSV", records)};
 }

@@ -29,6 +29,15 @@ bool has_reversals(const plant::ErrorModel& errors, Axis axis) {
 
 }  // namespace
 
+double component_on_line(const TableSource& source, const plant::ErrorName& name, double q,
+                         double direction) {
+  const plant::ErrorFunction& f = source.errors.component(name);
+  AxisWords words = source.chain.layout.words(source.reference);
+  words[index_of(name.axis)] = q;
+  const double mean = f.value(q, words);
+  return f.reversals.empty() ? mean : mean + 0.5 * direction * f.width(q);
+}
+
 LineCorrection::LineCorrection(const TableSource& source)
     : source_(source), identified_(identified_of(source.errors)) {
   base_.head<kLinearJoints>() = linear_at(identified_, source.reference);
@@ -73,11 +82,11 @@ double LineCorrection::rotary_at(int joint, double q, int direction) const {
   const Axis axis = *source_.chain.layout.axis[static_cast<std::size_t>(joint)];
   // the coordinate may count the other way than the error does
   const double sign = source_.chain.at(axis).sense == plant::Sense::table ? -1.0 : 1.0;
-  const plant::ErrorFunction error =
-      plant::travelling(source_.errors.component({axis, axis, false}), direction);
   double d = 0.0;
   constexpr int kIterations = 20;  // contraction by the slope of the error, far below 1
-  for (int n = 0; n < kIterations; ++n) d = -sign * error.value(q + d);
+  for (int n = 0; n < kIterations; ++n) {
+    d = -sign * component_on_line(source_, {axis, axis, false}, q + d, direction);
+  }
   return d;
 }
 

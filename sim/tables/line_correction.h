@@ -20,6 +20,11 @@ struct TableSource {
   Joints reference = Joints::Zero();               // m, rad; where the other axes stand
 };
 
+/// A component error with its axis at q (m, rad) and the others at the reference (m, rad).
+/// @param direction  of travel of its axis: 1 up, -1 down, 0 the mean of both
+double component_on_line(const TableSource& source, const plant::ErrorName& name, double q,
+                         double direction = 0.0);
+
 /// Displacements of the axes that remove the errors on those lines. They are zero at the reference,
 /// so that nothing jumps when the tables are switched on; what the machine is off there is a shift
 /// of its zero, base(), which a work offset takes.

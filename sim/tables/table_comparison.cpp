@@ -41,11 +41,15 @@ void TableComparison::check(const TableLine& line, const Comparison& c) {
       if (!(std::abs(read - wanted) <= c.digit * (1.0 + kDigitSlack))) {
         fail(line, c, q, direction, read, wanted);
       }
-      double& largest = c.is_angle ? result_.angle : result_.length;
-      largest = std::max(largest, std::abs(read - c.needed(q, direction)));
-      ++result_.positions;
+      count(c.is_angle, read - c.needed(q, direction));
     }
   }
+}
+
+void TableComparison::count(bool is_angle, double difference) {
+  double& largest = is_angle ? result_.angle : result_.length;
+  largest = std::max(largest, std::abs(difference));
+  ++result_.positions;
 }
 
 void TableComparison::check_points(const TableLine& line, const std::string& file,

@@ -42,6 +42,9 @@ class TableComparison {
   void check_points(const TableLine& line, const std::string& file,
                     const std::vector<controllers::TablePoint>& points) const;
 
+  /// One more position, where the file is off the error model by so much (m, rad).
+  void count(bool is_angle, double difference);
+
   TableVerification result() const { return result_; }
 
  private:

@@ -196,6 +196,7 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
   }
   e.tables = csv ? component_tables_of(e.source, e.lines, e.rules())
                  : tables_of(e.source, e.lines, e.rules());
+  if (csv) e.grids = grid_tables_of(e.source, e.lines, e.rules());
   for (const CompensationTable& table : e.tables) {
     if (table.is_second_order) {
       e.omitted.push_back({table.line.joint, table.output, table.largest()});

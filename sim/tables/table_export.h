@@ -8,6 +8,7 @@
 #include "sim/model/machine.h"
 #include "sim/tables/bed_mesh.h"
 #include "sim/tables/compensation_tables.h"
+#include "sim/tables/grid_tables.h"
 #include "sim/tables/skew.h"
 #include "sim/tables/table_residuals.h"
 
@@ -38,6 +39,7 @@ struct TableExport {
   TableSource source;
   std::vector<TableLine> lines;           // one for each axis of the machine
   std::vector<CompensationTable> tables;  // rounded as written
+  std::vector<GridTable> grids;           // of errors over several axes
   std::vector<OmittedTable> omitted;      // of second order in the errors
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
   std::vector<TableResidual> left;

@@ -6,7 +6,7 @@ namespace servomill::sim::tables {
 namespace {
 
 // Files for the volumetric compensation of the ISG kernel.
-FormatRules exchange(std::string_view document) {
+FormatRules exchange(std::string_view document, bool grids) {
   return {.document = document,
           .most_points = 10000,
           .cross = true,
@@ -17,7 +17,8 @@ FormatRules exchange(std::string_view document) {
           .length_step = 1e-6 * mm,
           .angle_step = 1e-9,
           .components = true,
-          .tool_side = true};
+          .tool_side = true,
+          .grids = grids};
 }
 
 // Skew corrections of firmwares: three numbers.
@@ -82,9 +83,11 @@ const FormatRules& rules_of(TableFormat format) {
        .components = true},
       exchange("Beckhoff, TF5280 TwinCAT 3 CNC Volumetric Compensation: ISG CSV format "
                "(296429067.html), Units of measure (296426379.html), List of parameters supported "
-               "(296423819.html)"),
+               "(296423819.html)",
+               true),
       exchange("Beckhoff, TF5280 TwinCAT 3 CNC Volumetric Compensation: Etalon Exchange Format "
-               "(296430091.html), variant Vendor; Units of measure (296426379.html)"),
+               "(296430091.html), variant Vendor; Units of measure (296426379.html)",
+               false),
       skew("Marlin, Marlin/src/gcode/calibrate/M852.cpp and skew() in Marlin/src/module/planner.h"),
       skew("Klipper, klippy/extras/skew_correction.py"),
       skew("RepRapFirmware, M556 (duet3d.dozuki.com/Wiki/M556), Move::AxisTransform in "

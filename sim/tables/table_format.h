@@ -40,6 +40,7 @@ struct FormatRules {
   double angle_step;          // rad
   bool components = false;    // holds the errors by their names, not displacements of axes
   bool tool_side = false;     // every axis counts as carrying the tool (tool_side_errors.h)
+  bool grids = false;         // component errors over several axes
   bool skew = false;          // holds the squareness of X, Y and Z only
 };
 

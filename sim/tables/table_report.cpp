@@ -34,6 +34,18 @@ std::string line_of(const TableExport& e, const CompensationTable& table) {
       size_of(table.is_angle(), table.residual));
 }
 
+std::string line_of(const GridTable& grid) {
+  std::string axes, points;
+  for (std::size_t k = 0; k < grid.points.axes.size(); ++k) {
+    axes += fmt::format("{}{}", k == 0 ? "" : ", ", letter(grid.points.axes[k]));
+    points += fmt::format("{}{}", k == 0 ? "" : " x ", grid.points.at[k].size());
+  }
+  return fmt::format(
+      "  {} over {}: grid of {} points, up to {}; linear interpolation and rounding leave up to {}",
+      to_string(grid.name), axes, points, size_of(grid.is_angle(), grid.largest()),
+      size_of(grid.is_angle(), grid.residual));
+}
+
 std::string reference_line(const TableExport& e) {
   std::string where;
   for (const TableLine& line : e.lines) {
@@ -154,6 +166,24 @@ void note_reversals(const TableExport& e, const TableLine& line, std::vector<std
   }
 }
 
+// Tables over one axis hold an error over several where the others are at the reference.
+void note_grids(const TableExport& e, const TableLine& line, std::vector<std::string>& out) {
+  if (e.rules().components) return;
+  const Axis axis = *e.source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+  for (const Axis direction : kAllAxes) {
+    const plant::ErrorName name{direction, axis, false};
+    std::string others;
+    for (const Axis a : e.source.errors.component(name).grid_axes()) {
+      if (a != axis) others += fmt::format("{}{}", others.empty() ? "" : ", ", letter(a));
+    }
+    if (others.empty()) continue;
+    out.push_back(
+        fmt::format("note: {} depends on the position of {}, too; tables over one axis contain it "
+                    "on the lines through the reference only (isg contains all of it)",
+                    to_string(name), others));
+  }
+}
+
 void note_powers_of_two(const TableExport& e, std::vector<std::string>& out) {
   for (const TableLine& line : e.lines) {
     const double exponent = std::log2(line.spacing / kGridStep);
@@ -174,6 +204,7 @@ void note_powers_of_two(const TableExport& e, std::vector<std::string>& out) {
 void add_notes(const TableExport& e, std::vector<std::string>& out) {
   note_ends_of_turns(e, out);
   for (const TableLine& line : e.lines) note_reversals(e, line, out);
+  for (const TableLine& line : e.lines) note_grids(e, line, out);
   for (const std::string& one : e.coarse) out.push_back("note: " + one);
   if (e.makes_worse()) {
     out.push_back(
@@ -232,6 +263,7 @@ std::vector<std::string> report(const TableExport& e) {
   add_base(e, out);
   out.push_back("tables:");
   for (const CompensationTable& table : e.tables) out.push_back(line_of(e, table));
+  for (const GridTable& grid : e.grids) out.push_back(line_of(grid));
   add_notes(e, out);
   out = with_unknown(std::move(out), e);
   if (csv) {

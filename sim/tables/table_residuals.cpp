@@ -5,6 +5,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/interrupt.h"
+#include "sim/tables/grid_tables.h"
 
 namespace servomill::sim::tables {
 namespace {
@@ -59,10 +60,26 @@ void for_all(const std::vector<Samples>& samples, std::size_t next, Joints& Q, c
   }
 }
 
-double largest_within(const plant::ErrorFunction& error, const TableLine& line) {
-  constexpr int kPlaces = 20001;
+// Over the travel of its axis, and over that of every axis which its grids name.
+double largest_within(const TableSource& source, const std::vector<TableLine>& lines,
+                      const plant::ErrorName& name, int own) {
+  constexpr int kPlaces = 20001, kPlacesOfGrid = 65;
+  const plant::ErrorFunction& error = source.errors.component(name);
+  const std::vector<Axis> axes = error.grid_axes();
+  std::vector<Samples> samples;
+  for (const TableLine& line : lines) {
+    const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+    const bool is_named = std::find(axes.begin(), axes.end(), axis) != axes.end();
+    if (line.joint != own && !is_named) continue;
+    Samples s{line.joint, spread(line, axes.empty() ? kPlaces : kPlacesOfGrid), {}};
+    s.d.assign(s.q.size(), Joints::Zero());
+    samples.push_back(std::move(s));
+  }
   double most = 0.0;
-  for (const double q : spread(line, kPlaces)) most = std::max(most, std::abs(error.value(q)));
+  Joints Q = source.reference;
+  for_all(samples, 0, Q, Joints::Zero(), [&](const Joints& at, const Joints&) {
+    most = std::max(most, std::abs(error.value(at[own], source.chain.layout.words(at))));
+  });
   return most;
 }
 
@@ -76,13 +93,19 @@ plant::ErrorModel only(const plant::ErrorModel& errors, const plant::ErrorName& 
   return out;
 }
 
-// The error alone. Between the ends of the other linear axes what stays is linear.
+// The error alone. Between the ends of the other linear axes what stays is linear, but of axes that
+// its grids name.
 TableResidual stay_of(TableSource source, const std::vector<TableLine>& lines,
                       const std::vector<OmittedTable>& omitted, const FormatRules& rules,
                       const plant::ErrorName& name, int own) {
   constexpr int kFine = 129, kFineTurn = 33, kEnds = 2, kAngles = 5;
   source.errors = only(source.errors, name);
+  std::vector<Axis> axes;
+  if (!name.is_location) axes = source.errors.component(name).grid_axes();
   const auto samples = samples_of(source, lines, omitted, rules, [&](int joint) {
+    const auto axis = source.chain.layout.axis[static_cast<std::size_t>(joint)];
+    const bool is_named = std::find(axes.begin(), axes.end(), axis) != axes.end();
+    if (joint != own && is_named) return kFineTurn;
     const bool fine = joint == own && !name.is_location;
     return joint < kLinearJoints ? (fine ? kFine : kEnds) : (fine ? kFineTurn : kAngles);
   });
@@ -111,7 +134,7 @@ std::vector<TableResidual> table_residuals(const TableSource& source,
       for (const Axis direction : kAllAxes) {
         const plant::ErrorName name{direction, axis, is_location};
         const double size = is_location ? std::abs(source.errors.location(name))
-                                        : largest_within(source.errors.component(name), line);
+                                        : largest_within(source, lines, name, line.joint);
         if (size == 0.0) continue;
         TableResidual one = stay_of(source, lines, omitted, rules, name, line.joint);
         one.size = size;
@@ -147,19 +170,8 @@ Volume volume(const TableSource& source, const std::vector<TableLine>& lines,
     }
     look_at(Q);
   }
-  // poses n (1/g, 1/g^2, ...) modulo 1: they fill the travel evenly and repeat on no axis
-  constexpr double g = 1.1347241384015194;  // g^6 = g + 1, for up to five axes
   constexpr int kPoses = 20000;
-  for (int n = 1; n <= kPoses; ++n) {
-    Joints Q = source.reference;
-    double step = 1.0;
-    for (const TableLine& line : lines) {
-      step /= g;
-      double whole = 0.0;
-      Q[line.joint] = line.from + (line.to - line.from) * std::modf(n * step, &whole);
-    }
-    look_at(Q);
-  }
+  for (int n = 1; n <= kPoses; ++n) look_at(spread_pose(source, lines, n));
   return out;
 }
 

@@ -38,6 +38,11 @@ ComponentErrors moved(const plant::ChainAxis& axis, const ComponentErrors& e, do
 
 }  // namespace
 
+double& part_of(ComponentErrors& errors, Axis direction) {
+  return is_linear(direction) ? errors.shift[index_of(direction)]
+                              : errors.turn[index_of(direction) - index_of(Axis::A)];
+}
+
 ComponentErrors tool_side(const plant::ChainAxis& axis, const ComponentErrors& ours, double q) {
   const ComponentErrors e = is_linear(axis.axis) ? about_origin(ours, axis.centre) : ours;
   return axis.side == plant::Side::tool ? e : moved(axis, e, -q);

@@ -35,6 +35,9 @@ struct ComponentErrors {
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();   // rad
 };
 
+/// The part of that direction.
+double& part_of(ComponentErrors& errors, Axis direction);
+
 /// E' of E. @param q  position of the axis (m, rad)
 ComponentErrors tool_side(const plant::ChainAxis& axis, const ComponentErrors& ours, double q);
 

@@ -18,6 +18,8 @@ namespace {
 
 using controllers::ControlTable;
 
+constexpr int kGridPoses = 1000;
+
 controllers::ErrorColumns read(const TableExport& e, const std::vector<TextFile>& files) {
   const auto texts = texts_of(files);
   switch (e.request.format) {
@@ -48,6 +50,7 @@ class Columns {
         check_location({direction, axis, true});
       }
     }
+    for (const GridTable& table : e_.grids) check_grid(table);
     return check_.result();
   }
 
@@ -62,6 +65,74 @@ class Columns {
       throw InputError({one.file, one.points.front().line},
                        fmt::format("not as verified: {} is not needed", one.name));
     }
+    for (const controllers::ErrorGrid& one : columns_.grids) {
+      if (std::any_of(e_.grids.begin(), e_.grids.end(),
+                      [&](const GridTable& table) { return to_string(table.name) == one.name; })) {
+        continue;
+      }
+      throw InputError(
+          {one.file, one.line},
+          fmt::format("not as verified: {} over several axes is not needed", one.name));
+    }
+  }
+
+  // Errors over several axes: those of the machine with errors while its other axes are held.
+  void check_grid(const GridTable& table) {
+    const auto grid =
+        std::find_if(columns_.grids.begin(), columns_.grids.end(),
+                     [&](const auto& one) { return one.name == to_string(table.name); });
+    if (grid == columns_.grids.end()) {
+      throw InputError({file_},
+                       fmt::format("not as verified: {} is missing", to_string(table.name)));
+    }
+    if (grid->axes != table.points.axes) {
+      throw InputError({grid->file, grid->line},
+                       fmt::format("not as verified: {} has other arguments", grid->name));
+    }
+    const double digit = table.is_angle() ? e_.rules().angle_step : e_.rules().length_step;
+    check_grid_points(table, *grid, digit);
+    std::vector<double> position(grid->axes.size());
+    for (int n = 1; n <= kGridPoses; ++n) {
+      const AxisWords q = e_.source.chain.layout.words(spread_pose(e_.source, e_.lines, n));
+      for (std::size_t k = 0; k < position.size(); ++k) position[k] = q[index_of(grid->axes[k])];
+      check_grid_value(table, *grid, poses_at(table, q), q, grid->value(position),
+                       table.residual + digit);
+    }
+  }
+
+  // On one line over its own axis, the last argument, after the other.
+  void check_grid_points(const GridTable& table, const controllers::ErrorGrid& grid, double digit) {
+    AxisWords q = e_.source.chain.layout.words(e_.source.reference);
+    const std::vector<double>& own = grid.at.back();
+    for (std::size_t n = 0; n < grid.error.size(); n += own.size()) {
+      std::size_t rest = n / own.size();
+      for (std::size_t k = grid.axes.size() - 1; k-- > 0;) {
+        q[index_of(grid.axes[k])] = grid.at[k][rest % grid.at[k].size()];
+        rest /= grid.at[k].size();
+      }
+      const ToolSidePoses poses = poses_at(table, q);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        q[index_of(table.name.axis)] = own[i];
+        check_grid_value(table, grid, poses, q, grid.error[n + i], digit);
+      }
+    }
+  }
+
+  // Poses of the machine while all axes but that of the error are held.
+  ToolSidePoses poses_at(const GridTable& table, const AxisWords& q) const {
+    return {e_.source.chain, plant::held(e_.source.errors, table.name.axis, q), table.name.axis};
+  }
+
+  void check_grid_value(const GridTable& table, const controllers::ErrorGrid& grid,
+                        const ToolSidePoses& poses, const AxisWords& q, double read,
+                        double within) {
+    const double needed = poses.value(table.name.direction, q[index_of(table.name.axis)]);
+    check_.count(table.is_angle(), read - needed);
+    if (std::abs(read - needed) <= within * (1.0 + kDigitSlack)) return;
+    throw InputError(
+        {grid.file, grid.line},
+        fmt::format("not as verified: {}: the file gives {}, the error model {}", grid.name,
+                    exact_size(table.is_angle(), read), exact_size(table.is_angle(), needed)));
   }
 
   // The column that holds an error in one direction of travel; empty points: there is none.
@@ -79,6 +150,7 @@ class Columns {
   }
 
   void check_component(const TableLine& line, const plant::ErrorName& name) {
+    if (needs_grid(e_.source, e_.rules(), name)) return;  // check_grid
     const plant::ErrorFunction& error = e_.source.errors.component(name);
     const std::array<ControlTable, 2> tables = {column(line, name, -1), column(line, name, 1)};
     if (tables[0].points.empty() && tables[1].points.empty() && error.is_zero() &&
@@ -91,11 +163,14 @@ class Columns {
     c.is_angle = !is_linear(name.direction);
     c.digit = c.is_angle ? e_.rules().angle_step : e_.rules().length_step;
     c.needed = [&](double q, int direction) {
-      return plant::travelling(error, direction).value(q);
+      return component_on_line(e_.source, name, q, direction);
     };
     if (e_.rules().tool_side) {
-      const auto needed =
-          std::make_shared<ToolSidePoses>(e_.source.chain, e_.source.errors, name.axis);
+      const auto needed = std::make_shared<ToolSidePoses>(
+          e_.source.chain,
+          plant::held(e_.source.errors, name.axis,
+                      e_.source.chain.layout.words(e_.source.reference)),
+          name.axis);
       c.needed = [needed, name](double q, int) { return needed->value(name.direction, q); };
     }
     c.read = [&](double q, int direction) {

@@ -14,8 +14,22 @@ namespace {
 
 constexpr double kResidualTol = 1e-3;  // um: 1 nm
 
+// Sag of X that depends on the ram, pitch of Y that depends on the table.
+std::string grid_of(char direction, char axis) {
+  if (direction == 'Z' && axis == 'X') {
+    return ", grid = { axes = \"XZ\", interpolation = \"cubic\", at_mm = [[-900, 0, 900], [-900, "
+           "0, "
+           "900]], value_um = [[0, 5, 20], [-30, -8, 0], [10, 0, 5]] }";
+  }
+  if (direction == 'A' && axis == 'Y') {
+    return ", grid = { axes = \"CY\", at_mm_deg = [[-40000, 40000], [-900, 900]], value_urad = "
+           "[[30, -20], [0, 10]] }";
+  }
+  return "";
+}
+
 // All 18 component errors of X, Y, Z and their 3 squareness errors: some 60 um and 60 urad at 200
-// mm, each another cubic.
+// mm, each another cubic, two of them also functions of other axes.
 std::string twenty_one_errors() {
   std::string out =
       "[errors.machine]\nEC0Y = \"50 urad\"\nEA0Z = \"40 urad\"\nEB0Z = \"20 urad\"\n";
@@ -25,8 +39,9 @@ std::string twenty_one_errors() {
       const bool linear = direction >= 'X';
       const double a = std::sin(1.0 + n), b = std::cos(2.0 * n), c = std::sin(3.0 * n);
       ++n;
-      out += fmt::format("E{}{} = {{ polynomial_{} = [0.0, {:.5f}, {:.8f}, {:.11f}] }}\n",
-                         direction, axis, linear ? "um" : "urad", 0.3 * a, 5e-4 * b, 2e-6 * c);
+      out += fmt::format("E{}{} = {{ polynomial_{} = [0.0, {:.5f}, {:.8f}, {:.11f}]{} }}\n",
+                         direction, axis, linear ? "um" : "urad", 0.3 * a, 5e-4 * b, 2e-6 * c,
+                         grid_of(direction, axis));
     }
   }
   return out;

@@ -143,7 +143,7 @@ TABLES = [
     typed("a skew correction of axes at right angles", TABLE.replace("siemens", "marlin"), TABLE.replace("siemens", "klipper") + " --spacing 5",
           TABLE.replace("siemens", "reprapfirmware") + " --max-points 9"),
     typed("a parameter file that holds something else", IMPORT, write={"volcomp.csv": "X,EXX\n0,0\n1,0\n"}),
-    typed("a parameter file of two arguments", IMPORT, write={"volcomp.csv": "Z X EXX\n0 0 0\n0 10 0.01\n"}),
+    typed("a parameter file of two arguments that is no grid", IMPORT, write={"volcomp.csv": "Z X EXX\n0 0 0\n0 10 0.01\n"}),
     typed("a parameter file in other units", IMPORT, write={"volcomp.csv": "C0Y\n0.2\n"}),
     typed("a parameter file of another machine", IMPORT, write={"volcomp.csv": "C ECC\n0 0\n90 1e-5\n"}),
     typed("options of --import that cannot be", IMPORT.replace(" --machine machine.toml", ""), IMPORT.replace(" --format isg", ""),

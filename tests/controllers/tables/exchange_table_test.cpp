@@ -1,6 +1,7 @@
 // Parameter files of the volumetric compensation of the ISG kernel, as its document has them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <string>
 
@@ -67,15 +68,36 @@ TEST(IsgTable, ListsTheKinematicsThatItDoesNotRead) {
             (std::vector<std::string>{"P0Z", "PXC", "LNX"}));
 }
 
+// The example of the document: two blocks in one, for Z = 0 and Z = 100.
+TEST(IsgTable, ReadsErrorsOverTwoAxes) {
+  const ErrorColumns errors =
+      isg("Z X EXX EYX\n0.0 0.0 0.02 0.01\n0.0 10.0 0.00 -0.1\n100.0 0.0 0.01 0.02\n"
+          "100.0 10.0 0.03 -0.09\n");
+  ASSERT_EQ(errors.grids.size(), 2U);
+  EXPECT_TRUE(errors.components.empty());
+  const ErrorGrid& EYX = errors.grids[1];
+  EXPECT_EQ(EYX.name, "EYX");
+  EXPECT_EQ(EYX.axes, (std::vector{Axis::Z, Axis::X}));
+  EXPECT_DOUBLE_EQ(EYX.value(std::array{100 * mm, 10 * mm}), -0.09 * mm);
+  // bilinear: a quarter of the way in Z, half of it in X
+  EXPECT_DOUBLE_EQ(EYX.value(std::array{25 * mm, 5 * mm}),
+                   (0.75 * (0.01 - 0.1) / 2 + 0.25 * (0.02 - 0.09) / 2) * mm);
+  EXPECT_DOUBLE_EQ(EYX.value(std::array{-9 * mm, 70 * mm}), -0.1 * mm);
+}
+
+TEST(IsgTable, ReadsAnErrorOverAnotherAxisThanItsOwn) {
+  const ErrorColumns errors = isg("C EXX\n0 0\n90 1\n");
+  EXPECT_DOUBLE_EQ(errors.grids.at(0).value(std::array{45 * deg}), 0.5 * mm);
+}
+
+TEST(IsgTable, RefusesTheSameErrorOverOneAndOverTwoAxes) {
+  EXPECT_EQ(isg_fault("X EXX\n0 0\n1 0\n#\nZ X EXX\n0 0 1\n0 1 2\n1 0 1\n1 1 2\n"),
+            "v.csv:5: error: EXX appears twice");
+}
+
 TEST(IsgTable, RefusesByNameWhatItDoesNotHold) {
-  EXPECT_EQ(isg_fault("Z X EXX\n0 0 0.02\n0 10 0.01\n100 0 0.03\n100 10 0.01\n"),
-            "v.csv:1: error: a table over 2 arguments; only tables over one axis are supported");
-  EXPECT_EQ(isg_fault("Z EXX\n0 0\n1 0\n"),
-            "v.csv:1: error: EXX is not a function of X; only component errors over their own axis "
-            "are supported");
   EXPECT_EQ(isg_fault("EXX\n0.1\n"),
-            "v.csv:1: error: EXX is not a function of X; only component errors over their own axis "
-            "are supported");
+            "v.csv:1: error: EXX has no argument; must be a function of the position of an axis");
   EXPECT_EQ(isg_fault("X C0Y\n0 1e-5\n10 1e-5\n"),
             "v.csv:1: error: C0Y is a function of X; only constant position errors are supported");
   EXPECT_EQ(isg_fault("C0Y\n1e-5\n1e-5\n"),

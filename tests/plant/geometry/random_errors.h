@@ -37,4 +37,17 @@ inline LinearTable random_table(Uniform& random, double size, int points) {
   return table;
 }
 
+/// Errors of up to `size` over the positions of some axes, from -0.5 m or rad on.
+inline ErrorFunction random_grid(Uniform& random, double size, std::vector<Axis> axes,
+                                 GridInterpolation interpolation) {
+  GridPoints points{std::move(axes), {}, {}, interpolation};
+  std::size_t combinations = 1;
+  for (std::size_t k = 0; k < points.axes.size(); ++k) {
+    points.at.push_back(random_table(random, size, 5 + static_cast<int>(k)).s);
+    combinations *= points.at.back().size();
+  }
+  for (std::size_t n = 0; n < combinations; ++n) points.error.push_back(size * random());
+  return grid(std::move(points));
+}
+
 }  // namespace servomill::plant

@@ -61,11 +61,11 @@ Matrix turn(long double ex, long double ey, long double ez) {
 }
 
 // As plant/geometry/error_model.h writes it.
-Matrix axis_matrix(const ChainAxis& a, const ErrorModel& errors, double q) {
+Matrix axis_matrix(const ChainAxis& a, const ErrorModel& errors, double q, const AxisWords& all) {
   std::array<long double, 6> e, l;
   for (const Axis d : kAllAxes) {
     const auto i = static_cast<std::size_t>(index_of(d));
-    e[i] = errors.component({d, a.axis, false}).value(q);
+    e[i] = errors.component({d, a.axis, false}).value(q, all);
     l[i] = errors.location({d, a.axis, true});
   }
   const Matrix E = shift(e[0], e[1], e[2]) * turn(e[3], e[4], e[5]);
@@ -82,7 +82,8 @@ Matrix axis_matrix(const ChainAxis& a, const ErrorModel& errors, double q) {
 ToolPose pose_by_matrices(const MachineChain& chain, const ErrorModel& errors, const Joints& Q,
                           const Vector3d& p_ST) {
   Matrix H = identity();
-  for (const ChainAxis& a : chain.axes) H = H * axis_matrix(a, errors, Q[a.joint]);
+  const AxisWords q = chain.layout.words(Q);
+  for (const ChainAxis& a : chain.axes) H = H * axis_matrix(a, errors, Q[a.joint], q);
   H = H * shift(p_ST);
   ToolPose P;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -125,7 +126,26 @@ struct ErrorCase {
   ErrorModel errors;
 };
 
-std::vector<ErrorCase> error_cases(Uniform& random) {
+// Each axis has errors over itself and others, over two others, and over all.
+ErrorModel grids(const MachineChain& chain, Uniform& random, double size) {
+  std::vector<Axis> axes;
+  for (const ChainAxis& a : chain.axes) axes.push_back(a.axis);
+  ErrorModel errors = cubics(random, size);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto next = [&](std::size_t k) { return axes[(i + k) % axes.size()]; };
+    const auto add = [&](Axis direction, std::vector<Axis> over, GridInterpolation form) {
+      ErrorFunction& f = errors.component({direction, axes[i], false});
+      f = f + random_grid(random, size, std::move(over), form);
+    };
+    add(Axis::X, {next(0)}, GridInterpolation::cubic);
+    add(Axis::Y, {next(1), next(0)}, GridInterpolation::cubic);
+    add(Axis::Z, {next(1), next(2)}, GridInterpolation::linear);
+    add(Axis::C, axes, GridInterpolation::linear);
+  }
+  return errors;
+}
+
+std::vector<ErrorCase> error_cases(const MachineChain& chain, Uniform& random) {
   std::vector<ErrorCase> all;
   all.push_back({"cubic", cubics(random, 1e-5)});
   // some lanes turn by less than kSmallTurn, some by more; the same of kSeriesTurn
@@ -154,6 +174,8 @@ std::vector<ErrorCase> error_cases(Uniform& random) {
     f = f + harmonic(1e-5 * random(), 0.05 * n);
   }
   all.push_back({"linear axes, harmonics", harmonics});
+  all.push_back({"grids", grids(chain, random, 1e-5)});
+  all.push_back({"linear axes, grids", of_linear_axes(grids(chain, random, 1e-5))});
   all.push_back({"none", {}});
   return all;
 }
@@ -169,7 +191,7 @@ void for_all_cases(unsigned seed, F f) {
   for (const char* text : kMachines) {
     for (const bool with_centres : {false, true}) {
       const MachineChain chain = machine(text, random, with_centres);
-      for (const ErrorCase& c : error_cases(random)) {
+      for (const ErrorCase& c : error_cases(chain, random)) {
         SCOPED_TRACE(std::string(text) + " " + c.name + (with_centres ? " with centres" : ""));
         f(chain, c.errors, random);
       }

@@ -52,6 +52,19 @@ TEST(TipUncertainty, OfASquarenessAndABowIsThatByHand) {
   EXPECT_NEAR(U.y(), 36.0 * um, 1e-9 * um);
 }
 
+// A value of a grid: half of it where the arguments are half way.
+TEST(TipUncertainty, OfAnErrorOverTwoAxesIsThatWhereBothStand) {
+  UncertainErrors errors{"identified", {}, Eigen::MatrixXd::Identity(1, 1)};
+  const plant::ErrorFunction corner =
+      plant::grid({{Axis::X, Axis::Z}, {{0.0, 0.4}, {0.0, 0.2}}, {0.0, 0.0, 0.0, 1.0}, {}});
+  errors.parts.push_back(part("EYX"_err, corner, 2.0 * um, 7.0 * um));
+  const TipUncertainty tip(chain_of("[w b X Y Z t]"), errors);
+  Joints Q = Joints::Zero();
+  Q.head<3>() = Vector3d(0.2, 0.0, 0.1);
+  const Vector3d U = tip.expanded(Q, Vector3d::Zero(), kNoDirection);
+  EXPECT_NEAR(U.y(), 2.0 * 0.25 * 2.0 * um, 1e-9 * um);
+}
+
 // Mean m and width w of EXX, correlated: U^2 = 4 (s_m^2 +- r s_m s_w + s_w^2 / 4).
 TEST(TipUncertainty, DiffersBetweenBothDirectionsOfTravel) {
   constexpr double kMean = 1.0 * um, kWidth = 1.5 * um, kRho = -0.4;

@@ -1,0 +1,216 @@
+#include "sim/tables/grid_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/units.h"
+#include "sim/tables/for_all_points.h"
+#include "sim/tables/tool_side_errors.h"
+
+namespace servomill::sim::tables {
+namespace {
+
+constexpr std::size_t kMaxRecords = 1000000;
+constexpr int kPartsOfCurve = 4;        // of an interval in which the error is not linear
+constexpr int kPoses = 4096;            // at which the residual is looked for
+constexpr double kPositionStep = 1e-6;  // mm, deg: last digit written
+
+double unit_of(Axis axis) { return is_linear(axis) ? mm : deg; }
+
+const TableLine& line_of(const TableSource& source, const std::vector<TableLine>& lines,
+                         Axis axis) {
+  const int joint = source.chain.layout.joint_of(axis).value();
+  return *std::find_if(lines.begin(), lines.end(),
+                       [&](const TableLine& line) { return line.joint == joint; });
+}
+
+bool is_converted(const TableSource& source, const FormatRules& rules, Axis axis) {
+  return rules.tool_side && !is_as_ours(source.chain.at(axis));
+}
+
+// Errors of the axis that the value of one depends on.
+std::vector<const plant::ErrorFunction*> functions_behind(const TableSource& source,
+                                                          const FormatRules& rules,
+                                                          const plant::ErrorName& name) {
+  std::vector<const plant::ErrorFunction*> out;
+  for (const Axis direction : kAllAxes) {
+    if (direction != name.direction && !is_converted(source, rules, name.axis)) continue;
+    out.push_back(&source.errors.component({direction, name.axis, false}));
+  }
+  return out;
+}
+
+bool depends_on(const plant::ErrorFunction& f, Axis axis) {
+  return std::any_of(f.grids.begin(), f.grids.end(),
+                     [&](const plant::GridFunction& g) { return g.depends_on(axis); });
+}
+
+// Arguments, the axis of the error last.
+std::vector<Axis> arguments_of(const TableSource& source, const FormatRules& rules,
+                               const plant::ErrorName& name) {
+  std::vector<Axis> axes;
+  const auto functions = functions_behind(source, rules, name);
+  for (const Axis axis : kAllAxes) {
+    if (axis == name.axis) continue;
+    const bool is_argument = std::any_of(functions.begin(), functions.end(),
+                                         [&](const auto* f) { return depends_on(*f, axis); });
+    if (is_argument) axes.push_back(axis);
+  }
+  axes.push_back(name.axis);
+  return axes;
+}
+
+// Linear between the positions of its grids, as far as one argument goes.
+bool is_linear_between(const plant::ErrorFunction& f, Axis argument, Axis own) {
+  const bool is_spline = std::any_of(f.grids.begin(), f.grids.end(), [&](const auto& g) {
+    return g.depends_on(argument) && g.points().interpolation == plant::GridInterpolation::cubic;
+  });
+  const bool has_terms = f.polynomial.size() > 2 || !f.harmonics.empty() || !f.tables.empty();
+  return !is_spline && !(argument == own && has_terms);
+}
+
+double rounded(double position, Axis axis) {
+  return std::round(position / unit_of(axis) / kPositionStep) * kPositionStep * unit_of(axis);
+}
+
+// Positions of one argument: ends of the travel, points of the grids, and more on curves.
+std::vector<double> positions_of(const TableSource& source, const FormatRules& rules,
+                                 const std::vector<TableLine>& lines, const plant::ErrorName& name,
+                                 Axis argument) {
+  const TableLine& line = line_of(source, lines, argument);
+  std::set<double> at = {rounded(line.from, argument), rounded(line.to, argument)};
+  // a conversion multiplies angles by the position of the axis
+  bool is_curved = argument == name.axis && is_converted(source, rules, name.axis);
+  bool has_terms = false;
+  for (const plant::ErrorFunction* f : functions_behind(source, rules, name)) {
+    is_curved = is_curved || !is_linear_between(*f, argument, name.axis);
+    has_terms = has_terms || (argument == name.axis && !is_linear_between(*f, argument, argument));
+    for (const plant::GridFunction& g : f->grids) {
+      for (std::size_t k = 0; k < g.axes().size(); ++k) {
+        if (g.axes()[k] != argument) continue;
+        for (const double q : g.points().at[k]) {
+          if (q > line.from && q < line.to) at.insert(rounded(q, argument));
+        }
+      }
+    }
+  }
+  if (has_terms) {
+    for (std::size_t i = 0; i < line.points; ++i) {
+      const double q = line.first + static_cast<double>(i) * line.spacing;
+      if (q > line.from && q < line.to) at.insert(rounded(q, argument));
+    }
+  }
+  std::vector<double> out = {*at.begin()};
+  for (auto next = std::next(at.begin()); next != at.end(); ++next) {
+    const double from = out.back(), width = *next - from;
+    const int parts = is_curved ? kPartsOfCurve : 1;
+    for (int i = 1; i < parts; ++i) out.push_back(rounded(from + width * i / parts, argument));
+    out.push_back(*next);
+  }
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+void refuse_size(const plant::ErrorName& name, const plant::GridPoints& points) {
+  std::size_t records = 1;
+  for (const auto& at : points.at) records *= at.size();
+  if (records <= kMaxRecords) return;
+  throw InputError({}, fmt::format("{} over {} axes: a grid of {} records; at most {} are written",
+                                   to_string(name), points.axes.size(), records, kMaxRecords));
+}
+
+GridTable tabulate(const TableSource& source, const std::vector<TableLine>& lines,
+                   const FormatRules& rules, const plant::ErrorName& name) {
+  GridTable table{name, {}, 0.0};
+  table.points.axes = arguments_of(source, rules, name);
+  for (const Axis axis : table.points.axes) {
+    table.points.at.push_back(positions_of(source, rules, lines, name, axis));
+  }
+  refuse_size(name, table.points);
+  const double step = table.is_angle() ? rules.angle_step : rules.length_step;
+  AxisWords q = source.chain.layout.words(source.reference);
+  for_all_points(table.points, 0, q, [&](const AxisWords& at) {
+    throw_if_interrupted();
+    const double exact = written_error(source, rules, name, at);
+    table.points.error.push_back(std::round(exact / step) * step + 0.0);
+  });
+  const plant::GridFunction written(table.points);
+  for (int n = 1; n <= kPoses; ++n) {
+    const AxisWords at = source.chain.layout.words(spread_pose(source, lines, n));
+    table.residual = std::max(table.residual,
+                              std::abs(written.value(at) - written_error(source, rules, name, at)));
+  }
+  return table;
+}
+
+void refuse_other_axes(const TableSource& source, const FormatRules& rules,
+                       const plant::ErrorName& name) {
+  const Axis other = arguments_of(source, rules, name).front();
+  throw InputError(
+      {},
+      fmt::format("{} depends on the position of {}, too; this format contains functions of the "
+                  "position of {} only, isg also of several axes",
+                  to_string(name), letter(other), letter(name.axis)));
+}
+
+}  // namespace
+
+double GridTable::largest() const {
+  double most = 0.0;
+  for (const double e : points.error) most = std::max(most, std::abs(e));
+  return most;
+}
+
+bool needs_grid(const TableSource& source, const FormatRules& rules, const plant::ErrorName& name) {
+  return arguments_of(source, rules, name).size() > 1;
+}
+
+double written_error(const TableSource& source, const FormatRules& rules,
+                     const plant::ErrorName& name, const AxisWords& q) {
+  const double s = q[index_of(name.axis)];
+  if (!rules.tool_side) return source.errors.component(name).value(s, q);
+  ComponentErrors ours;
+  for (const Axis a : kAllAxes) {
+    part_of(ours, a) = source.errors.component({a, name.axis, false}).value(s, q);
+  }
+  ComponentErrors theirs = tool_side(source.chain.at(name.axis), ours, s);
+  return part_of(theirs, name.direction);
+}
+
+std::vector<GridTable> grid_tables_of(const TableSource& source,
+                                      const std::vector<TableLine>& lines,
+                                      const FormatRules& rules) {
+  std::vector<GridTable> out;
+  for (const TableLine& line : lines) {
+    if (!line.wanted) continue;
+    const Axis axis = *source.chain.layout.axis[static_cast<std::size_t>(line.joint)];
+    for (const Axis direction : kAllAxes) {
+      const plant::ErrorName name{direction, axis, false};
+      if (!needs_grid(source, rules, name)) continue;
+      if (!rules.grids) refuse_other_axes(source, rules, name);
+      GridTable table = tabulate(source, lines, rules, name);
+      if (table.largest() > 0.0) out.push_back(std::move(table));
+    }
+  }
+  return out;
+}
+
+Joints spread_pose(const TableSource& source, const std::vector<TableLine>& lines, int n) {
+  // n (1/g, 1/g^2, ...) modulo 1: fills the travel evenly and repeats on no axis
+  constexpr double g = 1.1347241384015194;  // g^6 = g + 1, for up to five axes
+  Joints Q = source.reference;
+  double step = 1.0;
+  for (const TableLine& line : lines) {
+    step /= g;
+    double whole = 0.0;
+    Q[line.joint] = line.from + (line.to - line.from) * std::modf(n * step, &whole);
+  }
+  return Q;
+}
+
+}  // namespace servomill::sim::tables

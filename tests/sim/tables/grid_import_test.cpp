@@ -1,0 +1,105 @@
+// Errors over several axes out of ISG CSV, and back.
+#include "sim/tables/grid_import.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/config/document.h"
+#include "sim/input/read_errors.h"
+#include "tests/sim/tables/rich_tables.h"
+
+namespace servomill::sim::tables::grid_import_test {
+namespace {
+
+// The example of the document, for X on either side of the bed.
+constexpr const char* kText =
+    "Z X EXX EYX EZX EAX EBX ECX\n"
+    "0.0 0.0 0.02 0.01 0.07 0.00 0.0042 0.003\n"
+    "0.0 10.0 0.00 -0.1 0.01 0.00 0.0011 0.002\n"
+    "100.0 0.0 0.01 0.02 0.03 0.07 0.0040 0.003\n"
+    "100.0 10.0 0.03 -0.09 0.03 0.06 0.0015 0.000\n";
+
+ImportedColumns columns_of(const std::string& text) {
+  const std::vector<controllers::TableText> files = {{"v.csv", text}};
+  return read_columns(TableFormat::isg, files);
+}
+
+plant::ErrorModel read_back(const std::string& text, const JointLayout& layout) {
+  const config::Document document = config::Document::from_text(text, "errors.toml");
+  config::Reader root(document);
+  config::Reader models = root.table("errors");
+  auto all = input::read_error_models(models, layout);
+  root.finish();
+  return all.at("measured");
+}
+
+TEST(GridImport, RoundTripsTheExampleOfTheDocument) {
+  for (const char* structure : {"[w b X Y Z t]", "[w X b Y Z t]"}) {
+    const plant::MachineChain chain = machine_of(structure).chain;
+    const ImportedColumns columns = columns_of(kText);
+    const ErrorImport imported = import_errors(columns, chain);
+    const plant::ErrorModel model =
+        read_back(errors_toml(imported.errors, "measured", imported.notes), chain.layout);
+    EXPECT_EQ(verify_import(columns, chain, model), 6000U) << structure;
+  }
+}
+
+// On the tool side nothing is converted: the file comes back as it was.
+TEST(GridImport, OfTheToolSideIsTheFile) {
+  const plant::MachineChain chain = machine_of("[w b X Y Z t]").chain;
+  const plant::ErrorModel errors = import_errors(columns_of(kText), chain).errors;
+  const plant::GridPoints& points = errors.component("EYX"_err).grids.at(0).points();
+  EXPECT_EQ(points.axes, (std::vector{Axis::Z, Axis::X}));
+  EXPECT_EQ(points.at[0], (std::vector{0.0, 100 * mm}));
+  EXPECT_NEAR(points.error[3], -90 * um, 1e-18);
+}
+
+TEST(GridImport, WrittenTablesComeBackAsTheModel) {
+  const model::MachineSettings machine = machine_of("[w b X Y Z t]");
+  plant::ErrorModel errors;
+  errors.component("EZX"_err) = plant::grid({{Axis::Y, Axis::Z, Axis::X},
+                                             {{-50 * mm, 150 * mm}, {0, 200 * mm}, {-0.1, 0, 0.1}},
+                                             {0, 1e-6, 2e-6, 0, 4e-6, 0, 0, 3e-6, 0, 0, 5e-6, 9e-6},
+                                             {}});
+  errors.location("EC0Y"_err) = 20 * urad;
+  const auto files = table_files(export_tables(machine, errors, request_of(TableFormat::isg)));
+  const ErrorImport imported = import_errors(columns_of(files.at(0).text), machine.chain);
+  EXPECT_EQ(imported.errors.component("EZX"_err).grids.at(0).points().at,
+            errors.component("EZX"_err).grids.at(0).points().at);
+  for (std::size_t n = 0; n < 12; ++n) {
+    EXPECT_NEAR(imported.errors.component("EZX"_err).grids.at(0).points().error[n],
+                errors.component("EZX"_err).grids.at(0).points().error[n], 0.5e-9);
+  }
+  EXPECT_NEAR(imported.errors.location("EC0Y"_err), 20 * urad, 1e-12);
+}
+
+TEST(GridImport, AnotherModelIsFound) {
+  const plant::MachineChain chain = machine_of("[w b X Y Z t]").chain;
+  const ImportedColumns columns = columns_of(kText);
+  plant::ErrorModel errors = import_errors(columns, chain).errors;
+  errors.component("EXX"_err) = errors.component("EXX"_err) + plant::constant(3e-9);
+  EXPECT_THROW(verify_import(columns, chain, errors), InputError);
+}
+
+std::string fault_of(const char* text, const char* structure) {
+  try {
+    import_errors(columns_of(text), machine_of(structure).chain);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "imported";
+}
+
+TEST(GridImport, RefusesWhatTheMachineCannotHave) {
+  EXPECT_EQ(fault_of("C X EXX\n0 0 0.1\n0 1 0\n1 0 0\n1 1 0\n", "[w b X Y Z t]"),
+            "v.csv:1: error: EXX is a function of C, which the machine lacks");
+  EXPECT_EQ(fault_of("Z X EXA\n0 0 0.1\n0 1 0\n1 0 0\n1 1 0\n", "[w b X Y Z t]"),
+            "v.csv:1: error: EXA is an error of axis A; the machine has X Y Z");
+  EXPECT_EQ(fault_of("Z X EXX\n0 0 101\n0 1 0\n1 0 0\n1 1 0\n", "[w b X Y Z t]"),
+            "v.csv:1: error: EXX is 101 mm, implausible for a machine");
+  EXPECT_EQ(fault_of("Z EXX\n0 0\n1 0.1\n", "[w X b Y Z t]"),
+            "v.csv:1: error: EXX is not a function of X; the errors of X, which carries the "
+            "workpiece, are converted, and that needs its positions");
+}
+
+}  // namespace
+}  // namespace servomill::sim::tables::grid_import_test
