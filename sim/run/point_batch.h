@@ -11,7 +11,11 @@
 #include "sim/engine/case_result.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/model/scenario.h"
-#include "sim/run/run.h"
+#include "sim/run/run_case.h"
+
+namespace servomill::sim::preparation {
+struct PreparationCache;
+}
 
 namespace servomill::sim::run {
 

@@ -137,9 +137,9 @@ std::vector<double> refined(const AxisErrors& errors, const plant::GridPoints& p
 }
 
 void import_converted(const AxisErrors& errors, Axis axis, plant::ErrorModel& out) {
-  const plant::GridPoints read = errors.arguments();
-  plant::GridPoints points = read;
-  for (std::size_t k = 0; k < read.axes.size(); ++k) points.at[k] = refined(errors, read, k);
+  const plant::GridPoints of_file = errors.arguments();
+  plant::GridPoints points = of_file;
+  for (std::size_t k = 0; k < of_file.axes.size(); ++k) points.at[k] = refined(errors, of_file, k);
   for (const Axis direction : kAllAxes) {
     points.error.clear();
     AxisWords q = AxisWords::Zero();
@@ -187,12 +187,12 @@ bool has_grids(const ImportedColumns& imported, Axis axis) {
 
 void import_grids(const ImportedColumns& imported, const plant::ChainAxis& axis,
                   plant::ErrorModel& errors) {
-  const AxisErrors read(imported, axis);
+  const AxisErrors of_axis(imported, axis);
   if (is_as_ours(axis)) {
-    import_as_they_are(read, errors);
+    import_as_they_are(of_axis, errors);
     return;
   }
-  for (const ErrorGrid* grid : read.grids()) {
+  for (const ErrorGrid* grid : of_axis.grids()) {
     if (std::count(grid->axes.begin(), grid->axes.end(), axis.axis) > 0) continue;
     throw InputError(
         {grid->file, grid->line},
@@ -200,7 +200,7 @@ void import_grids(const ImportedColumns& imported, const plant::ChainAxis& axis,
                     "workpiece, are converted, and that needs its positions",
                     grid->name, letter(axis.axis)));
   }
-  import_converted(read, axis.axis, errors);
+  import_converted(of_axis, axis.axis, errors);
 }
 
 std::size_t verify_grids(const ImportedColumns& imported, const plant::MachineChain& chain,

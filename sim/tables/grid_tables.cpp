@@ -20,7 +20,7 @@ constexpr int kPartsOfCurve = 4;        // of an interval in which the error is 
 constexpr int kPoses = 4096;            // at which the residual is looked for
 constexpr double kPositionStep = 1e-6;  // mm, deg: last digit written
 
-double unit_of(Axis axis) { return is_linear(axis) ? mm : deg; }
+double coordinate_unit(Axis axis) { return is_linear(axis) ? mm : deg; }
 
 const TableLine& line_of(const TableSource& source, const std::vector<TableLine>& lines,
                          Axis axis) {
@@ -75,7 +75,7 @@ bool is_linear_between(const plant::ErrorFunction& f, Axis argument, Axis own) {
 }
 
 double rounded(double position, Axis axis) {
-  return std::round(position / unit_of(axis) / kPositionStep) * kPositionStep * unit_of(axis);
+  return std::round(position / coordinate_unit(axis) / kPositionStep) * kPositionStep * coordinate_unit(axis);
 }
 
 // Positions of one argument: ends of the travel, points of the grids, and more on curves.

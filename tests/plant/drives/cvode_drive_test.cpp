@@ -272,7 +272,7 @@ TEST(CvodeDrive, SaysWhatCvodeRefuses) {
   EXPECT_THROW(drive.advance(s, std::nan(""), 0.0, 1.0), std::runtime_error);
 }
 
-// What CVODE makes of the speed within a microsecond, extrapolated to its beginning.
+// The speed by CVODE within a microsecond, extrapolated to its beginning.
 TEST(CvodeDrive, SlideAccelerationIsTheDerivativeOfTheSpeed) {
   constexpr double kShort = 1e-6;            // s
   constexpr double kAccelerationTol = 1e-5;  // m/s^2, of the curvature within twice that

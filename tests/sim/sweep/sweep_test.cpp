@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/run/run.h"
 #include "sim/sweep/run_sweep.h"
 
 namespace servomill::sim::sweep::sweep_test {
