@@ -56,7 +56,8 @@ std::string common_key(const std::string& section, const std::string& key) {
   if (section == "errors") return "NAME";
   if (section == "program.subroutines") return "NAME";
   if (section == "program.parameters") return "#101";
-  if (section.ends_with("work_offset") || section.ends_with("start") || section == "test.at") {
+  if (section.ends_with("work_offset") || section.ends_with("start") || section == "test.at" ||
+      section == "test.from" || section == "test.to") {
     return key.ends_with("_mm") ? "X_mm" : "C_deg";
   }
   return common_name(key);

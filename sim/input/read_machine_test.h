@@ -7,15 +7,19 @@
 #include "sim/model/machine.h"
 #include "sim/model/machine_test.h"
 
+namespace servomill::sim::model {
+struct ProgramSpec;
+}  // namespace servomill::sim::model
+
 namespace servomill::sim::input {
 
-/// Tables [[test]] of a scenario: positioning tests after ISO 230-2.
+/// Tables [[test]] of a scenario.
 model::MachineTests read_machine_tests(config::Reader& root, const JointLayout& layout);
 
-/// Faults of tests whose axis would leave its travel.
-/// @param work_offset  of the program (6; m, rad)
+/// Faults of tests in which an axis would leave its travel, one each.
+/// @param program  its work offset and its tools
 std::vector<Fault> faults_of_travel(const model::MachineTests& tests,
                                     const model::MachineSettings& machine,
-                                    const AxisWords& work_offset);
+                                    const model::ProgramSpec& program);
 
 }  // namespace servomill::sim::input

@@ -74,15 +74,14 @@ void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& pro
   refuse_unwritable(program.file, program.text());
 }
 
-// The program of tests; a resolved document holds it, too.
+// The program of tests.
 void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
                     config::Reader& table, model::ProgramSpec& program) {
-  table.raw("text");
-  if (table.raw("file") != nullptr)
-    table.fault("file", "has no effect: [[test]] makes the program");
+  for (const char* const key : {"file", "text", "subroutines"}) {
+    if (table.raw(key) != nullptr) table.fault(key, "has no effect: [[test]] makes the program");
+  }
   program.file = "[[test]]";
-  if (std::any_of(tests.begin(), tests.end(),
-                  [](const auto& one) { return one->cycle.targets.empty(); })) {
+  if (std::any_of(tests.begin(), tests.end(), [](const auto& one) { return !one->moves(); })) {
     return;  // its faults are reported
   }
   program.shared_text = std::make_shared<const std::string>(model::program_of(tests, layout));

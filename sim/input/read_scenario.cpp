@@ -29,6 +29,7 @@
 #include "sim/input/scenario_document.h"
 #include "sim/input/scenario_source.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/metrology/circular_test.h"
 #include "sim/model/schedule.h"
 #include "sim/system/base64.h"
 #include "strategies/registry.h"
@@ -104,7 +105,8 @@ class ScenarioReader {
   config::Value with_contents_of_files() const {
     config::Value program;
     program.key = "program";
-    program.children.push_back(text_value("text", out_.program.text()));
+    // tests make theirs again
+    if (out_.tests.empty()) program.children.push_back(text_value("text", out_.program.text()));
     if (!out_.program.subroutines.empty()) {
       config::Value subroutines;
       subroutines.key = "subroutines";
@@ -141,7 +143,7 @@ class ScenarioReader {
     const std::size_t before = root.faults();
     out_.program = read_program(program, out_.machine, files_, out_.tests);
     if (root.faults() > before) return;
-    auto faults = faults_of_travel(out_.tests, out_.machine, out_.program.work_offset);
+    auto faults = faults_of_travel(out_.tests, out_.machine, out_.program);
     if (!faults.empty()) throw InputError(std::move(faults));
   }
 
@@ -200,15 +202,23 @@ class ScenarioReader {
     hardware.model_period = read_ticks(table, "model_period_us", 60 * us, base, 1);
   }
 
-  // Several rows in the half of each dwell in which the device is read.
+  // Several rows in the half of each dwell in which the device is read, and rows all around
+  // circles.
   void check_rows_of_tests(config::Reader& root) {
     constexpr double kMaxShare = 0.1;  // of the dwell
     const double period = out_.machine.nc.periods.seconds(out_.record_period);
     for (const auto& test : out_.tests) {
-      if (period <= kMaxShare * test->dwell) continue;
-      root.table_or_empty("record").fault(
-          fmt::format("period_ms must be at most {:g} ms, a tenth of the dwell of test {}",
-                      kMaxShare * test->dwell / ms, test->name));
+      if (period > kMaxShare * test->dwell) {
+        root.table_or_empty("record").fault(
+            fmt::format("period_ms must be at most {:g} ms, a tenth of the dwell of test {}",
+                        kMaxShare * test->dwell / ms, test->name));
+      } else if (period * test->feed > metrology::kRecordedSpacing * test->radius &&
+                 test->radius > 0.0) {
+        root.table_or_empty("record").fault(
+            fmt::format("period_ms must be at most {:.3g} ms: {:g} deg of the circle of test {}",
+                        metrology::kRecordedSpacing * test->radius / test->feed / ms,
+                        metrology::kRecordedSpacing / deg, test->name));
+      }
     }
   }
 

@@ -37,10 +37,23 @@ constexpr std::string_view kTests = R"(
 title = "tests"
 
 [machine]
-structure = "[w X b t]"
+structure = "[w Y X b t]"
 [machine.nc]
 Kv = 50.0
 [machine.axis.X]
+drive = "rigid"
+lead_mm = 10.0
+motor_inertia = 9.6e-3
+moving_mass = 300.0
+Kt = 1.6
+i_max_A = 50.0
+velocity_bandwidth = 200.0
+travel_mm = [-100.0, 100.0]
+v_max = 0.6
+a_max = 6.0
+j_max = 100.0
+
+[machine.axis.Y]
 drive = "rigid"
 lead_mm = 10.0
 motor_inertia = 9.6e-3
@@ -86,6 +99,21 @@ name = "given targets"
 standard = "iso230-2"
 axis = "X"
 targets_mm = [0.0, 10.0]
+feed = 0.02
+
+[[test]]
+name = "diagonals"
+standard = "iso230-6"
+from = { X_mm = 0.0, Y_mm = 0.0 }
+to = { X_mm = 50.0, Y_mm = 50.0 }
+feed = 0.02
+
+[[test]]
+name = "circles"
+standard = "iso230-4"
+plane = "XY"
+radius_mm = 50.0
+reading_count = 720
 feed = 0.02
 
 [[case]]

@@ -10,6 +10,7 @@
 #include "sim/config/quantity.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/run/test_sheet.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
@@ -234,6 +235,7 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
   model::Scenario base = source.at();
+  const std::optional<std::string> note = note_of_missing_tests(base, "converge");
   add_residuals_of_shares(base);
   preparation::PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());
@@ -248,6 +250,7 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
   const auto stopped = [&] { return control.stop != nullptr && *control.stop; };
 
   Convergence out;
+  out.note = note;
   const RunOutput as_it_is = run_scenario(base, run);
   for (const CaseOutput& one : as_it_is.cases) {
     const engine::Outcome& outcome = one.result.outcome;

@@ -61,6 +61,7 @@ struct Convergence {
   /// Blocks that are left alone: their lengths or tolerances are inputs of the scenario.
   std::vector<std::string> inputs;   // "case one: strategy gcode: max_block_mm"
   std::vector<std::string> stopped;  // "case one: axis Y: following error ..."
+  std::optional<std::string> note;   // of tests whose parameters are missing
 };
 
 struct ConvergeControl {

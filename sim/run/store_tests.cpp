@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "plant/vocabulary/units.h"
 #include "sim/records/output_file.h"
 #include "sim/run/machine_tests.h"
+#include "sim/run/test_sheet.h"
+#include "sim/standards/circle_test.h"
+
 namespace servomill::sim::run {
 namespace {
 
@@ -23,22 +27,50 @@ void write_readings(records::Hdf5Group& group, const char* name, const char* dir
               "target", "run");
 }
 
-void write_test(records::Hdf5Group group, const TestResult& one) {
-  const standards::PositioningTest& readings = one.readings;
-  group.attribute("standard", one.report.standard);
+void write_line(records::Hdf5Group& group, const standards::PositioningTest& readings) {
   std::vector<double> targets, runs;
   for (const double target : readings.targets) targets.push_back(target / mm);
   for (Eigen::Index run = 0; run < readings.up.cols(); ++run) {
     runs.push_back(static_cast<double>(run + 1));
   }
-  group.list("target", targets, {"mm", "target position in work coordinates"});
+  group.list("target", targets,
+             {"mm", "target position in work coordinates, or along the diagonal"});
   group.list("run", runs, {"1", "number of the run"});
   write_readings(group, "deviation_up", "upwards", readings.up);
   write_readings(group, "deviation_down", "downwards", readings.down);
+}
+
+void write_turn(records::Hdf5Group group, const standards::CirclePath& turn, double radius) {
+  std::vector<double> angles, deviations;
+  for (const Eigen::Vector2d& p : turn.points) {
+    angles.push_back(std::atan2(p.y(), p.x()) / deg);
+    deviations.push_back((p.norm() - radius) / um);
+  }
+  group.list("angle", angles, {"deg", "from the first axis of the plane to the second"});
+  group.list("deviation", deviations, {"um", "reading of the ball bar minus the nominal radius"});
+}
+
+void write_test(records::Hdf5Group group, const TestResult& one) {
+  group.attribute("standard", one.report.standard);
+  if (one.lines.size() == 1) {
+    write_line(group, one.lines.front().test);
+  } else {
+    for (const LineReadings& line : one.lines) {
+      records::Hdf5Group of_line = group.group(line.name);
+      write_line(of_line, line.test);
+    }
+  }
+  if (one.circle) {
+    for (const standards::CirclePath& turn : one.circle->turns) {
+      const bool is_counter = turn.sense == metrology::Sense::counter_clockwise;
+      write_turn(group.group(is_counter ? "ccw" : "cw"), turn, one.circle->radius);
+    }
+  }
   for (const standards::ReportValue& value : one.report.values) {
-    group.scalar(value.symbol, value.value / um, {"um", value.meaning});
-    group.scalar("U_" + value.symbol, value.U / um,
-                 {"um", "expanded uncertainty (k = 2) of " + value.symbol});
+    const ReportUnit unit = unit_of(value.dimension);
+    group.scalar(value.symbol, value.value / unit.factor, {unit.name, value.meaning});
+    group.scalar("U_" + value.symbol, value.U / unit.factor,
+                 {unit.name, "expanded uncertainty (k = 2) of " + value.symbol});
   }
 }
 

@@ -169,16 +169,42 @@ PositioningUncertainty positioning_uncertainty(const PositioningTest& test,
   return out;
 }
 
-PositioningTest read_by_device(PositioningTest test, const PositioningContributions& device,
-                               std::uint64_t seed) {
-  Sources all;
-  all.fill(true);
-  ErrorTrials errors(test, device, all, seed);
+namespace {
+
+PositioningTest with_errors(PositioningTest test, const PositioningContributions& device,
+                            const Sources& sources, std::uint64_t seed) {
+  ErrorTrials errors(test, device, sources, seed);
   errors.draw(1.0);
   Eigen::ArrayXXd up = errors.up(), down = errors.down();  // it refers to the test
   test.up = std::move(up);
   test.down = std::move(down);
   return test;
+}
+
+}  // namespace
+
+PositioningTest read_by_device(PositioningTest test, const PositioningContributions& device,
+                               std::uint64_t seed) {
+  Sources all;
+  all.fill(true);
+  return with_errors(std::move(test), device, all, seed);
+}
+
+std::vector<PositioningTest> read_by_device(std::vector<PositioningTest> tests,
+                                            const PositioningContributions& device,
+                                            std::uint64_t seed, const std::vector<Source>& common) {
+  Sources shared{}, own;
+  own.fill(true);
+  for (const Source one : common) {
+    shared[static_cast<std::size_t>(one)] = true;
+    own[static_cast<std::size_t>(one)] = false;
+  }
+  boost::random::mt19937_64 seeds(seed);
+  for (PositioningTest& test : tests) {
+    test = with_errors(std::move(test), device, shared, seed);
+    test = with_errors(std::move(test), device, own, seeds());
+  }
+  return tests;
 }
 
 PositioningContributions contributions_of(config::Reader& table, bool takes_angles) {

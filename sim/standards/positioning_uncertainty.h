@@ -82,6 +82,12 @@ PositioningUncertainty positioning_uncertainty(const PositioningTest& test,
 PositioningTest read_by_device(PositioningTest test, const PositioningContributions& device,
                                std::uint64_t seed);
 
+/// Tests that one device reads one after another.
+/// @param common  sources whose errors are the same in all tests
+std::vector<PositioningTest> read_by_device(std::vector<PositioningTest> tests,
+                                            const PositioningContributions& device,
+                                            std::uint64_t seed, const std::vector<Source>& common);
+
 /// Contributions as keys of a table.
 /// @param takes_angles  false: of linear axes only, keys in urad are not known
 PositioningContributions contributions_of(config::Reader& table, bool takes_angles = true);

@@ -14,6 +14,7 @@
 #include "sim/input/scenario_document.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
+#include "sim/run/test_sheet.h"
 
 namespace servomill::sim::sweep {
 namespace {
@@ -149,6 +150,10 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
   refuse_swept(changes_, base_);
   refuse_other_machine(base_);
   base_.swept_files = swept_files();
+}
+
+std::optional<std::string> Sweep::note() const {
+  return run::note_of_missing_tests(base_, "sweep");
 }
 
 // The file that a value of a key names, seen from the folder in which the user is.

@@ -26,6 +26,8 @@ class Sweep {
   /// NAME", or "unreadable NAME"; sorted. They belong to what the sweep is: a table of it is not
   /// gone on with when they have changed.
   const model::Scenario& base() const { return base_; }
+  /// Note of results of the scenario that a sweep does not carry, if there are any.
+  std::optional<std::string> note() const;
   const model::SweepDesign& design() const { return base_.sweep; }
 
   /// Reads the scenario with the values of a point set as --set would. Names of files among the

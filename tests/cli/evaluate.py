@@ -228,4 +228,45 @@ class SimulatedTest(unittest.TestCase):
         self.assertRegex(self.printed, r"(?m)^A +bi-directional positioning accuracy +[\d.]+ +[\d.]+ +[\d.]+ +[\d.]+ +um$")
 
 
+class SimulatedDiagonals(unittest.TestCase):
+    """scenarios/standards/diagonals.toml: a laser along the diagonals of a face, and a ball bar."""
+
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = temporary.name
+        scenario = os.path.join(ROOT, "scenarios", "standards", "diagonals.toml")
+        done = subprocess.run([SERVOMILL, "run", scenario, "-o", "out.h5", "--readings", "readings"], cwd=cls.folder, capture_output=True, text=True,
+                              check=False)
+        assert done.returncode == 0, done.stderr
+
+    def path(self, *names):
+        return os.path.join(self.folder, "readings", *names)
+
+    def test_parameters_of_the_run_are_those_of_its_readings(self):
+        with h5py.File(os.path.join(self.folder, "out.h5")) as file:
+            for case in ("as_it_is", "gcode"):
+                stored = file[f"cases/{case}/tests/face"]
+                values, _ = parameters(self.path(case, "face", "PP.csv"), self.path(case, "face", "NP.csv"), "--standard", "6")
+                for symbol, value in values.items():
+                    self.assertAlmostEqual(stored[symbol][()] * 1e-6, value, delta=4e-12, msg=symbol)
+                largest = {}
+                for line in ("PP", "NP"):
+                    found = iso230_2(stored[line]["deviation_up"][()], stored[line]["deviation_down"][()])
+                    largest = {symbol: max(found[symbol], largest.get(symbol, 0.0)) for symbol in "ERBA"}
+                for symbol, value in largest.items():
+                    self.assertAlmostEqual(stored[symbol + "_d"][()], value, delta=1e-9, msg=symbol)
+
+    def test_errors_are_found_and_corrected(self):
+        before, after = (parameters(self.path(case, "circle.csv"), "--standard", "4", "--radius", "100")[0] for case in ("as_it_is", "gcode"))
+        self.assertAlmostEqual(before["squareness"], -60e-6, delta=0.5e-6)
+        self.assertAlmostEqual(before["scale_mismatch"], 40e-6, delta=0.5e-6)
+        for symbol in ("B_1", "B_2"):  # less than 3 um: the change over takes 0.05 mm, 1.8 deg of the circle
+            self.assertAlmostEqual(before[symbol], -3e-6, delta=0.4e-6)
+            self.assertAlmostEqual(after[symbol], 0.0, delta=0.05e-6)
+        # 0.3 um is the range of the readings of the ball bar, 0.1 um its step
+        self.assertLess(after["G_b"], 0.5e-6)
+
+
 unittest.main()

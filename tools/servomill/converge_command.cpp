@@ -86,6 +86,7 @@ int converge_command(const Arguments& arguments) {
     print_interrupted("");
     return kInterrupted;
   }
+  if (found->note) fmt::print(stderr, "note: {}\n", *found->note);
   for (const std::string& stopped : found->stopped) fmt::print(stderr, "stopped: {}\n", stopped);
   if (json) {
     for (const sim::run::ConvergedRow& row : found->rows)

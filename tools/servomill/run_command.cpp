@@ -16,6 +16,7 @@
 #include "sim/run/machine_tests.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
+#include "sim/run/test_sheet.h"
 #include "sim/run/touch_record.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
@@ -102,10 +103,12 @@ void write_touches(const sim::run::RunOutput& output, const Options& options) {
 void write_readings(const sim::run::RunOutput& output, const Options& options) {
   for (const sim::run::CaseOutput& one : output.cases) {
     const auto folder = std::filesystem::path(options.get<std::string>("readings")) / one.name;
-    std::filesystem::create_directories(folder);
     for (const auto& test : one.tests) {
-      sim::system::write_text_file((folder / (test->name + ".csv")).string(),
-                                   sim::run::readings_csv(test->readings), options.has("force"));
+      for (const sim::run::ReadingsFile& file : sim::run::readings_files(*test)) {
+        const std::filesystem::path path = folder / file.name;
+        std::filesystem::create_directories(path.parent_path());
+        sim::system::write_text_file(path.string(), file.text, options.has("force"));
+      }
     }
   }
 }
@@ -122,7 +125,7 @@ void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& 
     }
     if (results.empty()) return;
     const sim::standards::Report& report = results.front()->report;
-    fmt::print("\n{}, {}: {}\n{}", report.standard, scenario.tests[k]->name, report.headline,
+    fmt::print("\n{}, {}: {}\n{}", report.standard, results.front()->name, report.headline,
                sim::run::side_by_side(names, results));
     for (const std::string& remark : sim::run::remarks_of(names, results)) {
       fmt::print("{}\n", remark);
@@ -175,8 +178,8 @@ void add_run_options(Options& options) {
                 "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
                 "readings of kind touch");
   options.add()("readings", po::value<std::string>()->value_name("FOLDER"),
-                "writes the readings of every [[test]] to FOLDER/CASE/TEST.csv, as `servomill "
-                "evaluate` reads them");
+                "writes the readings of every [[test]] to FOLDER/CASE/TEST.csv (diagonals: "
+                "TEST/PPP.csv, ...), as `servomill evaluate` reads them");
   options.add()("json", "prints the comparison as one JSON object per line");
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);

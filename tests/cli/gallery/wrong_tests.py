@@ -48,10 +48,14 @@ name = "nominal"
 """
 
 
-def simulated(title, old, new):
+def simulated(title, old, new, good=SIMULATED):
     """A scenario with a test of the machine, one thing of it changed."""
-    assert old in SIMULATED, old
-    return typed(title, "servomill check test.toml", write={"test.toml": SIMULATED.replace(old, new, 1)}, about=f"with {new!r} in place of {old!r}")
+    assert old in good, old
+    return typed(title, "servomill check test.toml", write={"test.toml": good.replace(old, new, 1)}, about=f"with {new!r} in place of {old!r}")
+
+
+DIAGONALS = SIMULATED.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100', '"iso230-6"\nfrom = { X_mm = 0, Y_mm = 0 }\nto = { X_mm = 100, Y_mm = 80 }')
+CIRCLES = SIMULATED.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100', '"iso230-4"\nplane = "XY"\nradius_mm = 50')
 
 
 TESTS = [
@@ -110,7 +114,14 @@ TESTS = [
     simulated("targets that fall", "to_mm = 100", "to_mm = -100"),
     simulated("targets spread over each other", "to_mm = 100", "to_mm = 100\ntarget_spread_mm = 15"),
     simulated("two ways of naming targets", "to_mm = 100", "to_mm = 100\ntargets_mm = [0, 50]"),
-    simulated("a standard that is only evaluated", "iso230-2", "iso230-4"),
+    simulated("a standard that is only evaluated", "iso230-2", "iso230-7"),
+    simulated("a circle with the keys of a line", "iso230-2", "iso230-4"),
+    simulated("a test at a place that no axis reaches", "to_mm = 100", "to_mm = 100\nat = { Y_mm = 5000 }"),
+    simulated("diagonals of a line", ", Y_mm = 0", "", DIAGONALS),
+    simulated("diagonals between corners of the same height", "Y_mm = 80", "Y_mm = 0", DIAGONALS),
+    simulated("a circle larger than the travel", "radius_mm = 50", "radius_mm = 5000", CIRCLES),
+    simulated("a ball bar with the contributions of a laser", "resolution_um = 0.01", "misalignment_mrad = 0.5", CIRCLES),
+    simulated("a test beside the text of a program", "[[case]]", "[program]\ntext = \"M2\"\n[[case]]"),
     simulated("a test beside a program", "[[case]]", "[program]\nfile = \"part.ngc\"\n[[case]]"),
     simulated("a misspelt contribution of the device", "resolution_um", "resolutoin_um"),
 ]

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/run/test_sheet.h"
 #include "sim/standards/positioning_readings.h"
 #include "tests/sim/small_scenario.h"
 
@@ -85,7 +86,7 @@ TEST(MachineTest, FollowsWorkOffsetAndRotaryAxes) {
        {"[program.work_offset]\nX_mm = 30.0\nY_mm = -20.0\n", "at = { C_deg = 90.0 }\n"}) {
     const TestResult result = tested(errors, more);
     EXPECT_NEAR(value(result, Positioning::E), 100e-6 * 85.0 * mm, 1 * nm) << more;
-    EXPECT_NEAR(result.readings.up(4, 0), 100e-6 * 85.0 * mm, 1 * nm) << more;
+    EXPECT_NEAR(result.lines[0].test.up(4, 0), 100e-6 * 85.0 * mm, 1 * nm) << more;
   }
 }
 
@@ -123,6 +124,19 @@ TEST(NoteOfCreep, SaysThatTheAxisStillMovedWhenItWasRead) {
   EXPECT_GT(tested("EXX = { um_per_m = 100.0 }", "", "servo = \"cascade\"\n").creep, 1 * nm);
 }
 
+// Sweeps and studies of convergence carry quantities; what they leave out is named.
+TEST(NoteOfMissingTests, NamesWhatACommandLeavesOut) {
+  const model::Scenario scenario = machine_under_test("EXX = { um_per_m = 100.0 }");
+  EXPECT_THROW(note_of_missing_tests(scenario, "sweep"), InputError);
+  model::Scenario with_quantity = scenario;
+  with_quantity.quantities.emplace_back();
+  EXPECT_EQ(note_of_missing_tests(with_quantity, "sweep"),
+            "servomill sweep carries quantities; parameters of [[test]] are printed and stored by "
+            "servomill run only");
+  with_quantity.tests.clear();
+  EXPECT_EQ(note_of_missing_tests(with_quantity, "sweep"), std::nullopt);
+}
+
 TEST(RemarksOf, NamesTheCasesOfWhatDoesNotHoldForAll) {
   TestResult one, other;
   one.report.remarks = {"common", "own"};
@@ -138,13 +152,14 @@ const std::string kDevice =
 TEST(MachineTest, ReadsADeviceWhoseErrorsFollowFromItsSeed) {
   const std::string errors = "EXX = { um_per_m = 100.0 }";
   const TestResult once = tested(errors, kDevice), again = tested(errors, kDevice);
-  EXPECT_TRUE((once.readings.up == again.readings.up).all());
+  EXPECT_TRUE((once.lines[0].test.up == again.lines[0].test.up).all());
   std::string other = kDevice;
   other.replace(other.find('7'), 1, "8");
-  EXPECT_FALSE((once.readings.up == tested(errors, other).readings.up).all());
+  EXPECT_FALSE((once.lines[0].test.up == tested(errors, other).lines[0].test.up).all());
   // rectangular parts of +-0.5 um and +-0.05 um, and a scale of 2 um/m, four times at the most
-  const Eigen::ArrayXd true_deviation = 100e-6 * (once.readings.targets - once.readings.targets[0]);
-  const Eigen::ArrayXXd off = once.readings.up.colwise() - true_deviation;
+  const Eigen::ArrayXd true_deviation =
+      100e-6 * (once.lines[0].test.targets - once.lines[0].test.targets[0]);
+  const Eigen::ArrayXXd off = once.lines[0].test.up.colwise() - true_deviation;
   EXPECT_LT(off.abs().maxCoeff(), 0.55 * um + 4.0 * 2e-6 * 85.0 * mm);
   EXPECT_GT(off.abs().maxCoeff(), 0.05 * um);
 }
@@ -163,13 +178,13 @@ TEST(MachineTest, StatesTheUncertaintyOfItsDevice) {
 TEST(ReadingsCsv, GiveTheSameSheetThroughTheReaderOfFiles) {
   const TestResult result = tested("EXX = { um_per_m = 100.0 }", kDevice);
   const std::string path = testing::TempDir() + "/readings_of_a_run.csv";
-  std::ofstream(path) << readings_csv(result.readings);
+  std::ofstream(path) << readings_files(result).at(0).text;
   const standards::PositioningFile file = standards::read_positioning(path);
   std::filesystem::remove(path);
   constexpr double kPrinted = 1e-12;  // m, half of the last digit, of sums of some
-  EXPECT_LT((file.test.targets - result.readings.targets).abs().maxCoeff(), 1e-9);
-  EXPECT_LT((file.test.up - result.readings.up).abs().maxCoeff(), kPrinted);
-  EXPECT_LT((file.test.down - result.readings.down).abs().maxCoeff(), kPrinted);
+  EXPECT_LT((file.test.targets - result.lines[0].test.targets).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((file.test.up - result.lines[0].test.up).abs().maxCoeff(), kPrinted);
+  EXPECT_LT((file.test.down - result.lines[0].test.down).abs().maxCoeff(), kPrinted);
 }
 
 std::string refusal(const std::string& test) {
@@ -186,6 +201,14 @@ std::string refusal(const std::string& test) {
 std::string changed(const std::string& from, const std::string& to) {
   std::string out = kTest;
   return out.replace(out.find(from), from.size(), to);
+}
+
+// One fault an axis, not one a block; the length of the tool counts.
+TEST(MachineTest, IsRefusedWhereAnAxisWouldLeaveItsTravel) {
+  EXPECT_EQ(refusal(kTest + "at = { Y_mm = 5000.0 }\n"),
+            "test X is made at Y = 5000 mm, in machine coordinates; the travel is -300 to 300 mm");
+  const std::string tool = "tool = 1\n[[program.tool]]\nnumber = 1\nlength_mm = 5000.0\n";
+  EXPECT_EQ(refusal(kTest + tool).substr(0, 28), "test X is made at Z = 5000 m");
 }
 
 TEST(MachineTest, IsRefusedWithTheRule) {
@@ -210,6 +233,8 @@ TEST(MachineTest, IsRefusedWithTheRule) {
             "test[0].at.X_mm = 1.0; is the axis under test");
   EXPECT_EQ(refusal(kTest + "[program]\nfile = \"a.ngc\"\n"),
             "program.file = \"a.ngc\"; has no effect: [[test]] makes the program");
+  EXPECT_EQ(refusal(kTest + "[program]\ntext = \"M2\"\n"),
+            "program.text = \"M2\"; has no effect: [[test]] makes the program");
   EXPECT_EQ(refusal(changed("\"X\"", "\"X \"")),
             "test[0].name = \"X \"; must not begin or end with blanks");
   EXPECT_EQ(refusal(changed("\"X\"", "\".\"")),
