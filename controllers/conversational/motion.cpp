@@ -99,6 +99,20 @@ double Translator::tool_radius(const Place& place) const {
   return tool->diameter / 2.0 / mm + delta_radius_;
 }
 
+// A survey that lacks the radius follows the programmed contour, without DR.
+bool Translator::survey_knows_no_radius() {
+  const bool is_unknown = setup_.tools.find(tool_) != nullptr &&
+                          setup_.tools.entry_of(tool_) == nullptr &&
+                          !tools_without_radius_.contains(tool_);
+  if (is_unknown) {
+    warn_once("radius",
+              fmt::format("RL and RR: the radius of tool {} is unknown; the path is the programmed "
+                          "contour; pass a tool table with --tools",
+                          tool_));
+  }
+  return is_unknown;
+}
+
 // The end of a motion is the position programmed last.
 void Translator::store_end(const Motion& motion) {
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
@@ -123,12 +137,12 @@ void Translator::add(Motion motion) {
   const bool in_plane = names_first || names_second;
   if (side_ != 0 && in_plane) {
     if (motion.normal != 2) fail("RL and RR in a plane with Z");
-    motion.radius = tool_radius(place_);
+    motion.radius = survey_knows_no_radius() ? 0.0 : tool_radius(place_);
     if (motion.radius < 0.0) fail("RL and RR: the radius of the tool with DR is negative");
   }
   if (side_ == 0 && path_.is_compensating()) is_beside_ = true;
   if (is_beside_ && side_ == 0 && in_plane) {
-    if (!names_first || !names_second) {
+    if ((!names_first || !names_second) && !survey_knows_no_radius()) {
       fail(
           "the block that cancels RL or RR must program both axes of the plane: no manual found "
           "specifies the other one");

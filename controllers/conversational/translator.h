@@ -149,6 +149,7 @@ class Translator {
   std::optional<Point> polar_point(const Positioning& p, int normal) const;
   void round_or_chamfer(const HeidenhainBlock& block, bool is_rounding);
   double tool_radius(const Place& place) const;
+  bool survey_knows_no_radius();
 
   // circles.cpp
   void pole(const HeidenhainBlock& block);

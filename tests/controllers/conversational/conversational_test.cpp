@@ -242,6 +242,24 @@ TEST(Conversational, ASurveyKnowsNoAngleOfAToolInAPlane) {
   }
 }
 
+// DR of a tool whose radius no table has is no radius; R0 in a block with one axis then leaves the
+// contour at its end.
+TEST(Conversational, ASurveyWithoutARadiusFollowsTheContour) {
+  ProgramSetup setup = example_setup();
+  const std::string program =
+      "TOOL CALL 77 Z S1000 DR-0.04\nL X+0 Y-12 R0 FMAX\nL X+12 RL F100\nL Y+5\nL X+0 R0\n"
+      "L Z+9 FMAX\n";
+  EXPECT_NE(fault_of(program, setup), "");
+  setup.accepts_unknown_positions = true;
+  setup.tools.take_any_number();
+  EXPECT_EQ(framed_moves(program, setup),
+            "1 tool 77\n1 spindle 0 S1000\n2 rapid 0 -12 100\n3 feed 12 -12 100 F100\n"
+            "4 feed 12 5 100 F100\n5 feed 0 5 100 F100\n6 rapid 0 5 9\n");
+  EXPECT_EQ(warnings_of(with_frame(program), setup).back(),
+            "RL and RR: the radius of tool 77 is unknown; the path is the programmed contour; pass "
+            "a tool table with --tools");
+}
+
 // The end of a move does not depend on its feed.
 TEST(Conversational, ASurveyGoesOnWithoutAFeed) {
   ProgramSetup setup = example_setup();
