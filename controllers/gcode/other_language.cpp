@@ -56,6 +56,11 @@ std::string corner_refusal(std::string_view line) {
   const std::size_t comma = corner_word(line);
   if (comma == std::string_view::npos) return {};
   const bool is_round = upper(line[comma + 1]) == 'R';
+  const std::size_t value = std::min(line.find_first_not_of(" \t", comma + 2), line.size());
+  if (line.substr(value).starts_with('#') || line.substr(value).starts_with('[')) {
+    return fmt::format("',{}' with a variable (Fanuc, Haas) is not supported; write the number",
+                       is_round ? 'R' : 'C');
+  }
   return fmt::format(
       "',{}' {} the corner to the next move (Fanuc, Haas), which is not supported; program the {}",
       is_round ? 'R' : 'C', is_round ? "rounds" : "chamfers", is_round ? "arc" : "line");
@@ -185,7 +190,7 @@ std::string e_word_refusal(std::string_view line, int column) {
              "output the moves";
     }
     return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
-           "work offset (Fadal); programs for milling are read here, with G54 ... G59";
+           "work offset (Fadal, format 1); programs for milling are read here, with G54 ... G59";
   }
   return {};
 }
@@ -196,8 +201,10 @@ std::string other_language(std::string_view line, int column) {
   if (line.starts_with("//")) return {};  // a comment, or a block that may be skipped
   if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
   if (line.starts_with('$') && !is_report_request(line)) {
-    return fmt::format("'{}' is a sender command for grbl or TinyG, not a block; remove the line",
-                       line.front());
+    return fmt::format(
+        "'{}' is a sender command for grbl or TinyG, or a directive of NCPlot, not a block; remove "
+        "the line",
+        line.front());
   }
   for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "CYCL DEF", "BLK FORM"}) {
     if (contains_word(line, word)) {

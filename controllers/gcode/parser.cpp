@@ -108,6 +108,8 @@ void Parser::item() {
   if (c == 'N') fail_here("N is only allowed at the start of a block");
   if (c == 'O') fail_here("an O-word must be the first word of its block");
   if (c == '%') fail_here("'%' must be alone on its line, first and last in the program");
+  if (c == '/')
+    fail_here("'/' is only allowed at the start of a block and in [ ]; put remarks in ( )");
   fail_here(fmt::format("unexpected {}; a word starts with one of {}", shown(c), kLetters));
 }
 
@@ -139,8 +141,12 @@ void Parser::word() {
     if ((letters_ & bit) != 0) {
       const auto first = std::find_if(block_->words.begin(), block_->words.end(),
                                       [&](const Word& w) { return w.letter == word.letter; });
-      fail(start, fmt::format("second {} word in one block; the first is in column {}", word.letter,
-                              first->column));
+      const char* readings =
+          word.letter == 'T' ? " (whether M6 takes the first or the last depends on the control; "
+                               "write the next tool in a block of its own)"
+                             : "";
+      fail(start, fmt::format("second {} word in one block; the first is in column {}{}",
+                              word.letter, first->column, readings));
     }
     letters_ |= bit;
   }

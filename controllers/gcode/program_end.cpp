@@ -12,7 +12,12 @@ constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
 constexpr std::string_view kPercentInside =
     "Fanuc ends the program at this '%', other controls continue after it; choose with --reader";
+constexpr std::string_view kBlocksBehind =
+    "Fanuc, Haas and LinuxCNC end the program at this '%', but blocks follow it; remove the '%', "
+    "or "
+    "choose with --reader";
 constexpr std::string_view kUnread = "the program ends here: lines after this '%' are not read";
+constexpr std::string_view kBlankAtEnd = " \t\r%\x1a";  // 1a: the end of files of CP/M
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
 }  // namespace
@@ -33,6 +38,7 @@ void Interpreter::Machine::saw_percent() {
   if (meaning != Percent::end) return;
   if (flow_.skip_to || text_ != 0) fail_at_end();
   if (has_more_words()) {
+    if (setup_.reader == Reader::any) fail(1, std::string(kBlocksBehind));
     warn(1, std::string(kUnread));
     unread_behind_ = line();
   }
@@ -68,7 +74,7 @@ bool Interpreter::Machine::has_more_words() {
   std::string_view next;
   bool found = false;
   while (!found && text().next(next)) {
-    const std::size_t first = next.find_first_not_of(" \t\r%");
+    const std::size_t first = next.find_first_not_of(kBlankAtEnd);
     const std::size_t close = next.find_last_of(')');
     const bool is_comment =
         first != next.npos &&

@@ -50,6 +50,7 @@ enum class ReaderRule : std::uint8_t {
   cycle_without_hole,
   cycle_memory,
   cycle_without_dwell,
+  cycle_unused_dwell,
   fine_boring,
   tapping_spindle,
   words_with_g80,

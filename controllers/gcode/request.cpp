@@ -153,6 +153,15 @@ void check_claims(const Context& context, const Request& request, bool has_vecto
                           kVectorLetters.find(letter) != std::string_view::npos);
     for (const Request::Chosen& chosen : request.codes) claimed = claimed || claims(chosen, letter);
     if (claimed) continue;
+    constexpr double kPerSubroutine = 100.0;  // L100 is the first, L101 calls it once
+    const double value = request[letter];
+    if (letter == 'L' && value >= kPerSubroutine && std::fmod(value, kPerSubroutine) == 0.0) {
+      context.fail(
+          request.word(letter).column,
+          fmt::format("L{} begins a subroutine of Fadal, format 1, which is not supported; "
+                      "output the program in format 2",
+                      value));
+    }
     const std::string users = users_of(letter);
     context.fail(request.word(letter).column,
                  users.empty()

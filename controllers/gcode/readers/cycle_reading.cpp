@@ -10,7 +10,8 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr int kFineBoring = 760, kBoring = 860, kBackBoring = 870;
+constexpr int kDrilling = 810, kBoringAtFeed = 850, kFineBoring = 760, kBoring = 860,
+              kBackBoring = 870;
 
 bool is_cycle_of_controls(int tenths) { return tenths == kFineBoring || is_canned_cycle(tenths); }
 // The cycle that LinuxCNC runs in place of it.
@@ -151,8 +152,10 @@ void ReadingStep::cycle_dwell(int code) {
       words.set('P', dwell_of(WordDifference::cycle_dwell_unit, *P));
     }
     memory.cycle.values[kP] = words['P'];
-    if (!can_dwell && words['P'] == 0.0) words.erase('P');
-    return;
+    if (!can_dwell && words['P'] == 0.0) return words.erase('P');
+    const bool is_unused = code == kDrilling || code == kBoringAtFeed;
+    if (!is_unused || !apply(ReaderRule::cycle_unused_dwell, P->column)) return;
+    return words.erase('P');
   }
   if (!has_dwell(code) || state.motion == code || memory.cycle.values[kP]) return;
   const BlockWord* word = words.code('G', code);

@@ -31,7 +31,9 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":3:1: error: '$' is a sender command for grbl or TinyG, not a block; remove the line"},
+       ":3:1: error: '$' is a sender command for grbl or TinyG, or a directive of NCPlot, not a "
+       "block; "
+       "remove the line"},
       {"bcnc_probe.nc",
        {},
        0,

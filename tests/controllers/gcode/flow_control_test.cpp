@@ -93,10 +93,10 @@ TEST(Subroutine, ComesFromAFileOfItsName) {
 
 TEST(Subroutine, FaultsNameTheFileAndTheCalls) {
   const ProgramSetup setup = with_files({{"hole", "o<hole> sub\nG1 X1/0\no<hole> endsub\n"}});
-  EXPECT_EQ(
-      fault_of("o1 sub\no<hole> call\no1 endsub\nF100\no1 call", setup),
-      "hole.ngc:2:6: error: unexpected '/'; a word starts with one of ABCDFGHIJKLMPQRSTXYZ@^; "
-      "in O<hole>, called in p.nc:2, in O<1>, called in p.nc:5");
+  EXPECT_EQ(fault_of("o1 sub\no<hole> call\no1 endsub\nF100\no1 call", setup),
+            "hole.ngc:2:6: error: '/' is only allowed at the start of a block and in [ ]; put "
+            "remarks in ( ); "
+            "in O<hole>, called in p.nc:2, in O<1>, called in p.nc:5");
 }
 
 TEST(Subroutine, RefusesWhatHasNoMeaning) {

@@ -16,6 +16,19 @@ using program_reader_test::refusal;
 
 // A word may mean something else there (G4 F, G64, D): none is read by the rules of another
 // control unless the user names it.
+TEST(OtherLanguage, CornersWithAVariableAreRefusedByName) {
+  EXPECT_EQ(other_language("G1 X10. ,R#1", 9),
+            "',R' with a variable (Fanuc, Haas) is not supported; write the number");
+  EXPECT_EQ(other_language("X10. ,C [#1/2]", 6),
+            "',C' with a variable (Fanuc, Haas) is not supported; write the number");
+}
+
+TEST(OtherLanguage, SubroutinesOfFadalAreRefusedByName) {
+  EXPECT_EQ(refusal("N1 O2 (HOLES)\nN2 L100\nN3 X-24. Y6.\nN4 M17\n"),
+            "p.nc:2:4: error: L100 begins a subroutine of Fadal, format 1, which is not supported; "
+            "output the program in format 2");
+}
+
 TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
   const auto fault = [](const std::string& text, const std::string& file, Reader reader) {
     ProgramSetup setup;
@@ -73,8 +86,8 @@ TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
   EXPECT_EQ(
       refusal("G1 X1 F100 E0.5\nM2\n"),
       "p.nc:1:12: error: an E word feeds the extruder of a printer, sets the generator of wire "
-      "EDM, or names a work offset (Fadal); programs for milling are read here, with G54 ... "
-      "G59");
+      "EDM, or names a work offset (Fadal, format 1); programs for milling are read here, with "
+      "G54 ... G59");
 }
 
 TEST(OtherLanguage, IsNamedByTheFormOfItsBlocks) {

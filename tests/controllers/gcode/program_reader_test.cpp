@@ -103,6 +103,8 @@ const std::vector<Example>& examples() {
        "G0 Z5\nG99 G81 X1 Z-2 R1 F100\nG85 X3 Z-2 R1\nM2\n", "p.nc:3:1"},
       {ReaderRule::cycle_without_dwell, "G0 Z5.\nG99 G82 X1. Z-2. R1. F100.\nM2\n",
        "G0 Z5\nG99 G82 X1 Z-2 R1 P0 F100\nM2\n", "p.nc:2:5"},
+      {ReaderRule::cycle_unused_dwell, "G0 Z5.\nG99 G85 X1. Z-2. R1. P0.5 F100.\nM2\n",
+       "G0 Z5\nG99 G85 X1 Z-2 R1 F100\nM2\n", "p.nc:2:22"},
       {ReaderRule::fine_boring, "M3 S100\nG0 Z5.\nG99 G76 X1. Z-2. R1. Q0.1 P0 F100.\nX3.\nM2\n",
        "M3 S100\nG0 Z5\nG99 G86 X1 Z-2 R1 P0 F100\nX3\nM2\n", "p.nc:3:5"},
       {ReaderRule::tapping_spindle, "S100\nG0 Z5.\nG99 G84 X1. Z-2. R1. F100.\nM2\n",
@@ -322,6 +324,11 @@ TEST(Reader, TwoReadingsAreRefused) {
             "p.nc:2:1: error: Fanuc ends the program at this '%', other controls continue after "
             "it; choose with --reader");
   EXPECT_EQ(refusal("G0 X1\n%\nG0 X2\nM2\n", Reader::fanuc), "");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\nG0 X2\nM2\n"),
+            "p.nc:3:1: error: Fanuc, Haas and LinuxCNC end the program at this '%', but blocks "
+            "follow it; remove the '%', or choose with --reader");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\n(X2)\n\x1a"), "");
+  EXPECT_NE(refusal("T1 M6 T2\nM2\n").find("whether M6 takes the first or the last depends"), ~0ul);
   // a control that ends the comment at its first ')' would go to X10
   EXPECT_EQ(refusal("G0 (a (b) X10)\nM2\n"), "p.nc:1:7: error: comment within a comment");
   // behind its first ')' it finds another comment
@@ -330,14 +337,6 @@ TEST(Reader, TwoReadingsAreRefused) {
   EXPECT_EQ(refusal("// G0 X1\nM2\n"),
             "p.nc:1:2: error: '//' before words: a comment on some controls, an optional block on "
             "others; use ( ) or ;");
-}
-
-TEST(Reader, SaysThatLinesAfterTheClosingPercentAreNotRead) {
-  const Read any = read("%\nG0 X1.\n%\nG0 X2.\nM2\n", Reader::any);
-  EXPECT_EQ(any.moves, read("%\nG0 X1.\n%\n", Reader::any).moves);
-  ASSERT_EQ(any.warnings.size(), 1u);
-  EXPECT_EQ(to_string(any.warnings[0]),
-            "p.nc:3:1: error: the program ends here: lines after this '%' are not read");
 }
 
 TEST(Reader, FaultsKeepTheirColumns) {

@@ -64,6 +64,14 @@ inline std::vector<RuleExample> cycle_examples() {
        "G0 Z5.\nG91 G98 G89 X1. Z-2. R-1. F100.\nG90 G80 X0.\nM2\n",
        "R 0 0 5 | R 1 0 5 | R 1 0 4 | F 1 0 2 f100 | F 1 0 4 | R 1 0 5 | R 0 0 5", "p.nc:2:9",
        kCycleFanuc},
+      // P serves the next cycle that dwells
+      {ReaderRule::cycle_unused_dwell, Reader::haas,
+       "G0 Z5.\nG99 G81 X1. Z-2. R1. P0.5 F100.\nM2\n", drilled, "p.nc:2:22", kCycleHaas},
+      {ReaderRule::cycle_unused_dwell, Reader::fanuc,
+       "G0 Z5.\nG99 G85 X1. Z-2. R1. P500 F100.\nG82 X3.\nM2\n",
+       "R 0 0 5 | R 1 0 5 | R 1 0 1 | F 1 0 -2 f100 | F 1 0 1 | R 3 0 1 | F 3 0 -2 | W 0.5 | "
+       "R 3 0 1",
+       "p.nc:2:22", kCycleFanuc},
       {ReaderRule::fine_boring, Reader::fanuc,
        "S100 M3\nG0 Z5.\nG99 G76 X1. Z-2. R1. Q0.1 P500 F100.\nM2\n",
        "S+100 | R 0 0 5 | R 1 0 5 | R 1 0 1 | F 1 0 -2 f100 | W 0.5 | S0 | R 1 0 1 | S+100",
