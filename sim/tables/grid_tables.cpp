@@ -75,7 +75,8 @@ bool is_linear_between(const plant::ErrorFunction& f, Axis argument, Axis own) {
 }
 
 double rounded(double position, Axis axis) {
-  return std::round(position / coordinate_unit(axis) / kPositionStep) * kPositionStep * coordinate_unit(axis);
+  return std::round(position / coordinate_unit(axis) / kPositionStep) * kPositionStep *
+         coordinate_unit(axis);
 }
 
 // Positions of one argument: ends of the travel, points of the grids, and more on curves.
@@ -148,14 +149,19 @@ GridTable tabulate(const TableSource& source, const std::vector<TableLine>& line
   return table;
 }
 
-void refuse_other_axes(const TableSource& source, const FormatRules& rules,
-                       const plant::ErrorName& name) {
-  const Axis other = arguments_of(source, rules, name).front();
-  throw InputError(
-      {},
-      fmt::format("{} depends on the position of {}, too; this format contains functions of the "
-                  "position of {} only, isg also of several axes",
-                  to_string(name), letter(other), letter(name.axis)));
+// Names an error of that axis which depends on another one.
+void refuse_other_axes(const TableSource& source, Axis axis) {
+  for (const Axis direction : kAllAxes) {
+    const plant::ErrorName name{direction, axis, false};
+    for (const Axis other : source.errors.component(name).grid_axes()) {
+      if (other == axis) continue;
+      throw InputError(
+          {},
+          fmt::format("{} depends on the position of {}, too; this format contains functions of "
+                      "the position of {} only, isg also of several axes",
+                      to_string(name), letter(other), letter(axis)));
+    }
+  }
 }
 
 }  // namespace
@@ -192,7 +198,7 @@ std::vector<GridTable> grid_tables_of(const TableSource& source,
     for (const Axis direction : kAllAxes) {
       const plant::ErrorName name{direction, axis, false};
       if (!needs_grid(source, rules, name)) continue;
-      if (!rules.grids) refuse_other_axes(source, rules, name);
+      if (!rules.grids) refuse_other_axes(source, axis);
       GridTable table = tabulate(source, lines, rules, name);
       if (table.largest() > 0.0) out.push_back(std::move(table));
     }

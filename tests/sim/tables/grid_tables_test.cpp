@@ -94,7 +94,7 @@ TEST(GridTables, AMissingOrFurtherGridIsFound) {
 TEST(GridTables, OtherFormatsOfErrorsRefuseThemByName) {
   for (const TableFormat format : {TableFormat::csv, TableFormat::etalon}) {
     try {
-      export_tables(machine_of(kToolSide), sag(), request_of(format));
+      export_tables(machine_of(kWorkpieceSide), sag(), request_of(format));
       ADD_FAILURE();
     } catch (const InputError& error) {
       EXPECT_STREQ(error.what(),
