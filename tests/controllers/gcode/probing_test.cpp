@@ -4,7 +4,7 @@
 
 #include "tests/controllers/gcode/program.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::probing_test {
 namespace {
 
 /// A surface at machine X = `at`, met from below; solid beyond it.
@@ -147,4 +147,4 @@ TEST(Probing, IsWarnedOfOnceWhereTheContactIsAssumed) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::probing_test

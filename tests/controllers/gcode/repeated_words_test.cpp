@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace servomill::controllers {
+namespace servomill::controllers::repeated_words_test {
 namespace {
 
 // The line that is left, and the column of the rule.
@@ -36,4 +36,4 @@ TEST(RepeatedWords, StayWhereTheyAreNoNumbersOrTheControlRefusesThem) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::repeated_words_test

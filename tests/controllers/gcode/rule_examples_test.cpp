@@ -15,7 +15,7 @@
 #include "rule_examples_macros.h"
 #include "rule_examples_motion.h"
 
-namespace servomill::controllers {
+namespace servomill::controllers::rule_examples_test {
 namespace {
 
 std::vector<RuleExample> rule_examples() {
@@ -213,4 +213,4 @@ TEST(TolerantLine, KeepsEveryColumn) {
 }
 
 }  // namespace
-}  // namespace servomill::controllers
+}  // namespace servomill::controllers::rule_examples_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace servomill::sim::metrology {
+namespace servomill::sim::metrology::probed_bodies_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -106,4 +106,4 @@ TEST(ProbedBodies, OfAUnionTheNearestCounts) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::metrology
+}  // namespace servomill::sim::metrology::probed_bodies_test

@@ -5,7 +5,7 @@
 
 #include "tests/sim/small_scenario.h"
 
-namespace servomill::sim::preparation {
+namespace servomill::sim::preparation::estimate_test {
 namespace {
 
 constexpr const char* kProgram = "G21 G90 G94\nG1 X100 F1200\nM2\n";
@@ -89,4 +89,4 @@ TEST(RunEstimate, MemoryOfAProbedPartDoesNotGrowWithTheDuration) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::preparation
+}  // namespace servomill::sim::preparation::estimate_test

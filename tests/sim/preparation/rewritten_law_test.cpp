@@ -17,7 +17,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/strategies/identified_machines.h"
 
-namespace servomill::sim::preparation {
+namespace servomill::sim::preparation::rewritten_law_test {
 namespace {
 
 constexpr int kShown = 3;  // programs that differ, in full
@@ -318,4 +318,4 @@ INSTANTIATE_TEST_SUITE_P(Errors, RewrittenLaw, testing::Bool(),
                          [](const auto& one) { return one.param ? "Identified" : "None"; });
 
 }  // namespace
-}  // namespace servomill::sim::preparation
+}  // namespace servomill::sim::preparation::rewritten_law_test

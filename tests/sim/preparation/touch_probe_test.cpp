@@ -17,7 +17,7 @@
 #include "sim/run/run.h"
 #include "tests/sim/five_axis_program.h"
 
-namespace servomill::sim::preparation {
+namespace servomill::sim::preparation::touch_probe_test {
 namespace {
 
 constexpr double kSum = 15.5 * mm;  // radii of sphere and stylus
@@ -262,4 +262,4 @@ TEST(TouchProbe, ThatIsDescribedWronglyIsRefused) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::preparation
+}  // namespace servomill::sim::preparation::touch_probe_test

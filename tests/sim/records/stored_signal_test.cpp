@@ -6,7 +6,7 @@
 
 #include "sim/records/chunk_decoder.h"
 
-namespace servomill::sim::records {
+namespace servomill::sim::records::stored_signal_test {
 namespace {
 
 constexpr std::size_t kMany = 40'001;  // three chunks
@@ -61,4 +61,4 @@ TEST(StoredSignal, WithoutValuesIsEmpty) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::records
+}  // namespace servomill::sim::records::stored_signal_test

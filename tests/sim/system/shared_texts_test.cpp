@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace servomill::sim::system {
+namespace servomill::sim::system::shared_texts_test {
 namespace {
 
 SharedTexts::Text text(const char* of) { return std::make_shared<const std::string>(of); }
@@ -27,4 +27,4 @@ TEST(SharedTexts, HoldsNone) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::system
+}  // namespace servomill::sim::system::shared_texts_test

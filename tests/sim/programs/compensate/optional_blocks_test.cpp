@@ -5,7 +5,7 @@
 #include "sim/programs/verification/verification.h"
 #include "tests/sim/programs/compensate/dialect_trial.h"
 
-namespace servomill::sim::programs {
+namespace servomill::sim::programs::optional_blocks_test {
 namespace {
 
 const std::string kStart = "G21 G90 G17 G54\nT1 M6\nS1000 M3\nG0 X10 Y10\nG43 H1 Z20\n";
@@ -204,4 +204,4 @@ TEST(OptionalBlocks, MustNotDecideAboutTheOrderOfARapid) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::programs
+}  // namespace servomill::sim::programs::optional_blocks_test

@@ -1,7 +1,7 @@
 // Feeds of corrected blocks on which rotary axes turn.
 #include "tests/sim/programs/compensate/trial.h"
 
-namespace servomill::sim::programs {
+namespace servomill::sim::programs::timed_feed_test {
 namespace {
 
 // X is 10 um off at C90, Y and C are where they should be.
@@ -89,4 +89,4 @@ TEST(SplitRapids, BeginWhereThePositionIsKnown) {
 }
 
 }  // namespace
-}  // namespace servomill::sim::programs
+}  // namespace servomill::sim::programs::timed_feed_test

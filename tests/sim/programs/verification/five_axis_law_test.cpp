@@ -6,7 +6,7 @@
 #include "tests/sim/programs/verification/random_program.h"
 #include "tests/sim/programs/verification/replay_count.h"
 
-namespace servomill::sim::programs {
+namespace servomill::sim::programs::five_axis_law_test {
 namespace {
 
 constexpr int kShown = 2;  // programs that differ, in full
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, FiveAxisLaw,
                          });
 
 }  // namespace
-}  // namespace servomill::sim::programs
+}  // namespace servomill::sim::programs::five_axis_law_test
