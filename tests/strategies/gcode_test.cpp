@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -167,6 +168,39 @@ TEST(Gcode, DividesArcsWhereAnAxisReverses) {
       }
     }
   }
+}
+
+// The tip waits off the axis of the table, which turns by 180 degrees under TCP control: X and Y
+// follow the circle and reverse on the way.
+TEST(Gcode, DividesTurnsUnderTipControlWhereAnAxisReverses) {
+  plant::ErrorModel errors;
+  errors.component("EXX"_err) = plant::reversal({-kWidth}, kDistance);
+  errors.component("EYY"_err) = plant::reversal({-kWidth}, kDistance);
+  IdentifiedMachine identified = identified_with(errors);
+  identified.reference.setZero();
+  const plant::MachineChain& chain = identified.model.chain();
+  const auto tip = [&](const Joints& Q) { return plant::forward(chain, Q, identified.p_ST).p_WT; };
+  const Eigen::Vector3d p = tip(Joints::Zero()) + Eigen::Vector3d(30.0 * mm, 5.0 * mm, 0.0);
+  Move there = feed_to(p, 0.0, std::hypot(30.0, 5.0) * mm);
+  there.tool_control = ToolControl::rotary_axes;
+  Move turn = there;
+  turn.s_begin = turn.s_end;
+  turn.end_machine[index_of(Axis::C)] = turn.end[index_of(Axis::C)] = std::numbers::pi;
+  plant::ReversalMemory memory(identified.model.plays(), identified.reference);
+  std::vector<double> directions(memory.size());
+  std::vector<double> x;  // m, at the ends of the blocks of the turn
+  for (const Move& block : rewritten(identified, {there, turn})) {
+    const Joints Q = identified.layout.joints(block.end_machine);
+    memory.travel(Q);
+    memory.directions(Q, directions);
+    const Eigen::Vector3d at = tip(Q) + identified.model.error(Q, identified.p_ST, directions).dp_W;
+    if (block.s_begin < turn.s_begin) continue;
+    x.push_back(Q[0]);
+    EXPECT_LT((at - p).norm(), 5e-9) << block.s_end;  // m; products of errors and of turned blocks
+  }
+  const auto [least, most] = std::minmax_element(x.begin(), x.end());
+  const auto is_inside = [&](auto one) { return one != x.begin() && one + 1 != x.end(); };
+  EXPECT_TRUE(is_inside(least) || is_inside(most));  // X has reversed
 }
 
 // Taken up in less travel than its width, lost motion is a step of the axis at its reversal.
