@@ -16,8 +16,6 @@
 #include "sim/sweep/table.h"
 #include "sim/sweep/table_csv.h"
 #include "sim/system/output_name.h"
-#include "sim/system/system_error.h"
-#include "sim/system/worker_thread.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 #include "tools/servomill/sweep_lines.h"
@@ -101,23 +99,6 @@ std::vector<SimdLevel> levels_of(const sim::sweep::SweepTable& table, const std:
   if (!signals.empty() && is_new) levels.push_back(simd_level());
   std::sort(levels.begin(), levels.end());
   return levels;
-}
-
-// Prints the estimate for the remaining points, if they are like the first: on standard error, and
-// only if it is long or large.
-void tell_estimate(sim::preparation::RunEstimate takes, std::uint64_t points, unsigned threads,
-                   bool series) {
-  const auto n = static_cast<double>(points);
-  if (points > 0 && takes.is_thinned)
-    fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
-  takes.motion *= n;
-  takes.rows *= n;
-  takes.computing *= n / std::min(n, static_cast<double>(sim::system::thread_count(threads)));
-  takes.size *= series ? n : 0.0;
-  takes.file *= series ? n : 0.0;
-  if (points == 0 || !sim::preparation::is_worth_telling(takes)) return;
-  fmt::print(stderr, "estimate: {} points like the first: {}\n", points,
-             sim::preparation::to_string(takes));
 }
 
 int status_of(const sim::sweep::StatusCounts& counts) {

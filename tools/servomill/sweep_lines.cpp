@@ -8,6 +8,7 @@
 
 #include "sim/sweep/statistics.h"
 #include "sim/system/json.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::tools {
 namespace {
@@ -139,6 +140,21 @@ void print_statistics(const std::string& table) {
   const auto quantities = sim::sweep::sample_statistics(table);
   if (quantities.empty()) return;
   fmt::print("\n{}\n", sim::sweep::format_statistics(quantities, kMaxLines));
+}
+
+void tell_estimate(sim::preparation::RunEstimate takes, std::uint64_t points, unsigned threads,
+                   bool series) {
+  const auto n = static_cast<double>(points);
+  if (points > 0 && takes.is_thinned)
+    fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
+  takes.motion *= n;
+  takes.rows *= n;
+  takes.computing *= n / std::min(n, static_cast<double>(sim::system::thread_count(threads)));
+  takes.size *= series ? n : 0.0;
+  takes.file *= series ? n : 0.0;
+  if (points == 0 || !sim::preparation::is_worth_telling(takes)) return;
+  fmt::print(stderr, "estimate: {} points like the first: {}\n", points,
+             sim::preparation::to_string(takes));
 }
 
 void tell_refused_samples(const sim::model::SweepDesign& design,

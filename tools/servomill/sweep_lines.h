@@ -52,6 +52,11 @@ class SweepLines {
 /// "98 points done, 2 points refused".
 std::string points_by_status(const sim::sweep::StatusCounts& counts);
 
+/// Prints the estimate for the remaining points, if they are like the first: on standard error, and
+/// only if it is long or large.
+void tell_estimate(sim::preparation::RunEstimate takes, std::uint64_t points, unsigned threads,
+                   bool series);
+
 /// Prints the distribution of each quantity over the samples of a complete table, where there are
 /// samples.
 void print_statistics(const std::string& table);
