@@ -100,6 +100,7 @@ constexpr std::array kNames = {
     Name{kExpansion, "an expansion", "1/K", "um/m/K"},
     Name{kPressure, "a force per area", "N/m^2", "N/mm^2"},
     Name{kPerLength, "a share per length", "1/m", "1/m"},
+    Name{{.s = 2}, "a displacement per acceleration", "s^2", "um/m s^2"},
 };
 
 const Symbol* find_symbol(std::string_view name) {

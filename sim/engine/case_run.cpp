@@ -6,9 +6,20 @@
 #include <utility>
 
 namespace servomill::sim::engine {
+namespace {
+
+std::optional<plant::InertialDeflection> structure_of(const model::MachineSettings& machine,
+                                                      const std::vector<model::Instant>& schedule) {
+  if (machine.inertial_compliances.empty()) return std::nullopt;
+  std::vector<Tick> steps;
+  for (const model::Instant& instant : schedule) steps.push_back(instant.step);
+  return plant::InertialDeflection(machine.inertial_compliances, machine.nc.periods.base, steps);
+}
+
+}  // namespace
 
 CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
-                 References& references)
+                 References& references, const std::vector<model::Instant>& schedule)
     : in_(in),
       nc_(in.machine.nc),
       axes_(axes),
@@ -21,7 +32,8 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
                 in.keeping),
       travel_(in.machine_errors, Joints::Zero()),
-      last_ticks_(in.machine.joints()) {
+      last_ticks_(in.machine.joints()),
+      structure_(structure_of(in.machine, schedule)) {
   end_ =
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
@@ -92,6 +104,10 @@ void CaseRun::record(Tick n) {
     now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
   }
   if (cut_) cut_->note(now);
+  if (structure_) {
+    now.inertial_deflection = structure_->at(
+        structure_->needs_acceleration() ? axes_.ddQ_true(run_) : Joints::Zero().eval());
+  }
   recorder_.record(now, travel_.at(now.Q_true));
 }
 
@@ -134,6 +150,7 @@ void CaseRun::initialise_at_rest() {
   axes_.settle(rest.Q, rest.d, run_);
   for (const PositionLoopTerm& term : in_.position_loop_terms) term.part->settle(reading_at(0.0));
   if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
+  if (structure_) structure_->start(axes_.Q_true(run_));
   travel_ = {in_.machine_errors, axes_.Q_true(run_)};
 }
 

@@ -10,15 +10,17 @@
 #include "sim/engine/reference.h"
 #include "sim/engine/servo_axes.h"
 #include "sim/engine/setpoint.h"
+#include "sim/model/schedule.h"
 
 namespace servomill::sim::engine {
 
 /// One case among those that run in lockstep: setpoint, feedback hardware, recorder.
 class CaseRun {
  public:
-  /// @param in  all but `setpoints` must outlive this
+  /// @param in        all but `setpoints` must outlive this
+  /// @param schedule  of the axes
   CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
-          References& references);
+          References& references, const std::vector<model::Instant>& schedule);
 
   /// Last tick of the case.
   Tick end() const { return end_; }
@@ -34,6 +36,11 @@ class CaseRun {
   /// False if the machine stops: an axis is beyond one of its limits.
   bool supervise(Tick n);
   void record(Tick n);
+
+  /// False for a structure that is rigid under acceleration.
+  bool bends() const { return structure_.has_value(); }
+  /// The drives have moved by `step`: so does the structure. @pre bends()
+  void bend(Tick step) { structure_->advance(axes_.Q_true(run_), axes_.dQ_true(run_), step); }
 
   bool remembers_travel() const { return travel_.matters(); }
   void track_axis_reversals() { travel_.go_to(axes_.Q_true(run_)); }
@@ -59,6 +66,7 @@ class CaseRun {
   TravelDirections travel_;
   LastTicks last_ticks_;
   std::optional<CutAlongPath> cut_;
+  std::optional<plant::InertialDeflection> structure_;
   Tick end_ = 0;
   AxisSetpoint set_;
   CaseResult result_;

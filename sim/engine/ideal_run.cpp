@@ -13,7 +13,12 @@ IdealRun::IdealRun(CaseInputs& in)
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
                 in.keeping),
-      travel_(in.machine_errors, Joints::Zero()) {}
+      travel_(in.machine_errors, Joints::Zero()),
+      motion_(periods_.seconds(periods_.position)) {
+  if (in.machine.inertial_compliances.empty()) return;
+  structure_.emplace(in.machine.inertial_compliances, periods_.base,
+                     std::vector{periods_.position});
+}
 
 CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   CaseResult result;
@@ -23,6 +28,10 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   AxisSetpoint set = setpoint_.settle();
   travel_ = {in_.machine_errors, Q_true_of(set)};
   if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
+  if (structure_) {
+    motion_.start(Q_true_of(set));
+    structure_->start(motion_.Q());
+  }
   if (!in_.stops_with.empty()) {
     result.outcome = stopped_at_begin(in_.stops_with);
     record(0, set, Q_true_of(set));
@@ -42,9 +51,10 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_) cut_->advance(reference_at(n));
     const bool is_recorded = n % in_.record_period == 0;
-    if (!is_recorded && !travel_.matters()) continue;
+    if (!is_recorded && !travel_.matters() && !structure_) continue;
     const Joints Q_true = Q_true_of(set);
     travel_.go_to(Q_true);
+    if (structure_ && n > 0) bend(Q_true);
     if (is_recorded) record(n, set, Q_true);
   }
   result.simulated_time = periods_.seconds(n);
@@ -91,8 +101,15 @@ void IdealRun::record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
   now.Q_meas = now.Q_true = Q_true;
   now.dQ_true = set.dQ_ff;
   if (cut_) cut_->note(now);
+  if (structure_) now.inertial_deflection = structure_->at(motion_.ddQ());
   recorder_.record(now, travel_.at(now.Q_true));
   add_saturations(now.time);
+}
+
+// Moves the structure by one position period, to Q_true.
+void IdealRun::bend(const Joints& Q_true) {
+  motion_.add(Q_true);
+  structure_->advance(motion_.Q(), motion_.dQ(), periods_.position);
 }
 
 Joints IdealRun::Q_true_of(const AxisSetpoint& set) {

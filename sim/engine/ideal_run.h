@@ -10,6 +10,7 @@
 #include "controllers/path/trajectory.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/recorder.h"
+#include "sim/engine/sampled_motion.h"
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
 
@@ -27,6 +28,7 @@ class IdealRun {
   bool goes_on(int line, Outcome& outcome) const;
   void add_saturations(double time);
   void record(Tick n, const AxisSetpoint& set, const Joints& Q_true);
+  void bend(const Joints& Q_true);
   Joints Q_true_of(const AxisSetpoint& set);
 
   CaseInputs& in_;
@@ -37,6 +39,8 @@ class IdealRun {
   Recorder recorder_;
   TravelDirections travel_;
   std::optional<CutAlongPath> cut_;
+  SampledMotion motion_;
+  std::optional<plant::InertialDeflection> structure_;
   std::vector<strategies::Saturation> saturations_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };

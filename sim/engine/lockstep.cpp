@@ -28,11 +28,12 @@ Lockstep::Lockstep(std::span<CaseInputs* const> together, plant::PreparedDrives*
   }
   for (std::size_t run = 0; run < together.size(); ++run) {
     CaseInputs& in = *together[run];
-    runs_.push_back(
-        std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run, references_));
+    runs_.push_back(std::make_unique<CaseRun>(in, axes_, feedbacks_[run / kLaneWidth], run,
+                                              references_, schedule_));
     longest_ = std::max(longest_, runs_.back()->end());
     any_remembers_travel_ |= runs_.back()->remembers_travel();
     any_adds_velocity_ |= runs_.back()->adds_velocity();
+    any_bends_ |= runs_.back()->bends();
   }
 }
 
@@ -48,6 +49,7 @@ std::vector<CaseResult> Lockstep::run(const StopFlag& stop, std::atomic<float>& 
       if (take_out_those_done(n, results)) return results;
       tick(instant.due, n);
       axes_.advance(instant.step, [&] { evaluate_error_models(); });
+      if (any_bends_) bend_structures(instant.step);
       n += instant.step;
     }
   }
@@ -110,6 +112,12 @@ void Lockstep::track_axis_reversals() {
 
 void Lockstep::record(Tick n) {
   each([&](CaseRun& run) { run.record(n); });
+}
+
+void Lockstep::bend_structures(Tick step) {
+  each([&](CaseRun& run) {
+    if (run.bends()) run.bend(step);
+  });
 }
 
 // Takes out the runs that end before n; true if none is left.

@@ -38,6 +38,7 @@ class Lockstep {
   void stop_faulty_axes(Tick n);
   void track_axis_reversals();
   void record(Tick n);
+  void bend_structures(Tick step);
   bool take_out_those_done(Tick n, std::vector<CaseResult>& results);
 
   template <class Do>
@@ -54,6 +55,7 @@ class Lockstep {
   std::vector<FeedbackLanes> feedbacks_;  // of eight runs each
   bool any_remembers_travel_ = false;
   bool any_adds_velocity_ = false;
+  bool any_bends_ = false;
   Tick longest_ = 0;
   Tick next_end_ = 0;  // no run ends before it
 };

@@ -100,6 +100,12 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
                    "of tool_position_true",
                    linear, kLinear});
   }
+  if (!machine.inertial_compliances.empty()) {
+    all.push_back({"inertial_deflection", "um",
+                   "deflection of the structure downstream of the scales by acceleration of the "
+                   "axes, part of tool_position_true",
+                   linear, kLinear});
+  }
   if (parts.programmed && !linear.empty()) {
     all.push_back({"programmed_linear", "mm",
                    "position of the ideal machine on the programmed path, linear axes", linear,

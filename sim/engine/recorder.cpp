@@ -80,6 +80,7 @@ class Recorder::Rows {
         rotary_displaced_(rotary_displaced),
         correcting_(std::move(correcting)),
         cuts_(cuts),
+        bends_(!machine.inertial_compliances.empty()),
         keeping_(std::move(keeping)) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
@@ -137,6 +138,7 @@ class Recorder::Rows {
   const bool rotary_displaced_;
   const std::vector<const strategies::Strategy*> correcting_;
   const bool cuts_;
+  const bool bends_;  // under acceleration
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   const plant::InverseKinematics inverse_{machine_.chain};
   std::vector<int> linear_, rotary_;  // joints that the machine has
@@ -201,8 +203,9 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
 
 void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
   const ProgramPath::Piece piece = path_.piece(pieces_[place]);
-  if (cuts_) {
-    actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) * now.deflection;
+  if (cuts_ || bends_) {
+    actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) *
+                           (now.deflection + now.inertial_deflection);
   }
   const ToolPose &nominal = nominal_[place], &actual = actual_[place];
   const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
@@ -248,6 +251,9 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   if (cuts_) {
     row.put(now.cutting_force, 1.0);
     for (const int joint : linear_) row.put(now.deflection[joint] / um);
+  }
+  if (bends_) {
+    for (const int joint : linear_) row.put(now.inertial_deflection[joint] / um);
   }
   if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
 }

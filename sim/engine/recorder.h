@@ -33,6 +33,8 @@ struct Snapshot {
   Joints torque = Joints::Zero();
   Eigen::Vector3d cutting_force = Eigen::Vector3d::Zero();  // N, on the cutter, in W
   Eigen::Vector3d deflection = Eigen::Vector3d::Zero();     // m, of the structure in linear axes
+  // m, the same by acceleration
+  Eigen::Vector3d inertial_deflection = Eigen::Vector3d::Zero();
 };
 
 /// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the

@@ -254,6 +254,17 @@ void ServoAxes::end(std::size_t run) {
   }
 }
 
+Joints ServoAxes::ddQ_true(std::size_t run) const {
+  Joints ddQ = Joints::Zero();
+  for (const int j : joints_) {
+    const std::size_t l = lane(run, j);
+    const plant::DriveInputBlock& input = input_.blocks[block(l)];
+    ddQ[j] = plant::slide_acceleration(params_[l], state_.lane(l), input.command[place(l)],
+                                       input.F[place(l)]);
+  }
+  return ddQ;
+}
+
 double ServoAxes::motor_reading(std::size_t l) const {
   const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);

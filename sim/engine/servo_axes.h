@@ -123,6 +123,8 @@ class ServoAxes {
   Joints Q_fb(std::size_t run = 0) const { return joints_of(&ServoState::Q_fb, run); }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
+  /// Accelerations by all forces on the slides at this instant (5; m/s^2, rad/s^2).
+  Joints ddQ_true(std::size_t run = 0) const;
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
   /// Command to the drives: A, with a winding V.
   Joints command(std::size_t run = 0) const {

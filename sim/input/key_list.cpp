@@ -36,9 +36,10 @@ struct Renaming {
 
 // One name for sections and keys that any name, axis or error may have.
 std::string common_name(std::string name) {
-  static const std::array<Renaming, 7> kNames = {{
+  static const std::array<Renaming, 8> kNames = {{
       {std::regex(R"(^machine\.errors)"), "errors"},
       {std::regex(R"(\baxis\.[XYZABC]\b)"), "axis.X"},
+      {std::regex(R"(\binertial_deflection\.[XYZ][XYZABC]\b)"), "inertial_deflection.XX"},
       {std::regex(R"(\bE[XYZ]0[XYZABC]\b)"), "EX0C"},
       {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
       {std::regex(R"(\bE[XYZABC][XYZABC]\b)"), "EXX"},
@@ -51,6 +52,7 @@ std::string common_name(std::string name) {
 
 std::string common_key(const std::string& section, const std::string& key) {
   if (section == "machine.axis") return "X";
+  if (section == "machine.inertial_deflection") return "XX";
   if (section == "sweep" && key != "samples" && key != "zip") return "KEY";
   if (section == "sweep.zip") return "KEY";
   if (section == "errors") return "NAME";

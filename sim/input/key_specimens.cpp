@@ -117,6 +117,10 @@ v_max = 2.0
 a_max = 20.0
 j_max = 400.0
 
+[machine.inertial_deflection]
+XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 60.0, damping = 0.05, along = "Z", slope_um_per_m_s2_per_m = 0.5 }
+ZC = { gain_um_per_rad_s2 = 0.1, along = "Z", slope_um_per_rad_s2_per_m = 0.1 }
+
 [program]
 file = "first.ngc"
 text = "M2\n"

@@ -20,6 +20,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/sensing/encoder.h"
 #include "plant/sensing/reference_marks.h"
+#include "plant/structure/inertial_deflection.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"
@@ -102,6 +103,7 @@ struct MachineSettings {
   std::array<plant::ScrewError, kJoints> screw;
   // m/N, of what lies between the scales of linear axes and the tip: 0: rigid
   Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
+  std::vector<plant::InertialCompliance> inertial_compliances;  // none: rigid under acceleration
   Tick scale_delay = 0;
   NcSettings nc;
 

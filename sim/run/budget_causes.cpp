@@ -22,6 +22,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"friction", "dry friction, backlash, cogging, and their compensation"},
     {"measurement", "encoders and, where the motor is read, screws"},
     {"cutting", "cutting forces"},
+    {"inertia", "deflection of the structure under acceleration"},
     {"interpolation", "chords, path tolerance and filter of the NC"},
     {"uncorrected", "errors that no strategy of the case compensates or imposes"},
     {"uncorrectable", "not possible with the axes, or of no cause that the strategy declares"},
@@ -196,6 +197,8 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
       return remove_measurement(own_machine(scenario, one));
     case Cause::cutting:
       return std::exchange(one.cutting, false);
+    case Cause::inertia:
+      return !std::exchange(own_machine(scenario, one).inertial_compliances, {}).empty();
     case Cause::interpolation:
       return remove_interpolation(scenario, one);
     case Cause::uncorrected:

@@ -29,6 +29,7 @@ enum class Cause : std::uint8_t {
   friction,        // dry friction, backlash, cogging, and what the NC does against them: none
   measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
   cutting,         // the case runs in air
+  inertia,         // deflection of the structure under acceleration: rigid
   interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
                    // nominal-position filter, no block time
   uncorrected,     // errors of the machine that no strategy of the case corrects: none
@@ -36,7 +37,7 @@ enum class Cause : std::uint8_t {
                    // the hundredth of tolerances
   imposed,         // likewise: imposed on purpose by strategies
 };
-inline constexpr std::size_t kCauses = 13;
+inline constexpr std::size_t kCauses = 14;
 struct CauseInfo {
   std::string_view name;  // "lag", "table", ...
   std::string_view help;
@@ -49,7 +50,7 @@ inline constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::d
 /// Causes that add to the signal, beside measurement.
 inline constexpr std::array kAdding = {
     Cause::table,    Cause::saturation, Cause::single_evaluation, Cause::identification,
-    Cause::friction, Cause::cutting,    Cause::uncorrected};
+    Cause::friction, Cause::cutting,    Cause::inertia,           Cause::uncorrected};
 
 /// All that can be taken away.
 Causes all_causes();

@@ -133,9 +133,10 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
   return series;
 }
 
-// Signals that a case has only if it is loaded by cutting forces: another one of the same run may
-// be in air.
-constexpr std::array<std::string_view, 2> kOfCutting = {"cutting_force", "structural_deflection"};
+// Signals that a case has only if it is loaded by cutting forces or its structure gives way to
+// acceleration: another one of the same run may be in air, or rigid.
+constexpr std::array<std::string_view, 3> kOfSomeCases = {"cutting_force", "structural_deflection",
+                                                          "inertial_deflection"};
 
 // Checks that a group has the signals that every comparison needs, and those of the other cases.
 void check_signals(const records::InputFile& file, const std::string& group,
@@ -143,7 +144,7 @@ void check_signals(const records::InputFile& file, const std::string& group,
   std::vector<std::string> needed = {"s", "rapid", "section"};
   for (const records::Signal& signal : first.signals()) {
     const bool may_miss =
-        std::find(kOfCutting.begin(), kOfCutting.end(), signal.name) != kOfCutting.end();
+        std::find(kOfSomeCases.begin(), kOfSomeCases.end(), signal.name) != kOfSomeCases.end();
     if (!may_miss) needed.push_back(signal.name);
   }
   for (const std::string& name : needed) {

@@ -13,7 +13,7 @@ import readmes
 
 ERROR = [(r"E[XYZ]0[XYZABC]$", "EX0C"), (r"E[ABC]0[XYZABC]$", "EC0Y"), (r"E[XYZABC][XYZABC]$", "EXX")]
 EXAMPLE = "setpoint"  # the strategy that strategies/README.md builds
-NAMES = {"errors": "NAME", "program.subroutines": "NAME", "program.parameters": "#101", "machine.axis": "X"}
+NAMES = {"errors": "NAME", "program.subroutines": "NAME", "program.parameters": "#101", "machine.axis": "X", "machine.inertial_deflection": "XX"}
 
 
 def listed_keys(servomill, *section):
@@ -83,7 +83,7 @@ def is_readings(table):
 
 
 def section_of_example(table):
-    return "machine" if {"structure", "identified", "axis"} & set(table) else ""
+    return "machine" if {"structure", "identified", "axis", "inertial_deflection"} & set(table) else ""
 
 
 def main():

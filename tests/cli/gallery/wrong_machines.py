@@ -42,6 +42,21 @@ def table_of_axis(title, text):
     return machine(title, "[axis.Y]", text + "\n[axis.Y]")
 
 
+def structure(title, text):
+    """A machine that gives way to the acceleration of its axes."""
+    return machine(title, "[axis.X]\n", "[inertial_deflection]\n" + text + "\n[axis.X]\n")
+
+
+STRUCTURE = [
+    structure("inertia: axes that the machine does not have", "BX = { gain_um_per_m_s2 = 1.0 }\nXC = { gain_um_per_rad_s2 = 1.0 }"),
+    structure("inertia: a mode above what the loops resolve", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 800.0, damping = 0.05 }"),
+    structure("inertia: neither a mode nor static", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 60.0 }\nYY = { gain_um_per_m_s2 = 1.0, damping = 0.05 }"),
+    structure("inertia: a mode that does not vibrate", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = -60.0, damping = 1.5 }"),
+    structure("inertia: another frequency, without a unit", "XX = { gain_um_per_m_s2 = 1.0, frequency = 60.0, damping = 0.05 }"),
+    structure("inertia: a stiffness in place of a gain", "XX = { stiffness = 5e7 }"),
+    structure("inertia: a gain over no position", 'XX = { gain_um_per_m_s2 = 1.0, slope_um_per_m_s2_per_m = 0.5 }\nYY = { gain_um_per_m_s2 = 1.0, along = "C", slope_um_per_m_s2_per_m = 1.0 }'),
+]
+
 AXIS = [
     table_of_axis("friction: no breakaway for LuGre", FRICTION.replace('"560 N"', '"0 N"')),
     table_of_axis("friction: viscous friction below 0", FRICTION + 'viscous_negative = "-1 N s/m"\n'),

@@ -202,5 +202,19 @@ TEST(BudgetCauses, OfTheCutAlone) {
   expect_nothing_else(budgets[0], {Cause::cutting}, 1e-6);
 }
 
+// An ideal servo is where the NC wants it, but the structure gives way to its acceleration.
+TEST(BudgetCauses, OfInertiaAlone) {
+  const Budget budget = budget_of(
+      "[machine_override.inertial_deflection]\nXX = { gain_um_per_m_s2 = 1.0 }\nXY = { "
+      "gain_um_per_m_s2 = "
+      "0.5, frequency_Hz = 60.0, damping = 0.05 }\n[[case]]\nname = \"one\"\nservo = "
+      "\"ideal\"\n" +
+          quantity("tool_deviation", 'X'),
+      "G17 G21 G90 G94 G64 P0.0002\n(MSG, flank)\nG1 X20 F6000\nG2 X30 Y10 J10\nM30\n");
+  EXPECT_GT(std::abs(budget.residual.at_place), 1.0);
+  EXPECT_NEAR(part(budget, Cause::inertia).at_place, budget.residual.at_place, 0.01);
+  EXPECT_LE(budget.remainder.rms, 1e-3);
+}
+
 }  // namespace
 }  // namespace servomill::sim::run::budget_causes_test

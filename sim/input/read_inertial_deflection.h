@@ -1,0 +1,18 @@
+/// Reads how the structure gives way to the acceleration of the axes.
+#pragma once
+
+#include <vector>
+
+#include "plant/structure/inertial_deflection.h"
+#include "sim/config/reader.h"
+#include "sim/model/machine.h"
+
+namespace servomill::sim::input {
+
+/// Table `inertial_deflection` of a machine: pairs of a direction and an axis, each static or a
+/// mode. Absent: a rigid structure.
+/// @pre chain and periods of the machine are read
+std::vector<plant::InertialCompliance> read_inertial_deflection(
+    config::Reader& table, const model::MachineSettings& machine);
+
+}  // namespace servomill::sim::input
