@@ -45,7 +45,7 @@ def locations(count):
 FILES = {
     "long.ngc": program(30000),
     "middle.ngc": program(100),
-    "part.cls": locations(1500),
+    "part.cls": locations(500),
     "tool.tbl": "T1 P1 Z+50 D6\n",
     "errors.toml": "[errors.measured]\nEC0Y = { um_per_m = 120.0 }\nEXX = { polynomial_um = [0.0, 0.3, -0.002] }\n",
 }
