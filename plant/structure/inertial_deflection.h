@@ -3,33 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
+#include "plant/structure/inertial_compliance.h"
 #include "plant/structure/mode_step.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/ticks.h"
 
 namespace servomill::plant {
-
-/// Displacement of the tip along one linear axis by the acceleration of one joint. With k > 0 the
-/// tip lags behind:
-///   e_i = -k_ij(Q) G_ij(s) a_j,   k_ij(Q) = gain + gain_slope Q[along],   G_ij = 1 or that of a
-///   mode
-/// Source: Heidenhain, Technical Manual iTNC 530 HSCI (2013), pp. 688-689 (cross talk compensation:
-/// static, k linear in one position).
-struct InertialCompliance {
-  int direction = 0;        // 0 to 2: X, Y, Z; towards + of the joint
-  int joint = 0;            // that accelerates
-  double gain = 0.0;        // m per m/s^2 (m per rad/s^2 of a rotary joint)
-  double gain_slope = 0.0;  // the same per m
-  int along = 0;            // linear joint on whose position k depends
-  Mode mode = {};           // w = 0: static
-
-  bool operator==(const InertialCompliance&) const = default;
-  bool is_static() const { return mode.w == 0.0; }
-  double gain_at(const Joints& Q) const { return gain + gain_slope * Q[along]; }
-};
 
 /// All deflections of one machine in one run. Advanced from instant to instant of the drives.
 class InertialDeflection {

@@ -1,16 +1,9 @@
 /// Step of one mode of the structure under the acceleration of a slide.
 #pragma once
 
-namespace servomill::plant {
+#include "plant/structure/inertial_compliance.h"
 
-/// Mode of unit static gain, excited by the acceleration a of a slide:
-///   eta'' + 2 zeta w eta' + w^2 eta = -w^2 a          eta / a = -G(s), G(s) = w^2 / (s^2 + 2 zeta
-///   w s + w^2)
-struct Mode {
-  double w = 0.0;     // rad/s, undamped natural frequency
-  double zeta = 0.0;  // damping ratio, below 1
-  bool operator==(const Mode&) const = default;
-};
+namespace servomill::plant {
 
 /// State of a mode: what a rigid mode would be is eta = -a.
 struct ModeState {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "plant/structure/inertial_deflection.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/feedback_lanes.h"
 #include "sim/engine/last_ticks.h"

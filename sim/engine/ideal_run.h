@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controllers/path/trajectory.h"
+#include "plant/structure/inertial_deflection.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/sampled_motion.h"

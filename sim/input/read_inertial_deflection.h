@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plant/structure/inertial_deflection.h"
+#include "plant/structure/inertial_compliance.h"
 #include "sim/config/reader.h"
 #include "sim/model/machine.h"
 

@@ -20,7 +20,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/sensing/encoder.h"
 #include "plant/sensing/reference_marks.h"
-#include "plant/structure/inertial_deflection.h"
+#include "plant/structure/inertial_compliance.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"

@@ -1,0 +1,36 @@
+/// How the structure between scales and tool tip gives way to the acceleration of one axis.
+#pragma once
+
+#include "plant/vocabulary/axes.h"
+
+namespace servomill::plant {
+
+/// Mode of unit static gain, excited by the acceleration a of a slide:
+///   eta'' + 2 zeta w eta' + w^2 eta = -w^2 a          eta / a = -G(s), G(s) = w^2 / (s^2 + 2 zeta
+///   w s + w^2)
+struct Mode {
+  double w = 0.0;     // rad/s, undamped natural frequency
+  double zeta = 0.0;  // damping ratio, below 1
+  bool operator==(const Mode&) const = default;
+};
+
+/// Displacement of the tip along one linear axis by the acceleration of one joint. With k > 0 the
+/// tip lags behind:
+///   e_i = -k_ij(Q) G_ij(s) a_j,   k_ij(Q) = gain + gain_slope Q[along],   G_ij = 1 or that of a
+///   mode
+/// Source: Heidenhain, Technical Manual iTNC 530 HSCI (2013), pp. 688-689 (cross talk compensation:
+/// static, k linear in one position).
+struct InertialCompliance {
+  int direction = 0;        // 0 to 2: X, Y, Z; towards + of the joint
+  int joint = 0;            // that accelerates
+  double gain = 0.0;        // m per m/s^2 (m per rad/s^2 of a rotary joint)
+  double gain_slope = 0.0;  // the same per m
+  int along = 0;            // linear joint on whose position k depends
+  Mode mode = {};           // w = 0: static
+
+  bool operator==(const InertialCompliance&) const = default;
+  bool is_static() const { return mode.w == 0.0; }
+  double gain_at(const Joints& Q) const { return gain + gain_slope * Q[along]; }
+};
+
+}  // namespace servomill::plant
