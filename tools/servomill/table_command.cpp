@@ -44,7 +44,8 @@ Inputs read_inputs(const Options& options) {
       options.get<std::string>("machine"), options.list("set"));
   Inputs inputs{std::move(described.machine), std::move(described.errors), nullptr};
   if (!options.words().empty()) {
-    inputs.models = sim::input::read_error_file(options.word(), sim::input::MachineAxes(inputs.machine));
+    inputs.models =
+        sim::input::read_error_file(options.word(), sim::input::MachineAxes(inputs.machine));
   }
   return inputs;
 }

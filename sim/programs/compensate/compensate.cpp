@@ -123,8 +123,10 @@ struct Preparation {
   explicit Preparation(const CompensateRequest& request)
       : described(input::read_machine_description(request.machine_file, request.changes)),
         layout(described.machine.chain.layout),
-        models(request.error_file.empty() ? described.errors
-                                          : input::read_error_file(request.error_file, input::MachineAxes(described.machine))),
+        models(request.error_file.empty()
+                   ? described.errors
+                   : input::read_error_file(request.error_file,
+                                            input::MachineAxes(described.machine))),
         correction(described.machine.chain, model_of(models, request, model), request.axes),
         known(read_work_knowledge(request, described.machine)),
         options(walk_options(request, described.machine, known.setup)) {

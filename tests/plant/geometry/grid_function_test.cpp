@@ -106,8 +106,8 @@ TEST(GridFunction, CubicOfThreeAndTwoPositionsIsAParabolaAndALine) {
   }
 }
 
-// A not-a-knot spline is defined by its values and this: slope and curvature are continuous, the third
-// derivative is across the second and the last but one position.
+// A not-a-knot spline is defined by its values and this: slope and curvature are continuous, the
+// third derivative is across the second and the last but one position.
 TEST(GridFunction, CubicIsTheNotAKnotSpline) {
   const std::vector<double> at = {0.0, 0.1, 0.25, 0.3, 0.5, 0.6, 0.8};
   const GridFunction spline(
