@@ -125,6 +125,16 @@ void Translator::store_end(const Motion& motion) {
   }
 }
 
+// The tool leaves the contour with the first block of its plane after R0.
+void Translator::end_compensation(bool names_both) {
+  if (!names_both && !survey_knows_no_radius()) {
+    fail(
+        "the block that cancels RL or RR must program both axes of the plane: no manual found "
+        "specifies the other one");
+  }
+  is_beside_ = false;
+}
+
 // Stores the end position and passes the motion on with the side of the tool.
 void Translator::add(Motion motion) {
   motion.side = frame_.is_mirrored_in_plane() ? -side_ : side_;
@@ -141,14 +151,7 @@ void Translator::add(Motion motion) {
     if (motion.radius < 0.0) fail("RL and RR: the radius of the tool with DR is negative");
   }
   if (side_ == 0 && path_.is_compensating()) is_beside_ = true;
-  if (is_beside_ && side_ == 0 && in_plane) {
-    if ((!names_first || !names_second) && !survey_knows_no_radius()) {
-      fail(
-          "the block that cancels RL or RR must program both axes of the plane: no manual found "
-          "specifies the other one");
-    }
-    is_beside_ = false;
-  }
+  if (is_beside_ && side_ == 0 && in_plane) end_compensation(names_first && names_second);
   store_end(motion);
   // the tip stays where it is, the other way round
   const bool turns = motion.words[3] || motion.words[4] || motion.words[5];

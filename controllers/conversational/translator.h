@@ -142,6 +142,7 @@ class Translator {
   void retract_to_limit(const Positioning& p);
   Motion motion_of(const Positioning& p);
   void add(Motion motion);
+  void end_compensation(bool names_both);
   void store_end(const Motion& motion);
   void begin_functions(const Positioning& p);
   void end_functions(const Positioning& p);

@@ -240,6 +240,25 @@ ErrorImport import_errors(const ImportedColumns& imported, const plant::MachineC
   return out;
 }
 
+namespace {
+
+std::string component_toml(const plant::ErrorName& name, const plant::ErrorFunction& f) {
+  const bool is_length = is_linear(name.direction), over_length = is_linear(name.axis);
+  std::string text;
+  for (const plant::LinearTable& table : f.tables) {
+    text += fmt::format("{} = {{ table = {{ at_{} = {}, value_{} = {} }} }}\n", to_string(name),
+                        over_length ? "mm" : "deg", list_text(table.s, over_length ? mm : deg),
+                        is_length ? "um" : "urad", list_text(table.error, um));  // um is urad
+  }
+  for (const plant::GridFunction& grid : f.grids) {
+    text +=
+        fmt::format("{} = {{ grid = {} }}\n", to_string(name), grid_toml(grid.points(), is_length));
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string errors_toml(const plant::ErrorModel& errors, const std::string& name,
                         const std::vector<std::string>& comments) {
   std::string text;
@@ -249,22 +268,11 @@ std::string errors_toml(const plant::ErrorModel& errors, const std::string& name
     for (const Axis direction : kAllAxes) {
       const plant::ErrorName location{direction, axis, true}, component{direction, axis, false};
       const bool is_length = is_linear(direction);
-      const double unit = is_length ? um : urad;
-      const char* unit_name = is_length ? "um" : "urad";
       if (const double value = errors.location(location); value != 0.0) {
-        text += fmt::format("{} = {{ constant_{} = {:.13g} }}\n", to_string(location), unit_name,
-                            value / unit);
+        text += fmt::format("{} = {{ constant_{} = {:.13g} }}\n", to_string(location),
+                            is_length ? "um" : "urad", value / um);  // um is urad
       }
-      for (const plant::LinearTable& table : errors.component(component).tables) {
-        text += fmt::format("{} = {{ table = {{ at_{} = {}, value_{} = {} }} }}\n",
-                            to_string(component), is_linear(axis) ? "mm" : "deg",
-                            list_text(table.s, is_linear(axis) ? mm : deg), unit_name,
-                            list_text(table.error, unit));
-      }
-      for (const plant::GridFunction& grid : errors.component(component).grids) {
-        text += fmt::format("{} = {{ grid = {} }}\n", to_string(component),
-                            grid_toml(grid.points(), is_length));
-      }
+      text += component_toml(component, errors.component(component));
     }
   }
   return text;

@@ -79,42 +79,52 @@ double rounded(double position, Axis axis) {
          coordinate_unit(axis);
 }
 
-// Positions of one argument: ends of the travel, points of the grids, and more on curves.
-std::vector<double> positions_of(const TableSource& source, const FormatRules& rules,
-                                 const std::vector<TableLine>& lines, const plant::ErrorName& name,
-                                 Axis argument) {
-  const TableLine& line = line_of(source, lines, argument);
-  std::set<double> at = {rounded(line.from, argument), rounded(line.to, argument)};
-  // a conversion multiplies angles by the position of the axis
-  bool is_curved = argument == name.axis && is_converted(source, rules, name.axis);
-  bool has_terms = false;
-  for (const plant::ErrorFunction* f : functions_behind(source, rules, name)) {
-    is_curved = is_curved || !is_linear_between(*f, argument, name.axis);
-    has_terms = has_terms || (argument == name.axis && !is_linear_between(*f, argument, argument));
-    for (const plant::GridFunction& g : f->grids) {
-      for (std::size_t k = 0; k < g.axes().size(); ++k) {
-        if (g.axes()[k] != argument) continue;
-        for (const double q : g.points().at[k]) {
-          if (q > line.from && q < line.to) at.insert(rounded(q, argument));
-        }
-      }
-    }
+using Positions = std::set<double>;
+
+// Adds a position within the travel, as written.
+void add_within(const TableLine& line, Axis argument, double q, Positions& at) {
+  if (q > line.from && q < line.to) at.insert(rounded(q, argument));
+}
+
+void add_grid_points(const TableLine& line, Axis argument, const plant::ErrorFunction& f,
+                     Positions& at) {
+  for (const plant::GridFunction& g : f.grids) {
+    const auto place = std::find(g.axes().begin(), g.axes().end(), argument);
+    if (place == g.axes().end()) continue;
+    const auto k = static_cast<std::size_t>(place - g.axes().begin());
+    for (const double q : g.points().at[k]) add_within(line, argument, q, at);
   }
-  if (has_terms) {
-    for (std::size_t i = 0; i < line.points; ++i) {
-      const double q = line.first + static_cast<double>(i) * line.spacing;
-      if (q > line.from && q < line.to) at.insert(rounded(q, argument));
-    }
-  }
+}
+
+std::vector<double> in_parts(const Positions& at, int parts, Axis argument) {
   std::vector<double> out = {*at.begin()};
   for (auto next = std::next(at.begin()); next != at.end(); ++next) {
     const double from = out.back(), width = *next - from;
-    const int parts = is_curved ? kPartsOfCurve : 1;
     for (int i = 1; i < parts; ++i) out.push_back(rounded(from + width * i / parts, argument));
     out.push_back(*next);
   }
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
+}
+
+// Positions of one argument: ends of the travel, points of the grids, and more on curves.
+std::vector<double> positions_of(const TableSource& source, const FormatRules& rules,
+                                 const std::vector<TableLine>& lines, const plant::ErrorName& name,
+                                 Axis argument) {
+  const TableLine& line = line_of(source, lines, argument);
+  const bool is_own = argument == name.axis;
+  Positions at = {rounded(line.from, argument), rounded(line.to, argument)};
+  bool is_curved = false;
+  for (const plant::ErrorFunction* f : functions_behind(source, rules, name)) {
+    is_curved = is_curved || !is_linear_between(*f, argument, name.axis);
+    add_grid_points(line, argument, *f, at);
+  }
+  for (std::size_t i = 0; is_own && is_curved && i < line.points; ++i) {
+    add_within(line, argument, line.entry(i), at);
+  }
+  // a conversion multiplies angles by the position of the axis
+  is_curved = is_curved || (is_own && is_converted(source, rules, name.axis));
+  return in_parts(at, is_curved ? kPartsOfCurve : 1, argument);
 }
 
 void refuse_size(const plant::ErrorName& name, const plant::GridPoints& points) {

@@ -64,6 +64,25 @@ bool concerns_call(const Block& block) {
   });
 }
 
+// A word that means something else beside some codes of its block.
+bool depends_on_codes(const PlainCodes& codes, std::uint32_t letters) {
+  const auto has = [letters](char letter) { return (letters & word_bit(letter)) != 0; };
+  const auto has_group = [&codes](Group group) {
+    return (codes.groups & 1U << static_cast<unsigned>(group)) != 0;
+  };
+  const bool takes_no_P = codes.turns_spindle || has_group(Group::g_work_system);
+  if (takes_no_P && has('P')) return true;
+  if (codes.turns_spindle && has('S')) return true;  // of a laser, S0
+  return has_group(Group::g_units) && has('F');
+}
+
+// Arcs whose end or centre two controls find differently.
+bool is_arc_of_two_readings(const PlainCodes& codes, int motion, std::uint32_t letters) {
+  if (motion != 20 && motion != 30) return false;
+  const bool has_no_end = codes.motion < 0 && (letters & kAxisWordBits) == 0;
+  return has_no_end || (letters & kCentres) == kCentres;
+}
+
 }  // namespace
 
 BlockReading::BlockReading(const ReadingOptions& options,
@@ -90,17 +109,9 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
   }
   const int motion = codes.motion >= 0 ? codes.motion : state.motion;
   if (!codes.are_plain || (letters & kOffsets) != 0 || is_canned_cycle(motion)) return true;
-  const bool takes_no_P = codes.turns_spindle ||
-                          (codes.groups & 1U << static_cast<unsigned>(Group::g_work_system)) != 0;
-  if (takes_no_P && (letters & word_bit('P')) != 0) return true;
-  if (codes.turns_spindle && (letters & word_bit('S')) != 0) return true;  // of a laser, S0
-  const bool has_unit = (codes.groups & 1U << static_cast<unsigned>(Group::g_units)) != 0;
-  if (has_unit && (letters & word_bit('F')) != 0) return true;
+  if (depends_on_codes(codes, letters)) return true;
   if ((letters & kPlaces) == 0) return codes.motion == 800;
-  if (motion == 20 || motion == 30) {
-    const bool has_no_end = codes.motion < 0 && (letters & kAxisWordBits) == 0;
-    if (has_no_end || (letters & kCentres) == kCentres) return true;
-  }
+  if (is_arc_of_two_readings(codes, motion, letters)) return true;
   if (motion <= 10 && (letters & word_bit('R')) != 0) return true;
   const bool lacks_feed = motion > 0 && state.feed_linear == 0.0;
   return motion == 800 || lacks_feed || (letters & word_bit('S')) != 0;
