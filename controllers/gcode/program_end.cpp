@@ -61,7 +61,7 @@ void Interpreter::Machine::run_end(ReaderRule rule) {
   execute();
 }
 
-// The subprogram that is looked for may stand behind the closing '%' in this file.
+// The subprogram may follow the closing '%' in this file.
 bool Interpreter::Machine::goes_on_behind_end() {
   const bool may_go_on = flow_.skips_to_sub && text_ == 0 && has_more_words();
   return may_go_on && tolerates(ReaderRule::subprogram_behind_end, 1);

@@ -89,7 +89,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {cycle_without_dwell, "G82, G86, G88 or G89 without P", "read without a dwell", "Fanuc, Haas",
      kFanuc | kHaas, "Fanuc B-63944EN, formats of G82, G86, G88, G89 (from memory)"},
     {cycle_unused_dwell, "P of G81 or G85, which do not dwell",
-     "read without a dwell; G82 and G89 behind it use P", "Fanuc, Haas", kFanuc | kHaas,
+     "read without a dwell; G82 and G89 after it use P", "Fanuc, Haas", kFanuc | kHaas,
      "zanotowane.pl/117/8692, G81 (lists P, and no dwell in its sequence); haascnc.com, G81 and "
      "G85 "
      "(no P); that P is kept from memory"},

@@ -103,12 +103,12 @@ ContactMode contact_after(const FeedDriveParams& params, const LaneState& state)
 /// Sum of the forces on the slide but for set-valued, regularised or LuGre friction (N): what a
 /// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too,
 /// for which state.i must be the command where current_is_command().
-/// @param F  N, external force against the slide beside F_load
+/// @param F  N, external force against the slide, in addition to F_load
 double driving_force(const FeedDriveParams& params, const LaneState& state, double F);
 
 /// Acceleration of the slide (m/s^2) by all forces on it.
 /// @param command  A; counts where current_is_command()
-/// @param F        N, external force against the slide beside F_load
+/// @param F        N, external force against the slide, in addition to F_load
 double slide_acceleration(const FeedDriveParams& params, const LaneState& state, double command,
                           double F);
 

@@ -24,7 +24,7 @@ struct GridPoints {
   bool operator==(const GridPoints&) const = default;
 };
 
-/// Rule that the points break, to be put behind the name of the grid, or nullopt.
+/// Rule that the points break, to follow the name of the grid, or nullopt.
 /// @param coordinate_units  in which the fault names positions: those of each axis' unit (m, rad)
 std::optional<std::string> grid_fault(const GridPoints& points,
                                       std::span<const double> coordinate_units);

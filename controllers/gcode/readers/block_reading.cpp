@@ -64,7 +64,7 @@ bool concerns_call(const Block& block) {
   });
 }
 
-// A word that means something else beside some codes of its block.
+// A word that means something else together with some codes of its block.
 bool depends_on_codes(const PlainCodes& codes, std::uint32_t letters) {
   const auto has = [letters](char letter) { return (letters & word_bit(letter)) != 0; };
   const auto has_group = [&codes](Group group) {
