@@ -114,7 +114,8 @@ std::vector<double> positions_of(const TableSource& source, const FormatRules& r
   const TableLine& line = line_of(source, lines, argument);
   const bool is_own = argument == name.axis;
   Positions at = {rounded(line.from, argument), rounded(line.to, argument)};
-  bool is_curved = false;
+  // a conversion multiplies angles by the position of a linear axis and turns with a rotary one
+  bool is_curved = is_own && is_converted(source, rules, name.axis);
   for (const plant::ErrorFunction* f : functions_behind(source, rules, name)) {
     is_curved = is_curved || !is_linear_between(*f, argument, name.axis);
     add_grid_points(line, argument, *f, at);
@@ -122,8 +123,6 @@ std::vector<double> positions_of(const TableSource& source, const FormatRules& r
   for (std::size_t i = 0; is_own && is_curved && i < line.points; ++i) {
     add_within(line, argument, line.entry(i), at);
   }
-  // a conversion multiplies angles by the position of the axis
-  is_curved = is_curved || (is_own && is_converted(source, rules, name.axis));
   return in_parts(at, is_curved ? kPartsOfCurve : 1, argument);
 }
 

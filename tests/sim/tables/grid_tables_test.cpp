@@ -67,6 +67,21 @@ TEST(GridTables, OfIsgHoldTheErrorModel) {
   }
 }
 
+// Straightness of a rotary table over z turns with the table where all axes count as tool axes: a
+// chord over 10 deg leaves 60 um (1 - cos 5 deg) = 0.23 um.
+TEST(GridTables, OfARotaryTableHaveThePointsThatItsRotationNeeds) {
+  plant::ErrorModel errors;
+  errors.component("EXC"_err) = plant::grid({{Axis::Z}, {{0.0, 200 * mm}}, {20 * um, 60 * um}, {}});
+  TableRequest request = request_of(TableFormat::isg);
+  request.rotary_spacing = 10 * deg;
+  const TableExport e = export_tables(machine_of("[w C' b X Y Z t]"), errors, request);
+  const TableVerification verified = verify_tables(e, table_files(e));
+  EXPECT_LT(verified.length, 0.24 * um);
+  request.rotary_spacing = 1 * deg;
+  const TableExport fine = export_tables(machine_of("[w C' b X Y Z t]"), errors, request);
+  EXPECT_LT(verify_tables(fine, table_files(fine)).length, 0.01 * um);
+}
+
 TEST(GridTables, AChangedDigitOfARecordIsFound) {
   const TableExport e = export_tables(machine_of(kToolSide), sag(), request_of(TableFormat::isg));
   auto files = table_files(e);
