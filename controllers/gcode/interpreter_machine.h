@@ -120,6 +120,7 @@ class Interpreter::Machine {
   void read_skipped_line();
   bool may_end_skipping(const OWord& o) const;
   void saw_percent();
+  void leave_unread();
   void end_of_text();
   [[noreturn]] void fail_at_end();
   bool goes_on_behind_end();

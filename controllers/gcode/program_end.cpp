@@ -20,6 +20,24 @@ constexpr std::string_view kUnread = "the program ends here: lines after this '%
 constexpr std::string_view kBlankAtEnd = " \t\r%\x1a";  // 1a: the end of files of CP/M
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
+// Anything but blanks and comments. A comment ends at the first ')', or with the line: where some
+// control reads a block, there is one.
+bool has_words(std::string_view line) {
+  bool in_comment = false;
+  for (const char c : line) {
+    if (in_comment) {
+      in_comment = c != ')';
+    } else if (c == ';') {
+      return false;
+    } else if (c == '(') {
+      in_comment = true;
+    } else if (kBlankAtEnd.find(c) == kBlankAtEnd.npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void Interpreter::Machine::saw_percent() {
@@ -32,17 +50,24 @@ void Interpreter::Machine::saw_percent() {
     if (!has_rule(setup_.reader, ReaderRule::percent_at_end) || flow_.skip_to || text_ != 0) {
       fail(1, std::string(kMisplacedPercent));
     }
-    if (setup_.reader == Reader::any && has_more_words()) fail(1, std::string(kPercentInside));
+    if (has_more_words()) {
+      if (setup_.reader == Reader::any) fail(1, std::string(kPercentInside));
+      leave_unread();
+    }
     return run_end(ReaderRule::percent_at_end);
   }
   if (meaning != Percent::end) return;
   if (flow_.skip_to || text_ != 0) fail_at_end();
   if (has_more_words()) {
     if (setup_.reader == Reader::any) fail(1, std::string(kBlocksBehind));
-    warn(1, std::string(kUnread));
-    unread_behind_ = line();
+    leave_unread();
   }
   ended_ = true;
+}
+
+void Interpreter::Machine::leave_unread() {
+  warn(1, std::string(kUnread));
+  unread_behind_ = line();
 }
 
 // The text ends although the program does not.
@@ -74,13 +99,7 @@ bool Interpreter::Machine::has_more_words() {
   std::string_view next;
   bool found = false;
   while (!found && text().next(next)) {
-    const std::size_t first = next.find_first_not_of(kBlankAtEnd);
-    const std::size_t close = next.find_last_of(')');
-    const bool is_comment =
-        first != next.npos &&
-        (next[first] == ';' ||
-         (next[first] == '(' && (close == next.npos || is_blank(next.substr(close + 1)))));
-    found = first != next.npos && !is_comment;
+    found = has_words(next);
   }
   text().go_to(here);
   return found;

@@ -95,5 +95,18 @@ TEST(LostPositions, LeaveTheOtherAxesWhereTheyAreBehindG28) {
   }
 }
 
+// Whatever the reader, nothing of a program is left out: not after a '%' that none precedes, and
+// not a block between two comments.
+TEST(LostPositions, RefusesBlocksAfterThePercentThatEndsTheProgram) {
+  for (const char* reader : {"fanuc", "haas"}) {
+    Trial trial("G21 G17 G90 G94 G54\nG0 X0 Y0 Z0\nG1 X1. F600.\n%\nG1 Y1.\nM30\n");
+    trial.request.inputs.reader = reader;
+    EXPECT_NE(refusal(trial).find("but blocks follow it"), std::string::npos) << refusal(trial);
+  }
+  EXPECT_NE(refusal(Trial("%\nG21 G90\nG0 X0 Y0 Z0\n%\n(a) G1 Y1. F100 (b)\nM30\n"))
+                .find("blocks follow it"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace servomill::sim::programs::lost_positions_test
