@@ -202,22 +202,23 @@ class ScenarioReader {
     hardware.model_period = read_ticks(table, "model_period_us", 60 * us, base, 1);
   }
 
-  // Several rows in the half of each dwell in which the device is read, and rows all around
-  // circles.
+  // Several rows in the half of each dwell in which the device is read, and one for each reading of
+  // a circle.
   void check_rows_of_tests(config::Reader& root) {
     constexpr double kMaxShare = 0.1;  // of the dwell
     const double period = out_.machine.nc.periods.seconds(out_.record_period);
     for (const auto& test : out_.tests) {
+      const double spacing =
+          test->readings > 0 ? std::min(metrology::kRecordedSpacing, 360.0 * deg / test->readings)
+                             : metrology::kRecordedSpacing;
       if (period > kMaxShare * test->dwell) {
         root.table_or_empty("record").fault(
             fmt::format("period_ms must be at most {:g} ms, a tenth of the dwell of test {}",
                         kMaxShare * test->dwell / ms, test->name));
-      } else if (period * test->feed > metrology::kRecordedSpacing * test->radius &&
-                 test->radius > 0.0) {
+      } else if (period * test->feed > spacing * test->radius && test->radius > 0.0) {
         root.table_or_empty("record").fault(
             fmt::format("period_ms must be at most {:.3g} ms: {:g} deg of the circle of test {}",
-                        metrology::kRecordedSpacing * test->radius / test->feed / ms,
-                        metrology::kRecordedSpacing / deg, test->name));
+                        spacing * test->radius / test->feed / ms, spacing / deg, test->name));
       }
     }
   }
