@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
@@ -14,6 +15,7 @@
 #include "strategies/pose_compensation.h"
 #include "strategies/programmed_way.h"
 #include "strategies/reversal_correction.h"
+#include "strategies/turning_points.h"
 
 namespace servomill::strategies {
 namespace {
@@ -142,17 +144,23 @@ class Rewriter {
     }
   }
 
-  // Shares of the way at which an axis with hysteresis reverses, and the end.
+  // Shares of the way at which an axis with hysteresis reverses, and the end. A straight move
+  // reverses an axis, too, where its correction does.
   std::vector<double> ends_of_pieces(const Place& a, double end) const {
+    constexpr double kTurn = 0.25 * std::numbers::pi, kWave = 0.5 * mm;
+    const double share = end - a.t;
+    const double steps = std::max(way_->sweep() / kTurn, way_->length() / kWave) * share;
     std::vector<double> out;
     for (const plant::Play& play : identified_.model.plays()) {
-      for (const double t : way_->turning_points(play.joint, a.t, end, a.Q)) out.push_back(t);
+      const auto x = [&](double t) { return travelled(play.joint, t, a.Q); };
+      const auto turns = turning_points(x, a.t, end, std::max(4, static_cast<int>(steps)));
+      out.insert(out.end(), turns.begin(), turns.end());
     }
     std::sort(out.begin(), out.end());
     constexpr double kSame = 1e-6;
     double before = a.t;
     std::erase_if(out, [&](double t) {
-      const bool is_same = std::min(t - before, end - t) < kSame * (end - a.t);
+      const bool is_same = std::min(t - before, end - t) < kSame * share;
       if (!is_same) before = t;
       return is_same;
     });
@@ -160,16 +168,26 @@ class Rewriter {
     return out;
   }
 
+  // By the mean of both directions of travel.
+  AxisWords mean_displacement(const Joints& Q) const {
+    if (displaces_all()) return identified_.layout.words(all_.of_setpoint(params_.action, Q));
+    AxisWords d = AxisWords::Zero();
+    d.head<3>() = setpoint_displacement(identified_, params_.action, params_.iterations, Q);
+    return d;
+  }
+
+  // Coordinate of a joint that its hysteresis follows (reversal_correction.h).
+  double travelled(int joint, double t, const Joints& Q_near) const {
+    const Joints Q = way_->at(t, Q_near) - params_.shift;
+    if (params_.action == Action::impose) return Q[joint];
+    return Q[joint] + identified_.layout.joints(mean_displacement(Q))[joint];
+  }
+
   Place place(double t, const Joints& Q_near) const {
     Place out{t, way_->at(t, Q_near), {}};
     out.words = identified_.layout.words(out.Q);
     const Joints Q_then = out.Q - params_.shift;
-    AxisWords d = AxisWords::Zero();
-    if (displaces_all()) {
-      d = identified_.layout.words(all_.of_setpoint(params_.action, Q_then));
-    } else {
-      d.head<3>() = setpoint_displacement(identified_, params_.action, params_.iterations, Q_then);
-    }
+    AxisWords d = mean_displacement(Q_then);
     if (reversal_.is_needed()) {
       out.reversal = reversal_.displacement(Q_then, identified_.layout.joints(d));
       d.head<3>() += out.reversal;

@@ -31,15 +31,11 @@ class ProgrammedWay {
   /// @param Q_near  joints on the way nearby
   Joints at(double t, const Joints& Q_near) const;
 
-  /// Shares of the way at which the joint reverses, rising.
-  /// @param from, to  shares of the way; both excluded
-  /// @param Q_near    joints at `from`
-  std::vector<double> turning_points(int joint, double from, double to, const Joints& Q_near) const;
+  /// rad, by which its direction turns at most: of an arc and of the rotary axes.
+  double sweep() const { return curve_.sweep() + turn_.norm(); }
 
  private:
   const JointLayout& layout() const { return inverse_.chain().layout; }
-  int rate_sign(int joint, double t, double h, const Joints& Q_near) const;
-  double reversal_between(int joint, double a, double b, double h, const Joints& Q_near) const;
   Joints with_tip(const Eigen::Vector3d& p_WT, const Joints& Q_rotary) const;
 
   const plant::InverseKinematics& inverse_;

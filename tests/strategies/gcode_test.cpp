@@ -203,6 +203,25 @@ TEST(Gcode, DividesTurnsUnderTipControlWhereAnAxisReverses) {
   EXPECT_TRUE(is_inside(least) || is_inside(most));  // X has reversed
 }
 
+// Y does not move in the program; its correction follows the bow of X, up and down.
+TEST(Gcode, DividesLinesWhereACorrectionReverses) {
+  constexpr double kLost = -4.0 * um;
+  plant::ErrorModel errors;
+  errors.component("EYX"_err) = plant::harmonic(20.0 * um, 50.0 * mm, 0.0);
+  errors.component("EYY"_err) = plant::reversal({kLost}, 0.01 * mm);
+  const IdentifiedMachine identified = machine_with(errors);
+  const std::vector<Move> program = {feed_to({100.0 * mm, 0.0, 0.0}, 0.0, 100.0 * mm)};
+  for (const double block : {1.0 * mm, 50.0 * mm}) {
+    const std::vector<Move> blocks = rewritten(identified, program, Action::compensate, block);
+    TrueMachine machine(identified);
+    for (const Move& move : blocks) {
+      for (const Eigen::Vector3d& p : machine.go(move)) {
+        EXPECT_NEAR(p[1], 0.0, 3.0 * kTolerance) << "at " << p[0] / mm << " of " << block / mm;
+      }
+    }
+  }
+}
+
 // Taken up in less travel than its width, lost motion is a step of the axis at its reversal.
 TEST(Gcode, TakesUpSteepLostMotionAtOnce) {
   plant::ErrorModel errors;
