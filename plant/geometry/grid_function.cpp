@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "plant/vocabulary/units.h"
+
 namespace servomill::plant {
 namespace {
 
@@ -70,6 +72,23 @@ std::optional<std::string> axis_fault(const GridPoints& points, std::size_t k, d
   return std::nullopt;
 }
 
+// Errors that repeat must end as they begin.
+std::optional<std::string> repetition_fault(const GridPoints& points, std::size_t k) {
+  std::size_t stride = 1;
+  for (std::size_t j = k + 1; j < points.at.size(); ++j) stride *= points.at[j].size();
+  const std::size_t last = stride * (points.at[k].size() - 1), block = stride + last;
+  for (std::size_t begin = 0; begin < points.error.size(); begin += block) {
+    for (std::size_t i = begin; i < begin + stride; ++i) {
+      if (points.error[i] == points.error[i + last]) continue;
+      return fmt::format(
+          "ends at {:g} um or urad where it begins at {:g} um or urad; over {}, which repeats, "
+          "both must be equal",
+          points.error[i + last] / um, points.error[i] / um, letter(points.axes[k]));
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> grid_fault(const GridPoints& points,
@@ -95,6 +114,10 @@ std::optional<std::string> grid_fault(const GridPoints& points,
                    [](double e) { return std::isfinite(e); })) {
     return "has an error that is not finite";
   }
+  for (std::size_t k = 0; k < points.repeats.size(); ++k) {
+    if (!points.repeats[k]) continue;
+    if (auto fault = repetition_fault(points, k)) return fault;
+  }
   return std::nullopt;
 }
 
@@ -105,6 +128,8 @@ GridFunction::GridFunction(GridPoints points)
     spline.points = at.size();
     spline.degree = degree_of(points_.interpolation, at.size());
     spline.knots = knots_of(at, spline.degree);
+    const std::size_t k = splines_.size() - 1;
+    spline.repeats = k < points_.repeats.size() && points_.repeats[k];
   }
   std::size_t stride = 1;
   for (auto spline = splines_.rbegin(); spline != splines_.rend(); ++spline) {
@@ -145,8 +170,14 @@ bool GridFunction::depends_on(Axis axis) const {
   return std::find(axes().begin(), axes().end(), axis) != axes().end();
 }
 
+double GridFunction::Spline::reduced(double q) const {
+  const double from = knots.front(), to = knots.back();
+  if (!repeats || (q >= from && q <= to)) return q;
+  return q - (to - from) * std::floor((q - from) / (to - from));
+}
+
 GridFunction::Active GridFunction::active_at(const Spline& spline, double q) const {
-  const double within = std::clamp(q, spline.knots.front(), spline.knots.back());
+  const double within = std::clamp(spline.reduced(q), spline.knots.front(), spline.knots.back());
   const std::size_t interval = interval_of(spline.knots, spline.degree, within);
   Active out{interval - spline.degree, spline.degree + 1, {}};
   b_splines(spline.knots, interval, spline.degree, within, out.value);
@@ -156,6 +187,7 @@ GridFunction::Active GridFunction::active_at(const Spline& spline, double q) con
 // Derivatives of the B-splines: differences of those one degree lower.
 GridFunction::Active GridFunction::slopes_at(const Spline& spline, double q) const {
   const std::vector<double>& t = spline.knots;
+  q = spline.reduced(q);
   const std::size_t degree = spline.degree;
   if (q < t.front() || q > t.back()) return {0, degree + 1, {}};
   const std::size_t interval = interval_of(t, degree, q);

@@ -21,6 +21,8 @@ struct GridPoints {
   std::vector<std::vector<double>> at;  // m or rad of each axis; at least two, strictly increasing
   std::vector<double> error;  // m or rad at each combination, the position of the last axis fastest
   GridInterpolation interpolation = GridInterpolation::linear;
+  std::vector<bool> repeats = {};  // of each axis: the errors repeat with the span of its positions
+                                   // (an endless rotary axis); empty: of none
   bool operator==(const GridPoints&) const = default;
 };
 
@@ -35,7 +37,8 @@ std::optional<std::string> grid_fault(const GridPoints& points,
 ///
 /// linear: degree 1, multilinear between the points. cubic: degree 3 with the not-a-knot condition
 /// at both ends, which reproduces cubics; along an axis with three or two points degree 2 or 1.
-/// Beyond the first and last position of an axis the error is that at the end, as of tables.
+/// Beyond the first and last position of an axis the error is that at the end, as of tables, or
+/// repeats with their span; there, the slope of a cubic may change at once.
 /// Source: de Boor, A Practical Guide to Splines, Springer 2001, IX (1), (15), XIII and XVII.
 /// Constant, no allocation after construction.
 class GridFunction {
@@ -52,7 +55,8 @@ class GridFunction {
   /// @param arguments  position of each of axes() (m, rad)
   /// @return m or rad
   double value(std::span<const double> arguments) const;
-  /// Derivative with respect to argument `by`, in m or rad per m or rad; 0 beyond the ends.
+  /// Derivative with respect to argument `by`, in m or rad per m or rad; 0 beyond ends that do not
+  /// repeat.
   double derivative(std::span<const double> arguments, std::size_t by) const;
 
   /// @param q  coordinates of all axes (6; m, rad)
@@ -67,6 +71,9 @@ class GridFunction {
   struct Spline {
     std::size_t degree = 1, points = 2, stride = 1;
     std::vector<double> knots;
+    bool repeats = false;
+
+    double reduced(double q) const;  // into the first span, if it repeats
   };
   static constexpr std::size_t kMaxDegree = 3;
   using Basis = std::array<double, kMaxDegree + 1>;

@@ -12,10 +12,9 @@ ErrorFunction on_line(const GridFunction& grid, Axis axis, AxisWords q) {
   const GridPoints& points = grid.points();
   const auto place = std::find(points.axes.begin(), points.axes.end(), axis);
   if (place == points.axes.end()) return constant(grid.value(q));
-  GridPoints line{{axis},
-                  {points.at[static_cast<std::size_t>(place - points.axes.begin())]},
-                  {},
-                  points.interpolation};
+  const auto k = static_cast<std::size_t>(place - points.axes.begin());
+  GridPoints line{{axis}, {points.at[k]}, {}, points.interpolation};
+  if (!points.repeats.empty()) line.repeats = {points.repeats[k]};
   for (const double s : line.at.front()) {
     q[index_of(axis)] = s;
     line.error.push_back(grid.value(q));

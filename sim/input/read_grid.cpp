@@ -58,6 +58,16 @@ std::vector<std::vector<double>> read_positions(config::Reader& table, const std
   return at;
 }
 
+// An axis without limits turns on: its errors repeat after a turn.
+bool covers_turn(config::Reader& table, const std::string& key, Axis axis, double from, double to) {
+  constexpr double kSlack = 1e-9;  // rad: rounding of units
+  if (std::abs(to - from - 360 * deg) <= kSlack) return true;
+  table.fault(key, fmt::format("must cover one turn of {}, whose travel is endless: 360 deg; "
+                               "covers {:g} to {:g}",
+                               letter(axis), from / deg, to / deg));
+  return false;
+}
+
 bool covers_travel(config::Reader& table, const std::string& key, const GridPoints& points,
                    const MachineAxes& machine) {
   constexpr double kSlack = 1e-9;  // m, rad: rounding of units
@@ -66,6 +76,10 @@ bool covers_travel(config::Reader& table, const std::string& key, const GridPoin
     const int joint = machine.layout.joint_of(axis).value();
     const double unit = unit_of(axis), from = points.at[k].front(), to = points.at[k].back();
     const double lower = machine.lower[joint], upper = machine.upper[joint];
+    if (machine.is_endless(axis)) {
+      if (!covers_turn(table, key, axis, from, to)) return false;
+      continue;
+    }
     const bool starts = !std::isfinite(lower) || from <= lower + kSlack;
     const bool ends = !std::isfinite(upper) || to >= upper - kSlack;
     if (starts && ends) continue;
@@ -86,7 +100,16 @@ MachineAxes::MachineAxes(const JointLayout& axes) : layout(axes) {
 }
 
 MachineAxes::MachineAxes(const model::MachineSettings& machine)
-    : layout(machine.chain.layout), lower(machine.nc.lower), upper(machine.nc.upper) {}
+    : layout(machine.chain.layout),
+      lower(machine.nc.lower),
+      upper(machine.nc.upper),
+      is_travel_known(true) {}
+
+bool MachineAxes::is_endless(Axis axis) const {
+  const auto joint = layout.joint_of(axis);
+  return is_travel_known && joint && !is_linear(axis) && !std::isfinite(lower[*joint]) &&
+         !std::isfinite(upper[*joint]);
+}
 
 plant::ErrorFunction read_grid(config::Reader& table, bool is_length, const MachineAxes& machine) {
   constexpr std::array<std::string_view, 2> kInterpolations = {"linear", "cubic"};
@@ -110,6 +133,11 @@ plant::ErrorFunction read_grid(config::Reader& table, bool is_length, const Mach
   if (table.faults() > faults) {
     table.skip_rest();
     return {};
+  }
+  for (std::size_t k = 0; k < points.axes.size(); ++k) {
+    if (!machine.is_endless(points.axes[k])) continue;
+    points.repeats.resize(points.axes.size(), false);
+    points.repeats[k] = true;
   }
   if (const auto fault = grid_fault(points, units)) {
     table.fault(*fault);

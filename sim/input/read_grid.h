@@ -11,10 +11,14 @@ namespace servomill::sim::input {
 /// Axes of the machine that has the errors, and their travel.
 struct MachineAxes {
   JointLayout layout;
-  Joints lower, upper;  // m, rad; infinite where the travel is not known
+  Joints lower, upper;  // m, rad; infinite: endless, or not known
+  bool is_travel_known = false;
 
   MachineAxes(const JointLayout& layout);  ///< of unknown travel
   explicit MachineAxes(const model::MachineSettings& machine);
+
+  /// A rotary axis without limits.
+  bool is_endless(Axis axis) const;
 };
 
 /// A grid: `{ axes = "XZ", at_mm = [[...], [...]], value_um = [[...], ...] }`. Faults: axes that

@@ -56,12 +56,13 @@ void add(system::MemoKey& key, const plant::ErrorFunction& function) {
   }
   key.add(grids.size());
   for (const plant::GridFunction& grid : grids) {
-    const auto& [axes, at, error, interpolation] = grid.points();
+    const auto& [axes, at, error, interpolation, repeats] = grid.points();
     key.add(axes.size());
     for (const Axis axis : axes) key.add(axis);
     for (const auto& positions : at) add_all(positions);
     add_all(error);
     key.add(interpolation);
+    for (const bool is_repeated : repeats) key.add(is_repeated);
   }
 }
 

@@ -183,6 +183,30 @@ TEST(GridFunction, IsConstantBeyondItsEnds) {
   }
 }
 
+// Over an endless rotary axis the errors repeat with every turn, up and down.
+TEST(GridFunction, RepeatsOverAnEndlessAxis) {
+  constexpr double kTurn = 360 * deg;
+  for (const auto interpolation : {GridInterpolation::linear, GridInterpolation::cubic}) {
+    const GridFunction grid({{Axis::X, Axis::C},
+                             {{0, 1}, {-90 * deg, 0, 120 * deg, 200 * deg, 270 * deg}},
+                             {1, 4, -2, 0, 1, 3, 5, 7, -6, 3},
+                             interpolation,
+                             {false, true}});
+    for (const double c : {-89.0, -1.0, 17.0, 133.0, 269.9}) {
+      for (const double x : {-0.5, 0.0, 0.4, 1.5}) {
+        const std::array q = {x, c * deg};
+        for (const int turns : {-1000, -2, -1, 1, 3, 110}) {
+          const std::array there = {x, c * deg + turns * kTurn};
+          EXPECT_NEAR(grid.value(there), grid.value(q), 1e-10) << c << " " << turns;
+          EXPECT_NEAR(grid.derivative(there, 1), grid.derivative(q, 1), 1e-10) << c << " " << turns;
+        }
+      }
+    }
+    EXPECT_NEAR(grid.value(std::array{0.0, 270 * deg + 1e-9}), 1.0, 1e-7);
+    EXPECT_NEAR(grid.value(std::array{0.0, 630 * deg}), 1.0, 1e-9);
+  }
+}
+
 TEST(GridFunction, OfACubicAtItsLastPositionHasTheSlopeFromWithin) {
   const GridFunction square(
       GridPoints{{Axis::X}, {{0, 1, 2, 3}}, {0, 1, 4, 9}, GridInterpolation::cubic});
@@ -250,6 +274,17 @@ TEST(GridFault, NamesTheRuleThatIsBroken) {
   bad = good;
   bad.error[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(fault_of(bad), "has an error that is not finite");
+  bad = good;
+  bad.axes[1] = Axis::C;
+  bad.error = {1 * um, 1 * um, 2 * um, 3 * um};
+  EXPECT_EQ(fault_of(bad), "none");
+  bad.repeats = {false, true};
+  EXPECT_EQ(
+      fault_of(bad),
+      "ends at 3 um or urad where it begins at 2 um or urad; over C, which repeats, both must "
+      "be equal");
+  bad.error = {1 * um, 1 * um, 2 * um, 2 * um};
+  EXPECT_EQ(fault_of(bad), "none");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace {
 // X -100..100 mm, Y unknown, Z 0..200 mm, C endless.
 MachineAxes machine() {
   MachineAxes out(plant::make_chain(plant::parse_structure("[w C' b X Y Z t]")).layout);
+  out.is_travel_known = true;
   out.lower[0] = -100 * mm;
   out.upper[0] = 100 * mm;
   out.lower[2] = 0.0;
@@ -57,13 +58,24 @@ TEST(ReadGrid, HasTheLastAxisInTheInnermostLists) {
 
 TEST(ReadGrid, HasAUnitForEachAxis) {
   const plant::ErrorModel errors = read(
-      "EBX = { grid = { axes = \"CX\", at_mm_deg = [[0, 180], [-100, 100]], "
-      "value_urad = [[0, 0], [10, 30]] } }\n"
-      "EXC = { grid = { axes = \"C\", at_deg = [[0, 180]], value_um = [0, 8] } }");
+      "EBX = { grid = { axes = \"CX\", at_mm_deg = [[0, 180, 360], [-100, 100]], "
+      "value_urad = [[0, 0], [10, 30], [0, 0]] } }\n"
+      "EXC = { grid = { axes = \"C\", at_deg = [[-180, 0, 180]], value_um = [8, 0, 8] } }");
   EXPECT_NEAR(errors.component(*plant::error_name_of("EBX")).value(0, at(0, 0, 90 * deg)),
               10 * urad, 1e-18);
   EXPECT_NEAR(errors.component(*plant::error_name_of("EXC")).value(0, at(0, 0, 45 * deg)), 2 * um,
               1e-18);
+}
+
+// Two turns on and one back, C is at the same place.
+TEST(ReadGrid, RepeatsOverAnEndlessAxis) {
+  const plant::ErrorModel errors =
+      read("EXC = { grid = { axes = \"C\", at_deg = [[-180, 0, 180]], value_um = [8, 0, 8] } }");
+  const plant::ErrorFunction& f = errors.component(*plant::error_name_of("EXC"));
+  for (const double turns : {-1.0, 0.0, 2.0}) {
+    EXPECT_NEAR(f.value(0, at(0, 0, (45 + 360 * turns) * deg)), 2 * um, 1e-17) << turns;
+    EXPECT_NEAR(f.value(0, at(0, 0, (270 + 360 * turns) * deg)), 4 * um, 1e-17) << turns;
+  }
 }
 
 TEST(ReadGrid, AddsToTheOtherTermsAndToOtherGrids) {
@@ -102,6 +114,18 @@ TEST(ReadGrid, RefusesWithTheRule) {
       fault_of(head + "[[-100, 100], [0, 200]], value_um = [[0, 1], [2, 3]], "
                       "interpolation = \"spline\" } }"),
       "m.toml:1:109: error: EZX.grid.interpolation = \"spline\"; must be one of linear, cubic");
+}
+
+TEST(ReadGrid, WantsOneTurnOfAnEndlessAxis) {
+  EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 270]], value_um = [0, 0] } }"),
+            "m.toml:1:30: error: EXC.grid.at_deg = [[0, 270]]; must cover one turn of C, whose "
+            "travel is endless: 360 deg; covers 0 to 270");
+  EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 720]], value_um = [0, 0] } }"),
+            "m.toml:1:30: error: EXC.grid.at_deg = [[0, 720]]; must cover one turn of C, whose "
+            "travel is endless: 360 deg; covers 0 to 720");
+  EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 360]], value_um = [0, 1] } }"),
+            "m.toml:1:16: error: EXC.grid: ends at 1 um or urad where it begins at 0 um or urad; "
+            "over C, which repeats, both must be equal");
 }
 
 // An axis whose travel nobody knows cannot be covered.
