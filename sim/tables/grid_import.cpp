@@ -178,7 +178,70 @@ std::string nested_text(const plant::GridPoints& points, std::size_t argument, s
   return "[" + text + "]";
 }
 
+void refuse_part_of_turn(const ErrorGrid& grid, Axis axis, double from, double to) {
+  constexpr double kSlack = 1e-9;  // rad
+  if (std::abs(to - from - 360 * deg) <= kSlack) return;
+  throw InputError({grid.file, grid.line},
+                   fmt::format("{} covers {:g} to {:g} deg of {}, whose travel is endless; must "
+                               "cover one turn",
+                               grid.name, from / deg, to / deg, letter(axis)));
+}
+
+// Positions from one end of the travel to the other.
+std::vector<double> over_travel(std::vector<double> at, double lower, double upper) {
+  if (std::isfinite(lower) && lower < at.front()) at.insert(at.begin(), lower);
+  if (std::isfinite(upper) && upper > at.back()) at.push_back(upper);
+  return at;
+}
+
+std::string held_note(const ErrorGrid& grid, const ErrorGrid& covering) {
+  std::string text;
+  for (std::size_t k = 0; k < grid.axes.size(); ++k) {
+    if (grid.at[k] == covering.at[k]) continue;
+    const double unit = is_linear(grid.axes[k]) ? mm : deg;
+    text += fmt::format("{}{} {:g} to {:g} {}", text.empty() ? "" : ", ", letter(grid.axes[k]),
+                        grid.at[k].front() / unit, grid.at[k].back() / unit,
+                        is_linear(grid.axes[k]) ? "mm" : "deg");
+  }
+  return fmt::format(
+      "assumed: {} keeps its values at the ends of the table ({}) to the ends of "
+      "the travel",
+      grid.name, text);
+}
+
+ErrorGrid covering(const ErrorGrid& grid, const model::MachineSettings& machine) {
+  ErrorGrid out = grid;
+  plant::GridPoints points{grid.axes, {}, {}, {}};
+  for (std::size_t k = 0; k < grid.axes.size(); ++k) {
+    const auto joint = machine.chain.layout.joint_of(grid.axes[k]);
+    if (!joint) return grid;  // refused where it is imported
+    const double lower = machine.nc.lower[*joint], upper = machine.nc.upper[*joint];
+    const bool is_endless =
+        !is_linear(grid.axes[k]) && !std::isfinite(lower) && !std::isfinite(upper);
+    if (is_endless) {
+      refuse_part_of_turn(grid, grid.axes[k], grid.at[k].front(), grid.at[k].back());
+    }
+    out.at[k] = over_travel(grid.at[k], lower, upper);
+  }
+  points.at = out.at;
+  out.error.clear();
+  AxisWords q = AxisWords::Zero();
+  for_all_points(points, 0, q,
+                 [&](const AxisWords& at) { out.error.push_back(value_at(grid, at)); });
+  return out;
+}
+
 }  // namespace
+
+void cover_travel(ImportedColumns& imported, const model::MachineSettings& machine,
+                  std::vector<std::string>& notes) {
+  for (ErrorGrid& grid : imported.columns.grids) {
+    ErrorGrid over_all = covering(grid, machine);
+    if (over_all.at == grid.at) continue;
+    notes.push_back(held_note(grid, over_all));
+    grid = std::move(over_all);
+  }
+}
 
 bool has_grids(const ImportedColumns& imported, Axis axis) {
   return std::any_of(imported.columns.grids.begin(), imported.columns.grids.end(),

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
+#include "sim/model/machine.h"
 #include "sim/tables/error_import.h"
 
 namespace servomill::sim::tables {
@@ -15,6 +17,14 @@ namespace servomill::sim::tables {
 /// @throws InputError for such an axis if a grid is not a function of its position
 void import_grids(const ImportedColumns& imported, const plant::ChainAxis& axis,
                   plant::ErrorModel& errors);
+
+/// Grids that cover the travel of their axes. Beyond its points a control keeps the values at the
+/// ends, and so do the points that are added; over an endless rotary axis the file must cover one
+/// turn.
+/// @param notes  what was added
+/// @throws InputError with file and line over an endless axis
+void cover_travel(ImportedColumns& imported, const model::MachineSettings& machine,
+                  std::vector<std::string>& notes);
 
 bool has_grids(const ImportedColumns& imported, Axis axis);
 

@@ -92,7 +92,14 @@ void add_grid_points(const TableLine& line, Axis argument, const plant::ErrorFun
     const auto place = std::find(g.axes().begin(), g.axes().end(), argument);
     if (place == g.axes().end()) continue;
     const auto k = static_cast<std::size_t>(place - g.axes().begin());
-    for (const double q : g.points().at[k]) add_within(line, argument, q, at);
+    const std::vector<double>& points = g.points().at[k];
+    const bool repeats = !g.points().repeats.empty() && g.points().repeats[k];
+    const double span = points.back() - points.front();
+    const double first = repeats ? std::floor((line.from - points.front()) / span) : 0.0;
+    const double last = repeats ? std::floor((line.to - points.front()) / span) : 0.0;
+    for (double turn = first; turn <= last; ++turn) {
+      for (const double q : points) add_within(line, argument, q + turn * span, at);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include "sim/system/read_file.h"
 #include "sim/system/write_file.h"
 #include "sim/tables/error_import.h"
+#include "sim/tables/grid_import.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {
@@ -54,11 +55,11 @@ sim::tables::ImportedColumns read_files(const Options& options) {
 }
 
 plant::ErrorModel read_back(const std::string& text, const std::string& path,
-                            const std::string& name, const JointLayout& layout) {
+                            const std::string& name, const sim::input::MachineAxes& machine) {
   const sim::config::Document document = sim::config::Document::from_text(text, path);
   sim::config::Reader root(document);
   sim::config::Reader models = root.table("errors");
-  auto all = sim::input::read_error_models(models, layout);
+  auto all = sim::input::read_error_models(models, machine);
   root.finish();
   return std::move(all.at(name));
 }
@@ -77,16 +78,19 @@ int import_errors(const Options& options) {
                                                               options.list("set"));
   const plant::MachineChain& chain = described.machine.chain;
 
-  const sim::tables::ImportedColumns columns = read_files(options);
+  sim::tables::ImportedColumns columns = read_files(options);
+  std::vector<std::string> assumptions;
+  sim::tables::cover_travel(columns, described.machine, assumptions);
   const sim::tables::ErrorImport imported = sim::tables::import_errors(columns, chain);
   std::vector<std::string> comments = {
       fmt::format("errors of {} from {}", described.machine.name,
                   fmt::join(options.list("import"), ", ")),
       fmt::format("document: {}", sim::tables::rules_of(columns.format).document)};
   comments.insert(comments.end(), imported.notes.begin(), imported.notes.end());
+  comments.insert(comments.end(), assumptions.begin(), assumptions.end());
   const std::string text = sim::tables::errors_toml(imported.errors, name, comments);
-  const std::size_t positions =
-      sim::tables::verify_import(columns, chain, read_back(text, path, name, chain.layout));
+  const std::size_t positions = sim::tables::verify_import(
+      columns, chain, read_back(text, path, name, sim::input::MachineAxes(described.machine)));
   sim::system::write_text_file(path, text, options.has("force"));
 
   if (options.has("quiet")) return kDone;

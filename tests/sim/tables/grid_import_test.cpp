@@ -72,6 +72,47 @@ TEST(GridImport, WrittenTablesComeBackAsTheModel) {
   EXPECT_NEAR(imported.errors.location("EC0Y"_err), 20 * urad, 1e-12);
 }
 
+// Z 0..200, X -100..100 mm for 0..100 and 0..10 in the file.
+TEST(GridImport, KeepsTheValuesAtTheEndsToTheEndsOfTheTravel) {
+  for (const char* structure : {"[w b X Y Z t]", "[w X b Y Z t]"}) {
+    const model::MachineSettings machine = machine_of(structure);
+    const ImportedColumns in_file = columns_of(kText);
+    ImportedColumns columns = in_file;
+    std::vector<std::string> notes;
+    cover_travel(columns, machine, notes);
+    ASSERT_EQ(notes.size(), 6U);
+    EXPECT_EQ(notes[0],
+              "assumed: EXX keeps its values at the ends of the table (Z 0 to 100 mm, X 0 to 10 "
+              "mm) to the ends of the travel");
+    const ErrorImport imported = import_errors(columns, machine.chain);
+    const config::Document document = config::Document::from_text(
+        errors_toml(imported.errors, "measured", imported.notes), "errors.toml");
+    config::Reader root(document);
+    config::Reader models = root.table("errors");
+    const plant::ErrorModel model =
+        input::read_error_models(models, input::MachineAxes(machine)).at("measured");
+    EXPECT_EQ(verify_import(columns, machine.chain, model), 6000U) << structure;
+    EXPECT_EQ(verify_import(in_file, machine.chain, model), 6000U) << structure;
+    if (std::string(structure) != "[w b X Y Z t]") continue;
+    AxisWords q = AxisWords::Zero();
+    q << -0.05, 0, 0.15, 0, 0, 0;
+    EXPECT_NEAR(model.component("EZX"_err).value(-0.05, q), 30 * um, 1e-12);  // that of Z 100, X 0
+  }
+}
+
+TEST(GridImport, WantsOneTurnOfAnEndlessAxis) {
+  ImportedColumns columns = columns_of("C X EXX\n0 0 0.1\n0 1 0\n90 0 0\n90 1 0\n");
+  std::vector<std::string> notes;
+  try {
+    cover_travel(columns, machine_of("[w C' b X Y Z t]"), notes);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "v.csv:1: error: EXX covers 0 to 90 deg of C, whose travel is endless; must cover "
+                 "one turn");
+  }
+}
+
 TEST(GridImport, AnotherModelIsFound) {
   const plant::MachineChain chain = machine_of("[w b X Y Z t]").chain;
   const ImportedColumns columns = columns_of(kText);
