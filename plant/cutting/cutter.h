@@ -20,7 +20,10 @@ struct Cutter {
   double corner_radius = 0.0;  // r, m, 0 <= r <= R
   double length = 0.0;         // m, of the flutes; nothing above them cuts
   int teeth = 2;
-  double helix = 0.0;  // rad
+  double helix = 0.0;             // rad
+  double runout = 0.0;            // m, radial: reading of an indicator over a turn, twice the
+                                  // eccentricity
+  double runout_direction = 0.0;  // rad, from tooth 0 in the sense of rotation
 
   bool is_flat() const { return corner_radius == 0.0; }
   bool is_ball() const { return corner_radius == radius; }
@@ -29,7 +32,14 @@ struct Cutter {
   /// h < r, else R.
   /// @pre 0 <= h <= length
   double radius_at(double h) const;
+
+  /// Distance by which the edge of a tooth is farther from the axis of rotation (m), in first
+  /// order: runout / 2 cos(2 pi tooth / teeth - runout_direction). 0 on average over equal teeth.
+  double radius_offset(int tooth) const;
 };
+
+/// Largest plausible run-out of a cutter in its holder (m): a tool beyond it is not clamped.
+inline constexpr double kMaxRunout = 0.2e-3;
 
 /// Rules that the values break, each as "KEY RULE" ("corner_radius must be <= radius"). Empty for
 /// a possible cutter.

@@ -5,29 +5,17 @@
 #include <cassert>
 #include <cmath>
 
+#include "plant/cutting/edge_integrals.h"
+
 namespace servomill::plant {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kTurn = 2.0 * kPi;
 constexpr double kNoChip = 1e-12;  // of h / c, rounding: below it an edge slides along the feed
 
-// Integrals over phi of 1, sin, cos, sin^2, sin cos.
-struct Integrals {
-  double one = 0.0, sine = 0.0, cosine = 0.0, sine_squared = 0.0, sine_cosine = 0.0;
-
-  void add(double from, double to) {
-    if (!(to > from)) return;
-    one += to - from;
-    sine += std::cos(from) - std::cos(to);
-    cosine += std::sin(to) - std::sin(from);
-    sine_squared += 0.5 * (to - from) - 0.25 * (std::sin(2.0 * to) - std::sin(2.0 * from));
-    sine_cosine += 0.25 * (std::cos(2.0 * from) - std::cos(2.0 * to));
-  }
-};
-
 // Over the part of an arc that is in contact, whole turns apart.
-Integrals integrals_of(const EngagedArc& arc, const AngleRange& contact) {
-  Integrals sum;
+EdgeIntegrals integrals_of(const EngagedArc& arc, const AngleRange& contact) {
+  EdgeIntegrals sum;
   if (contact.empty()) return sum;
   for (const double turn : {-kTurn, 0.0, kTurn}) {
     sum.add(std::max(arc.from, contact.from + turn), std::min(arc.to, contact.to + turn));
@@ -59,7 +47,7 @@ CuttingForce average_force(const CuttingCoefficients& K, int teeth, const FeedDi
                            std::span<const EngagedArc> arcs) {
   CuttingForce sum;
   for (const EngagedArc& arc : arcs) {
-    const Integrals I = integrals_of(arc, contact_range(feed, arc.kappa));
+    const EdgeIntegrals I = integrals_of(arc, contact_range(feed, arc.kappa));
     const double sk = std::sin(arc.kappa), ck = std::cos(arc.kappa);
     const double a = feed.across * sk, b = feed.along * ck;  // h = c (a sin(phi) - b)
     const double h_one = a * I.sine - b * I.one;

@@ -263,6 +263,23 @@ CutterFrame frame_of(const CutterMotion& motion) {
   return frame;
 }
 
+Eigen::Matrix<double, 3, 2> spindle_directions(const Eigen::Vector3d& k) {
+  constexpr double kAlong = 1.7e-3;  // sine of 0.1 deg
+  const Eigen::Vector3d X = Eigen::Vector3d::UnitX(), Y = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d reference = (X - X.dot(k) * k).norm() > kAlong ? X : Y;
+  Eigen::Matrix<double, 3, 2> out;
+  out.col(0) = (reference - reference.dot(k) * k).normalized();
+  out.col(1) = k.cross(Eigen::Vector3d(out.col(0)));
+  return out;
+}
+
+double spindle_angle_of(const CutterFrame& frame) {
+  const Eigen::Vector3d e1 = frame.axes.col(0);
+  const Eigen::Matrix<double, 3, 2> across = spindle_directions(frame.axes.col(2));
+  const double from_x = std::atan2(e1.dot(across.col(1)), e1.dot(across.col(0)));
+  return frame.axes.determinant() > 0.0 ? from_x : -from_x;
+}
+
 std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& motion,
                                    const IsMaterial& is_material,
                                    const Eigen::AlignedBox3d& within) {

@@ -48,11 +48,13 @@ class TravelDirections {
   std::vector<double> directions_;
 };
 
-/// Cutting along the path of a case; its force acts on the drives once a position period.
+/// Cutting along the path of a case. The average force acts on the drives once a position period,
+/// that of single teeth once a tooth step.
 class CutAlongPath {
  public:
   explicit CutAlongPath(const CaseInputs& in)
-      : in_(in), load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance) {}
+      : in_(in),
+        load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth) {}
 
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
   void advance(const controllers::Trajectory::Sample& reference) {
@@ -62,16 +64,23 @@ class CutAlongPath {
     tool_ = tool;
     load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);
   }
+  /// Teeth turn for a tooth step from tick n on. @pre the case has teeth
+  void turn(Tick n) {
+    turns_from_ = in_.machine.nc.periods.seconds(n);
+    load_.turn(in_.machine.nc.periods.seconds(in_.tooth_step));
+  }
   const Joints& load() const { return load_.load(); }
   void note(Snapshot& now) const {
     now.cutting_force = load_.force();
     now.deflection = load_.deflection();
+    now.spindle_angle = load_.spindle_angle(now.time - turns_from_);
   }
 
  private:
   const CaseInputs& in_;
   CuttingLoad load_;
   int tool_ = 0;
+  double turns_from_ = 0.0;  // s
   Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
 };
 

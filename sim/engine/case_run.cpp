@@ -30,7 +30,7 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       recorded_(references.of(in.reference, setpoint_.delay())),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping),
+                in.keeping, in.teeth != nullptr),
       travel_(in.machine_errors, Joints::Zero()),
       last_ticks_(in.machine.joints()),
       structure_(structure_of(in.machine, schedule)) {
@@ -135,6 +135,11 @@ CaseResult CaseRun::finish(Tick n) {
 
 void CaseRun::apply_cutting_force(Tick n) {
   cut_->advance(recorded_.at(nc_.periods.seconds(n)));
+  if (!has_teeth()) axes_.load(cut_->load(), run_);
+}
+
+void CaseRun::turn_teeth(Tick n) {
+  cut_->turn(n);
   axes_.load(cut_->load(), run_);
 }
 

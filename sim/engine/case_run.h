@@ -38,6 +38,11 @@ class CaseRun {
   bool supervise(Tick n);
   void record(Tick n);
 
+  /// False if the average cutting force acts, or none.
+  bool has_teeth() const { return in_.teeth != nullptr; }
+  /// Loads the axes with the force of the teeth until the next tooth step. @pre has_teeth()
+  void turn_teeth(Tick n);
+
   /// False for a structure that is rigid under acceleration.
   bool bends() const { return structure_.has_value(); }
   /// The drives have moved by `step`: so does the structure. @pre bends()

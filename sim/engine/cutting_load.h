@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "sim/model/run_settings.h"
 
 namespace servomill::sim::engine {
+
+class EngagedTeeth;
 
 /// Average force of the work on the cutter over the arc length s of the original program. Linear
 /// between rows; rows of equal s are a jump.
@@ -21,6 +24,8 @@ class CuttingTable {
     Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // N per m of feed per tooth, in W
     Eigen::Vector3d edge = Eigen::Vector3d::Zero();   // N of a new edge, in W
     double cut = 0.0;                                 // m, cut by feed moves until here
+    double turns = 0.0;                               // 1/s, of the spindle, towards this row
+    std::int32_t teeth = -1;  // engagement (engaged_teeth.h); -1: none, or none is needed
   };
   /// Place of the last force; makes forward reading O(1).
   struct Cursor {
@@ -40,23 +45,44 @@ class CuttingTable {
   Eigen::Vector3d force(double s, double speed, double wear, double wear_per_m,
                         Cursor& cursor) const;
 
+  /// The rows around s and how far s is from the first to the second, 0 to 1.
+  /// @pre s is within the rows
+  struct Place {
+    const Row *before, *after;
+    double share;
+    double number(double Row::*member) const {
+      return before->*member + share * (after->*member - before->*member);
+    }
+  };
+  bool reaches(double s) const;
+  Place place(double s, Cursor& cursor) const;
+
  private:
   std::vector<Row> rows_;
 };
 
-/// Cutting force on one run, position period by position period.
+/// Cutting force on one run: the average one position period by position period, that of single
+/// teeth step by step of their rotation.
 class CuttingLoad {
  public:
   /// All arguments must outlive this.
   /// @param compliance  m/N, of the structure in each linear axis
+  /// @param teeth       engagements of the table; nullptr: the average force acts
   CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
-              const plant::MachineChain& chain, const Eigen::Vector3d& compliance);
+              const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
+              const EngagedTeeth* teeth = nullptr);
 
   /// Stands at s.
   void start(double s) { s_ = s; }
   /// The path has gone on to s within `dt` (s) and the joints are at Q (5; m, rad).
   /// @param p_ST  m, tip of the tool in the spindle
   void advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST);
+  /// The spindle turns for `dt` (s) from here on: the mean force of the teeth meanwhile. Along the
+  /// path the position period goes on at the speed of the last one. @pre there are teeth
+  void turn(double dt);
+  /// Angle of the spindle (rad) a time (s) after the last turn() began, counted from the start of
+  /// the run (plant::spindle_directions).
+  double spindle_angle(double after) const { return angle_ + rate_ * after; }
 
   /// On the cutter, 3; N, in W.
   const Eigen::Vector3d& force() const { return force_; }
@@ -70,8 +96,14 @@ class CuttingLoad {
   const model::CuttingWear& wear_;
   const plant::MachineChain& chain_;
   const Eigen::Vector3d& compliance_;
+  const EngagedTeeth* teeth_;
+  void set_force(const Eigen::Vector3d& force);
+
   CuttingTable::Cursor cursor_;
-  double s_ = 0.0;
+  double s_ = 0.0, speed_ = 0.0;
+  double elapsed_ = 0.0;                            // s, of the position period
+  double angle_ = 0.0, rate_ = 0.0, turned_ = 0.0;  // rad, rad/s, s; of the step in progress
+  Eigen::Matrix<double, 3, kJoints> J_pQ_ = Eigen::Matrix<double, 3, kJoints>::Zero();
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), deflection_ = Eigen::Vector3d::Zero();
   Joints load_ = Joints::Zero();
 };

@@ -12,7 +12,7 @@ IdealRun::IdealRun(CaseInputs& in)
       feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping),
+                in.keeping, in.teeth != nullptr),
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)) {
   if (in.machine.inertial_compliances.empty()) return;
@@ -50,6 +50,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_) cut_->advance(reference_at(n));
+    if (in_.teeth != nullptr) cut_->turn(n);
     const bool is_recorded = n % in_.record_period == 0;
     if (!is_recorded && !travel_.matters() && !structure_) continue;
     const Joints Q_true = Q_true_of(set);

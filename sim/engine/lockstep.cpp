@@ -16,6 +16,7 @@ std::vector<model::Rate> rates_of(const CaseInputs& in) {
       in.machine.scale_delay + (in.hardware.connected ? in.hardware.signal_delay : 0);
   std::vector<model::Rate> rates = loop_rates(in.machine.nc.periods, delay);
   rates.push_back({model::kRecord, in.record_period, 0});
+  if (in.teeth != nullptr) rates.push_back({model::kToothStep, in.tooth_step, 0});
   if (in.feedback) rates.push_back({model::kErrorModel, in.hardware.model_period, 0});
   return rates;
 }
@@ -71,6 +72,7 @@ void Lockstep::tick(std::uint8_t due, Tick n) {
     axes_.close_position_loops();
     if (!axes_.within_limits()) stop_faulty_axes(n);
   }
+  if (due & model::kToothStep) turn_teeth(n);
   if (due & model::kCurrentLoop) axes_.latch_current_commands();  // of the velocity period before
   if (due & model::kVelocityLoop) {
     axes_.close_velocity_loops();
@@ -104,6 +106,10 @@ void Lockstep::stop_faulty_axes(Tick n) {
   each([&](CaseRun& run) {
     if (!run.supervise(n)) next_end_ = n;
   });
+}
+
+void Lockstep::turn_teeth(Tick n) {
+  each([&](CaseRun& run) { run.turn_teeth(n); });
 }
 
 void Lockstep::track_axis_reversals() {

@@ -37,6 +37,7 @@ class Lockstep {
   void add_velocities(Tick n);
   void stop_faulty_axes(Tick n);
   void track_axis_reversals();
+  void turn_teeth(Tick n);
   void record(Tick n);
   void bend_structures(Tick step);
   bool take_out_those_done(Tick n, std::vector<CaseResult>& results);

@@ -52,6 +52,25 @@ double per_metre(const Signal& signal) {
   return signal.scale == kIjk ? 1.0 / kArm : 0.0;
 }
 
+// Signals of the cut: those of single teeth have an angle.
+void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
+  all.push_back({"cutting_force", "N",
+                 teeth ? "force of the workpiece on the teeth of the cutter, mean over a "
+                         "tooth step from here on, in the workpiece"
+                       : "mean force of the workpiece on the cutter, in the workpiece",
+                 "XYZ", kXyz});
+  all.push_back({"structural_deflection", "um",
+                 "deflection of the structure downstream of the scales by cutting forces, part "
+                 "of tool_position_true",
+                 linear, kLinear});
+  if (teeth) {
+    all.push_back({"spindle_angle", "deg",
+                   "angle of tooth 0 of the cutter since the start, from the workpiece's Y in the "
+                   "sense of rotation",
+                   "", ""});
+  }
+}
+
 }  // namespace
 
 std::vector<Signal> recorded_signals(const model::MachineSettings& machine, SignalParts parts) {
@@ -92,14 +111,7 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
     all.push_back({"uncorrectable_axis", "urad",
                    "tool axis deviation that the axes cannot compensate, identified", "", ""});
   }
-  if (parts.cut) {
-    all.push_back({"cutting_force", "N",
-                   "mean force of the workpiece on the cutter, in the workpiece", "XYZ", kXyz});
-    all.push_back({"structural_deflection", "um",
-                   "deflection of the structure downstream of the scales by cutting forces, part "
-                   "of tool_position_true",
-                   linear, kLinear});
-  }
+  if (parts.cut) add_cut(parts.teeth, linear, all);
   if (!machine.inertial_compliances.empty()) {
     all.push_back({"inertial_deflection", "um",
                    "deflection of the structure downstream of the scales by acceleration of the "
@@ -118,7 +130,9 @@ void round_to(const model::RecordFormat& format, std::vector<Signal>& signals) {
   for (Signal& signal : signals) {
     const double most = format.resolution * per_metre(signal);
     if (most > 0.0) signal.quantum = std::exp2(std::floor(std::log2(most)));
-    if (per_metre(signal) > 0.0 && signal.name != "s") signal.storage = format.storage;
+    if (per_metre(signal) > 0.0 && signal.name != "s" && signal.name != "spindle_angle") {
+      signal.storage = format.storage;
+    }
   }
 }
 

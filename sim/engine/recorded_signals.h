@@ -14,6 +14,7 @@ struct SignalParts {
   bool imposed = false;        // displacement by imposed errors
   bool uncorrectable = false;  // deviation that the axes cannot compensate
   bool cut = false;            // force and deflection
+  bool teeth = false;          // the force is that of single teeth: angle of the spindle
   bool programmed = false;     // positions on the programmed path
 };
 

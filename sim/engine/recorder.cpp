@@ -71,7 +71,7 @@ class Recorder::Rows {
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
-       records::RowKeeping keeping)
+       records::RowKeeping keeping, bool teeth)
       : machine_(machine),
         machine_errors_(machine_errors),
         imposed_(imposed),
@@ -80,6 +80,7 @@ class Recorder::Rows {
         rotary_displaced_(rotary_displaced),
         correcting_(std::move(correcting)),
         cuts_(cuts),
+        teeth_(teeth),
         bends_(!machine.inertial_compliances.empty()),
         keeping_(std::move(keeping)) {
     for (int joint = 0; joint < kJoints; ++joint) {
@@ -90,6 +91,7 @@ class Recorder::Rows {
         recorded_signals(machine, {.imposed = imposed != nullptr,
                                    .uncorrectable = !correcting_.empty(),
                                    .cut = cuts_,
+                                   .teeth = teeth_,
                                    .programmed = keeping_.thinning.has_value()});
     round_to(format, all);
     const records::Series columns(std::move(all));
@@ -138,6 +140,7 @@ class Recorder::Rows {
   const bool rotary_displaced_;
   const std::vector<const strategies::Strategy*> correcting_;
   const bool cuts_;
+  const bool teeth_;
   const bool bends_;  // under acceleration
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   const plant::InverseKinematics inverse_{machine_.chain};
@@ -252,6 +255,7 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
     row.put(now.cutting_force, 1.0);
     for (const int joint : linear_) row.put(now.deflection[joint] / um);
   }
+  if (teeth_) row.put(now.spindle_angle / deg);
   if (bends_) {
     for (const int joint : linear_) row.put(now.inertial_deflection[joint] / um);
   }
@@ -274,10 +278,10 @@ Recorder::Recorder(const model::MachineSettings& machine,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
-                   bool cuts, records::RowKeeping keeping)
+                   bool cuts, records::RowKeeping keeping, bool teeth)
     : rows_(std::make_unique<Rows>(machine, machine_errors, imposed, path, tips, format,
                                    rotary_displaced, std::move(correcting), cuts,
-                                   std::move(keeping))) {
+                                   std::move(keeping), teeth)) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * machine_errors.plays().size());
 }

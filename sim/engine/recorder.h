@@ -33,6 +33,7 @@ struct Snapshot {
   Joints torque = Joints::Zero();
   Eigen::Vector3d cutting_force = Eigen::Vector3d::Zero();  // N, on the cutter, in W
   Eigen::Vector3d deflection = Eigen::Vector3d::Zero();     // m, of the structure in linear axes
+  double spindle_angle = 0.0;                               // rad, where teeth cut
   // m, the same by acceleration
   Eigen::Vector3d inertial_deflection = Eigen::Vector3d::Zero();
 };
@@ -47,12 +48,13 @@ class Recorder {
   ///                          where s stands, they are compared with the nearest programmed place
   /// @param cuts  force of the cut and deflection are recorded; the deflection moves the tip
   /// @param keeping  where rows are kept
+  /// @param teeth  the force is that of single teeth: the angle of the spindle is recorded
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
   Recorder(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
-           bool cuts = false, records::RowKeeping keeping = {});
+           bool cuts = false, records::RowKeeping keeping = {}, bool teeth = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -50,6 +50,8 @@ struct CaseInputs {
   std::vector<const strategies::Strategy*> recorded_corrections = {};
   std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
+  const EngagedTeeth* teeth = nullptr;    // of `cutting`; nullptr: the average force acts
+  Tick tooth_step = 0;                    // period of the force of the teeth
   model::CuttingWear wear = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not
 };

@@ -132,6 +132,7 @@ start = { X_mm = 0.0 }
 number = 1
 length_mm = 110.0
 diameter_mm = 8.0
+teeth = 4
 
 [errors.NAME.EXX]
 constant_um = 1.0
@@ -197,6 +198,7 @@ to_mm = 0
 
 [cutting]
 material = "42CrMo4"
+force = "instantaneous"
 
 [[probe]]
 name = "line"

@@ -50,6 +50,18 @@ plant::CuttingCoefficients read_material(config::Reader& table) {
   return plant::materials()[index].typical;
 }
 
+void read_teeth(config::Reader& table, model::CuttingSpec& spec) {
+  constexpr std::string_view kForces[] = {"average", "instantaneous"};
+  spec.teeth = table.choice_or("force", 0, kForces) == 1;
+  if (!spec.teeth && table.has("steps_per_tooth")) {
+    table.raw("steps_per_tooth");
+    table.fault("steps_per_tooth", "needs force = \"instantaneous\"");
+    return;
+  }
+  spec.steps_per_tooth = static_cast<int>(table.integer_or(
+      "steps_per_tooth", spec.steps_per_tooth, {config::at_least(4), config::at_most(1000)}));
+}
+
 }  // namespace
 
 plant::Stock read_stock(config::Reader& part) {
@@ -80,6 +92,7 @@ model::CuttingSpec read_cutting(config::Reader& table) {
                       : table.real(K.name, quantity, {config::at_least(0.0)});
   }
   spec.wear.initial = table.real_or("wear", 1.0, config::kNumber, {config::at_least(0.0)});
+  read_teeth(table, spec);
   spec.wear.per_m = table.real_or("wear_per_m", 0.0, config::kPerLength, {config::at_least(0.0)});
   return spec;
 }

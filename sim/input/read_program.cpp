@@ -114,6 +114,7 @@ void read_tool(config::Reader& table, model::ProgramSpec& program) {
   tool.offset[index_of(Axis::Z)] =
       table.real("length_mm", config::kLength, {config::at_least(0.0)});
   tool.diameter = table.real_or("diameter_mm", 0.0, config::kLength, {config::at_least(0.0)});
+  const bool teeth_are_given = table.has("teeth");
   const auto cutter = read_cutter(table, tool.diameter);
   if (program.tools.find(tool.number) != nullptr) {
     table.fault("number", "is already used by an earlier tool");
@@ -121,6 +122,7 @@ void read_tool(config::Reader& table, model::ProgramSpec& program) {
   }
   program.tools.add(tool);
   if (cutter) program.cutters[tool.number] = *cutter;
+  if (cutter && !teeth_are_given) program.assumed_teeth.insert(tool.number);
 }
 
 }  // namespace

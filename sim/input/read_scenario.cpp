@@ -254,6 +254,10 @@ class ScenarioReader {
     if (out_.stock.empty() && cutting.faults() == 0) {
       cutting.fault("needs stock: [[part.stock]] with a box or a cylinder");
     }
+    if (!out_.cutting->teeth) return;
+    for (const int tool : out_.program.assumed_teeth) {
+      cutting.fault("force", fmt::format("needs the number of teeth of tool {}", tool));
+    }
   }
 
   // Refuses keys that nothing would look at, though the user counts on them.

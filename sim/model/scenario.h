@@ -55,6 +55,7 @@ struct ProgramSpec {
   Place start_place;                          // for a start outside the travel
   controllers::ToolTable tools;
   std::map<int, plant::Cutter> cutters;  // of the tools with a diameter, by number
+  std::set<int> assumed_teeth;           // cutters whose number of teeth is not given
 
   const std::string& text() const { return *shared_text; }
 };
@@ -129,6 +130,9 @@ struct RecordSpec {
 struct CuttingSpec {
   plant::CuttingCoefficients coefficients;
   CuttingWear wear;
+  bool teeth = false;        // forces are those of single teeth, else their average
+  int steps_per_tooth = 20;  // forces of teeth are means over a step; at least so many while one
+                             // tooth follows the other
   Place place;
 };
 

@@ -18,6 +18,7 @@ enum Due : std::uint8_t {
   kVelocityLoop = 8,
   kCurrentLoop = 16,
   kRecord = 32,
+  kToothStep = 64,  // mean force of the teeth until the next one
 };
 
 struct Instant {

@@ -76,10 +76,12 @@ void add(system::MemoKey& key, const plant::Stock& stock) {
 void add(system::MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
   key.add(cutters.size());
   for (const auto& [number, cutter] : cutters) {
-    const auto& [radius, corner_radius, length, teeth, helix] = cutter;
+    const auto& [radius, corner_radius, length, teeth, helix, runout, runout_direction] = cutter;
     key.add(number);
     key.add(teeth);
-    for (const double value : {radius, corner_radius, length, helix}) key.add(value);
+    for (const double value : {radius, corner_radius, length, helix, runout, runout_direction}) {
+      key.add(value);
+    }
   }
 }
 
@@ -303,6 +305,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
                                     scenario_.stock,
                                     scenario_.program.cutters,
                                     scenario_.cutting->coefficients,
+                                    scenario_.cutting->teeth,
                                     scenario_.program.file,
                                     scenario_.cutting->place};
   system::MemoKey key;
@@ -312,6 +315,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
   key.add(inputs.work_offset);
   add(key, inputs.stock);
   add(key, inputs.cutters);
+  key.add(inputs.teeth);
   for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
     key.add(inputs.coefficients.*K.member);
   }

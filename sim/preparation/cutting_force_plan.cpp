@@ -10,6 +10,7 @@
 #include "plant/cutting/removed_volume.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/engine/engaged_teeth.h"
 #include "sim/preparation/tool_passes.h"
 
 namespace servomill::sim::preparation {
@@ -49,6 +50,7 @@ class Planner {
     }
     plan_.program = in_.program;
     plan_.table = engine::CuttingTable(std::move(rows_));
+    if (in_.teeth) plan_.teeth = std::make_shared<const engine::EngagedTeeth>(std::move(teeth_));
     return std::move(plan_);
   }
 
@@ -123,6 +125,7 @@ class Planner {
     const engine::ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
     engine::CuttingTable::Row row{.s = share < 1.0 ? p.s_begin + share * length : p.s_end};
+    row.turns = stage.turns;
     if (!may_meet(stage)) return row;
     const double at = std::max(share, std::min(0.5, kBehind / length));
     const double ahead = std::min(1.0, at + kTangent / length);
@@ -155,6 +158,10 @@ class Planner {
     row.chip = tangent.norm() / (stage.turns * stage.cutter->teeth);
     row.shear = passes_.frame().R_WG * frame.axes * force.shear;
     row.edge = passes_.frame().R_WG * frame.axes * force.edge;
+    if (in_.teeth) {
+      const plant::CutterFrame in_W{passes_.frame().R_WG * frame.axes, frame.feed};
+      row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, stage.turns);
+    }
     touches_ = meets_ = true;
     return row;
   }
@@ -268,6 +275,7 @@ class Planner {
   const std::vector<Stage>& stages_;
   const plant::RemovedVolume* removed_ = nullptr;
   std::vector<engine::CuttingTable::Row> rows_;
+  engine::EngagedTeeth teeth_{in_.coefficients};
   bool cut_before_ = false, meets_ = false, touches_ = false;
   std::size_t rapids_ = 0;
   double rapid_depth_ = 0.0;     // m, of the present move

@@ -22,6 +22,7 @@ struct CuttingPlanInputs {
   const plant::Stock& stock;                          // in the work frame (sim/model/work_frame.h)
   const std::map<int, plant::Cutter>& cutters;        // by number of tool
   plant::CuttingCoefficients coefficients;
+  bool teeth;        // engagements of single teeth are planned
   std::string file;  // of the program, for messages
   Place place;       // of [cutting]
 };

@@ -94,8 +94,9 @@ struct PlanDistance {
 struct PlannedCutting {
   std::shared_ptr<const InterpretedProgram> program;
   engine::CuttingTable table;
-  std::vector<Fault>
-      warnings;  // rapid moves through material, shanks in it; of every case that cuts it so
+  std::shared_ptr<const engine::EngagedTeeth> teeth;  // nullptr: the average force acts
+  // rapid moves through material, shanks in it; of every case that cuts it so
+  std::vector<Fault> warnings;
 };
 
 /// One for all points of a sweep, for any number of threads. What is taken from it is what would

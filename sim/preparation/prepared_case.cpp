@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plant/kinematics/chain.h"
+#include "sim/engine/engaged_teeth.h"
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/nominal_part.h"
 #include "sim/preparation/case_preparation.h"
@@ -13,6 +14,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/stability_check.h"
+#include "sim/preparation/tooth_step.h"
 #include "strategies/gcode.h"
 #include "strategies/plugin_child.h"
 
@@ -27,6 +29,7 @@ struct PreparedCase::Parts {
   SharedMotion motion;
   SharedModel machine_errors, imposed;
   SharedCutting cutting;
+  Tick tooth_step = 0;
   Joints machine_start;
   std::optional<records::ThinningLimits> thinning = {};  // of its recording
   double distance_of_plan = 0.0;                         // m, of nominal points from the part
@@ -63,7 +66,7 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
 
 PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpec& spec,
                            PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, Joints::Zero()}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, 0, Joints::Zero()}) {
   PreparationCache own;
   const CasePreparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
@@ -89,6 +92,10 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   parts.machine_errors = prepare.model(spec.machine_errors.value_or(scenario.machine_errors));
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.cutting = prepare.cutting(parts.program);
+  if (parts.cutting && parts.cutting->teeth) {
+    parts.tooth_step = tooth_step(*scenario.cutting, parts.cutting->teeth->passing_frequency(),
+                                  parts.machine().nc.periods, spec.servo);
+  }
 }
 
 void PreparedCase::thin(double bytes) {
@@ -125,6 +132,8 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
   inputs.pieces = p.program->path.pieces_of(*p.motion->moves);
   if (p.cutting) {
     inputs.cutting = &p.cutting->table;
+    inputs.teeth = p.cutting->teeth.get();
+    inputs.tooth_step = p.tooth_step;
     inputs.wear = p.spec.wear;
   }
   inputs.stops_with = p.stops_with;

@@ -28,6 +28,10 @@ CUTTING = [
     cut("a tool without diameter in the stock", BLOCK + STEEL, tool=""),
     cut("cuts and coordinates that are odd, and run all the same", BLOCK + STEEL, tool="diameter_mm = 8.0\nflute_length_mm = 5.0",
         program=[("G43 H1", "G43 H1\nS4775 M3"), ("G1 Y5", "G52 X1\nG1 Y5\nG0 Y10")], commands=["servomill run scenario.toml -q -o out.h5"]),
+    cut("forces of teeth whose number is unknown, of a tool that nothing clamps", BLOCK + STEEL + 'force = "instantaneous"',
+        tool="diameter_mm = 8.0\nrunout_um = 500.0"),
+    cut("forces of teeth that pass faster than the tick resolves", BLOCK + STEEL + 'force = "instantaneous"',
+        tool="diameter_mm = 8.0\nteeth = 4", program=[("G43 H1", "G43 H1\nS80000 M3")]),
     axis("a structure that gives way to nothing", "structural_stiffness = 0.0"),
 ]
 
