@@ -1,4 +1,4 @@
-/// Where a coordinate reverses along a way.
+/// Turning points of a coordinate along a way.
 #pragma once
 
 #include <functional>

@@ -22,13 +22,21 @@ struct Outcome {
 /// Set from outside to end a run early; a case that sees it stops as "interrupted".
 using StopFlag = std::atomic<bool>;
 
+/// Heat of a case, step after step of its thermal network.
+struct HeatCourse {
+  double step = 0.0;  // s; 0: a machine without heat
+  std::size_t bodies = 0;
+  std::vector<double> power;  // W, of each body, step after step
+};
+
 struct CaseResult {
   Outcome outcome;
   records::Series servo;       // one row a record period
   records::Series last_ticks;  // when stopped: what happened in the last position periods
   std::vector<strategies::Saturation> saturations;  // of the feedback
-  double simulated_time = 0.0;                      // s
-  double wall_time = 0.0;                           // s, of all that ran in lockstep
+  HeatCourse heat;
+  double simulated_time = 0.0;  // s
+  double wall_time = 0.0;       // s, of all that ran in lockstep
 };
 
 }  // namespace servomill::sim::engine

@@ -38,6 +38,10 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
   initialise_at_rest();
+  if (in.machine.heat) {
+    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors);
+    recorder_.use(heat_->errors(), heat_->temperatures());
+  }
   if (in.stops_with.empty()) return;
   result_.outcome = stopped_at_begin(in.stops_with);
   record(0);
@@ -52,6 +56,7 @@ bool CaseRun::command_axes(Tick n) {
                    axes_.current(run_));
   axes_.follow(set_, run_);
   if (cut_) apply_cutting_force(n);
+  if (heat_ && n > 0 && !heat(n)) return false;
   std::string_view failure = setpoint_.failure();
   if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
   return failure.empty() || stop_with(failure, t);
@@ -129,6 +134,7 @@ CaseResult CaseRun::finish(Tick n) {
   axes_.end(run_);
   result_.simulated_time = nc_.periods.seconds(n);
   result_.servo = recorder_.take();
+  if (heat_) result_.heat = std::move(*heat_).course();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
   return std::move(result_);
 }
@@ -141,6 +147,23 @@ void CaseRun::apply_cutting_force(Tick n) {
 void CaseRun::turn_teeth(Tick n) {
   cut_->turn(n);
   axes_.load(cut_->load(), run_);
+}
+
+// False if the machine has become too hot or too cold.
+bool CaseRun::heat(Tick n) {
+  const auto& reference = recorded_.at(nc_.periods.seconds(n));
+  HeatInputs now;
+  now.current = axes_.current(run_);
+  for (const int j : axes_.joints()) {
+    now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
+  }
+  now.dQ = axes_.dQ_true(run_);
+  if (cut_) now.load = cut_->load();
+  now.spindle = in_.spindle_speeds[reference.move];
+  if (!heat_->advance(now)) return true;
+  recorder_.use(heat_->errors(), heat_->temperatures());
+  const std::string fault = heat_->fault();
+  return fault.empty() || stop_with(fault, nc_.periods.seconds(n));
 }
 
 // In steady state at the start: position feedback agrees with the setpoint.

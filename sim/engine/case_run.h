@@ -1,11 +1,13 @@
 /// Run of one case on cascade loops, in lockstep with others.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "plant/structure/inertial_deflection.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/feedback_lanes.h"
+#include "sim/engine/heat_run.h"
 #include "sim/engine/last_ticks.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/reference.h"
@@ -57,6 +59,7 @@ class CaseRun {
 
  private:
   void apply_cutting_force(Tick n);
+  bool heat(Tick n);
   void initialise_at_rest();
   strategies::Reading reading_at(double t);
   bool stop_with(std::string_view why, double t);
@@ -73,6 +76,7 @@ class CaseRun {
   LastTicks last_ticks_;
   std::optional<CutAlongPath> cut_;
   std::optional<plant::InertialDeflection> structure_;
+  std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   Tick end_ = 0;
   AxisSetpoint set_;
   CaseResult result_;

@@ -15,6 +15,10 @@ IdealRun::IdealRun(CaseInputs& in)
                 in.keeping, in.teeth != nullptr),
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)) {
+  if (in.machine.heat) {
+    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors);
+    recorder_.use(heat_->errors(), heat_->temperatures());
+  }
   if (in.machine.inertial_compliances.empty()) return;
   structure_.emplace(in.machine.inertial_compliances, periods_.base,
                      std::vector{periods_.position});
@@ -51,6 +55,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_) cut_->advance(reference_at(n));
     if (in_.teeth != nullptr) cut_->turn(n);
+    if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
     const bool is_recorded = n % in_.record_period == 0;
     if (!is_recorded && !travel_.matters() && !structure_) continue;
     const Joints Q_true = Q_true_of(set);
@@ -61,6 +66,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   result.simulated_time = periods_.seconds(n);
   result.servo = recorder_.take();
   result.saturations = std::move(saturations_);
+  if (heat_) result.heat = std::move(*heat_).course();
   return result;
 }
 
@@ -105,6 +111,18 @@ void IdealRun::record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
   if (structure_) now.inertial_deflection = structure_->at(motion_.ddQ());
   recorder_.record(now, travel_.at(now.Q_true));
   add_saturations(now.time);
+}
+
+// Ideal axes need no current: only the spindle and constant sources heat. False if the machine has
+// become too hot or too cold.
+bool IdealRun::heat(const controllers::Trajectory::Sample& sample, Outcome& outcome) {
+  HeatInputs now;
+  now.spindle = in_.spindle_speeds[sample.move];
+  if (!heat_->advance(now)) return true;
+  recorder_.use(heat_->errors(), heat_->temperatures());
+  const std::string fault = heat_->fault();
+  if (!fault.empty()) outcome = failed(fault, now_.t, in_.path.line(in_.pieces[sample.move]));
+  return fault.empty();
 }
 
 // Moves the structure by one position period, to Q_true.

@@ -10,6 +10,7 @@
 #include "controllers/path/trajectory.h"
 #include "plant/structure/inertial_deflection.h"
 #include "sim/engine/case_parts.h"
+#include "sim/engine/heat_run.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/sampled_motion.h"
 #include "sim/engine/setpoint.h"
@@ -30,6 +31,7 @@ class IdealRun {
   void add_saturations(double time);
   void record(Tick n, const AxisSetpoint& set, const Joints& Q_true);
   void bend(const Joints& Q_true);
+  bool heat(const controllers::Trajectory::Sample& sample, Outcome& outcome);
   Joints Q_true_of(const AxisSetpoint& set);
 
   CaseInputs& in_;
@@ -42,6 +44,7 @@ class IdealRun {
   std::optional<CutAlongPath> cut_;
   SampledMotion motion_;
   std::optional<plant::InertialDeflection> structure_;
+  std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   std::vector<strategies::Saturation> saturations_;
   controllers::Trajectory::Cursor cursor_, record_cursor_;
 };

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/heat.h"
 
 namespace servomill::sim::engine {
 namespace {
@@ -71,6 +72,22 @@ void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
   }
 }
 
+// Deflections by acceleration, and temperatures.
+void add_states(const model::MachineSettings& machine, const std::string& linear,
+                std::vector<Signal>& all) {
+  if (!machine.inertial_compliances.empty()) {
+    all.push_back({"inertial_deflection", "um",
+                   "deflection of the structure downstream of the scales by acceleration of the "
+                   "axes, part of tool_position_true",
+                   linear, kLinear});
+  }
+  if (machine.heat) {
+    for (const plant::ThermalBody& body : machine.heat->network.bodies) {
+      all.push_back({"temperature_" + body.name, "degC", "temperature of " + body.name, "", ""});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Signal> recorded_signals(const model::MachineSettings& machine, SignalParts parts) {
@@ -112,12 +129,7 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
                    "tool axis deviation that the axes cannot compensate, identified", "", ""});
   }
   if (parts.cut) add_cut(parts.teeth, linear, all);
-  if (!machine.inertial_compliances.empty()) {
-    all.push_back({"inertial_deflection", "um",
-                   "deflection of the structure downstream of the scales by acceleration of the "
-                   "axes, part of tool_position_true",
-                   linear, kLinear});
-  }
+  add_states(machine, linear, all);
   if (parts.programmed && !linear.empty()) {
     all.push_back({"programmed_linear", "mm",
                    "position of the ideal machine on the programmed path, linear axes", linear,

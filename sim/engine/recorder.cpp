@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "plant/heat/temperature.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/recorded_signals.h"
@@ -73,7 +74,7 @@ class Recorder::Rows {
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
        records::RowKeeping keeping, bool teeth)
       : machine_(machine),
-        machine_errors_(machine_errors),
+        machine_errors_(&machine_errors),
         imposed_(imposed),
         path_(path),
         tips_(tips),
@@ -107,8 +108,14 @@ class Recorder::Rows {
     return keeper_->take();
   }
 
+  /// @param errors  of the machine from here on
+  void use(const plant::VolumetricModel& errors, const std::vector<double>& temperatures) {
+    machine_errors_ = &errors;
+    temperatures_ = temperatures;
+  }
+
   void add(const std::vector<Snapshot>& block, std::span<const double> directions) {
-    const std::size_t plays = machine_errors_.plays().size();
+    const std::size_t plays = machine_errors_->plays().size();
     if (!keeper_) expect(0);
     rows_.resize(block.size() * width_);
     double* row = rows_.data();
@@ -133,7 +140,8 @@ class Recorder::Rows {
   void put_residual(std::size_t place, RowWriter& row) const;
 
   const model::MachineSettings& machine_;
-  const plant::VolumetricModel& machine_errors_;
+  const plant::VolumetricModel* machine_errors_;
+  std::vector<double> temperatures_;  // K
   const plant::VolumetricModel* imposed_;
   const ProgramPath& path_;
   const std::map<int, Eigen::Vector3d>& tips_;
@@ -184,7 +192,7 @@ std::size_t Recorder::Rows::find_places(const std::vector<Snapshot>& block, std:
 Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const {
   const auto tip = tips_.find(tool_offset);
   const Eigen::Vector3d p_ST = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
-  return inverse_.nearest(machine_errors_.forward(Q_true, p_ST), p_ST, Q_true).Q;
+  return inverse_.nearest(machine_errors_->forward(Q_true, p_ST), p_ST, Q_true).Q;
 }
 
 // Computes the actual and the nominal pose of the tool.
@@ -195,9 +203,9 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
   actual_.resize(Q_prog_.size());
   ideal_.poses(Q_prog_, p_ST_, nominal_);
   if (directions.empty()) {
-    machine_errors_.poses(Q_true_, p_ST_, actual_);
+    machine_errors_->poses(Q_true_, p_ST_, actual_);
   } else {
-    machine_errors_.poses(Q_true_, p_ST_, directions, actual_);
+    machine_errors_->poses(Q_true_, p_ST_, directions, actual_);
   }
   if (imposed_ == nullptr) return;
   displacement_.resize(Q_prog_.size());
@@ -259,6 +267,7 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   if (bends_) {
     for (const int joint : linear_) row.put(now.inertial_deflection[joint] / um);
   }
+  for (const double T : temperatures_) row.put(celsius(T));
   if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
 }
 
@@ -296,19 +305,33 @@ void Recorder::record(const Snapshot& now, std::span<const double> directions) {
   if (filling_.snapshots.size() == kBlockRows) hand_over();
 }
 
+void Recorder::use(std::shared_ptr<const plant::VolumetricModel> machine_errors,
+                   std::vector<double> temperatures) {
+  if (!filling_.snapshots.empty()) hand_over();
+  filling_.machine_errors = std::move(machine_errors);
+  filling_.temperatures = std::move(temperatures);
+}
+
 void Recorder::hand_over() {
   background_.wait();
   std::swap(filling_, working_);
+  filling_.machine_errors = working_.machine_errors;
+  filling_.temperatures = working_.temperatures;
   filling_.snapshots.reserve(kBlockRows);
   filling_.snapshots.clear();
   filling_.directions.reserve(working_.directions.size());
   filling_.directions.clear();
-  background_.post([this] { rows_->add(working_.snapshots, working_.directions); });
+  background_.post([this] { make_rows(working_); });
+}
+
+void Recorder::make_rows(const Block& block) {
+  if (block.machine_errors) rows_->use(*block.machine_errors, block.temperatures);
+  rows_->add(block.snapshots, block.directions);
 }
 
 records::Series Recorder::take() {
   background_.wait();
-  rows_->add(filling_.snapshots, filling_.directions);
+  make_rows(filling_);
   filling_ = {};
   return rows_->take();
 }

@@ -59,6 +59,9 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// From the next row on, the machine has these errors, and its bodies these temperatures (K).
+  void use(std::shared_ptr<const plant::VolumetricModel> machine_errors,
+           std::vector<double> temperatures);
   /// Says how many rows will come, about; before the first.
   void expect(std::size_t rows);
   /// @param directions  in which axes have travelled: of each of machine_errors.plays()
@@ -68,12 +71,16 @@ class Recorder {
 
  private:
   class Rows;
+  struct Block;
   void hand_over();
+  void make_rows(const Block& block);
 
   std::unique_ptr<Rows> rows_;
   struct Block {
     std::vector<Snapshot> snapshots;
     std::vector<double> directions;  // of each snapshot, one behind the other
+    std::shared_ptr<const plant::VolumetricModel> machine_errors;  // nullptr: those of the case
+    std::vector<double> temperatures;                              // K
   };
   Block filling_;
   Block working_;                    // what the thread turns into rows

@@ -53,6 +53,10 @@ struct CaseInputs {
   const EngagedTeeth* teeth = nullptr;    // of `cutting`; nullptr: the average force acts
   Tick tooth_step = 0;                    // period of the force of the teeth
   model::CuttingWear wear = {};
+  // of a machine with heat: its errors at the reference temperature, and the speed of the spindle
+  // (rad/s) during each move that the NC runs
+  const plant::ErrorModel* component_errors = nullptr;
+  std::vector<double> spindle_speeds = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not
 };
 

@@ -36,10 +36,12 @@ struct Renaming {
 
 // One name for sections and keys that any name, axis or error may have.
 std::string common_name(std::string name) {
-  static const std::array<Renaming, 8> kNames = {{
+  static const std::array<Renaming, 10> kNames = {{
       {std::regex(R"(^machine\.errors)"), "errors"},
       {std::regex(R"(\baxis\.[XYZABC]\b)"), "axis.X"},
       {std::regex(R"(\binertial_deflection\.[XYZ][XYZABC]\b)"), "inertial_deflection.XX"},
+      {std::regex(R"(\bheat\.(surroundings|body|source)\.\w+)"), "heat.$1.NAME"},
+      {std::regex(R"(^machine\.heat\.body\.NAME\.errors_per_K)"), "errors.NAME"},
       {std::regex(R"(\bE[XYZ]0[XYZABC]\b)"), "EX0C"},
       {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
       {std::regex(R"(\bE[XYZABC][XYZABC]\b)"), "EXX"},
@@ -55,7 +57,11 @@ std::string common_key(const std::string& section, const std::string& key) {
   if (section == "machine.inertial_deflection") return "XX";
   if (section == "sweep" && key != "samples" && key != "zip") return "KEY";
   if (section == "sweep.zip") return "KEY";
-  if (section == "errors") return "NAME";
+  if (section == "errors" || section == "machine.heat.surroundings" ||
+      section == "machine.heat.body" || section == "machine.heat.source" ||
+      section.ends_with("conductance_W_per_K")) {
+    return "NAME";
+  }
   if (section == "program.subroutines") return "NAME";
   if (section == "program.parameters") return "#101";
   if (section.ends_with("work_offset") || section.ends_with("start") || section == "test.at" ||

@@ -16,6 +16,7 @@
 #include "sim/input/read_drive.h"
 #include "sim/input/read_encoder.h"
 #include "sim/input/read_errors.h"
+#include "sim/input/read_heat.h"
 #include "sim/input/read_inertial_deflection.h"
 #include "sim/input/read_loop_periods.h"
 #include "sim/input/read_program.h"
@@ -225,7 +226,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
   machine.chain = read_chain(table);
-  for (const char* key : {"nc", "inertial_deflection"}) table.raw(key);
+  for (const char* key : {"nc", "inertial_deflection", "heat"}) table.raw(key);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
@@ -323,7 +324,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
       static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {config::at_least(0.0)}));
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
-    for (const char* key : {"axis", "errors", "inertial_deflection"}) table.raw(key);
+    for (const char* key : {"axis", "errors", "inertial_deflection", "heat"}) table.raw(key);
     return machine;
   }
   config::Reader axes = table.table("axis");
@@ -334,6 +335,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
     machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
   machine.inertial_compliances = read_inertial_deflection(table, machine);
+  machine.heat = read_heat(table, machine);
   read_models(table, machine, errors);
   return machine;
 }

@@ -1,4 +1,4 @@
-// Specimens that show single keys: a machine with one axis, identified values.
+// Specimens that show single keys: a machine with one axis and heat, identified values.
 #include "sim/input/key_specimens.h"
 
 namespace servomill::sim::input {
@@ -23,6 +23,22 @@ velocity_bandwidth = 200.0
 v_max = 0.6
 a_max = 6.0
 j_max = 100.0
+
+[machine.heat]
+reference_degC = 20.0
+start_degC = 20.0
+clock_h = 7.0
+surroundings = { room = { mean_degC = 20.0, amplitude_K = 1.0, period_h = 24.0, warmest_at_h = 15.0 } }
+[machine.heat.body.head]
+capacity_J_per_K = 5e4
+winding = false
+conductance_W_per_K = { room = 10.0 }
+errors_per_K = { EZZ = { constant_um = 1.0 } }
+[machine.heat.source]
+pump = { body = "head", kind = "constant", power_W = 10.0 }
+bearings = { body = "head", kind = "spindle", speed_rpm = [0, 1000], power_W = [0, 10.0] }
+motor = { body = "head", kind = "motor", axis = "Z", resistance = 1.0 }
+nut = { body = "head", kind = "friction", axis = "Z", share = 0.5 }
 
 [program]
 file = "third.ngc"

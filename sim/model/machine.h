@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -92,6 +93,8 @@ struct MarkSettings {
   int allowed = 0;  // signal periods by which a count may be wrong
 };
 
+struct HeatSettings;  // sim/model/heat.h
+
 struct MachineSettings {
   std::string name;
   plant::MachineChain chain;
@@ -104,6 +107,7 @@ struct MachineSettings {
   // m/N, of what lies between the scales of linear axes and the tip: 0: rigid
   Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
   std::vector<plant::InertialCompliance> inertial_compliances;  // none: rigid under acceleration
+  std::shared_ptr<const HeatSettings> heat;  // nullptr: at its reference temperature, always
   Tick scale_delay = 0;
   NcSettings nc;
 

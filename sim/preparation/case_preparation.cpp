@@ -171,6 +171,10 @@ double CasePreparation::least_time(const InterpretedProgram& program) const {
                                  path_options(scenario_, machine_));
 }
 
+const plant::ErrorModel& CasePreparation::errors(const std::string& name) const {
+  return errors_of(scenario_, name);
+}
+
 SharedModel CasePreparation::model(const std::string& name) const {
   const plant::ErrorModel& errors = errors_of(scenario_, name);
   system::MemoKey key;

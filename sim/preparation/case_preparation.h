@@ -40,6 +40,8 @@ class CasePreparation {
   /// Model of the errors of that name; without a name, of a machine without errors.
   SharedModel model(const std::string& name) const;
 
+  const plant::ErrorModel& errors(const std::string& name) const;
+
   /// @param tip  p_ST (m) of the first tool that works
   SharedStrategy strategy(const model::StrategySpec& spec, const Eigen::Vector3d& tip) const;
 

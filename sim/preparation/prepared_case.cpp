@@ -20,6 +20,21 @@
 
 namespace servomill::sim::preparation {
 
+namespace {
+
+// rad/s during each move; 0 while the spindle stands.
+std::vector<double> spindle_speeds(const MoveRange& moves) {
+  std::vector<double> out;
+  double speed = 0.0;
+  for (const Move& move : moves) {
+    if (move.kind == MoveKind::spindle) speed = move.direction == 0 ? 0.0 : std::abs(move.value);
+    out.push_back(speed);
+  }
+  return out;
+}
+
+}  // namespace
+
 struct PreparedCase::Parts {
   const model::Scenario& scenario;
   const model::CaseSpec& spec;
@@ -28,6 +43,7 @@ struct PreparedCase::Parts {
   std::shared_ptr<const RewrittenProgram> rewritten;  // nullptr: the original program runs
   SharedMotion motion;
   SharedModel machine_errors, imposed;
+  const plant::ErrorModel* component_errors = nullptr;  // those of machine_errors
   SharedCutting cutting;
   Tick tooth_step = 0;
   Joints machine_start;
@@ -66,7 +82,7 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
 
 PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpec& spec,
                            PreparationCache* cache)
-    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, {}, 0, Joints::Zero()}) {
+    : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, nullptr, {}, 0, Joints::Zero()}) {
   PreparationCache own;
   const CasePreparation prepare(scenario, spec, cache != nullptr ? *cache : own);
   Parts& parts = *parts_;
@@ -89,7 +105,9 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   // what the machine can do
   parts.motion = prepare.motion(moves, *parts.program);
   refuse_endless(scenario, parts.motion->trajectory.duration());
-  parts.machine_errors = prepare.model(spec.machine_errors.value_or(scenario.machine_errors));
+  const std::string& machine_errors = spec.machine_errors.value_or(scenario.machine_errors);
+  parts.machine_errors = prepare.model(machine_errors);
+  parts.component_errors = &prepare.errors(machine_errors);
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.cutting = prepare.cutting(parts.program);
   if (parts.cutting && parts.cutting->teeth) {
@@ -135,6 +153,10 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
     inputs.teeth = p.cutting->teeth.get();
     inputs.tooth_step = p.tooth_step;
     inputs.wear = p.spec.wear;
+  }
+  if (p.machine().heat) {
+    inputs.component_errors = p.component_errors;
+    inputs.spindle_speeds = spindle_speeds(*p.motion->moves);
   }
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;

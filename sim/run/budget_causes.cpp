@@ -23,6 +23,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"measurement", "encoders and, where the motor is read, screws"},
     {"cutting", "cutting forces"},
     {"inertia", "deflection of the structure under acceleration"},
+    {"heat", "temperatures of the machine"},
     {"interpolation", "chords, path tolerance and filter of the NC"},
     {"uncorrected", "errors that no strategy of the case compensates or imposes"},
     {"uncorrectable", "not possible with the axes, or of no cause that the strategy declares"},
@@ -199,6 +200,8 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
       return std::exchange(one.cutting, false);
     case Cause::inertia:
       return !std::exchange(own_machine(scenario, one).inertial_compliances, {}).empty();
+    case Cause::heat:
+      return std::exchange(own_machine(scenario, one).heat, nullptr) != nullptr;
     case Cause::interpolation:
       return remove_interpolation(scenario, one);
     case Cause::uncorrected:

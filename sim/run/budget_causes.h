@@ -30,6 +30,7 @@ enum class Cause : std::uint8_t {
   measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
   cutting,         // the case runs in air
   inertia,         // deflection of the structure under acceleration: rigid
+  heat,            // temperatures: the machine at its reference temperature
   interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
                    // nominal-position filter, no block time
   uncorrected,     // errors of the machine that no strategy of the case corrects: none
@@ -37,7 +38,7 @@ enum class Cause : std::uint8_t {
                    // the hundredth of tolerances
   imposed,         // likewise: imposed on purpose by strategies
 };
-inline constexpr std::size_t kCauses = 14;
+inline constexpr std::size_t kCauses = 15;
 struct CauseInfo {
   std::string_view name;  // "lag", "table", ...
   std::string_view help;
@@ -49,8 +50,9 @@ using Causes = std::set<Cause>;
 inline constexpr std::array kChain = {Cause::interpolation, Cause::lag, Cause::delay};
 /// Causes that add to the signal, beside measurement.
 inline constexpr std::array kAdding = {
-    Cause::table,    Cause::saturation, Cause::single_evaluation, Cause::identification,
-    Cause::friction, Cause::cutting,    Cause::inertia,           Cause::uncorrected};
+    Cause::table,          Cause::saturation, Cause::single_evaluation,
+    Cause::identification, Cause::friction,   Cause::cutting,
+    Cause::inertia,        Cause::heat,       Cause::uncorrected};
 
 /// All that can be taken away.
 Causes all_causes();

@@ -90,6 +90,10 @@ void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   write(to, result.last_ticks);
   write(to, result.saturations.size());
   for (const strategies::Saturation& one : result.saturations) write(to, one);
+  write(to, result.heat.step);
+  write(to, result.heat.bodies);
+  write(to, result.heat.power.size());
+  for (const double P : result.heat.power) write(to, P);
   write(to, result.simulated_time);
 }
 
@@ -106,6 +110,10 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   result.last_ticks = read_series(from, keeping);
   result.saturations.resize(from.read<std::size_t>());
   for (strategies::Saturation& one : result.saturations) one = from.read<strategies::Saturation>();
+  result.heat.step = from.read<double>();
+  result.heat.bodies = from.read<std::size_t>();
+  result.heat.power.resize(from.read<std::size_t>());
+  for (double& P : result.heat.power) P = from.read<double>();
   result.simulated_time = from.read<double>();
   return result;
 }

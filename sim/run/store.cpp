@@ -134,7 +134,7 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
 }
 
 // Signals that a case has only if it is loaded by cutting forces or its structure gives way to
-// acceleration: another one of the same run may be in air, or rigid.
+// acceleration: another one of the same run may be in air, or rigid. So with temperatures.
 constexpr std::array<std::string_view, 4> kOfSomeCases = {"cutting_force", "structural_deflection",
                                                           "inertial_deflection", "spindle_angle"};
 
@@ -144,6 +144,7 @@ void check_signals(const records::InputFile& file, const std::string& group,
   std::vector<std::string> needed = {"s", "rapid", "section"};
   for (const records::Signal& signal : first.signals()) {
     const bool may_miss =
+        signal.name.starts_with("temperature_") ||
         std::find(kOfSomeCases.begin(), kOfSomeCases.end(), signal.name) != kOfSomeCases.end();
     if (!may_miss) needed.push_back(signal.name);
   }

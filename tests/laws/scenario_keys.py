@@ -13,7 +13,8 @@ import readmes
 
 ERROR = [(r"E[XYZ]0[XYZABC]$", "EX0C"), (r"E[ABC]0[XYZABC]$", "EC0Y"), (r"E[XYZABC][XYZABC]$", "EXX")]
 EXAMPLE = "setpoint"  # the strategy that strategies/README.md builds
-NAMES = {"errors": "NAME", "program.subroutines": "NAME", "program.parameters": "#101", "machine.axis": "X", "machine.inertial_deflection": "XX"}
+NAMES = {"errors": "NAME", "program.subroutines": "NAME", "program.parameters": "#101", "machine.axis": "X", "machine.inertial_deflection": "XX", "machine.heat.surroundings": "NAME",
+         "machine.heat.body": "NAME", "machine.heat.body.NAME.conductance_W_per_K": "NAME", "machine.heat.source": "NAME"}
 
 
 def listed_keys(servomill, *section):
@@ -45,6 +46,7 @@ def below(section, key):
     path = f"{section}.{key}" if section else key
     path = re.sub(r"^(case\.)?machine_override", "machine", path)
     path = path.replace("machine.axis.X.screw.lead_error", "errors.NAME.EXX")
+    path = path.replace("machine.heat.body.NAME.errors_per_K", "errors.NAME")
     return re.sub(r"^machine\.errors", "errors", path)
 
 
@@ -83,7 +85,7 @@ def is_readings(table):
 
 
 def section_of_example(table):
-    return "machine" if {"structure", "identified", "axis", "inertial_deflection"} & set(table) else ""
+    return "machine" if {"structure", "identified", "axis", "inertial_deflection", "heat"} & set(table) else ""
 
 
 def main():

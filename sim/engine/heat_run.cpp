@@ -1,0 +1,122 @@
+#include "sim/engine/heat_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plant/heat/temperature.h"
+
+namespace servomill::sim::engine {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Power (W) of the spindle at a speed (rad/s): linear between points, held beyond the last.
+double spindle_power(const model::HeatSource& source, double speed) {
+  const std::vector<double>& at = source.speeds;
+  if (speed >= at.back()) return source.powers.back();
+  const auto above = std::upper_bound(at.begin(), at.end(), speed);
+  if (above == at.begin()) return source.powers.front();
+  const auto i = static_cast<std::size_t>(above - at.begin());
+  const double share = (speed - at[i - 1]) / (at[i] - at[i - 1]);
+  return source.powers[i - 1] + share * (source.powers[i] - source.powers[i - 1]);
+}
+
+}  // namespace
+
+HeatSources::HeatSources(const model::MachineSettings& machine) : heat_(*machine.heat) {
+  for (int j = 0; j < kJoints; ++j) ratio_[j] = machine.drives[static_cast<std::size_t>(j)].r;
+}
+
+void HeatSources::powers(const HeatInputs& now, VectorXd& out) const {
+  out.setZero();
+  for (const model::HeatSource& source : heat_.sources) {
+    double& P = out[source.body];
+    const int j = source.joint;
+    switch (source.kind) {
+      case model::HeatKind::constant:
+        P += source.power;
+        break;
+      case model::HeatKind::spindle:
+        P += spindle_power(source, now.spindle);
+        break;
+      case model::HeatKind::motor:
+        P += source.resistance * now.current[j] * now.current[j];
+        break;
+      case model::HeatKind::friction:
+        P += source.share * (now.torque[j] / ratio_[j] + now.load[j]) * now.dQ[j];
+        break;
+    }
+  }
+}
+
+plant::ThermalNetwork network_at_start(const model::HeatSettings& heat) {
+  plant::ThermalNetwork network(heat.network);
+  const auto n = static_cast<Index>(heat.network.bodies.size());
+  network.start(heat.start.empty() ? network.settled(VectorXd::Zero(n), heat.clock)
+                                   : VectorXd(Eigen::Map<const VectorXd>(heat.start.data(), n)));
+  return network;
+}
+
+std::string fault_of(const model::HeatSettings& heat, const VectorXd& T) {
+  for (Index i = 0; i < T.size(); ++i) {
+    const auto body = static_cast<std::size_t>(i);
+    if (T[i] >= heat.coldest[body] && T[i] <= heat.warmest[body]) continue;
+    return fmt::format("{} is at {:.1f} degC, beyond its limits of {:g} to {:g} degC",
+                       heat.network.bodies[body].name, celsius(T[i]), celsius(heat.coldest[body]),
+                       celsius(heat.warmest[body]));
+  }
+  return "";
+}
+
+HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors)
+    : machine_(machine),
+      errors_(errors),
+      sources_(machine),
+      network_(network_at_start(*machine.heat)),
+      t_(machine.heat->clock) {
+  const double period = machine.nc.periods.seconds(machine.nc.periods.position);
+  periods_per_step_ = std::max(1, static_cast<int>(std::lround(kStep / period)));
+  const auto n = static_cast<Index>(machine.heat->network.bodies.size());
+  power_.resize(n);
+  sum_ = VectorXd::Zero(n);
+  course_.step = period * periods_per_step_;
+  course_.bodies = machine.heat->network.bodies.size();
+  at_ = errors_now();
+}
+
+bool HeatRun::advance(const HeatInputs& now) {
+  sources_.powers(now, power_);
+  sum_ += power_;
+  if (++periods_ < periods_per_step_) return false;
+  step();
+  return true;
+}
+
+void HeatRun::step() {
+  sum_ /= periods_;
+  course_.power.insert(course_.power.end(), sum_.begin(), sum_.end());
+  network_.advance(t_, course_.step, sum_);
+  t_ += course_.step;
+  periods_ = 0;
+  sum_.setZero();
+  at_ = errors_now();
+}
+
+std::shared_ptr<const plant::VolumetricModel> HeatRun::errors_now() const {
+  const model::HeatSettings& heat = *machine_.heat;
+  return std::make_shared<const plant::VolumetricModel>(
+      machine_.chain,
+      plant::at_temperatures(errors_, heat.errors, network_.temperatures(), heat.reference));
+}
+
+std::vector<double> HeatRun::temperatures() const {
+  return {network_.temperatures().begin(), network_.temperatures().end()};
+}
+
+std::string HeatRun::fault() const { return fault_of(*machine_.heat, network_.temperatures()); }
+
+}  // namespace servomill::sim::engine

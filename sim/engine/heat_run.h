@@ -1,0 +1,84 @@
+/// Heat of the drives and the spindle in one run: temperatures, and the errors of the machine at
+/// them.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plant/geometry/volumetric.h"
+#include "plant/heat/thermal_network.h"
+#include "sim/engine/case_result.h"
+#include "sim/model/heat.h"
+#include "sim/model/machine.h"
+
+namespace servomill::sim::engine {
+
+/// Causes of heat at one instant.
+struct HeatInputs {
+  Joints current = Joints::Zero();  // A
+  Joints torque = Joints::Zero();   // N m (N of a linear motor)
+  Joints dQ = Joints::Zero();       // m/s, rad/s
+  Joints load = Joints::Zero();     // N, N m, of the cut, towards + of each joint
+  double spindle = 0.0;             // rad/s
+};
+
+/// Power (W) of each source.
+class HeatSources {
+ public:
+  explicit HeatSources(const model::MachineSettings& machine);
+  /// @param out  power of each body (W); set
+  void powers(const HeatInputs& now, Eigen::VectorXd& out) const;
+
+ private:
+  const model::HeatSettings& heat_;
+  Joints ratio_;  // m/rad or 1: travel of each joint per angle of its motor
+};
+
+/// The powers of the position periods are averaged over steps of the network, after each of which
+/// the machine has the errors of its new temperatures. Between two steps an error lags by at most
+/// its rate times kStep: 3 nm for 60 um in half an hour.
+class HeatRun {
+ public:
+  static constexpr double kStep = 0.1;  // s
+
+  /// @param machine  with heat; must outlive this
+  /// @param errors   of the machine at its reference temperature
+  HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors);
+
+  /// A position period has passed. True if temperatures and errors have changed.
+  bool advance(const HeatInputs& now);
+
+  /// Errors of the machine at its temperatures.
+  const std::shared_ptr<const plant::VolumetricModel>& errors() const { return at_; }
+  /// K, of each body.
+  std::vector<double> temperatures() const;
+  /// Empty, or why the machine stops: a body is beyond its limits.
+  std::string fault() const;
+  /// Powers of the run, step after step.
+  HeatCourse course() && { return std::move(course_); }
+
+ private:
+  void step();
+  std::shared_ptr<const plant::VolumetricModel> errors_now() const;
+
+  const model::MachineSettings& machine_;
+  const plant::ErrorModel& errors_;
+  HeatSources sources_;
+  plant::ThermalNetwork network_;
+  int periods_per_step_, periods_ = 0;
+  double t_;  // s, of the day
+  Eigen::VectorXd power_, sum_;
+  std::shared_ptr<const plant::VolumetricModel> at_;
+  HeatCourse course_;
+};
+
+/// Empty, or which body is colder or warmer than it may be.
+/// @param T  of each body (K)
+std::string fault_of(const model::HeatSettings& heat, const Eigen::VectorXd& T);
+
+/// A network at the temperatures at which runs begin.
+plant::ThermalNetwork network_at_start(const model::HeatSettings& heat);
+
+}  // namespace servomill::sim::engine

@@ -1,0 +1,128 @@
+// Machines that warm up while they run.
+#include "sim/engine/heat_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "plant/heat/temperature.h"
+#include "plant/vocabulary/units.h"
+#include "tests/sim/small_scenario.h"
+
+namespace servomill::sim::engine::heat_run_test {
+namespace {
+
+const std::string kCase = "[[case]]\nname = \"one\"\n";
+const std::string kRecord = "[record]\nperiod_ms = 0.2\n";  // as the position loop
+
+// One body in a room of 20 degC, at 20 degC, whose heat lowers the tip by 2 um/K.
+std::string heat(const std::string& source) {
+  return "[machine_override.heat]\nstart_degC = 20.0\n"
+         "surroundings = { room = { mean_degC = 20.0 } }\n"
+         "[machine_override.heat.body.head]\ncapacity_J_per_K = 500.0\n"
+         "conductance_W_per_K = { room = 4.0 }\n"
+         "errors_per_K = { EZZ = { constant_um = -2.0 } }\n"
+         "[machine_override.heat.source]\ns = { body = \"head\", " +
+         source + " }\n";
+}
+
+const char* const kStrokes =
+    "G17 G21 G90 G94 G64 P0.001\nS6000 M3\nG1 X50 F6000\nG1 X0\nG1 X50\nG1 X0\nM5\nG4 P1\nM30\n";
+
+run::CaseOutput run_of(const std::string& source, const std::string& more = "") {
+  return run_named_case(small_scenario(kStrokes, kRecord + more + kCase + heat(source)), "one");
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+double last(const records::Series& servo, const std::string& signal, char label = ' ') {
+  const auto column = label == ' ' ? servo.column(signal) : servo.column(signal, label);
+  return servo.at(servo.rows() - 1, column.value());
+}
+
+TEST(HeatRun, RisesAndGrowsByTheClosedForm) {
+  const run::CaseOutput out = run_of("kind = \"constant\", power_W = 800.0");
+  const records::Series& servo = out.result.servo;
+  const std::size_t T = servo.column("temperature_head").value(), time = 0;
+  const std::size_t z = servo.column("tool_deviation", 'Z').value();
+  const run::CaseOutput cold = run_named_case(small_scenario(kStrokes, kRecord + kCase), "one");
+  const records::Series& rigid = cold.result.servo;
+  const std::size_t z_cold = rigid.column("tool_deviation", 'Z').value();
+  ASSERT_EQ(servo.rows(), rigid.rows());
+  EXPECT_GT(servo.at(servo.rows() - 1, time), 3.0);
+  for (std::size_t n = 0; n < servo.rows(); ++n) {
+    const double t = HeatRun::kStep * std::floor(servo.at(n, time) / HeatRun::kStep + 1e-9);
+    const double rise = 200.0 * (1.0 - std::exp(-4.0 / 500.0 * t));
+    const double measured = servo.at(n, T) - 20.0;
+    EXPECT_NEAR(measured, rise, 1e-9) << servo.at(n, time);
+    EXPECT_NEAR(servo.at(n, z) - rigid.at(n, z_cold), -2.0 * measured, 1e-4) << servo.at(n, time);
+  }
+}
+
+TEST(HeatRun, OfAMotorIsResistanceTimesTheSquareOfItsCurrent) {
+  const run::CaseOutput out = run_of("kind = \"motor\", axis = \"X\", resistance = 0.5");
+  const records::Series& servo = out.result.servo;
+  const std::size_t i = servo.column("current_linear", 'X').value();
+  double energy = 0.0;  // J, of the recording at each position period
+  const HeatCourse& course = out.result.heat;
+  const auto rows = static_cast<std::size_t>(
+      std::lround(static_cast<double>(course.power.size()) * course.step / 0.2e-3));
+  for (std::size_t n = 0; n < rows; ++n) energy += 0.5 * servo.at(n, i) * servo.at(n, i) * 0.2e-3;
+  EXPECT_GT(energy, 1.0);
+  EXPECT_NEAR(sum_of(course.power) * course.step, energy, 1e-3 * energy);
+}
+
+// From rest to rest, the work of the motor is that of friction: viscous, here.
+TEST(HeatRun, OfFrictionIsTheWorkThatViscousFrictionTakes) {
+  const run::CaseOutput out = run_of("kind = \"friction\", axis = \"X\"");
+  const records::Series& servo = out.result.servo;
+  const std::size_t v = servo.column("velocity_linear", 'X').value();
+  constexpr double r = 20.0 * mm / (2.0 * std::numbers::pi);
+  constexpr double b = 1500.0 + 0.01 / (r * r);  // N s/m, of slide and motor
+  double work = 0.0;
+  for (std::size_t n = 0; n < servo.rows(); ++n) {
+    work += b * std::pow(servo.at(n, v) * mm, 2) * 0.2e-3;
+  }
+  EXPECT_GT(work, 10.0);
+  EXPECT_NEAR(sum_of(out.result.heat.power) * out.result.heat.step, work, 2e-3 * work);
+}
+
+TEST(HeatRun, OfTheSpindleFollowsItsSpeed) {
+  const run::CaseOutput out =
+      run_of("kind = \"spindle\", speed_rpm = [0, 4000, 8000], power_W = [10.0, 50.0, 150.0]");
+  const std::vector<double>& power = out.result.heat.power;
+  EXPECT_NEAR(power[5], 100.0, 1e-9);     // at 6000 1/min, after M3
+  EXPECT_NEAR(power.back(), 10.0, 1e-9);  // after M5
+}
+
+TEST(HeatRun, StopsAtTheLimitOfABody) {
+  const model::Scenario scenario =
+      small_scenario(kStrokes, kRecord + kCase + heat("kind = \"constant\", power_W = 20000.0"));
+  static const StopFlag kNever = false;
+  std::atomic<float> progress = 0.0F;
+  const run::CaseOutput out =
+      run::run_case(preparation::PreparedCase(scenario, scenario.cases.front()), kNever, progress);
+  EXPECT_FALSE(out.result.outcome.finished);
+  EXPECT_NE(out.result.outcome.reason.find("head is at 10"), std::string::npos)
+      << out.result.outcome.reason;
+  EXPECT_NE(out.result.outcome.reason.find("degC, beyond its limits of -10 to 100 degC"),
+            std::string::npos)
+      << out.result.outcome.reason;
+}
+
+// Ideal axes need no current; the spindle heats all the same.
+TEST(HeatRun, OfIdealAxesHasTheSpindle) {
+  const std::string source = "kind = \"spindle\", speed_rpm = [0, 8000], power_W = [0.0, 400.0]";
+  const run::CaseOutput out = run_named_case(
+      small_scenario(kStrokes, kRecord + kCase + "servo = \"ideal\"\n" + heat(source)), "one");
+  const records::Series& servo = out.result.servo;
+  EXPECT_GT(last(servo, "temperature_head"), 20.5);
+  EXPECT_NEAR(last(servo, "tool_deviation", 'Z'), -2.0 * (last(servo, "temperature_head") - 20.0),
+              1e-4);
+}
+
+}  // namespace
+}  // namespace servomill::sim::engine::heat_run_test
