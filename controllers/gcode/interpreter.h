@@ -78,7 +78,7 @@ struct ExecutedBlock {
   const PlaneFrame* frame = nullptr;  // behind the block
   /// Number (0 for a named one) and new value of the parameter of each assignment.
   std::span<const std::pair<int, double>> assigned = {};
-  /// Whose moves a survey does not know, for which the block only holds their place: "CYCL DEF
+  /// Cycle whose moves a survey does not know, with the block as their placeholder: "CYCL DEF
   /// 251".
   std::string_view unknown_moves = {};
 };

@@ -30,7 +30,7 @@ bool is_offset_known(const Parameters& parameters, const std::map<int, double>& 
 
 constexpr std::string_view kOtherArithmetic =
     "FIX, FUP, ATAN and MOD follow LinuxCNC; Fanuc and Haas differ for negative numbers and in the "
-    "range of angles; choose with --reader";
+    "range of angles; choose with --reader linuxcnc, fanuc or haas";
 
 bool differs(OpCode code) {
   constexpr std::array kCodes = {OpCode::fix, OpCode::fup, OpCode::atan, OpCode::modulo};
@@ -62,7 +62,8 @@ void Interpreter::Machine::note_other_arithmetic() {
                           setup_.parameters.contains(fmt::format("#{}", number));
     if (is_given) continue;
     note(op.column, fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, so that "
-                                "its word is omitted (Fanuc, Haas); choose with --reader",
+                                "its word is omitted (Fanuc, Haas); choose with --reader "
+                                "linuxcnc, fanuc or haas",
                                 number));
   }
 }
@@ -127,7 +128,7 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
     if ((number == 4014 && is_fanuc) || (number == 4012 && is_haas)) {
       if (state_.work_system <= 6) return code(53 + state_.work_system);
     } else {
-      why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader";
+      why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader fanuc or haas";
     }
   }
   if (why.empty()) why = "it is not tracked here";

@@ -109,7 +109,7 @@ void refuse_other_logic(OpCode code, double a, double b, double logical, const P
                                  : std::string("nothing, since only integers >= 0 have bits");
   fail(place,
        fmt::format("{:g} {} {:g}: {:g} as conditions (LinuxCNC), or {} (Fanuc, Haas); choose "
-                   "with --reader",
+                   "with --reader linuxcnc, fanuc or haas",
                    a, name, b, logical, other));
 }
 

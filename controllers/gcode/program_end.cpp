@@ -11,11 +11,11 @@ namespace {
 constexpr std::string_view kMisplacedPercent =
     "'%' ends a program only if another '%' is its first line";
 constexpr std::string_view kPercentInside =
-    "Fanuc ends the program at this '%', other controls continue after it; choose with --reader";
+    "Fanuc ends the program at this '%', other controls continue after it; choose with --reader "
+    "fanuc, haas or linuxcnc";
 constexpr std::string_view kBlocksBehind =
     "Fanuc, Haas and LinuxCNC end the program at this '%', but blocks follow it; remove the '%', "
-    "or "
-    "choose with --reader";
+    "or choose with --reader fanuc, haas or linuxcnc";
 constexpr std::string_view kUnread = "the program ends here: lines after this '%' are not read";
 constexpr std::string_view kBlankAtEnd = " \t\r%\x1a";  // 1a: the end of files of CP/M
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";

@@ -17,9 +17,9 @@ class ProgramText;
 /// Parts of a line that a survey does not know. They travel with the line, since no number in it
 /// can say so.
 struct LineUnknowns {
-  bool tilt = false;        ///< the angles of the work plane only hold their place
-  bool feed = false;        ///< the number of F only holds its place
-  std::string motion = {};  ///< cycle whose moves are unknown; the line only holds their place
+  bool tilt = false;        ///< the angles of the work plane are placeholders
+  bool feed = false;        ///< the number of F is a placeholder
+  std::string motion = {};  ///< cycle whose moves are unknown; the line is their placeholder
 };
 
 /// Writes the lines of a program in another language as lines in G-code.

@@ -91,8 +91,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
     {cycle_unused_dwell, "P of G81 or G85, which do not dwell",
      "read without a dwell; G82 and G89 after it use P", "Fanuc, Haas", kFanuc | kHaas,
      "zanotowane.pl/117/8692, G81 (lists P, and no dwell in its sequence); haascnc.com, G81 and "
-     "G85 "
-     "(no P); that P is kept from memory"},
+     "G85 (no P); that P is kept from memory"},
     {fine_boring, "G76 with R",
      "read as fine boring: the spindle stops at the bottom and the tool retracts at rapid; the "
      "shift off the wall is omitted",

@@ -31,17 +31,37 @@ std::size_t place_of(const ErrorGrid& grid, const std::vector<double>& position)
   return place;
 }
 
+// The positions of the combination at a place.
+std::vector<double> positions_at(const ErrorGrid& grid, std::size_t place) {
+  std::vector<double> out(grid.axes.size());
+  for (std::size_t k = out.size(); k-- > 0;) {
+    out[k] = grid.at[k][place % grid.at[k].size()];
+    place /= grid.at[k].size();
+  }
+  return out;
+}
+
 // "Z = 100, X = 0" of the combination at a place.
 std::string position_text(const ErrorGrid& grid, std::size_t place) {
+  const std::vector<double> positions = positions_at(grid, place);
   std::string text;
-  for (std::size_t k = grid.axes.size(); k-- > 0;) {
-    const std::size_t i = place % grid.at[k].size();
-    place /= grid.at[k].size();
-    const std::string one = fmt::format("{} = {:g}", letter(grid.axes[k]),
-                                        grid.at[k][i] / coordinate_unit(grid.axes[k]));
-    text = text.empty() ? one : one + ", " + text;
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    text += fmt::format("{}{} = {:g}", k == 0 ? "" : ", ", letter(grid.axes[k]),
+                        positions[k] / coordinate_unit(grid.axes[k]));
   }
   return text;
+}
+
+// The first place without a record: sorted, the records before it are at the first places.
+// @pre there are more combinations than records
+std::size_t first_missing(const ErrorGrid& grid, const std::vector<GridRecord>& records) {
+  std::vector<std::vector<double>> there;
+  for (const GridRecord& record : records) there.push_back(record.position);
+  std::sort(there.begin(), there.end());
+  there.erase(std::unique(there.begin(), there.end()), there.end());
+  std::size_t place = 0;
+  while (place < there.size() && there[place] == positions_at(grid, place)) ++place;
+  return place;
 }
 
 }  // namespace
@@ -68,7 +88,7 @@ double ErrorGrid::value(std::span<const double> position) const {
 }
 
 ErrorGrid grid_of(ErrorGrid grid, const std::vector<GridRecord>& records) {
-  std::size_t combinations = 1;
+  double combinations = 1.0;  // of large tables with missing records more than an integer holds
   for (std::size_t k = 0; k < grid.axes.size(); ++k) {
     grid.at.push_back(positions_of(records, k));
     if (grid.at.back().size() < 2) {
@@ -76,16 +96,16 @@ ErrorGrid grid_of(ErrorGrid grid, const std::vector<GridRecord>& records) {
              fmt::format("{}: one position of {}; a grid must have at least two", grid.name,
                          letter(grid.axes[k])));
     }
-    combinations *= grid.at.back().size();
-    if (combinations > records.size()) break;  // some are missing: the grid may be huge
+    combinations *= static_cast<double>(grid.at.back().size());
   }
-  if (combinations > records.size()) {
+  if (combinations > static_cast<double>(records.size())) {
     refuse(grid.file, grid.line,
-           fmt::format("{}: {} records, but their positions make a grid of more combinations; "
-                       "interpolation GRID needs a record for each",
-                       grid.name, records.size()));
+           fmt::format("{}: {} records, but their positions make a grid of {:.15g} combinations; "
+                       "{} is the first without a record; interpolation GRID needs one for each",
+                       grid.name, records.size(), combinations,
+                       position_text(grid, first_missing(grid, records))));
   }
-  grid.error.assign(combinations, kMissing);
+  grid.error.assign(static_cast<std::size_t>(combinations), kMissing);
   for (const GridRecord& record : records) {
     double& error = grid.error[place_of(grid, record.position)];
     if (!std::isnan(error)) {

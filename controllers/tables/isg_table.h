@@ -15,8 +15,7 @@ namespace servomill::controllers {
 ///     line with # ends the block, and a new header follows
 ///   - position errors (C0Y) are constants, one record without an argument
 ///   - component errors (EYX) are functions of any arguments, in mm or deg; values in mm or rad.
-///   Over
-///     other axes than their own the records lie on a grid, in any order, and are interpolated
+///     Over other axes than their own the records lie on a grid, in any order, and are interpolated
 ///     linearly (interpolation GRID, the default: P-VOLC-00014; error 70471 if they do not)
 ///
 /// Not read, and refused by name: axes of modified orientation (V..) and offsets of the programmed

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 namespace servomill::plant {
@@ -30,6 +31,11 @@ double polynomial_at(const std::vector<double>& c, double s) {
   double sum = 0.0;
   for (std::size_t i = c.size(); i-- > 0;) sum = sum * s + c[i];
   return sum;
+}
+
+// A mistake of the caller, which a user's model must not turn into a wrong number.
+void refuse_grids(const ErrorFunction& f) {
+  if (!f.grids.empty()) throw std::logic_error("an error over several axes needs all coordinates");
 }
 
 }  // namespace
@@ -59,7 +65,7 @@ double Reversal::value(double s) const { return polynomial_at(width, s); }
 bool Reversal::is_zero() const { return all_zero(width); }
 
 double ErrorFunction::value(double s) const {
-  assert(grids.empty());
+  refuse_grids(*this);
   return value(s, AxisWords::Zero());
 }
 
@@ -82,7 +88,7 @@ std::vector<Axis> ErrorFunction::grid_axes() const {
 }
 
 double ErrorFunction::derivative(double s) const {
-  assert(grids.empty());
+  refuse_grids(*this);
   double sum = 0.0;
   for (std::size_t i = polynomial.size(); i-- > 1;) {
     sum = sum * s + static_cast<double>(i) * polynomial[i];

@@ -56,9 +56,9 @@ struct ErrorFunction {
   std::vector<GridFunction> grids = {};
 
   /// Mean of both directions of travel, as for its derivative.
-  /// @pre grids.empty()
+  /// @throws std::logic_error with grids
   double value(double s) const;
-  double derivative(double s) const;
+  double derivative(double s) const;  ///< @throws std::logic_error with grids
   /// The same of an error with grids.
   /// @param s  coordinate of its axis
   /// @param q  coordinates of all axes (6; m, rad)
@@ -89,7 +89,7 @@ std::optional<std::string> table_fault(const std::vector<double>& s,
 
 ErrorFunction operator+(const ErrorFunction& f, const ErrorFunction& g);
 ErrorFunction scaled(const ErrorFunction& f, double factor);
-/// The error of an axis that travels on and on: mean + direction width / 2, without reversals.
+/// The error of an axis that travels in one direction: mean + direction width / 2, no reversals.
 /// @param direction  1: up, -1: down, 0: the mean
 ErrorFunction travelling(const ErrorFunction& f, double direction);
 

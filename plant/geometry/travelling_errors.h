@@ -1,4 +1,4 @@
-/// Errors of a machine one axis of which travels on and on in one direction, or moves alone.
+/// Errors of a machine while one of its axes travels in one direction, or is the only one to move.
 #pragma once
 
 #include "plant/geometry/error_model.h"

@@ -20,19 +20,19 @@ Impulse impulse_of(const Mode& m, double h) {
 // Columns of the excitation. With a(t) = alpha + beta t,
 //   alpha = 6 dx/h^2 - 2 dv/h,   beta = 6 dv/h^2 - 12 dx/h^3,
 //   eta = -w^2 (alpha G1 + beta G2),   eta' = -w^2 (alpha g + beta G1),
-// where G1 and G2 are the first and the second integral of g.
+// where G1 and G2 are the first and the second integral of g from 0 to h.
 void excite_by_integrals(const Mode& m, double h, const Impulse& at, ModeStep& step) {
   const double ww = m.w * m.w, damping = 2.0 * m.zeta * m.w;
-  const double G1 = (1.0 - at.dg - damping * at.g) / ww;  // the integral of g's equation
-  const double G2 = (h - at.g - damping * G1) / ww;       // and that of the integral
+  const double G1 = (1.0 - at.dg - damping * at.g) / ww;  // equation of g, integrated
+  const double G2 = (h - at.g - damping * G1) / ww;       // integrated twice
   step.eta_dv = -ww * (6.0 * G2 / h - 2.0 * G1) / h;
   step.eta_dx = -ww * (6.0 * G1 - 12.0 * G2 / h) / (h * h);
   step.deta_dv = -ww * (6.0 * G1 / h - 2.0 * at.g) / h;
   step.deta_dx = -ww * (6.0 * at.g - 12.0 * G1 / h) / (h * h);
 }
 
-// The same by the power series g = sum c_n h^n / n!, in which the terms that cancel are gone: in a
-// short step, all that remains of some columns would be rounding.
+// The same columns by the power series g = sum c_n h^n / n!. In a short step the integrals cancel
+// up to rounding in some columns; in the series the cancelling terms are removed.
 void excite_by_series(const Mode& m, double h, ModeStep& step) {
   constexpr int kTerms = 20;  // 1 / 20! is below the last bit
   const double ww = m.w * m.w, damping = 2.0 * m.zeta * m.w;

@@ -5,13 +5,13 @@
 
 namespace servomill::plant {
 
-/// State of a mode: what a rigid mode would be is eta = -a.
+/// State of a mode. A rigid mode has eta = -a.
 struct ModeState {
   double eta = 0.0;   // m/s^2 (rad/s^2 of a rotary joint)
   double deta = 0.0;  // m/s^3
 };
 
-/// Motion of a slide over a step of length h: all that is known of it at the ends.
+/// Motion of a slide over a step of length h, from its velocity and position at both ends.
 struct SlideMotion {
   double dv = 0.0;  // m/s, v(h) - v(0)
   double dx = 0.0;  // m, x(h) - x(0) - h v(0)

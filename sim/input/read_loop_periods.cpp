@@ -21,7 +21,8 @@ struct Preset {
 constexpr std::array<Preset, 2> kPresetPeriods = {
     {{1.8e-3, 0.6e-3, 0.1e-3}, {0.2e-3, 0.2e-3, 0.1e-3}}};
 
-constexpr double kMinBase = 0.1 * us;  // more ticks than that no run can count
+constexpr double kMinBase =
+    0.1 * us;  // a long run of shorter ones would overflow the count of ticks
 
 Tick period(config::Reader& nc, std::string_view key, double fallback, double base) {
   const std::size_t before = nc.faults();

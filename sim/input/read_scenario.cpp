@@ -105,7 +105,7 @@ class ScenarioReader {
   config::Value with_contents_of_files() const {
     config::Value program;
     program.key = "program";
-    // tests make theirs again
+    // the program of [[test]] follows from its keys
     if (out_.tests.empty()) program.children.push_back(text_value("text", out_.program.text()));
     if (!out_.program.subroutines.empty()) {
       config::Value subroutines;

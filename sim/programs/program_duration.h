@@ -30,7 +30,7 @@ class ProgramDuration {
 
   double duration() const { return duration_; }                   ///< s
   const std::vector<int>& left_out() const { return left_out_; }  ///< lines
-  /// Lines of moves that are not known, by whose they are. With any, the time is longer than
+  /// Lines of moves that are not known, by cycle. With any, the time is longer than
   /// `duration`.
   const std::map<std::string, std::vector<int>, std::less<>>& unknown_moves() const {
     return unknown_moves_;

@@ -51,7 +51,7 @@ struct CycleTime {
   std::string why_unknown;    // empty: it is known
   std::vector<int> left_out;  // lines of moves from positions that are not known
   int unknown_dwells = 0;     // in a unit that controls do not agree on
-  /// Lines of moves that are not known, by whose they are ("CYCL DEF 251"): the time is longer
+  /// Lines of moves that are not known, by cycle ("CYCL DEF 251"): the time is longer
   std::map<std::string, std::vector<int>, std::less<>> unknown_moves = {};
 };
 

@@ -99,7 +99,7 @@ std::string unknown_moves_json(const CycleTime& time) {
   return system::json_list(out);
 }
 
-// A time without moves that are not known is a least one.
+// A time without the moves that are not known is a lower bound.
 std::string cycle_time_json(const ProgramSurvey& survey) {
   if (!survey.cycle_time) return "null";
   const CycleTime& time = *survey.cycle_time;

@@ -15,7 +15,7 @@
 namespace servomill::sim::tables {
 namespace {
 
-constexpr std::size_t kMaxRecords = 1000000;
+constexpr double kMaxRecords = 1e6;
 constexpr int kPartsOfCurve = 4;        // of an interval in which the error is not linear
 constexpr int kPoses = 4096;            // at which the residual is looked for
 constexpr double kPositionStep = 1e-6;  // mm, deg: last digit written
@@ -133,12 +133,29 @@ std::vector<double> positions_of(const TableSource& source, const FormatRules& r
   return in_parts(at, is_curved ? kPartsOfCurve : 1, argument);
 }
 
-void refuse_size(const plant::ErrorName& name, const plant::GridPoints& points) {
-  std::size_t records = 1;
-  for (const auto& at : points.at) records *= at.size();
+// "EZX", or of a converted axis all errors of which the grid is made: "EXX from EYX, EZX".
+std::string origin_of(const TableSource& source, const FormatRules& rules,
+                      const plant::ErrorName& name) {
+  if (!is_converted(source, rules, name.axis)) return to_string(name);
+  std::string others;
+  for (const Axis direction : kAllAxes) {
+    const plant::ErrorName one{direction, name.axis, false};
+    if (source.errors.component(one).grids.empty()) continue;
+    if (one == name) return to_string(name);
+    others += fmt::format("{}{}", others.empty() ? "" : ", ", to_string(one));
+  }
+  return fmt::format("{} from {}", to_string(name), others);
+}
+
+void refuse_size(const TableSource& source, const FormatRules& rules, const plant::ErrorName& name,
+                 const plant::GridPoints& points) {
+  double records = 1.0;
+  for (const auto& at : points.at) records *= static_cast<double>(at.size());
   if (records <= kMaxRecords) return;
-  throw InputError({}, fmt::format("{} over {} axes: a grid of {} records; at most {} are written",
-                                   to_string(name), points.axes.size(), records, kMaxRecords));
+  throw InputError(
+      {}, fmt::format("{} over {} axes: a grid of {:.15g} records; at most {:.15g} are written; "
+                      "choose a larger --spacing, or fewer positions in the model's grid",
+                      origin_of(source, rules, name), points.axes.size(), records, kMaxRecords));
 }
 
 GridTable tabulate(const TableSource& source, const std::vector<TableLine>& lines,
@@ -148,7 +165,7 @@ GridTable tabulate(const TableSource& source, const std::vector<TableLine>& line
   for (const Axis axis : table.points.axes) {
     table.points.at.push_back(positions_of(source, rules, lines, name, axis));
   }
-  refuse_size(name, table.points);
+  refuse_size(source, rules, name, table.points);
   const double step = table.is_angle() ? rules.angle_step : rules.length_step;
   AxisWords q = source.chain.layout.words(source.reference);
   for_all_points(table.points, 0, q, [&](const AxisWords& at) {
@@ -174,7 +191,7 @@ void refuse_other_axes(const TableSource& source, Axis axis) {
       throw InputError(
           {},
           fmt::format("{} depends on the position of {}, too; this format contains functions of "
-                      "the position of {} only, isg also of several axes",
+                      "the position of {} only; use --format isg",
                       to_string(name), letter(other), letter(axis)));
     }
   }

@@ -166,6 +166,16 @@ void note_reversals(const TableExport& e, const TableLine& line, std::vector<std
   }
 }
 
+// The part of an error over several axes that a format contains.
+std::string part_of_grids(const TableExport& e) {
+  if (e.mesh) {
+    return fmt::format("the bed mesh contains it at Z = {:g} mm only, as far as it moves Z",
+                       e.source.reference[2] / mm);
+  }
+  return e.rules().skew ? "the skew correction contains none of it"
+                        : "tables over one axis contain it on the lines through the reference only";
+}
+
 // Tables over one axis hold an error over several where the others are at the reference.
 void note_grids(const TableExport& e, const TableLine& line, std::vector<std::string>& out) {
   if (e.rules().components) return;
@@ -178,9 +188,8 @@ void note_grids(const TableExport& e, const TableLine& line, std::vector<std::st
     }
     if (others.empty()) continue;
     out.push_back(
-        fmt::format("note: {} depends on the position of {}, too; tables over one axis contain it "
-                    "on the lines through the reference only (isg contains all of it)",
-                    to_string(name), others));
+        fmt::format("note: {} depends on the position of {}, too; {} (isg contains all of it)",
+                    to_string(name), others, part_of_grids(e)));
   }
 }
 
@@ -253,6 +262,7 @@ std::vector<std::string> report(const TableExport& e) {
     if (e.mesh) {
       for (std::string& line : mesh_report(e)) out.push_back(std::move(line));
     }
+    for (const TableLine& line : e.lines) note_grids(e, line, out);
     return with_unknown(std::move(out), e);
   }
   const bool csv = e.rules().components;

@@ -90,18 +90,20 @@ class Columns {
                        fmt::format("not as verified: {} has other arguments", grid->name));
     }
     const double digit = table.is_angle() ? e_.rules().angle_step : e_.rules().length_step;
-    check_grid_points(table, *grid, digit);
+    const plant::ErrorModel errors = errors_of(table.name.axis);
+    check_grid_points(table, *grid, errors, digit);
     std::vector<double> position(grid->axes.size());
     for (int n = 1; n <= kGridPoses; ++n) {
       const AxisWords q = e_.source.chain.layout.words(spread_pose(e_.source, e_.lines, n));
       for (std::size_t k = 0; k < position.size(); ++k) position[k] = q[index_of(grid->axes[k])];
-      check_grid_value(table, *grid, poses_at(table, q), q, grid->value(position),
+      check_grid_value(table, *grid, poses_at(table, errors, q), q, grid->value(position),
                        table.residual + digit);
     }
   }
 
   // On one line over its own axis, the last argument, after the other.
-  void check_grid_points(const GridTable& table, const controllers::ErrorGrid& grid, double digit) {
+  void check_grid_points(const GridTable& table, const controllers::ErrorGrid& grid,
+                         const plant::ErrorModel& errors, double digit) {
     AxisWords q = e_.source.chain.layout.words(e_.source.reference);
     const std::vector<double>& own = grid.at.back();
     for (std::size_t n = 0; n < grid.error.size(); n += own.size()) {
@@ -110,7 +112,7 @@ class Columns {
         q[index_of(grid.axes[k])] = grid.at[k][rest % grid.at[k].size()];
         rest /= grid.at[k].size();
       }
-      const ToolSidePoses poses = poses_at(table, q);
+      const ToolSidePoses poses = poses_at(table, errors, q);
       for (std::size_t i = 0; i < own.size(); ++i) {
         q[index_of(table.name.axis)] = own[i];
         check_grid_value(table, grid, poses, q, grid.error[n + i], digit);
@@ -118,9 +120,20 @@ class Columns {
     }
   }
 
+  // The component errors of one axis alone: those that are held at every pose.
+  plant::ErrorModel errors_of(Axis axis) const {
+    plant::ErrorModel out;
+    for (const Axis direction : kAllAxes) {
+      const plant::ErrorName name{direction, axis, false};
+      out.component(name) = e_.source.errors.component(name);
+    }
+    return out;
+  }
+
   // Poses of the machine while all axes but that of the error are held.
-  ToolSidePoses poses_at(const GridTable& table, const AxisWords& q) const {
-    return {e_.source.chain, plant::held(e_.source.errors, table.name.axis, q), table.name.axis};
+  ToolSidePoses poses_at(const GridTable& table, const plant::ErrorModel& errors,
+                         const AxisWords& q) const {
+    return {e_.source.chain, plant::held(errors, table.name.axis, q), table.name.axis};
   }
 
   void check_grid_value(const GridTable& table, const controllers::ErrorGrid& grid,

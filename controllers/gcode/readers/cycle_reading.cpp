@@ -148,6 +148,7 @@ void ReadingStep::cycle_levels(int code) {
 void ReadingStep::cycle_dwell(int code) {
   const bool can_dwell = has_dwell(code) || is_tapping(code);
   if (const BlockWord* P = words.find('P')) {
+    if (words['P'] < 0.0) fail(P->column, fmt::format("P{:g}; must be >= 0", words['P']));
     if (P->is_literal && !P->has_point && P->value != 0.0 && !P->is_changed) {
       words.set('P', dwell_of(WordDifference::cycle_dwell_unit, *P));
     }

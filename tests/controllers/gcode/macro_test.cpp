@@ -235,7 +235,7 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
             "F 25.4 0 0 f254 | F 91 20 0");
   EXPECT_EQ(refusal("#1=#4014\nM2\n", Reader::haas),
             "1:4: error: #4014 is a mode in force: the work system is #4014 (Fanuc) or #4012 "
-            "(Haas); choose with --reader; or set it with --parameter '#4014=...'");
+            "(Haas); choose with --reader fanuc or haas; or set it with --parameter '#4014=...'");
   EXPECT_EQ(run("G55\n#1=#4014\nG54\nG0 X#1\nM2\n"), "R 55 0 0");
 }
 
@@ -275,13 +275,13 @@ TEST(Macro, LogicWhoseReadingsDifferIsRefusedWithBoth) {
   const auto any = [](const std::string& program) { return run(program, Reader::any); };
   EXPECT_EQ(any("G0 X[1 AND 2]\nM2\n"),
             "p.nc:1:8: error: 1 AND 2: 1 as conditions (LinuxCNC), or 0 of their bits (Fanuc, "
-            "Haas); choose with --reader");
+            "Haas); choose with --reader linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G[20 OR ABS[20]] X1.\nM2\n"),
             "p.nc:1:6: error: 20 OR 20: 1 as conditions (LinuxCNC), or 20 of their bits (Fanuc, "
-            "Haas); choose with --reader");
+            "Haas); choose with --reader linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G0 X[0.5 XOR 1]\nM2\n"),
             "p.nc:1:10: error: 0.5 XOR 1: 0 as conditions (LinuxCNC), or nothing, since only "
-            "integers >= 0 have bits (Fanuc, Haas); choose with --reader");
+            "integers >= 0 have bits (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G0 X[5 AND 0] Y[1 OR 0] Z[1 XOR 1]\nM2\n"), "R 0 1 0");
   EXPECT_EQ(run("G0 X[1 AND 2]\nM2\n", Reader::linuxcnc), "R 1 0 0");
   EXPECT_EQ(run("#1=12 AND 10\nG0 X#1\nM2\n"), "R 8 0 0");
@@ -316,10 +316,11 @@ TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[0]),
             "p.nc:1:4: error: FIX, FUP, ATAN and MOD follow LinuxCNC; Fanuc and Haas differ for "
-            "negative numbers and in the range of angles; choose with --reader");
+            "negative numbers and in the range of angles; choose with --reader linuxcnc, fanuc or "
+            "haas");
   EXPECT_EQ(to_string(found.warnings[1]),
             "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, so that its "
-            "word is omitted (Fanuc, Haas); choose with --reader");
+            "word is omitted (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   // O-words are LinuxCNC's
   const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]]\no1 endif\nM2\n", Reader::any, {});
   EXPECT_TRUE(flow.warnings.empty());

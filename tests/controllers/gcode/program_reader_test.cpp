@@ -315,6 +315,8 @@ TEST(Reader, RefusesWhatItsControlDoesNotHave) {
             "p.nc:1:1: error: G99 is not supported by grbl");
   EXPECT_EQ(refusal("G64 P.01\nM2\n", Reader::fanuc),
             "p.nc:1:1: error: G64 with P or Q is not supported by fanuc");
+  EXPECT_EQ(refusal("G99 G81 X1. Z-2. R1. P-1. F100.\nM2\n", Reader::fanuc),
+            "p.nc:1:22: error: P-1; must be >= 0");
   EXPECT_EQ(refusal("G91.1\n", Reader::haas), "p.nc:1:1: error: G91.1 is not supported by haas");
   EXPECT_EQ(refusal("G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n", Reader::mach), "");
 }
@@ -322,11 +324,11 @@ TEST(Reader, RefusesWhatItsControlDoesNotHave) {
 TEST(Reader, TwoReadingsAreRefused) {
   EXPECT_EQ(refusal("G0 X1\n%\nG0 X2\nM2\n"),
             "p.nc:2:1: error: Fanuc ends the program at this '%', other controls continue after "
-            "it; choose with --reader");
+            "it; choose with --reader fanuc, haas or linuxcnc");
   EXPECT_EQ(refusal("G0 X1\n%\nG0 X2\nM2\n", Reader::fanuc), "");
   EXPECT_EQ(refusal("%\nG0 X1\n%\nG0 X2\nM2\n"),
             "p.nc:3:1: error: Fanuc, Haas and LinuxCNC end the program at this '%', but blocks "
-            "follow it; remove the '%', or choose with --reader");
+            "follow it; remove the '%', or choose with --reader fanuc, haas or linuxcnc");
   EXPECT_EQ(refusal("%\nG0 X1\n%\n(X2)\n\x1a"), "");
   EXPECT_NE(refusal("T1 M6 T2\nM2\n").find("whether M6 takes the first or the last depends"), ~0ul);
   // a control that ends the comment at its first ')' would go to X10

@@ -30,6 +30,13 @@ TEST(ErrorFunction, ConstantIsTheSameEverywhere) {
   EXPECT_EQ(constant(3e-6).derivative(5.0), 0.0);
 }
 
+TEST(ErrorFunction, OverSeveralAxesHasNoValueOverItsOwnAlone) {
+  const ErrorFunction f = grid({{Axis::X, Axis::Z}, {{0.0, 1.0}, {0.0, 1.0}}, {0, 0, 1e-6, 2e-6}});
+  EXPECT_THROW(f.value(0.5), std::logic_error);
+  EXPECT_THROW(f.derivative(0.5), std::logic_error);
+  EXPECT_EQ(f.value(0.5, AxisWords::Zero()), 0.0);
+}
+
 TEST(ErrorFunction, PolynomialCountsFromTheConstantTermUp) {
   const ErrorFunction f = polynomial({1.0, -2.0, 0.5, 4.0});
   EXPECT_EQ(f.value(0.5), 1.0 - 1.0 + 0.125 + 0.5);

@@ -115,7 +115,7 @@ TEST(GridTables, OtherFormatsOfErrorsRefuseThemByName) {
       EXPECT_STREQ(error.what(),
                    "<input>: error: EZX depends on the position of Z, too; this format contains "
                    "functions of "
-                   "the position of X only, isg also of several axes");
+                   "the position of X only; use --format isg");
     }
   }
 }
@@ -142,6 +142,54 @@ TEST(GridTables, TablesOfOneAxisReportWhatTheyDoNotHold) {
                        "note: EZX depends on the position of Z, too; tables over one axis contain "
                        "it on the lines through the reference only (isg contains all of it)"),
             1);
+}
+
+// The error whose grid it is, and what makes it smaller.
+TEST(GridTables, OfMoreThanAMillionRecordsAreRefused) {
+  TableRequest request = request_of(TableFormat::isg);
+  request.spacing = 0.025 * mm;
+  plant::GridPoints points{{Axis::Z, Axis::X}, {{}, {-100 * mm, 100 * mm}}, {}, {}};
+  for (int i = 0; i < 40; ++i) {
+    points.at[0].push_back(5 * mm * i);
+    points.error.insert(points.error.end(), {0.0, i * um});
+  }
+  plant::ErrorModel errors;
+  errors.component("EZX"_err) = plant::grid(points) + plant::polynomial({0.0, 0.0, 1e-6});
+  for (const auto& [structure, name] :
+       {std::pair{kToolSide, "EZX"}, std::pair{"[w X b Y Z t]", "EXX from EZX"}}) {
+    try {
+      export_tables(machine_of(structure), errors, request);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(text.find(std::string("<input>: error: ") + name + " over 2 axes: a grid of "), 0U)
+          << text;
+      EXPECT_NE(text.find(" records; at most 1000000 are written; choose a larger --spacing, or "
+                          "fewer positions in the model's grid"),
+                text.npos);
+    }
+  }
+}
+
+TEST(GridTables, FirmwaresReportTheirPart) {
+  TableRequest request = request_of(TableFormat::marlin);
+  const auto notes = [&](const TableRequest& one) {
+    plant::ErrorModel errors = sag();
+    errors.location("EC0Y"_err) = 100e-6;
+    const std::vector<std::string> text = report(export_tables(machine_of(kToolSide), errors, one));
+    return std::count_if(text.begin(), text.end(), [&](const std::string& line) {
+      return line == "note: EZX depends on the position of Z, too; " +
+                         std::string(one.mesh
+                                         ? "the bed mesh contains it at Z = 50 mm only, as far "
+                                           "as it moves Z"
+                                         : "the skew correction contains none of it") +
+                         " (isg contains all of it)";
+    });
+  };
+  request.axes[2].reference = 50 * mm;
+  EXPECT_EQ(notes(request), 1);
+  request.mesh = {5, 4};
+  EXPECT_EQ(notes(request), 1);
 }
 
 }  // namespace
