@@ -30,7 +30,7 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       recorded_(references.of(in.reference, setpoint_.delay())),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr),
+                in.keeping, in.teeth != nullptr, in.records_orientation),
       travel_(in.machine_errors, Joints::Zero()),
       last_ticks_(in.machine.joints()),
       structure_(structure_of(in.machine, schedule)) {

@@ -12,7 +12,7 @@ IdealRun::IdealRun(CaseInputs& in)
       feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr),
+                in.keeping, in.teeth != nullptr, in.records_orientation),
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)) {
   if (in.machine.heat) {

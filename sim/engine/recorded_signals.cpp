@@ -88,6 +88,21 @@ void add_states(const model::MachineSettings& machine, const std::string& linear
   }
 }
 
+// Signals of the tool that not every case has.
+void add_tool_signals(SignalParts parts, std::vector<Signal>& all) {
+  all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
+  if (parts.oriented) {
+    all.push_back({"tool_side_true", "1",
+                   "unit vector along X of the spindle, across the tool axis, in the workpiece",
+                   "IJK", kIjk});
+  }
+  if (!parts.uncorrectable) return;
+  all.push_back({"uncorrectable_tcp", "um",
+                 "TCP deviation that the axes cannot compensate, identified", "", ""});
+  all.push_back({"uncorrectable_axis", "urad",
+                 "tool axis deviation that the axes cannot compensate, identified", "", ""});
+}
+
 }  // namespace
 
 std::vector<Signal> recorded_signals(const model::MachineSettings& machine, SignalParts parts) {
@@ -121,13 +136,7 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
                    "displacement required by the imposed errors at the programmed position", linear,
                    kLinear});
   }
-  all.insert(all.end(), std::begin(kToolSignals), std::end(kToolSignals));
-  if (parts.uncorrectable) {
-    all.push_back({"uncorrectable_tcp", "um",
-                   "TCP deviation that the axes cannot compensate, identified", "", ""});
-    all.push_back({"uncorrectable_axis", "urad",
-                   "tool axis deviation that the axes cannot compensate, identified", "", ""});
-  }
+  add_tool_signals(parts, all);
   if (parts.cut) add_cut(parts.teeth, linear, all);
   add_states(machine, linear, all);
   if (parts.programmed && !linear.empty()) {

@@ -16,6 +16,7 @@ struct SignalParts {
   bool cut = false;            // force and deflection
   bool teeth = false;          // the force is that of single teeth: angle of the spindle
   bool programmed = false;     // positions on the programmed path
+  bool oriented = false;       // direction of the tool across its axis
 };
 
 /// All signals of a row, in the order of its columns.

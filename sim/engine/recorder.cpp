@@ -72,7 +72,7 @@ class Recorder::Rows {
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
-       records::RowKeeping keeping, bool teeth)
+       records::RowKeeping keeping, bool teeth, bool oriented)
       : machine_(machine),
         machine_errors_(&machine_errors),
         imposed_(imposed),
@@ -83,7 +83,8 @@ class Recorder::Rows {
         cuts_(cuts),
         teeth_(teeth),
         bends_(!machine.inertial_compliances.empty()),
-        keeping_(std::move(keeping)) {
+        keeping_(std::move(keeping)),
+        oriented_(oriented) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
@@ -93,7 +94,8 @@ class Recorder::Rows {
                                    .uncorrectable = !correcting_.empty(),
                                    .cut = cuts_,
                                    .teeth = teeth_,
-                                   .programmed = keeping_.thinning.has_value()});
+                                   .programmed = keeping_.thinning.has_value(),
+                                   .oriented = oriented_});
     round_to(format, all);
     const records::Series columns(std::move(all));
     signals_ = columns.signals();
@@ -135,6 +137,9 @@ class Recorder::Rows {
  private:
   std::size_t find_places(const std::vector<Snapshot>& block, std::size_t first);
   Joints ideal_joints(const Joints& Q_true, int tool_offset) const;
+  void find_actual(const Eigen::Vector3d& p_ST, std::span<const double> directions,
+                   std::vector<ToolPose>& out) const;
+  void find_sides(std::span<const double> directions);
   void find_poses(std::span<const double> directions);
   void make_row(const Snapshot& now, std::size_t place, double* to);
   void put_residual(std::size_t place, RowWriter& row) const;
@@ -158,8 +163,9 @@ class Recorder::Rows {
   std::vector<std::size_t> pieces_;
   std::vector<Joints> Q_prog_, Q_true_;
   std::vector<ToolPose> nominal_, actual_;
-  std::vector<Eigen::Vector3d> displacement_;
+  std::vector<Eigen::Vector3d> displacement_, side_;
   const records::RowKeeping keeping_;
+  const bool oriented_;  // the direction across the tool axis is recorded
   std::vector<Signal> signals_;
   std::size_t width_ = 0;
   Rounding rounding_{records::Series()};
@@ -195,18 +201,35 @@ Joints Recorder::Rows::ideal_joints(const Joints& Q_true, int tool_offset) const
   return inverse_.nearest(machine_errors_->forward(Q_true, p_ST), p_ST, Q_true).Q;
 }
 
+// Computes the poses of the machine with errors for a tip in the spindle nose.
+void Recorder::Rows::find_actual(const Eigen::Vector3d& p_ST, std::span<const double> directions,
+                                 std::vector<ToolPose>& out) const {
+  out.resize(Q_true_.size());
+  if (directions.empty()) {
+    machine_errors_->poses(Q_true_, p_ST, out);
+  } else {
+    machine_errors_->poses(Q_true_, p_ST, directions, out);
+  }
+}
+
+// Finds the directions across the tool axis: where a tip goes that is 1 m farther along X.
+void Recorder::Rows::find_sides(std::span<const double> directions) {
+  std::vector<ToolPose> beside;
+  find_actual(p_ST_ + Eigen::Vector3d::UnitX(), directions, beside);
+  side_.clear();
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    side_.push_back(beside[i].p_WT - actual_[i].p_WT);
+  }
+}
+
 // Computes the actual and the nominal pose of the tool.
 void Recorder::Rows::find_poses(std::span<const double> directions) {
   const auto tip = tips_.find(path_.tool_offset(pieces_.front()));
   p_ST_ = tip == tips_.end() ? Eigen::Vector3d::Zero() : tip->second;
   nominal_.resize(Q_prog_.size());
-  actual_.resize(Q_prog_.size());
   ideal_.poses(Q_prog_, p_ST_, nominal_);
-  if (directions.empty()) {
-    machine_errors_->poses(Q_true_, p_ST_, actual_);
-  } else {
-    machine_errors_->poses(Q_true_, p_ST_, directions, actual_);
-  }
+  find_actual(p_ST_, directions, actual_);
+  if (oriented_) find_sides(directions);
   if (imposed_ == nullptr) return;
   displacement_.resize(Q_prog_.size());
   imposed_->joint_offsets(Q_prog_, p_ST_, displacement_);
@@ -258,6 +281,7 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
   row.put(contour_error / um);
+  if (oriented_) row.put(side_[place], 1.0);
   if (!correcting_.empty()) put_residual(place, row);
   if (cuts_) {
     row.put(now.cutting_force, 1.0);
@@ -287,10 +311,10 @@ Recorder::Recorder(const model::MachineSettings& machine,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
-                   bool cuts, records::RowKeeping keeping, bool teeth)
+                   bool cuts, records::RowKeeping keeping, bool teeth, bool oriented)
     : rows_(std::make_unique<Rows>(machine, machine_errors, imposed, path, tips, format,
                                    rotary_displaced, std::move(correcting), cuts,
-                                   std::move(keeping), teeth)) {
+                                   std::move(keeping), teeth, oriented)) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * machine_errors.plays().size());
 }

@@ -50,11 +50,13 @@ class Recorder {
   /// @param keeping  where rows are kept
   /// @param teeth  the force is that of single teeth: the angle of the spindle is recorded
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
+  /// @param oriented  the direction of the tool across its axis is recorded
   Recorder(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
-           bool cuts = false, records::RowKeeping keeping = {}, bool teeth = false);
+           bool cuts = false, records::RowKeeping keeping = {}, bool teeth = false,
+           bool oriented = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

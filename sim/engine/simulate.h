@@ -57,7 +57,8 @@ struct CaseInputs {
   // (rad/s) during each move that the NC runs
   const plant::ErrorModel* component_errors = nullptr;
   std::vector<double> spindle_speeds = {};
-  std::string stops_with = {};  // why the case stops where it begins; empty: it does not
+  bool records_orientation = false;  // of the tool about its axis
+  std::string stops_with = {};       // why the case stops where it begins; empty: it does not
 };
 
 /// True if two cases can run in lockstep: the same axes, moved at the same instants. Everything

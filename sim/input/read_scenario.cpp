@@ -28,6 +28,7 @@
 #include "sim/input/read_touch_probe.h"
 #include "sim/input/scenario_document.h"
 #include "sim/input/scenario_source.h"
+#include "sim/input/test_faults.h"
 #include "sim/input/uncertain_errors.h"
 #include "sim/metrology/circular_test.h"
 #include "sim/model/schedule.h"
@@ -137,13 +138,13 @@ class ScenarioReader {
   }
 
   void read_tests_and_program(config::Reader& root) {
+    const std::size_t before = root.faults();
     out_.tests = read_machine_tests(root, out_.machine.chain.layout);
     config::Reader program =
         out_.tests.empty() ? root.table("program") : root.table_or_empty("program");
-    const std::size_t before = root.faults();
     out_.program = read_program(program, out_.machine, files_, out_.tests);
     if (root.faults() > before) return;
-    auto faults = faults_of_travel(out_.tests, out_.machine, out_.program);
+    auto faults = faults_of_tests(out_.tests, out_.machine, out_.program);
     if (!faults.empty()) throw InputError(std::move(faults));
   }
 
@@ -208,17 +209,19 @@ class ScenarioReader {
     constexpr double kMaxShare = 0.1;  // of the dwell
     const double period = out_.machine.nc.periods.seconds(out_.record_period);
     for (const auto& test : out_.tests) {
-      const double spacing =
-          test->readings > 0 ? std::min(metrology::kRecordedSpacing, 360.0 * deg / test->readings)
-                             : metrology::kRecordedSpacing;
+      if (!test->moves()) continue;  // its keys have faults
+      const bool is_turned = test->readings > 0 && (test->is_rotary() || test->radius > 0.0);
+      const double spacing = std::min(metrology::kRecordedSpacing, test->reading_spacing());
+      const double turned = period * (test->is_rotary() ? test->feed : test->feed / test->radius);
       if (period > kMaxShare * test->dwell) {
         root.table_or_empty("record").fault(
             fmt::format("period_ms must be at most {:g} ms, a tenth of the dwell of test {}",
                         kMaxShare * test->dwell / ms, test->name));
-      } else if (period * test->feed > spacing * test->radius && test->radius > 0.0) {
+      } else if (is_turned && turned > spacing) {
         root.table_or_empty("record").fault(
-            fmt::format("period_ms must be at most {:.3g} ms: {:g} deg of the circle of test {}",
-                        spacing * test->radius / test->feed / ms, spacing / deg, test->name));
+            fmt::format("period_ms must be at most {:.3g} ms: {:g} deg of {} of test {}",
+                        period * spacing / turned / ms, spacing / deg,
+                        test->is_rotary() ? "the turn" : "the circle", test->name));
       }
     }
   }

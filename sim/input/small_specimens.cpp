@@ -53,7 +53,7 @@ constexpr std::string_view kTests = R"(
 title = "tests"
 
 [machine]
-structure = "[w Y X b t]"
+structure = "[w C Y X b t]"
 [machine.nc]
 Kv = 50.0
 [machine.axis.X]
@@ -81,6 +81,23 @@ travel_mm = [-100.0, 100.0]
 v_max = 0.6
 a_max = 6.0
 j_max = 100.0
+
+[machine.axis.C]
+drive = "rigid"
+ratio = 1.0
+motor_inertia = 1.0
+moving_inertia = 1.0
+Kt = 12.0
+i_max_A = 50.0
+velocity_bandwidth = 200.0
+v_max = 6.0
+a_max = 60.0
+j_max = 1000.0
+
+[program]
+[[program.tool]]
+number = 1
+length_mm = 100.0
 
 [[test]]
 name = "X"
@@ -131,6 +148,56 @@ plane = "XY"
 radius_mm = 50.0
 reading_count = 720
 feed = 0.02
+at = { X_mm = 0.0, Y_mm = 0.0 }
+
+[[test]]
+name = "C"
+standard = "iso230-2"
+axis = "C"
+from_deg = 0.0
+to_deg = 360.0
+target_count = 8
+target_spread_deg = 1.0
+runs = 5
+overrun_deg = 1.0
+rotary_feed = 1.0
+[test.device]
+target_uncertainty_urad = 1.0
+resolution_urad = 0.1
+variation_urad = 1.0
+drift_urad = 1.0
+set_up_urad = 0.1
+
+[[test]]
+name = "given angles"
+standard = "iso230-2"
+axis = "C"
+targets_deg = [0.0, 90.0]
+rotary_feed = 1.0
+
+[[test]]
+name = "table"
+standard = "iso230-7"
+axis = "C"
+from_deg = 0.0
+revolutions = 3
+distance_mm = 100.0
+overrun_deg = 10.0
+reading_count = 360
+rotary_feed = 1.0
+at = { X_mm = 0.0, Y_mm = 0.0 }
+
+[[test]]
+name = "ball"
+standard = "iso10791-6"
+axis = "C"
+from_deg = 0.0
+to_deg = 360.0
+overrun_deg = 10.0
+reading_count = 360
+rotary_feed = 1.0
+tool = 1
+at = { X_mm = 20.0, Y_mm = 0.0 }
 
 [[case]]
 name = "nominal"

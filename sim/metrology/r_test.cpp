@@ -17,12 +17,7 @@ constexpr double kTurns = 1e3 * urad;       // corrections turn an axis by less
 constexpr double kMinArm = 1.0 * mm;        // of a ball about an axis
 constexpr std::size_t kMaxSamples = 20000;  // for one identification
 
-// A rotary axis in the workpiece.
-struct Line {
-  Vector3d point, direction;  // the latter as the axis counts
-};
-
-Line axis_in_workpiece(const plant::MachineChain& chain, std::size_t which, const Joints& Q) {
+AxisLine axis_in_workpiece(const plant::MachineChain& chain, std::size_t which, const Joints& Q) {
   const plant::ChainAxis& axis = chain.axes[which];
   ToolPose P{axis.centre, plant::direction_of(axis)};
   for (std::size_t i = which; i-- > 0;) {
@@ -75,13 +70,20 @@ std::size_t stride(std::size_t count) { return count / kMaxSamples + 1; }
 
 }  // namespace
 
+AxisLine axis_in_workpiece(const plant::MachineChain& chain, Axis axis, const Joints& Q) {
+  const auto found = std::find_if(chain.axes.begin(), chain.axes.end(),
+                                  [&](const plant::ChainAxis& one) { return one.axis == axis; });
+  assert(found != chain.axes.end());
+  return axis_in_workpiece(chain, static_cast<std::size_t>(found - chain.axes.begin()), Q);
+}
+
 BallDeviation nest_deviation(const plant::MachineChain& chain, const TipPath& path,
                              NestDirection direction) {
   const auto which = turning_axis(chain, path.Q);
   if (!which) return {{}, "not exactly one rotary axis moves"};
   BallDeviation out;
   for (std::size_t n = 0; n < path.Q.size(); ++n) {
-    const Line line = axis_in_workpiece(chain, *which, path.Q[n]);
+    const AxisLine line = axis_in_workpiece(chain, *which, path.Q[n]);
     const Vector3d tangent = line.direction.cross(path.nominal[n] - line.point);
     if (tangent.norm() < kMinArm) return {{}, "the ball is on the moving rotary axis"};
     const Vector3d along = direction == NestDirection::axial ? line.direction

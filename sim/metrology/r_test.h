@@ -19,6 +19,18 @@
 
 namespace servomill::sim::metrology {
 
+/// A rotary axis of the ideal machine, in the workpiece.
+struct AxisLine {
+  Eigen::Vector3d point, direction;  // m; unit vector, as the axis counts
+
+  /// From the line to p, perpendicular to it (3; m).
+  Eigen::Vector3d arm(const Eigen::Vector3d& p) const {
+    return p - point - direction.dot(p - point) * direction;
+  }
+};
+/// @param Q  joint coordinates (5; m, rad); those of axes between it and the workpiece count
+AxisLine axis_in_workpiece(const plant::MachineChain& chain, Axis axis, const Joints& Q);
+
 /// The tip along some part of a program, sample by sample.
 struct TipPath {
   std::vector<Joints> Q;                         // m, rad; of the ideal machine

@@ -10,53 +10,72 @@
 namespace servomill::sim::model {
 namespace {
 
-using Eigen::Vector3d;
+double axis_unit(Axis axis) { return is_linear(axis) ? mm : deg; }
 
 // Point of a circle of the test in the plane of its axes.
-Vector3d on_circle(const MachineTest& test, double angle) {
-  Vector3d out = test.at.head<3>();
-  out[static_cast<Eigen::Index>(index_of(test.axes[0]))] += test.radius * std::cos(angle);
-  out[static_cast<Eigen::Index>(index_of(test.axes[1]))] += test.radius * std::sin(angle);
+AxisWords on_circle(const MachineTest& test, double angle) {
+  AxisWords out = test.at;
+  out[index_of(test.axes[0])] += test.radius * std::cos(angle);
+  out[index_of(test.axes[1])] += test.radius * std::sin(angle);
   return out;
+}
+
+TestStop measured(const AxisWords& position, int direction) {
+  return {position, 0, {0.0, direction, 0, 0}};
 }
 
 std::vector<TestStop> stops_of_circles(const MachineTest& test) {
-  const auto measured = [](const Vector3d& position, int direction) {
-    return TestStop{position, 0, {0.0, direction, 0, 0}};
-  };
-  return {measured(test.at.head<3>(), 1), measured(on_circle(test, -kFeedIn), 1),
+  return {measured(test.at, 1), measured(on_circle(test, -kFeedIn), 1),
           measured(on_circle(test, kFeedIn), 1), measured(on_circle(test, -kFeedIn), -1)};
 }
 
-std::string words_of(const std::vector<Axis>& axes, const Vector3d& position) {
+std::vector<TestStop> stops_of_rotation(const MachineTest& test) {
+  AxisWords first = test.at, last = test.at;
+  first[index_of(test.axes[0])] = test.begin - test.cycle.overrun;
+  last[index_of(test.axes[0])] = test.end + test.cycle.overrun;
+  std::vector<TestStop> out = {measured(first, 1), measured(last, 1)};
+  if (test.standard == TestStandard::ball) out.push_back(measured(first, -1));
+  return out;
+}
+
+std::string words_of(const std::vector<Axis>& axes, const AxisWords& position) {
   std::string out;
   for (const Axis axis : axes) {
-    out += fmt::format(" {}{:.9f}", letter(axis),
-                       position[static_cast<Eigen::Index>(index_of(axis))] / mm);
+    out += fmt::format(" {}{:.9f}", letter(axis), position[index_of(axis)] / axis_unit(axis));
   }
   return out;
 }
 
-void append_approach(const MachineTest& test, const JointLayout& layout, std::string& out) {
-  std::string words;
+// Axes of the machine that the test does not move.
+std::vector<Axis> others_of(const MachineTest& test, const JointLayout& layout) {
+  std::vector<Axis> out;
   for (const Axis axis : kAllAxes) {
-    if (std::count(test.axes.begin(), test.axes.end(), axis) > 0 || !layout.joint_of(axis)) {
-      continue;
-    }
-    const double unit = is_linear(axis) ? mm : deg;
-    words += fmt::format(" {}{:.9f}", letter(axis), test.at[index_of(axis)] / unit);
+    const bool moves = std::count(test.axes.begin(), test.axes.end(), axis) > 0;
+    if (!moves && layout.joint_of(axis)) out.push_back(axis);
   }
+  return out;
+}
+
+// Linear axes in mm/min, a rotary one in deg/min.
+std::string feed_word(const MachineTest& test) {
+  return fmt::format("F{:.6f}\n", test.feed / (axis_unit(test.axes.front()) / minute));
+}
+
+void append_approach(const MachineTest& test, const JointLayout& layout, std::string& out) {
+  const std::string words = words_of(others_of(test, layout), test.at);
   if (!words.empty()) out += fmt::format("G0{}\n", words);
 }
 
 // The nose after a test with a tool: that is unloaded, its length would stay compensated.
-void append_tool(int tool, int tool_before, std::string& out) {
+void append_tool(int tool, int tool_before, bool follows, std::string& out) {
   if (tool > 0) {
-    out += fmt::format("T{0} M6\nG43 H{0}\n", tool);
+    out += fmt::format("T{0} M6\n{1} H{0}\n", tool, follows ? "G43.4" : "G43");
   } else if (tool_before > 0) {
     out += "G49\nT0 M6\n";
   }
 }
+
+std::string dwell_block(const MachineTest& test) { return fmt::format("G4 P{:.6f}\n", test.dwell); }
 
 void append_lines(const MachineTest& test, std::string& out) {
   std::size_t line = test.lines.size();
@@ -64,8 +83,8 @@ void append_lines(const MachineTest& test, std::string& out) {
     const bool is_first = stop.line != line;  // of its line
     line = stop.line;
     out += fmt::format("{}{}\n", is_first ? "G0" : "G1", words_of(test.axes, stop.position));
-    if (stop.is_measured()) out += fmt::format("G4 P{:.6f}\n", test.dwell);
-    if (is_first) out += fmt::format("F{:.6f}\n", test.feed / mm_per_min);
+    if (stop.is_measured()) out += dwell_block(test);
+    if (is_first) out += feed_word(test);
   }
 }
 
@@ -73,23 +92,23 @@ void append_lines(const MachineTest& test, std::string& out) {
 void append_arc(const MachineTest& test, const TestStop& begin, const TestStop& end,
                 std::string& out) {
   constexpr std::array kOffset = {'I', 'J', 'K'};
-  const Vector3d to_centre = test.at.head<3>() - begin.position;
+  const AxisWords to_centre = test.at - begin.position;
   out += fmt::format("{}{}", end.on_line.direction > 0 ? "G3" : "G2",
                      words_of(test.axes, end.position));
   for (const Axis axis : test.axes) {
-    const auto k = static_cast<Eigen::Index>(index_of(axis));
+    const int k = index_of(axis);
     out += fmt::format(" {}{:.9f}", kOffset[static_cast<std::size_t>(k)], to_centre[k] / mm);
   }
   out += " P2\n";
 }
 
 void append_circles(const MachineTest& test, std::string& out) {
-  const std::string dwell = fmt::format("G4 P{:.6f}\n", test.dwell);
+  const std::string dwell = dwell_block(test);
   const std::vector<TestStop> all = stops(test);
   const int normal = 3 - index_of(test.axes[0]) - index_of(test.axes[1]);
   constexpr int kLastPlane = 19;  // G19: YZ
   out += fmt::format("G0{}\n{}", words_of(test.axes, all[0].position), dwell);
-  out += fmt::format("F{:.6f}\nG{}\n", test.feed / mm_per_min, kLastPlane - normal);
+  out += feed_word(test) + fmt::format("G{}\n", kLastPlane - normal);
   out += fmt::format("G1{}\n{}", words_of(test.axes, all[1].position), dwell);
   for (std::size_t k = 1; k + 1 < all.size(); ++k) {
     append_arc(test, all[k], all[k + 1], out);
@@ -98,19 +117,43 @@ void append_circles(const MachineTest& test, std::string& out) {
   out += "G17\n";
 }
 
+// The axis turns past its readings; of a ball, the linear axes follow under TCP control.
+void append_rotation(const MachineTest& test, std::string& out) {
+  const char* motion = "G0";
+  out += feed_word(test);
+  for (const TestStop& stop : stops(test)) {
+    out += fmt::format("{}{}\n", motion, words_of(test.axes, stop.position)) + dwell_block(test);
+    motion = "G1";
+  }
+  if (test.standard == TestStandard::ball) out += "G49\n";
+}
+
 void append_test(const MachineTest& test, const JointLayout& layout, std::string& out) {
   append_approach(test, layout, out);
-  if (test.standard == TestStandard::circles) {
+  if (test.has_lines()) {
+    append_lines(test, out);
+  } else if (test.standard == TestStandard::circles) {
     append_circles(test, out);
   } else {
-    append_lines(test, out);
+    append_rotation(test, out);
   }
 }
 
 }  // namespace
 
+bool MachineTest::moves() const {
+  if (has_lines()) return !lines.empty() && !cycle.targets.empty();
+  return standard == TestStandard::circles ? axes.size() == 2 : axes.size() == 1;
+}
+
+double MachineTest::reading_spacing() const {
+  if (standard == TestStandard::ball) return (end - begin) / std::max(readings - 1, 1);
+  return 360.0 * deg / std::max(readings, 1);
+}
+
 std::vector<TestStop> stops(const MachineTest& test) {
   if (test.standard == TestStandard::circles) return stops_of_circles(test);
+  if (!test.has_lines()) return stops_of_rotation(test);
   std::vector<TestStop> out;
   for (std::size_t line = 0; line < test.lines.size(); ++line) {
     const TestLine& along = test.lines[line];
@@ -121,15 +164,15 @@ std::vector<TestStop> stops(const MachineTest& test) {
   return out;
 }
 
-std::vector<TestLine> diagonals(const Vector3d& from, const Vector3d& to,
+std::vector<TestLine> diagonals(const AxisWords& from, const AxisWords& to,
                                 const std::vector<Axis>& axes) {
   std::vector<TestLine> out;
-  // none, or one but not two axes downwards: others are these in the other direction
+  // with no axis downwards, or one: the other corners begin the same diagonals, reversed
   for (std::size_t down = 0; down <= (axes.size() == 3 ? 3U : 1U); ++down) {
-    Vector3d begin = from, end = from;
+    AxisWords begin = from, end = from;
     std::string name;
     for (std::size_t k = 0; k < axes.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(index_of(axes[k]));
+      const int i = index_of(axes[k]);
       const bool is_up = down != k + 1;
       begin[i] = is_up ? from[i] : to[i];
       end[i] = is_up ? to[i] : from[i];
@@ -145,7 +188,7 @@ std::string program_of(const MachineTests& tests, const JointLayout& layout) {
   int tool = 0;
   for (const auto& test : tests) {
     out += fmt::format("(MSG, {})\n", test->name);
-    append_tool(test->tool, tool, out);
+    append_tool(test->tool, tool, test->standard == TestStandard::ball, out);
     append_test(*test, layout, out);
     tool = test->tool;
   }

@@ -9,6 +9,7 @@
 #include "sim/engine/engaged_teeth.h"
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/nominal_part.h"
+#include "sim/model/machine_test.h"
 #include "sim/preparation/case_preparation.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
@@ -158,6 +159,9 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
     inputs.component_errors = p.component_errors;
     inputs.spindle_speeds = spindle_speeds(*p.motion->moves);
   }
+  inputs.records_orientation =
+      std::any_of(p.scenario.tests.begin(), p.scenario.tests.end(),
+                  [](const auto& test) { return test->needs_orientation(); });
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;
   const model::LoopPeriods& periods = p.machine().nc.periods;

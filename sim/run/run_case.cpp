@@ -48,7 +48,8 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
   if (out.result.outcome.finished) {
     for (const auto& test : p.scenario.tests) {
-      out.tests.push_back(std::make_shared<const TestResult>(evaluate_test(*test, out.data())));
+      out.tests.push_back(std::make_shared<const TestResult>(
+          evaluate_test(*test, out.data(), p.scenario.program.feed_override)));
       if (auto note = note_of_creep(*out.tests.back(), test->dwell)) out.notes.push_back(*note);
     }
   }

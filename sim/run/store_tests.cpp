@@ -15,7 +15,7 @@ namespace servomill::sim::run {
 namespace {
 
 void write_readings(records::Hdf5Group& group, const char* name, const char* direction,
-                    const Eigen::ArrayXXd& deviations) {
+                    const Eigen::ArrayXXd& deviations, const char* unit) {
   std::vector<double> rows;
   for (Eigen::Index i = 0; i < deviations.rows(); ++i) {
     for (Eigen::Index run = 0; run < deviations.cols(); ++run) {
@@ -23,21 +23,25 @@ void write_readings(records::Hdf5Group& group, const char* name, const char* dir
     }
   }
   group.table(name, static_cast<std::size_t>(deviations.cols()), rows,
-              {"um", fmt::format("actual minus target position, approached {}", direction)},
+              {unit, fmt::format("actual minus target position, approached {}", direction)},
               "target", "run");
 }
 
 void write_line(records::Hdf5Group& group, const standards::PositioningTest& readings) {
   std::vector<double> targets, runs;
-  for (const double target : readings.targets) targets.push_back(target / mm);
+  const char* const unit = readings.angular ? "urad" : "um";
+  for (const double target : readings.targets) {
+    targets.push_back(target / (readings.angular ? deg : mm));
+  }
   for (Eigen::Index run = 0; run < readings.up.cols(); ++run) {
     runs.push_back(static_cast<double>(run + 1));
   }
   group.list("target", targets,
-             {"mm", "target position in work coordinates, or along the diagonal"});
+             {readings.angular ? "deg" : "mm",
+              "target position in work coordinates, or along the diagonal"});
   group.list("run", runs, {"1", "number of the run"});
-  write_readings(group, "deviation_up", "upwards", readings.up);
-  write_readings(group, "deviation_down", "downwards", readings.down);
+  write_readings(group, "deviation_up", "upwards", readings.up, unit);
+  write_readings(group, "deviation_down", "downwards", readings.down, unit);
 }
 
 void write_turn(records::Hdf5Group group, const standards::CirclePath& turn, double radius) {
@@ -50,11 +54,27 @@ void write_turn(records::Hdf5Group group, const standards::CirclePath& turn, dou
   group.list("deviation", deviations, {"um", "reading of the ball bar minus the nominal radius"});
 }
 
+// A group for each direction or revolution.
+void write_sensors(records::Hdf5Group& group, const SensorReadings& sensors) {
+  for (const TurnReadings& turn : sensors.turns) {
+    const bool is_revolution = sensors.turns_are == "revolution";
+    records::Hdf5Group of_turn = group.group(is_revolution ? "revolution_" + turn.name : turn.name);
+    std::vector<double> angles;
+    for (const double angle : turn.angles) angles.push_back(angle / deg);
+    of_turn.list("angle", angles, {"deg", "position of the rotary axis; of its table from x to y"});
+    for (std::size_t k = 0; k < turn.values.size(); ++k) {
+      std::vector<double> values;
+      for (const double value : turn.values[k]) values.push_back(value / um);
+      of_turn.list(std::string(sensors.sensors[k]), values, {"um", "reading of the sensor"});
+    }
+  }
+}
+
 void write_test(records::Hdf5Group group, const TestResult& one) {
   group.attribute("standard", one.report.standard);
   if (one.lines.size() == 1) {
     write_line(group, one.lines.front().test);
-  } else {
+  } else if (!one.lines.empty()) {
     for (const LineReadings& line : one.lines) {
       records::Hdf5Group of_line = group.group(line.name);
       write_line(of_line, line.test);
@@ -66,6 +86,7 @@ void write_test(records::Hdf5Group group, const TestResult& one) {
       write_turn(group.group(is_counter ? "ccw" : "cw"), turn, one.circle->radius);
     }
   }
+  if (one.sensors) write_sensors(group, *one.sensors);
   for (const standards::ReportValue& value : one.report.values) {
     const ReportUnit unit = unit_of(value.dimension);
     group.scalar(value.symbol, value.value / unit.factor, {unit.name, value.meaning});

@@ -19,11 +19,13 @@ namespace servomill::sim::run {
 namespace {
 
 std::string csv_of(const standards::PositioningTest& readings) {
-  std::string out = "direction,run,target_mm,deviation_um\n";
+  const double unit = readings.angular ? deg : mm;
+  std::string out = readings.angular ? "direction,run,target_deg,deviation_urad\n"
+                                     : "direction,run,target_mm,deviation_um\n";
   const auto append = [&](const char* direction, const Eigen::ArrayXXd& of, Eigen::Index run) {
     for (Eigen::Index i = 0; i < of.rows(); ++i) {
       const Eigen::Index k = direction[0] == 'f' ? i : of.rows() - 1 - i;
-      out += fmt::format("{},{},{:.6f},{:.6f}\n", direction, run + 1, readings.targets[k] / mm,
+      out += fmt::format("{},{},{:.6f},{:.6f}\n", direction, run + 1, readings.targets[k] / unit,
                          of(k, run) / um);
     }
   };
@@ -46,6 +48,22 @@ std::string csv_of(const standards::CircleTest& circle) {
   return out;
 }
 
+std::string csv_of(const SensorReadings& sensors) {
+  std::string out = sensors.turns_are + ",angle_deg";
+  for (const std::string_view name : sensors.sensors) out += fmt::format(",{}_um", name);
+  out += "\n";
+  for (const TurnReadings& turn : sensors.turns) {
+    for (std::size_t i = 0; i < turn.angles.size(); ++i) {
+      out += fmt::format("{},{:.9f}", turn.name, turn.angles[i] / deg);
+      for (const std::vector<double>& values : turn.values) {
+        out += fmt::format(",{:.6f}", values[i] / um);
+      }
+      out += "\n";
+    }
+  }
+  return out;
+}
+
 std::string number_text(double value, double unit) {
   return std::isnan(value) ? "-" : fmt::format("{:.2f}", value / unit);
 }
@@ -54,6 +72,7 @@ std::string number_text(double value, double unit) {
 
 std::vector<ReadingsFile> readings_files(const TestResult& result) {
   if (result.circle) return {{result.name + ".csv", csv_of(*result.circle)}};
+  if (result.sensors) return {{result.name + ".csv", csv_of(*result.sensors)}};
   if (result.lines.size() == 1) return {{result.name + ".csv", csv_of(result.lines[0].test)}};
   std::vector<ReadingsFile> out;
   for (const LineReadings& line : result.lines) {

@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/numerics/dense_solver.h"
+#include "sim/standards/test_cycle.h"
 
 namespace servomill::sim::standards {
 namespace {
@@ -121,10 +122,7 @@ std::optional<Approach> approach_or_none(const Eigen::ArrayXXd& deviations, Eige
 // Targets that a travel needs: ISO 230-2:2014, 5.3.2 and table 1.
 Eigen::Index targets_needed(const PositioningTest& test) {
   constexpr double kSlack = 1e-9;
-  if (test.angular) {
-    if (test.travel() <= 0.5 * kPi + kSlack) return 3;
-    return test.travel() <= kPi + kSlack ? 5 : 8;
-  }
+  if (test.angular) return usual_rotary_target_count(test.travel());
   if (test.travel() <= kLongAxis) {
     return std::max<Eigen::Index>(5, static_cast<Eigen::Index>(std::ceil(5.0 * test.travel())));
   }

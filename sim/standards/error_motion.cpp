@@ -63,6 +63,40 @@ ErrorMotion evaluate_error_motion(const Eigen::ArrayXd& theta, const Eigen::Arra
   return out;
 }
 
+RotationTest rotation_of(std::string name, const Eigen::ArrayXd& theta,
+                         const RotationSensors& sensors, double distance) {
+  RotationTest out{std::move(name), theta, {}};
+  const Eigen::Index revolutions = sensors.begin()->second.cols();
+  const auto has = [&](std::string_view one) { return sensors.contains(one); };
+  const auto rotating = [&](const Eigen::ArrayXXd& x, const Eigen::ArrayXXd& y) {
+    return Eigen::ArrayXXd(x * theta.cos().replicate(1, revolutions) +
+                           y * theta.sin().replicate(1, revolutions));
+  };
+  const auto add = [&](std::string channel, Dimension dimension, Centre centre,
+                       Eigen::ArrayXXd readings) {
+    out.channels.push_back({std::move(channel), dimension, centre, std::move(readings)});
+  };
+  constexpr Centre kCentred = Centre::least_squares_circle;
+  for (const std::string_view one : {"x", "y", "x2", "y2"}) {
+    if (!has(one)) continue;
+    add(fmt::format("radial_{}", one), Dimension::length, kCentred, sensors.at(one));
+  }
+  if (has("x") && has("y")) {
+    add("radial_rotating", Dimension::length, kCentred, rotating(sensors.at("x"), sensors.at("y")));
+  }
+  if (has("z")) add("axial", Dimension::length, Centre::polar_chart, sensors.at("z"));
+  RotationSensors tilt;
+  for (const auto& [near, far] : {std::pair("x", "x2"), std::pair("y", "y2")}) {
+    if (!has(near) || !has(far)) continue;
+    tilt[near] = (sensors.at(far) - sensors.at(near)) / distance;
+    add(fmt::format("tilt_{}", near), Dimension::angle, kCentred, tilt.at(near));
+  }
+  if (tilt.size() == 2) {
+    add("tilt_rotating", Dimension::angle, kCentred, rotating(tilt.at("x"), tilt.at("y")));
+  }
+  return out;
+}
+
 Report rotation_report(const RotationTest& test) {
   Report out;
   out.standard = "ISO 230-7";

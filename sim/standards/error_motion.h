@@ -8,7 +8,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/standards/report.h"
@@ -46,6 +48,16 @@ struct RotationTest {
   };
   std::vector<Channel> channels;
 };
+
+/// Readings of sensors by their names, "x", "y", "z", "x2", "y2": N x revolutions, m.
+using RotationSensors = std::map<std::string_view, Eigen::ArrayXXd>;
+
+/// The channels that sensors give: radial in fixed sensitive directions and, of x and y together, a
+/// rotating one; axial; tilt.
+/// @param sensors  one at least
+/// @param distance  m, of x2 and y2 from x and y; 0 without them
+RotationTest rotation_of(std::string name, const Eigen::ArrayXd& theta,
+                         const RotationSensors& sensors, double distance);
 
 /// Reads sensors from a table: `revolution` from 1, `angle_deg`, and `x_um`, `y_um` (radial, fixed
 /// sensitive directions; both together also a rotating one), `z_um` (axial), `x2_um`, `y2_um`

@@ -16,9 +16,6 @@ namespace {
 constexpr double kSameAngle = 0.1 * deg;  // of one angle in different revolutions
 constexpr std::array<std::string_view, 5> kSensors = {"x", "y", "z", "x2", "y2"};
 
-// One sensor's readings, N x revolutions.
-using Sensors = std::map<std::string_view, Eigen::ArrayXXd>;
-
 class RotationReader {
  public:
   RotationReader(const std::string& path, double distance)
@@ -29,9 +26,7 @@ class RotationReader {
     if (!faults_.empty()) throw InputError(std::move(faults_));
     read_rows();
     if (!faults_.empty()) throw InputError(std::move(faults_));
-    RotationTest out{table_.file, theta_, {}};
-    add_channels(out);
-    return out;
+    return rotation_of(table_.file, theta_, sensors_, distance_);
   }
 
  private:
@@ -138,46 +133,13 @@ class RotationReader {
     }
   }
 
-  bool has(std::string_view name) const { return sensors_.contains(name); }
-
-  void add_channels(RotationTest& out) {
-    const Eigen::Index revolutions = sensors_.begin()->second.cols();
-    const auto rotating = [&](const Eigen::ArrayXXd& x, const Eigen::ArrayXXd& y) {
-      return Eigen::ArrayXXd(x * theta_.cos().replicate(1, revolutions) +
-                             y * theta_.sin().replicate(1, revolutions));
-    };
-    const auto add = [&](std::string name, Dimension dimension, Centre centre,
-                         Eigen::ArrayXXd readings) {
-      out.channels.push_back({std::move(name), dimension, centre, std::move(readings)});
-    };
-    constexpr Centre kCentred = Centre::least_squares_circle;
-    for (const std::string_view name : {"x", "y", "x2", "y2"}) {
-      if (!has(name)) continue;
-      add(fmt::format("radial_{}", name), Dimension::length, kCentred, sensors_.at(name));
-    }
-    if (has("x") && has("y")) {
-      add("radial_rotating", Dimension::length, kCentred,
-          rotating(sensors_.at("x"), sensors_.at("y")));
-    }
-    if (has("z")) add("axial", Dimension::length, Centre::polar_chart, sensors_.at("z"));
-    Sensors tilt;
-    for (const auto& [near, far] : {std::pair("x", "x2"), std::pair("y", "y2")}) {
-      if (!has(near) || !has(far)) continue;
-      tilt[near] = (sensors_.at(far) - sensors_.at(near)) / distance_;
-      add(fmt::format("tilt_{}", near), Dimension::angle, kCentred, tilt.at(near));
-    }
-    if (tilt.size() == 2) {
-      add("tilt_rotating", Dimension::angle, kCentred, rotating(tilt.at("x"), tilt.at("y")));
-    }
-  }
-
   double distance_;
   readings::Table table_;
   std::vector<Fault> faults_;
   const readings::Column *angle_ = nullptr, *revolution_ = nullptr;
   std::vector<std::pair<std::string_view, const readings::Column*>> columns_;
   Eigen::ArrayXd theta_;
-  Sensors sensors_;
+  RotationSensors sensors_;
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 
+#include "plant/vocabulary/units.h"
+
 namespace servomill::sim::standards {
 
 std::vector<CycleStop> stops(const TestCycle& cycle) {
@@ -36,6 +38,12 @@ std::vector<double> spaced_targets(double from, double to, int count, double spr
 int usual_target_count(double travel) {
   constexpr double kPerMetre = 5.0, kMin = 5.0, kMax = 1000.0;
   return static_cast<int>(std::ceil(std::clamp(kPerMetre * travel, kMin, kMax)));
+}
+
+int usual_rotary_target_count(double travel) {
+  constexpr double kSlack = 1e-9;  // rad
+  if (travel <= 90.0 * deg + kSlack) return 3;
+  return travel <= 180.0 * deg + kSlack ? 5 : 8;
 }
 
 }  // namespace servomill::sim::standards

@@ -32,5 +32,8 @@ std::vector<double> spaced_targets(double from, double to, int count, double spr
 
 /// Number of targets that ISO 230-2, 5.3.2 asks for: five a metre, five at least; 1000 at most.
 int usual_target_count(double travel);
+/// The same of a rotary axis (travel in rad), ISO 230-2, table 1: three up to 90 deg, five up to
+/// 180 deg, eight beyond.
+int usual_rotary_target_count(double travel);
 
 }  // namespace servomill::sim::standards

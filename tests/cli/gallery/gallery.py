@@ -53,7 +53,8 @@ def make_folder(folder, wrong):
             file.write(data)
         if name in wrong.get("right", ()):
             continue
-        shown.append(f"    {name}: {wrong['about'] if 'about' in wrong else repr(content)}")
+        about = wrong.get("about", repr(content))
+        shown.append(f"    {name}: {about[name] if isinstance(about, dict) else about}")
     for name in wrong.get("folders", ()):
         os.makedirs(os.path.join(folder, name))
         shown.append(f"    {name}: a folder")

@@ -1,4 +1,6 @@
 """Wrong readings of tests that standards evaluate."""
+import pathlib
+
 from edits import typed
 
 GOOD = """# laser along X
@@ -32,6 +34,7 @@ def rows(direction, angles, more=""):
     return "".join(f"{direction},{angle},0{more}\n" for angle in angles)
 
 
+TRUNNION = (pathlib.Path(__file__).parents[3] / "scenarios/machines/generic_trunnion_ac.toml").read_text()
 SIMULATED = """title = "a test"
 machine = "machine.toml"
 [[test]]
@@ -51,11 +54,19 @@ name = "nominal"
 def simulated(title, old, new, good=SIMULATED):
     """A scenario with a test of the machine, one thing of it changed."""
     assert old in good, old
-    return typed(title, "servomill check test.toml", write={"test.toml": good.replace(old, new, 1)}, about=f"with {new!r} in place of {old!r}")
+    machine = {"trunnion.toml": TRUNNION} if "trunnion.toml" in good else {}
+    return typed(title, "servomill check test.toml", write={"test.toml": good.replace(old, new, 1)} | machine,
+                 about={"test.toml": f"with {new!r} in place of {old!r}", "trunnion.toml": "scenarios/machines/generic_trunnion_ac.toml"})
 
 
 DIAGONALS = SIMULATED.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100', '"iso230-6"\nfrom = { X_mm = 0, Y_mm = 0 }\nto = { X_mm = 100, Y_mm = 80 }')
-CIRCLES = SIMULATED.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100', '"iso230-4"\nplane = "XY"\nradius_mm = 50')
+CIRCLES = SIMULATED.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100', '"iso230-4"\nplane = "XY"\nradius_mm = 50\nat = { X_mm = 0, Y_mm = 0 }')
+ON_TRUNNION = SIMULATED.replace("machine.toml", "trunnion.toml")
+ROTARY = ON_TRUNNION.replace('"X"\nfrom_mm = 0\nto_mm = 100\nfeed = "1 m/min"', '"C"\nfrom_deg = 0\nto_deg = 330\nrotary_feed = "10 rpm"').replace("_um", "_urad")
+TABLE = ON_TRUNNION.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100\nfeed = "1 m/min"',
+                          '"iso230-7"\naxis = "C"\nrotary_feed = "10 rpm"\nat = { X_mm = 0, Y_mm = 0, Z_mm = 50 }')
+BALL = ON_TRUNNION.replace('"iso230-2"\naxis = "X"\nfrom_mm = 0\nto_mm = 100\nfeed = "1 m/min"',
+                         '"iso10791-6"\naxis = "C"\nfrom_deg = 0\nto_deg = 360\nrotary_feed = "5 rpm"\ntool = 1\nat = { X_mm = 90, Y_mm = 0, Z_mm = 50 }')
 
 
 TESTS = [
@@ -109,12 +120,22 @@ TESTS = [
     table("evaluate: a sensor without its unit", "ball.csv", "direction,C_deg,radial\nccw,0,1\n",
           "servomill evaluate ball.csv --standard 10791-6"),
     simulated("a test of an axis that there is not", 'axis = "X"', 'axis = "W"'),
-    simulated("a test of a rotary axis", 'axis = "X"', 'axis = "C"'),
+    simulated("a test of a rotary axis with targets in mm", 'axis = "X"', 'axis = "C"', ON_TRUNNION),
+    simulated("a feed that the axis does not reach", "1 m/min", "100 m/min"),
+    simulated("a standard that is not simulated", "iso230-2", "iso230-1"),
+    simulated("a circle without its centre", "at = { X_mm = 0, Y_mm = 0 }", "", CIRCLES),
+    simulated("positions of a rotary axis with the errors of a beam", "resolution_urad = 0.01", "misalignment_mrad = 0.5", ROTARY),
+    simulated("a rotary axis with a linear feed", 'rotary_feed = "10 rpm"', 'rotary_feed = "10 mm/min"', ROTARY),
+    simulated("an artefact off the axis of the table", "X_mm = 0", "X_mm = 12", TABLE),
+    simulated("an error motion of a linear axis", 'axis = "C"', 'axis = "X"', TABLE),
+    simulated("a ball on the axis of the table", "X_mm = 90", "X_mm = 0", BALL),
+    simulated("a ball without its place", "X_mm = 90, ", "", BALL),
+    simulated("a ball without a tool", "tool = 1\n", "", BALL),
     simulated("a test beyond the travel", "to_mm = 100", "to_mm = 10000"),
     simulated("targets that fall", "to_mm = 100", "to_mm = -100"),
     simulated("targets spread over each other", "to_mm = 100", "to_mm = 100\ntarget_spread_mm = 15"),
     simulated("two ways of naming targets", "to_mm = 100", "to_mm = 100\ntargets_mm = [0, 50]"),
-    simulated("a standard that is only evaluated", "iso230-2", "iso230-7"),
+    simulated("a rotary table with the keys of a line", "iso230-2", "iso230-7"),
     simulated("a circle with the keys of a line", "iso230-2", "iso230-4"),
     simulated("a test at a place that no axis reaches", "to_mm = 100", "to_mm = 100\nat = { Y_mm = 5000 }"),
     simulated("diagonals of a line", ", Y_mm = 0", "", DIAGONALS),

@@ -150,6 +150,20 @@ TEST(CannedCycle, OfEndlessPecksIsRefused) {
             "p.nc:2:18: error: G73");
 }
 
+// P of G81 has no effect there (Fanuc, Haas), but is kept for G82.
+TEST(CannedCycle, RefusesANegativeDwellThatItDoesNotMake) {
+  ProgramSetup setup;
+  setup.reader = Reader::fanuc;
+  setup.decimal_point = DecimalPoint::calculator;
+  Interpreter interpreter("G0 Z5.\nG99 G81 X1. Z-2. R1. P-500 F100.\nM2\n", "p.nc", setup);
+  try {
+    while (interpreter.next() != nullptr) continue;
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "p.nc:2:22: error: P-500; must be >= 0");
+  }
+}
+
 TEST(CannedCycle, WithAFaultChangesNothing) {
   Interpreter interpreter("F100\nG98 G0 Z10\nG81 X1 Z-1 R1\nR0 X3 Z2\nX2\nM2\n", "p.nc", {});
   std::vector<Move> moves;

@@ -315,8 +315,6 @@ TEST(Reader, RefusesWhatItsControlDoesNotHave) {
             "p.nc:1:1: error: G99 is not supported by grbl");
   EXPECT_EQ(refusal("G64 P.01\nM2\n", Reader::fanuc),
             "p.nc:1:1: error: G64 with P or Q is not supported by fanuc");
-  EXPECT_EQ(refusal("G99 G81 X1. Z-2. R1. P-1. F100.\nM2\n", Reader::fanuc),
-            "p.nc:1:22: error: P-1; must be >= 0");
   EXPECT_EQ(refusal("G91.1\n", Reader::haas), "p.nc:1:1: error: G91.1 is not supported by haas");
   EXPECT_EQ(refusal("G64 P.01\nG91.1\nG99 G81 X1. Z-2. R1. F100.\nM2\n", Reader::mach), "");
 }

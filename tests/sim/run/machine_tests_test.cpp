@@ -213,8 +213,10 @@ TEST(MachineTest, IsRefusedWhereAnAxisWouldLeaveItsTravel) {
 
 TEST(MachineTest, IsRefusedWithTheRule) {
   EXPECT_EQ(refusal(kTest), "read");
-  EXPECT_EQ(refusal(changed("axis = \"X\"", "axis = \"C\"")),
-            "test[0].axis = \"C\"; must be X, Y or Z: tests of rotary axes are not simulated");
+  EXPECT_EQ(refusal(changed("axis = \"X\"", "axis = \"A\"")),
+            "test[0].axis = \"A\"; must be an axis of the machine, which has X, Y, Z, B, C");
+  EXPECT_EQ(refusal(changed("6 m/min", "600 m/min")),
+            "test X moves X at 600000 mm/min; its v_max is 40000 mm/min");
   EXPECT_EQ(refusal(changed("-40", "-4000")),
             "test X moves X from -4001 to 46 mm with its overrun, in machine coordinates; the "
             "travel is -400 to 400 mm");

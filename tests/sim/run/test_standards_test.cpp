@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
 #include "sim/run/machine_tests.h"
@@ -31,7 +32,8 @@ constexpr double kRadius = 50.0 * mm;
 std::string circles(const std::string& plane = "XY", int readings = 720) {
   return "[[test]]\nname = \"circle\"\nstandard = \"iso230-4\"\nplane = \"" + plane +
          "\"\nradius_mm = 50\nfeed = \"3 m/min\"\ndwell_s = 0.2\n" +
-         fmt::format("reading_count = {}\n", readings);
+         fmt::format("reading_count = {}\nat = {{ {}_mm = 0, {}_mm = 0 }}\n", readings, plane[0],
+                     plane[1]);
 }
 
 TestResult tested(const std::string& errors, const std::string& test,
@@ -140,6 +142,50 @@ TEST(DiagonalTest, GivesTheSameSheetThroughTheReaderOfFiles) {
   for (const std::string& path : written(result))
     files.push_back(standards::read_positioning(path));
   expect_same_values(result.report, standards::diagonal_report(files));
+}
+
+std::string refusal(const std::string& test) {
+  try {
+    tested("EXX = { um_per_m = 0.0 }", test);
+  } catch (const InputError& error) {
+    std::string text = error.what();
+    for (std::size_t at = 0; (at = text.find(SERVOMILL_SOURCE_DIR)) != text.npos;) {
+      text.erase(at, text.find("error: ", at) + 7 - at);
+    }
+    return text;
+  }
+  return "run";
+}
+
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+// A fault does not make the keys that depend on its value unknown, and no place is 0 unsaid.
+TEST(TestKeys, AreRefusedOnce) {
+  EXPECT_EQ(
+      refusal(changed(circles(), "iso230-4", "iso230-3")),
+      "test[0].standard = \"iso230-3\"; must be one of iso230-2, iso230-6, iso230-4, iso230-7, "
+      "iso10791-6; did you mean 'iso230-2'?");
+  EXPECT_EQ(refusal(changed(kFace, "Y_mm = 40", "Y_mm = -40")),
+            "test[0].to.Y_mm = -40; must be above that of from");
+  EXPECT_EQ(refusal(changed(circles(), ", Y_mm = 0", "")),
+            "test[0].at: Y_mm is missing: the centre of the circles");
+  EXPECT_EQ(refusal(changed(circles(), "at = { X_mm = 0, Y_mm = 0 }\n", "")),
+            "test[0].at is missing");
+}
+
+// 150 m/min on a circle of 50 mm would need 125 m/s^2.
+TEST(CircleTest, NotesTheReachedFeed) {
+  const TestResult slow = tested("EXX = { um_per_m = 0.0 }", circles());
+  EXPECT_TRUE(slow.report.remarks.empty());
+  const TestResult fast =
+      tested("EXX = { um_per_m = 0.0 }", changed(circles("XY", 72), "3 m/min", "40 m/min"));
+  ASSERT_EQ(fast.report.remarks.size(), 1U);
+  EXPECT_EQ(fast.report.remarks[0].find("the programmed feed of 40000 mm/min is not reached: "),
+            0U);
+  // the acceleration that the axes have, v^2 / r
+  EXPECT_LT(fast.feeds.max * fast.feeds.max / kRadius, 8.0);
 }
 
 // A perfect machine runs a perfect circle.
