@@ -65,7 +65,7 @@ std::string common_key(const std::string& section, const std::string& key) {
   if (section == "program.subroutines") return "NAME";
   if (section == "program.parameters") return "#101";
   if (section.ends_with("work_offset") || section.ends_with("start") || section == "test.at" ||
-      section == "test.from" || section == "test.to") {
+      section == "test.from" || section == "test.to" || section == "day.place.at") {
     return key.ends_with("_mm") ? "X_mm" : "C_deg";
   }
   return common_name(key);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plant/heat/temperature.h"
+#include "sim/input/known_name.h"
 #include "sim/input/read_errors.h"
 #include "sim/model/heat.h"
 
@@ -153,7 +154,7 @@ class HeatReader {
     const std::string name = source.text("body");
     const auto found = bodies_.find(name);
     if (found != bodies_.end()) return found->second;
-    if (source.faults() == before) source.fault("body", "must be the name of a body: " + names());
+    if (source.faults() == before) must_be_known(source, "body", name, "body", body_names());
     return 0;
   }
 
@@ -218,9 +219,14 @@ class HeatReader {
     out_.start.assign(out_.network.bodies.size(), T);
   }
 
-  std::string names() const {
+  std::vector<std::string> body_names() const {
     std::vector<std::string> all;
     for (const auto& [name, index] : bodies_) all.push_back(name);
+    return all;
+  }
+
+  std::string names() const {
+    std::vector<std::string> all = body_names();
     for (const auto& [name, index] : surroundings_) all.push_back(name);
     return fmt::format("{}", fmt::join(all, ", "));
   }

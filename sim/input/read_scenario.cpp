@@ -15,6 +15,7 @@
 #include "sim/input/plugins.h"
 #include "sim/input/read_case.h"
 #include "sim/input/read_cutting.h"
+#include "sim/input/read_day.h"
 #include "sim/input/read_design.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
@@ -61,6 +62,7 @@ class ScenarioReader {
     read_hardware(root);
     read_record(root, out_);
     check_rows_of_tests(root);
+    out_.day = read_day(root, out_);
     out_.cmm = read_cmm(root);
     out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);

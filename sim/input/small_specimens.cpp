@@ -9,7 +9,7 @@ title = "third"
 sweep.samples = { count = 2, from = ["a.toml"], identified = [{ keys = ["nc.Kv"], units = ["1/s"], values = [50.0], covariance = [[1]] }] }
 
 [machine]
-structure = "[w b Z t]"
+structure = "[w C' b Z t]"
 [machine.nc]
 Kv = 50.0
 [machine.axis.Z]
@@ -23,6 +23,18 @@ velocity_bandwidth = 200.0
 v_max = 0.6
 a_max = 6.0
 j_max = 100.0
+
+[machine.axis.C]
+drive = "rigid"
+ratio = 1.0
+motor_inertia = 1.0
+moving_inertia = 1.0
+Kt = 10.0
+i_max_A = 20.0
+velocity_bandwidth = 200.0
+v_max = 2.0
+a_max = 20.0
+j_max = 400.0
 
 [machine.heat]
 reference_degC = 20.0
@@ -43,6 +55,23 @@ nut = { body = "head", kind = "friction", axis = "Z", share = 0.5 }
 [program]
 file = "third.ngc"
 text = "M2\n"
+
+[day]
+sample_min = 1.0
+[[day.place]]
+name = "table"
+at = { Z_mm = 0.0, C_deg = 0.0 }
+tool_length_mm = 100.0
+[[day.phase]]
+activity = "spindle"
+duration_min = 15.0
+speed_rpm = 6000.0
+[[day.phase]]
+activity = "program"
+cycles = 10
+[[day.phase]]
+activity = "probe"
+place = "table"
 
 [[case]]
 name = "nominal"

@@ -38,6 +38,7 @@ class TriangleMesh;
 namespace servomill::sim::model {
 
 struct MachineTest;  // sim/model/machine_test.h
+struct WorkingDay;   // sim/model/working_day.h
 
 struct ProgramSpec {
   std::string file;  // as messages name it
@@ -156,6 +157,7 @@ struct Scenario {
   std::shared_ptr<const TouchProbe> touch_probe;  // in the spindle, for G38.2 ...; or none
   // tests of the machine; if there are any, the program is theirs
   std::vector<std::shared_ptr<const MachineTest>> tests;
+  std::shared_ptr<const WorkingDay> day;  // sim/model/working_day.h; or none
   Tick record_period = 100;
   RecordSpec record;
   double settle_time = 0.1;  // s

@@ -5,6 +5,7 @@
 #include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
+#include "sim/run/day_course.h"
 #include "sim/run/machine_tests.h"
 namespace servomill::sim::run {
 namespace {
@@ -52,6 +53,9 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
           evaluate_test(*test, out.data(), p.scenario.program.feed_override)));
       if (auto note = note_of_creep(*out.tests.back(), test->dwell)) out.notes.push_back(*note);
     }
+  }
+  if (p.scenario.day && out.result.outcome.finished && out.result.heat.step > 0.0) {
+    out.day = std::make_shared<const DayCourse>(course_of_day(p, out.result.heat, out.duration));
   }
   for (std::string& note : notes_of_run(p, out.result.saturations)) {
     out.notes.push_back(std::move(note));

@@ -20,6 +20,7 @@ class PreparedCase;
 namespace servomill::sim::run {
 
 struct TestResult;  // sim/run/machine_tests.h
+struct DayCourse;   // sim/run/day_course.h
 
 struct CaseOutput {
   std::string name;
@@ -36,6 +37,7 @@ struct CaseOutput {
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
   std::vector<preparation::Touch> touches;        // of the program's probing moves
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
+  std::shared_ptr<const DayCourse> day;                  // likewise; or none
   evaluation::CaseData data() const;
 };
 

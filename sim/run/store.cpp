@@ -12,6 +12,7 @@
 #include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
+#include "sim/run/store_day.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
 #include "sim/run/store_tests.h"
@@ -262,6 +263,7 @@ void RunStore::add(const CaseOutput& one) {
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
   if (!one.tests.empty()) write_tests(group.group("tests"), one.tests);
+  if (one.day) write_day(group.group("day"), *one.day);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", one.blocks);

@@ -36,7 +36,7 @@ def listed_name(section, key):
         return NAMES[section]
     if section == "errors.NAME":
         return next((name for pattern, name in ERROR if re.match(pattern, key)), key)
-    if section.endswith(("work_offset", "program.start", "test.at", "test.from", "test.to")):
+    if section.endswith(("work_offset", "program.start", "test.at", "test.from", "test.to", "day.place.at")):
         return re.sub("^[XYZ]_mm$", "X_mm", re.sub("^[ABC]_deg$", "C_deg", key))
     return key
 

@@ -5,6 +5,7 @@ import subprocess
 
 from plot_files import HERE, PLOT, SMALLEST_PNG, WithFiles, plot, plot_names, program, servomill
 
+import h5py
 import numpy as np
 from PIL import Image
 
@@ -17,13 +18,13 @@ class Drawing(WithFiles):
     def test_all_that_a_run_holds_is_drawn_and_the_rest_counted(self):
         done = plot_names(self.side, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr),
-                         (0, "16 figures skipped: the file lacks their data (--why)\n"))
+                         (0, "17 figures skipped: the file lacks their data (--why)\n"))
         self.assertEqual(len(self.drawn()), 7)
 
     def test_of_several_files_each_is_counted(self):
         done = plot_names(self.side, self.sweep, "-o", self.out)
         self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [
-            f"{self.side}: 16 figures skipped: the file lacks their data (--why)",
+            f"{self.side}: 17 figures skipped: the file lacks their data (--why)",
             f"{self.sweep}: 2 figures skipped: the file lacks their data (--why)"]))
 
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained_where_one_asks(self):
@@ -44,7 +45,8 @@ class Drawing(WithFiles):
             "ball_bar: not drawn, the scenario asks for no ball_bar_deviation",
             *(f"li_{n}: not drawn, needs a case without strategy and one with the strategy exact"
               for n in ("3_2", "3_3", "4_1")),
-            "five_axis: not drawn, the tool axis does not rotate"])
+            "five_axis: not drawn, the tool axis does not rotate",
+            "day: not drawn, no case of the file has a day"])
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
@@ -55,6 +57,21 @@ class Drawing(WithFiles):
             rgb = [int(style.LOOKS[name].colour[i:i + 2], 16) for i in (1, 3, 5)]
             nearest = min(max(abs(a - b) for a, b in zip(rgb, other)) for other in colours)
             self.assertLess(nearest, 16, name)     # of 255; the palette rounds
+
+    def test_a_day_is_drawn_and_its_ranges_are_those_of_its_drift(self):
+        path = self.out.parent / "environment.h5"
+        scenario = HERE.parent.parent / "scenarios/thermal/environment.toml"
+        servomill("run", scenario, "-o", path, "--force", "--quiet")
+        done = plot(path, "-o", self.out, "--figures", "day")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertGreater((self.out / "environment-day.png").stat().st_size, SMALLEST_PNG)
+        with h5py.File(path) as h5:
+            day = h5["cases/machine/day"]
+            hours, drift = day["time"][:], day["drift/right/X"][:]
+            self.assertEqual(len(hours), 24 * 60 + 1)
+            self.assertAlmostEqual(day["drift/right/range_X"][()], np.ptp(drift), places=9)
+            self.assertAlmostEqual(day["drift/right/range_60min_X"][()], np.ptp(drift[hours <= 1.0]), places=9)
+            self.assertLess(np.abs(day["temperature_bed"][:] - 21.0).max(), 3.5)
 
     def test_experiment_2_is_drawn(self):
         done = plot(self.contour, "-o", self.out, "--figures", "figure12,figure14,figure15")
@@ -201,5 +218,5 @@ class Drawing(WithFiles):
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
                           "figure15", "figure16", "figure17", "figure18", "figure19", "probed", "part", "planes", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
                           "li_3_2", "li_3_3", "li_4_1",
-                          "five_axis", "deviations", "position", "velocity",
+                          "five_axis", "deviations", "day", "position", "velocity",
                           "compliance", "compensated", "budget", "step"])

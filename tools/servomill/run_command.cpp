@@ -11,17 +11,15 @@
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/plugins.h"
 #include "sim/input/read_scenario.h"
-#include "sim/model/machine_test.h"
 #include "sim/preparation/estimate.h"
-#include "sim/run/machine_tests.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
-#include "sim/run/test_sheet.h"
 #include "sim/run/touch_record.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/run_reports.h"
 
 namespace servomill::tools {
 namespace {
@@ -100,39 +98,6 @@ void write_touches(const sim::run::RunOutput& output, const Options& options) {
   }
 }
 
-void write_readings(const sim::run::RunOutput& output, const Options& options) {
-  for (const sim::run::CaseOutput& one : output.cases) {
-    const auto folder = std::filesystem::path(options.get<std::string>("readings")) / one.name;
-    for (const auto& test : one.tests) {
-      for (const sim::run::ReadingsFile& file : sim::run::readings_files(*test)) {
-        const std::filesystem::path path = folder / file.name;
-        std::filesystem::create_directories(path.parent_path());
-        sim::system::write_text_file(path.string(), file.text, options.has("force"));
-      }
-    }
-  }
-}
-
-// Parameters of each test, the cases that finished side by side.
-void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& scenario) {
-  for (std::size_t k = 0; k < scenario.tests.size(); ++k) {
-    std::vector<std::string> names;
-    std::vector<const sim::run::TestResult*> results;
-    for (const sim::run::CaseOutput& one : output.cases) {
-      if (one.tests.empty()) continue;
-      names.push_back(one.name);
-      results.push_back(one.tests[k].get());
-    }
-    if (results.empty()) return;
-    const sim::standards::Report& report = results.front()->report;
-    fmt::print("\n{}, {}: {}\n{}", report.standard, results.front()->name, report.headline,
-               sim::run::side_by_side(names, results));
-    for (const std::string& remark : sim::run::remarks_of(names, results)) {
-      fmt::print("{}\n", remark);
-    }
-  }
-}
-
 // Prints what a run has found; the exit status.
 int print_output(const sim::run::RunOutput& output, const Options& options,
                  const sim::model::Scenario& scenario, const std::string& path) {
@@ -144,9 +109,7 @@ int print_output(const sim::run::RunOutput& output, const Options& options,
   print_notes(output);
   if (json) {
     for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
-    for (const sim::run::CaseOutput& one : output.cases) {
-      for (const auto& test : one.tests) fmt::print("{}\n", sim::standards::json(test->report));
-    }
+    print_test_json(output);
   } else if (!quiet) {
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
@@ -154,6 +117,7 @@ int print_output(const sim::run::RunOutput& output, const Options& options,
       fmt::print("\n{}", sim::evaluation::format_table(output.comparison));
     }
     print_tests(output, scenario);
+    print_days(output);
     fmt::print("\nwritten to {}\n", path);
   }
   if (!finished && (json || quiet)) {

@@ -5,7 +5,7 @@ edit: (file, old text, new text); write: {file: content}; folders: made before; 
 from edits import CHECK, line, machine, typed
 from wrong_experiments import EXPERIMENTS
 from wrong_identified import IDENTIFIED
-from wrong_machines import AXIS, MACHINE, MACHINE_REFUSES, SERVO, STRUCTURE
+from wrong_machines import AXIS, HEAT, MACHINE, MACHINE_REFUSES, SERVO, STRUCTURE
 from wrong_parts import CUTTING, PART, PROBES
 from wrong_programs import COMPENSATE, POST, PROGRAM, TABLES
 from wrong_readings import READINGS
@@ -256,5 +256,5 @@ UNITS = [
      "edit": [("machine.toml", 'v_max = "40 m/min"', "v_max = 40000")]},
 ]
 
-WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + STRUCTURE + AXIS + SET + MACHINE_REFUSES + IDENTIFIED + EXPERIMENTS + TESTS + READINGS + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
+WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + STRUCTURE + HEAT + AXIS + SET + MACHINE_REFUSES + IDENTIFIED + EXPERIMENTS + TESTS + READINGS + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
                 + COMPENSATE + CUTTING + PART + PROBES + RECORDINGS)

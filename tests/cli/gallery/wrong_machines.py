@@ -47,6 +47,21 @@ def structure(title, text):
     return machine(title, "[axis.X]\n", "[inertial_deflection]\n" + text + "\n[axis.X]\n")
 
 
+def heat(title, text):
+    """A machine that warms up."""
+    return machine(title, "[axis.X]\n", "[heat]\n" + text + "\n[axis.X]\n")
+
+
+HEAD = "surroundings = { room = { mean_degC = 20.0 } }\n[heat.body.head]\ncapacity_J_per_K = 5e4\nconductance_W_per_K = { room = 10.0 }\n"
+HEAT = [
+    heat("heat: a body that nothing cools", "surroundings = { room = {} }\n[heat.body.head]\ncapacity_J_per_K = 5e4"),
+    heat("heat: a network that is not passive", HEAD.replace("room = 10.0", "room = -10.0")),
+    heat("heat: a link to a body that there is not", HEAD.replace("{ room = 10.0", "{ room = 10.0, colum = 5.0")),
+    heat("heat: a source of no body and no axis", HEAD + '[heat.source]\ns = { body = "spindle", kind = "motor", axis = "W", resistance = 1.0 }'),
+    heat("heat: a room above the limits", HEAD.replace("20.0", "120.0")),
+    heat("heat: an error that the machine cannot have", HEAD + "errors_per_K = { EXA = { constant_um = 1.0 } }"),
+]
+
 STRUCTURE = [
     structure("inertia: axes that the machine does not have", "BX = { gain_um_per_m_s2 = 1.0 }\nXC = { gain_um_per_rad_s2 = 1.0 }"),
     structure("inertia: a mode above what the loops resolve", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 800.0, damping = 0.05 }"),

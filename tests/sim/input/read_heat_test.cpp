@@ -73,7 +73,7 @@ TEST(ReadHeat, RefusesNetworksThatAreNotPassiveOrNotConnected) {
 TEST(ReadHeat, RefusesSourcesWithoutBodyOrAxis) {
   EXPECT_EQ(fault_of(kBody + "[machine_override.heat.source]\na = { body = \"column\", kind = "
                              "\"motor\", axis = \"U\", resistance = 1.0 }\n"),
-            "machine.heat.source.a.body = \"column\"; must be the name of a body: head, room\n"
+            "machine.heat.source.a.body = \"column\"; no such body; known are: head\n"
             "machine.heat.source.a.axis = \"U\"; must be an axis of the machine: X, Y, Z, B, C\n");
   EXPECT_EQ(fault_of(kBody + "[machine_override.heat.source]\na = { body = \"head\", kind = "
                              "\"spindle\", speed_rpm = [100, 50], power_W = [1, 2] }\n"),

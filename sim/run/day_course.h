@@ -1,0 +1,55 @@
+/// Temperatures and drift over a day: the servo loops were simulated for one cycle, heat goes on
+/// through breaks and repeated cycles.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace servomill::sim::engine {
+struct HeatCourse;
+}  // namespace servomill::sim::engine
+namespace servomill::sim::preparation {
+struct PreparedParts;
+}  // namespace servomill::sim::preparation
+
+namespace servomill::sim::run {
+
+/// Directions of drift: along X, Y, Z (m), about X and Y (rad).
+inline constexpr std::array<const char*, 5> kDriftNames = {"X", "Y", "Z", "A", "B"};
+inline constexpr std::size_t kDrifts = kDriftNames.size();
+
+/// Drift at one place; ISO 230-3:2020 states these of each of its tests.
+struct DriftRange {
+  std::string place;
+  std::array<double, kDrifts> first_hour{}, whole{};  // m, rad; greatest less least drift
+  std::array<double, kDrifts> reached{};              // s since the start: when `whole` was reached
+};
+
+/// One cycle of the program.
+struct DayCycle {
+  double begin = 0.0;            // s since the start
+  double rms = 0.0, most = 0.0;  // m; what heat displaces the tip along the path, datum taken off
+};
+
+struct DayCourse {
+  std::vector<double> time;                       // s since the start, of each reading
+  std::vector<std::string> bodies, places;        // names
+  std::vector<std::vector<double>> temperatures;  // K; of each body, at each time
+  std::vector<std::vector<std::array<double, kDrifts>>> drift;  // since the start; of each place
+  std::vector<DriftRange> ranges;
+  std::vector<DayCycle> cycles;
+  std::string stopped;  // why the day ended early: a body beyond its limits
+};
+
+/// Powers of a cycle are averaged over steps of at most a second.
+/// @param cycle     powers of the program, run once
+/// @param duration  s, of a cycle
+/// @pre the scenario has a day, and the machine of the case heat
+DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::HeatCourse& cycle,
+                        double duration);
+
+/// Ranges of the drift and the cycles with the least and the greatest error, as a table.
+std::string day_table(const DayCourse& day);
+
+}  // namespace servomill::sim::run

@@ -1,0 +1,69 @@
+#include "sim/run/store_day.h"
+
+#include <fmt/format.h>
+
+#include "plant/heat/temperature.h"
+#include "plant/vocabulary/units.h"
+#include "sim/records/output_file.h"
+#include "sim/run/day_course.h"
+
+namespace servomill::sim::run {
+namespace {
+
+constexpr double kHour = 3600.0;  // s
+
+void write_drift(records::Hdf5Group group, const DayCourse& day, std::size_t place) {
+  std::vector<double> hours;
+  for (const double t : day.time) hours.push_back(t / kHour);
+  group.list("time", hours, {"h", "time since the start of the day"});
+  for (std::size_t c = 0; c < kDrifts; ++c) {
+    const bool is_length = c < 3;
+    const char* unit = is_length ? "um" : "urad";
+    const std::string what = fmt::format("{} {}", is_length ? "along" : "about", kDriftNames[c]);
+    std::vector<double> drift;
+    for (const auto& at : day.drift[place]) drift.push_back(at[c] / um);  // um is urad
+    const std::string name = kDriftNames[c];
+    group.list(name, drift, {unit, "drift of the tip since the start, " + what}, "time");
+    const DriftRange& range = day.ranges[place];
+    group.scalar("range_60min_" + name, range.first_hour[c] / um,
+                 {unit, "range of the drift " + what + " within the first 60 min (ISO 230-3)"});
+    group.scalar("range_" + name, range.whole[c] / um,
+                 {unit, "range of the drift " + what + " (ISO 230-3)"});
+    group.scalar("reached_" + name, range.reached[c] / kHour,
+                 {"h", "time at which the range of the drift " + what + " was reached"});
+  }
+}
+
+void write_cycles(records::Hdf5Group group, const DayCourse& day) {
+  std::vector<double> begin, rms, most;
+  for (const DayCycle& cycle : day.cycles) {
+    begin.push_back(cycle.begin / kHour);
+    rms.push_back(cycle.rms / um);
+    most.push_back(cycle.most / um);
+  }
+  group.list("begin", begin, {"h", "begin of each cycle since the start of the day"});
+  group.list("rms", rms, {"um", "rms along the path of what heat displaces the tip by, datum off"},
+             "begin");
+  group.list("largest", most, {"um", "greatest of it"}, "begin");
+}
+
+}  // namespace
+
+void write_day(records::Hdf5Group group, const DayCourse& day) {
+  std::vector<double> hours;
+  for (const double t : day.time) hours.push_back(t / kHour);
+  group.list("time", hours, {"h", "time since the start of the day"});
+  for (std::size_t i = 0; i < day.bodies.size(); ++i) {
+    std::vector<double> T = day.temperatures[i];
+    for (double& one : T) one = celsius(one);
+    group.list("temperature_" + day.bodies[i], T, {"degC", "temperature of " + day.bodies[i]},
+               "time");
+  }
+  for (std::size_t k = 0; k < day.places.size(); ++k) {
+    write_drift(group.group("drift/" + day.places[k]), day, k);
+  }
+  if (!day.cycles.empty()) write_cycles(group.group("cycles"), day);
+  if (!day.stopped.empty()) group.attribute("stopped", day.stopped);
+}
+
+}  // namespace servomill::sim::run
