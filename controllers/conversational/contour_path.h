@@ -55,7 +55,8 @@ class ContourPath {
   Point depart(const Run& run);
   /// Writes the elements held back.
   void flush();
-  bool is_compensating() const { return side_ != 0; }
+  /// True from the block with RL or RR on.
+  bool is_compensating() const { return side_ != 0 || (held_ && held_->side != 0); }
 
  private:
   struct Corner {

@@ -129,6 +129,9 @@ const Refusal kRefusals[] = {
     {"L X+9 RL F1\nL Y+9\nL X+0 R0\n",
      "t.h:6:1: error: the block that cancels RL or RR must program both axes of the plane: no "
      "manual found specifies the other one"},
+    {"L X+9 RL F1\nL X+0 R0\n",
+     "t.h:5:1: error: the block that cancels RL or RR must program both axes of the plane: no "
+     "manual found specifies the other one"},
     {"L X+9 RL F1\nTOOL CALL 2 Z S1\n",
      "t.h:5:1: error: TOOL CALL with RL or RR active; program a block with R0 first"},
     {"APPR LT X+9 Y+9 LEN5 R0 F1\n",
