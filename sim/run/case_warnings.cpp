@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "controllers/path/feed_reduction.h"
+#include "plant/geometry/grid_overshoot.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/nominal_part.h"
@@ -89,6 +90,42 @@ std::string note_of(const preparation::PreparedParts& one, const strategies::Sat
       linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
 }
 
+// "Z = 100 mm, X = 50 mm"
+std::string position_text(const std::vector<Axis>& axes, const std::vector<double>& at) {
+  std::string text;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    text += fmt::format("{}{} = {:.5g} {}", k == 0 ? "" : ", ", letter(axes[k]),
+                        at[k] / (is_linear(axes[k]) ? mm : deg), is_linear(axes[k]) ? "mm" : "deg");
+  }
+  return text;
+}
+
+// Cubic grids that leave the range of their values; of the errors of all cases, with the first.
+void add_overshoots(const preparation::PreparedParts& one, std::vector<std::string>& out) {
+  if (one.spec.name != one.scenario.cases.front().name) return;
+  const auto add = [&](const std::string& model, const plant::ErrorName& name,
+                       const plant::GridFunction& grid) {
+    const auto found = plant::overshoot_of(grid);
+    if (!found) return;
+    const Axis along = grid.axes()[found->argument];
+    const double unit = is_linear(along) ? mm : deg;
+    out.push_back(fmt::format(
+        "warning: errors.{}.{}: at {} the cubic grid is {:.3g} {} beyond its values at {} = {:.5g} "
+        "and {:.5g} {}; add positions there, or use interpolation = \"linear\"",
+        model, to_string(name), position_text(grid.axes(), found->at), found->beyond / um,
+        is_linear(name.direction) ? "um" : "urad", letter(along), found->from / unit,
+        found->to / unit, is_linear(along) ? "mm" : "deg"));
+  };
+  for (const auto& [model, errors] : one.scenario.errors) {
+    for (const Axis axis : kAllAxes) {
+      for (const Axis direction : kAllAxes) {
+        const plant::ErrorName name{direction, axis, false};
+        for (const plant::GridFunction& grid : errors.component(name).grids) add(model, name, grid);
+      }
+    }
+  }
+}
+
 // Probes and stock stay where the work_offset has them, whatever the program does to its zero.
 std::optional<Fault> shifted_program(const preparation::PreparedParts& one) {
   const std::optional<Move> move = one.program.first_shifted_feed();
@@ -121,6 +158,7 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   for (const std::string& value : input::implausible_values(one.scenario.machine_of(one.spec))) {
     out.push_back("warning: " + value);
   }
+  add_overshoots(one, out);
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
   for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
   return out;

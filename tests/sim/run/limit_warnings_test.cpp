@@ -139,5 +139,27 @@ TEST(RewrittenProgram, KeepsTheErrorsOfThePlaceThatItWasRewrittenFor) {
   EXPECT_LT(off("old", 7.0), kPrinted);
 }
 
+// The cubic through 0, 0, 10, 10 um goes 2.5 um beyond them.
+TEST(Overshoot, OfACubicGridIsReportedWithItsPlace) {
+  const auto notes = [](const std::string& interpolation) {
+    const std::string grid =
+        "machine_errors = \"machine\"\n[errors.machine]\nEYX = { grid = { axes = \"X\", at_mm = "
+        "[[-400, -200, 0, 400]], value_um = [0, 0, 10, 10], interpolation = \"" +
+        interpolation + "\" } }\n";
+    const model::Scenario scenario = small_scenario(
+        "G1 X10 F6000\nM30\n",
+        grid + "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case]]\nname = \"two\"\n");
+    return run_named_case(scenario, "one").notes;
+  };
+  EXPECT_TRUE(notes("linear").empty());
+  const auto found = notes("cubic");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].find("warning: errors.machine.EYX: at X = "), 0U) << found[0];
+  EXPECT_NE(found[0].find(" um beyond its values at X = 0 and 400 mm; add positions there, or use "
+                          "interpolation = \"linear\""),
+            std::string::npos)
+      << found[0];
+}
+
 }  // namespace
 }  // namespace servomill::sim::run::limit_warnings_test
