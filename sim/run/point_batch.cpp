@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <exception>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/run/test_comparison.h"
 #include "sim/system/memory_limit.h"
 
 namespace servomill::sim::run {
@@ -148,6 +150,8 @@ BatchResult compared(Point& point, Keep keep) {
   }
   BatchResult result;
   result.rows = evaluation::compare(point.scenario->quantities, data);
+  std::vector<evaluation::ComparisonRow> of_tests = rows_of_tests(*point.scenario, outputs);
+  std::move(of_tests.begin(), of_tests.end(), std::back_inserter(result.rows));
   result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
   result.reason = fmt::format("{}", fmt::join(stopped, "; "));
   if (keep == Keep::series) result.cases = std::move(outputs);

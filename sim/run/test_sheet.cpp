@@ -124,7 +124,7 @@ std::optional<std::string> note_of_missing_tests(const model::Scenario& scenario
   if (scenario.tests.empty()) return std::nullopt;
   std::string text = fmt::format(
       "servomill {} carries quantities; parameters of [[test]] are printed and stored by servomill "
-      "run only",
+      "run and sweep only",
       command);
   if (scenario.quantities.empty()) {
     throw InputError(scenario.tests.front()->place, text + ", and there is no [[quantity]]");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -14,7 +15,7 @@
 #include "sim/input/scenario_document.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
-#include "sim/run/test_sheet.h"
+#include "sim/run/test_comparison.h"
 
 namespace servomill::sim::sweep {
 namespace {
@@ -152,8 +153,11 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
   base_.swept_files = swept_files();
 }
 
-std::optional<std::string> Sweep::note() const {
-  return run::note_of_missing_tests(base_, "sweep");
+std::vector<evaluation::ComparisonRow> quantities_of(const model::Scenario& scenario) {
+  std::vector<evaluation::ComparisonRow> rows = evaluation::compare(scenario.quantities, {});
+  std::vector<evaluation::ComparisonRow> of_tests = run::rows_of_tests(scenario, {});
+  std::move(of_tests.begin(), of_tests.end(), std::back_inserter(rows));
+  return rows;
 }
 
 // The file that a value of a key names, seen from the folder in which the user is.
@@ -233,9 +237,7 @@ model::Scenario Sweep::at(std::uint64_t point) const {
   }
 }
 
-std::vector<evaluation::ComparisonRow> Sweep::quantities() const {
-  return evaluation::compare(base_.quantities, {});
-}
+std::vector<evaluation::ComparisonRow> Sweep::quantities() const { return quantities_of(base_); }
 
 std::optional<preparation::RunEstimate> Sweep::refuse_hopeless() const {
   const auto probes = spread(design().size(), kProbes);

@@ -14,6 +14,10 @@
 
 namespace servomill::sim::sweep {
 
+/// The rows of a sweep's table at any point, without their values: those of the comparison, then
+/// the parameters of tests of the machine.
+std::vector<evaluation::ComparisonRow> quantities_of(const model::Scenario& scenario);
+
 /// A scenario with a sweep. Constant: threads may share it.
 class Sweep {
  public:
@@ -26,8 +30,6 @@ class Sweep {
   /// NAME", or "unreadable NAME"; sorted. They belong to what the sweep is: a table of it is not
   /// gone on with when they have changed.
   const model::Scenario& base() const { return base_; }
-  /// Note of results of the scenario that a sweep does not carry, if there are any.
-  std::optional<std::string> note() const;
   const model::SweepDesign& design() const { return base_.sweep; }
 
   /// Reads the scenario with the values of a point set as --set would. Names of files among the
@@ -36,7 +38,7 @@ class Sweep {
   /// @throws InputError at the values that are refused
   model::Scenario at(std::uint64_t point) const;
 
-  /// The rows of the comparison at any point, without their values.
+  /// quantities_of() the base.
   std::vector<evaluation::ComparisonRow> quantities() const;
 
   /// Refuses what is wrong at every point, such as a key that there is not: points are read and

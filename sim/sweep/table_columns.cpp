@@ -6,6 +6,7 @@
 
 #include "sim/evaluation/comparison.h"
 #include "sim/run/result_file.h"
+#include "sim/sweep/sweep.h"
 
 namespace servomill::sim::sweep {
 namespace {
@@ -94,7 +95,7 @@ std::vector<TableColumn> columns_of(const model::Scenario& base) {
   for (std::size_t key = 0; key < base.sweep.keys.size(); ++key) {
     columns.push_back(key_column(base.sweep, key, names));
   }
-  for (const evaluation::ComparisonRow& row : evaluation::compare(base.quantities, {})) {
+  for (const evaluation::ComparisonRow& row : quantities_of(base)) {
     columns.push_back(quantity_column(row, names));
   }
   return columns;

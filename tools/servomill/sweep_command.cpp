@@ -234,7 +234,6 @@ int sweep_command(const Arguments& arguments) {
   const sim::sweep::Sweep sweep(options.word(), options.list("set"));
   const sim::sweep::Selection selection = selection_of(options, sweep);
   const SweepFiles files = files_of(options, sweep, selection);
-  if (const auto note = sweep.note()) fmt::print(stderr, "note: {}\n", *note);
   const auto of_a_point = sweep.refuse_hopeless();
 
   PointsLeft left(files.table, selection.size());

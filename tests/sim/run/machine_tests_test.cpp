@@ -124,17 +124,18 @@ TEST(NoteOfCreep, SaysThatTheAxisStillMovedWhenItWasRead) {
   EXPECT_GT(tested("EXX = { um_per_m = 100.0 }", "", "servo = \"cascade\"\n").creep, 1 * nm);
 }
 
-// Sweeps and studies of convergence carry quantities; what they leave out is named.
+// Studies of convergence carry quantities; what they leave out is named.
 TEST(NoteOfMissingTests, NamesWhatACommandLeavesOut) {
   const model::Scenario scenario = machine_under_test("EXX = { um_per_m = 100.0 }");
-  EXPECT_THROW(note_of_missing_tests(scenario, "sweep"), InputError);
+  EXPECT_THROW(note_of_missing_tests(scenario, "converge"), InputError);
   model::Scenario with_quantity = scenario;
   with_quantity.quantities.emplace_back();
-  EXPECT_EQ(note_of_missing_tests(with_quantity, "sweep"),
-            "servomill sweep carries quantities; parameters of [[test]] are printed and stored by "
-            "servomill run only");
+  EXPECT_EQ(
+      note_of_missing_tests(with_quantity, "converge"),
+      "servomill converge carries quantities; parameters of [[test]] are printed and stored by "
+      "servomill run and sweep only");
   with_quantity.tests.clear();
-  EXPECT_EQ(note_of_missing_tests(with_quantity, "sweep"), std::nullopt);
+  EXPECT_EQ(note_of_missing_tests(with_quantity, "converge"), std::nullopt);
 }
 
 TEST(RemarksOf, NamesTheCasesOfWhatDoesNotHoldForAll) {
