@@ -315,4 +315,12 @@ std::vector<Budget> find_budgets(const model::Scenario& scenario,
   return BudgetRun(scenario, quantities, control).find();
 }
 
+std::optional<double> Budget::group_at_place(CauseGroup group) const {
+  std::optional<double> sum;
+  for (const BudgetPart& part : parts) {
+    if (part.present && info_of(part.cause).group == group) sum = sum.value_or(0.0) + part.at_place;
+  }
+  return sum;
+}
+
 }  // namespace servomill::sim::run

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,6 +74,8 @@ struct Budget {
   std::string note;  // why there is none: "case table stopped: ..."
 
   double sum_at_place() const { return residual.at_place - remainder.at_place; }
+  /// Sum of the parts of a group at the place, um; empty if the case has no cause of it.
+  std::optional<double> group_at_place(CauseGroup group) const;
 };
 
 /// True if each case has this quantity, asked for or not: tool_deviation, following_error.

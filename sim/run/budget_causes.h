@@ -39,9 +39,15 @@ enum class Cause : std::uint8_t {
   imposed,         // likewise: imposed on purpose by strategies
 };
 inline constexpr std::size_t kCauses = 15;
+/// Kinds of errors that a machine has: after Andolfatto et al. (2011) static, servo, dynamic and
+/// thermal, here with the force of the cut.
+enum class CauseGroup : std::uint8_t { geometry, servo, inertia, heat, force };
+inline constexpr std::array<std::string_view, 5> kCauseGroups = {"static geometry", "servo",
+                                                                 "inertia", "heat", "force"};
 struct CauseInfo {
   std::string_view name;  // "lag", "table", ...
   std::string_view help;
+  CauseGroup group = CauseGroup::geometry;
 };
 const CauseInfo& info_of(Cause cause);
 using Causes = std::set<Cause>;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/engine/simulate.h"
+#include "sim/model/machine_test.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 #include "sim/run/day_course.h"

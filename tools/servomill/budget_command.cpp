@@ -25,7 +25,7 @@ std::string causes_help() {
       "each\ncase again without each cause and compares the signals at equal arc length. Causes:\n";
   for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
     const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
-    out += fmt::format("  {:<15}{}\n", info.name, info.help);
+    out += fmt::format("  {:<18}{}\n", info.name, info.help);
   }
   out +=
       "All goes through interpolation, lag and delay: what these do to the program alone is "
@@ -36,6 +36,7 @@ std::string causes_help() {
       "together "
       "is\n"
       "in the remainder. What stays without all is uncorrected, uncorrectable or imposed.\n"
+      "Their sums by kind: static geometry, servo, inertia, heat, force.\n"
       "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
       "tool_deviation,\n"
       "following_error.";
@@ -114,8 +115,20 @@ std::string percent(double share) { return fixed(100.0 * share, 1); }
 
 void print_line(std::string_view name, double at_place, double share, double rms,
                 std::string_view help) {
-  fmt::print("  {:<15} {:>9} um {:>7} % {:>9} um  {}\n", name, micrometres(at_place),
+  fmt::print("  {:<18} {:>9} um {:>7} % {:>9} um  {}\n", name, micrometres(at_place),
              percent(share), micrometres(rms), help);
+}
+
+// "static geometry 0.120 um, servo -0.310 um" at the place of the residual.
+std::string groups_of(const sim::run::Budget& budget) {
+  std::string text;
+  for (std::size_t g = 0; g < sim::run::kCauseGroups.size(); ++g) {
+    const auto sum = budget.group_at_place(static_cast<sim::run::CauseGroup>(g));
+    if (!sum) continue;
+    text += fmt::format("{}{} {} um", text.empty() ? "" : ", ", sim::run::kCauseGroups[g],
+                        micrometres(*sum));
+  }
+  return text;
 }
 
 void print_budget(const sim::run::Budget& budget) {
@@ -126,7 +139,7 @@ void print_budget(const sim::run::Budget& budget) {
   }
   const double whole = budget.residual.at_place;
   const auto share = [&](double part) { return whole != 0.0 ? part / whole : 0.0; };
-  fmt::print("  {:<15} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
+  fmt::print("  {:<18} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
              "share", "rms");
   for (const sim::run::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
@@ -139,10 +152,11 @@ void print_budget(const sim::run::Budget& budget) {
     absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::run::info_of(part.cause).name);
   }
   const double sum = budget.sum_at_place();
-  fmt::print("  {:<15} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
+  fmt::print("  {:<18} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
   print_line("remainder", budget.remainder.at_place, share(budget.remainder.at_place),
              budget.remainder.rms, "combined effects of causes");
   print_line("residual", whole, 1.0, budget.residual.rms, "");
+  fmt::print("  by kind: {}\n", groups_of(budget));
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
 
@@ -166,6 +180,12 @@ void print_json(const sim::run::Budget& budget) {
         sim::system::JsonObject().number("at_place", part.at_place).number("rms", part.rms).line());
   }
   out.raw("parts", parts.line()).number("sum", budget.sum_at_place());
+  sim::system::JsonObject kinds;
+  for (std::size_t g = 0; g < sim::run::kCauseGroups.size(); ++g) {
+    const auto sum = budget.group_at_place(static_cast<sim::run::CauseGroup>(g));
+    if (sum) kinds.number(sim::run::kCauseGroups[g], *sum);
+  }
+  out.raw("kinds", kinds.line());
   out.number("remainder", budget.remainder.at_place);
   fmt::print("{}\n", out.number("remainder_rms", budget.remainder.rms).line());
 }

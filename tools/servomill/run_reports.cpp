@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/model/machine_test.h"
+#include "sim/model/scenario.h"
 #include "sim/run/day_course.h"
 #include "sim/run/machine_tests.h"
 #include "sim/run/run.h"

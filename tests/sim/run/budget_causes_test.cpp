@@ -216,5 +216,21 @@ TEST(BudgetCauses, OfInertiaAlone) {
   EXPECT_LE(budget.remainder.rms, 1e-3);
 }
 
+// A head that is 3 K above the reference lowers the tip by 6 um; no servo and no force is in it.
+TEST(BudgetCauses, OfHeatAlone) {
+  const Budget budget = budget_of(
+      "[machine_override.heat]\nstart_degC = 23.0\nsurroundings = { room = { mean_degC = 23.0 } "
+      "}\n[machine_override.heat.body.head]\ncapacity_J_per_K = 5e4\nconductance_W_per_K = { room "
+      "= 10.0 }\nerrors_per_K = { EZZ = { constant_um = -2.0 } }\n[[case]]\nname = \"one\"\nservo "
+      "= \"ideal\"\n" +
+          quantity("tool_deviation", 'Z'),
+      "G17 G21 G90 G94 G64 P0.0002\n(MSG, flank)\nG1 X20 F6000\nM30\n");
+  EXPECT_NEAR(budget.residual.at_place, -6.0, 1e-6);
+  EXPECT_NEAR(part(budget, Cause::heat).at_place, -6.0, 1e-6);
+  EXPECT_NEAR(budget.group_at_place(CauseGroup::heat).value(), -6.0, 1e-6);
+  EXPECT_FALSE(budget.group_at_place(CauseGroup::force).has_value());
+  EXPECT_LE(budget.remainder.rms, 1e-6);
+}
+
 }  // namespace
 }  // namespace servomill::sim::run::budget_causes_test
