@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "plant/heat/temperature.h"
+#include "plant/sensing/noise.h"
 
 namespace servomill::sim::engine {
 namespace {
@@ -72,6 +73,16 @@ std::string fault_of(const model::HeatSettings& heat, const VectorXd& T) {
   return "";
 }
 
+std::vector<double> readings_of(const model::HeatSettings& heat, const VectorXd& T, Tick step) {
+  std::vector<double> out;
+  std::uint32_t stream = 0;
+  for (const model::HeatSensor& sensor : heat.sensors) {
+    const double noise = plant::white_noise({heat.noise_seed, stream++}, 0, step)[0];
+    out.push_back(T[sensor.body] + sensor.noise * noise);
+  }
+  return out;
+}
+
 HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors)
     : machine_(machine),
       errors_(errors),
@@ -102,6 +113,7 @@ void HeatRun::step() {
   network_.advance(t_, course_.step, sum_);
   t_ += course_.step;
   periods_ = 0;
+  ++steps_;
   sum_.setZero();
   at_ = errors_now();
 }
@@ -114,7 +126,11 @@ std::shared_ptr<const plant::VolumetricModel> HeatRun::errors_now() const {
 }
 
 std::vector<double> HeatRun::temperatures() const {
-  return {network_.temperatures().begin(), network_.temperatures().end()};
+  std::vector<double> out(network_.temperatures().begin(), network_.temperatures().end());
+  for (const double T : readings_of(*machine_.heat, network_.temperatures(), steps_)) {
+    out.push_back(T);
+  }
+  return out;
 }
 
 std::string HeatRun::fault() const { return fault_of(*machine_.heat, network_.temperatures()); }

@@ -9,6 +9,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/heat/thermal_network.h"
+#include "plant/vocabulary/ticks.h"
 #include "sim/engine/case_result.h"
 #include "sim/model/heat.h"
 #include "sim/model/machine.h"
@@ -52,7 +53,7 @@ class HeatRun {
 
   /// Errors of the machine at its temperatures.
   const std::shared_ptr<const plant::VolumetricModel>& errors() const { return at_; }
-  /// K, of each body.
+  /// K, of each body, and the readings of each sensor.
   std::vector<double> temperatures() const;
   /// Empty, or why the machine stops: a body is beyond its limits.
   std::string fault() const;
@@ -68,6 +69,7 @@ class HeatRun {
   HeatSources sources_;
   plant::ThermalNetwork network_;
   int periods_per_step_, periods_ = 0;
+  Tick steps_ = 0;
   double t_;  // s, of the day
   Eigen::VectorXd power_, sum_;
   std::shared_ptr<const plant::VolumetricModel> at_;
@@ -77,6 +79,12 @@ class HeatRun {
 /// Empty, or which body is colder or warmer than it may be.
 /// @param T  of each body (K)
 std::string fault_of(const model::HeatSettings& heat, const Eigen::VectorXd& T);
+
+/// Readings of the sensors (K).
+/// @param T     of each body (K)
+/// @param step  number of the reading; equal ones have equal noise
+std::vector<double> readings_of(const model::HeatSettings& heat, const Eigen::VectorXd& T,
+                                Tick step);
 
 /// A network at the temperatures at which runs begin.
 plant::ThermalNetwork network_at_start(const model::HeatSettings& heat);

@@ -85,6 +85,10 @@ void add_states(const model::MachineSettings& machine, const std::string& linear
     for (const plant::ThermalBody& body : machine.heat->network.bodies) {
       all.push_back({"temperature_" + body.name, "degC", "temperature of " + body.name, "", ""});
     }
+    for (const model::HeatSensor& sensor : machine.heat->sensors) {
+      all.push_back({"sensor_" + sensor.name, "degC",
+                     "reading of temperature sensor " + sensor.name, "", ""});
+    }
   }
 }
 

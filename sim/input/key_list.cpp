@@ -40,7 +40,7 @@ std::string common_name(std::string name) {
       {std::regex(R"(^machine\.errors)"), "errors"},
       {std::regex(R"(\baxis\.[XYZABC]\b)"), "axis.X"},
       {std::regex(R"(\binertial_deflection\.[XYZ][XYZABC]\b)"), "inertial_deflection.XX"},
-      {std::regex(R"(\bheat\.(surroundings|body|source)\.\w+)"), "heat.$1.NAME"},
+      {std::regex(R"(\bheat\.(surroundings|body|source|sensor)\.\w+)"), "heat.$1.NAME"},
       {std::regex(R"(^machine\.heat\.body\.NAME\.errors_per_K)"), "errors.NAME"},
       {std::regex(R"(\bE[XYZ]0[XYZABC]\b)"), "EX0C"},
       {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
@@ -59,7 +59,7 @@ std::string common_key(const std::string& section, const std::string& key) {
   if (section == "sweep.zip") return "KEY";
   if (section == "errors" || section == "machine.heat.surroundings" ||
       section == "machine.heat.body" || section == "machine.heat.source" ||
-      section.ends_with("conductance_W_per_K")) {
+      section == "machine.heat.sensor" || section.ends_with("conductance_W_per_K")) {
     return "NAME";
   }
   if (section == "program.subroutines") return "NAME";

@@ -50,6 +50,7 @@ class HeatReader {
     read_surroundings();
     read_bodies();
     read_sources();
+    read_sensors();
     read_start();
     if (heat_.faults() == before) {
       for (const std::string& rule : plant::implausible(out_.network)) heat_.fault(rule);
@@ -208,6 +209,21 @@ class HeatReader {
                   fmt::format("must be an axis of the machine: {}", fmt::join(letters, ", ")));
     }
     return 0;
+  }
+
+  void read_sensors() {
+    out_.noise_seed =
+        static_cast<std::uint64_t>(heat_.integer_or("noise_seed", 0, {config::at_least(0.0)}));
+    if (!heat_.has("sensor")) return;
+    config::Reader all = heat_.table("sensor");
+    for (const std::string& name : all.keys()) {
+      config::Reader table = all.table(name);
+      if (!is_plain(name)) all.fault(name + ": must consist of letters, digits and _");
+      const int body = read_body(table);
+      out_.sensors.push_back({name, body,
+                              table.real_or("noise_K", 0.0, config::kTemperature,
+                                            {config::at_least(0.0), config::at_most(100.0)})});
+    }
   }
 
   void read_start() {

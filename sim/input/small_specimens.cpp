@@ -40,12 +40,15 @@ j_max = 400.0
 reference_degC = 20.0
 start_degC = 20.0
 clock_h = 7.0
+noise_seed = 1
 surroundings = { room = { mean_degC = 20.0, amplitude_K = 1.0, period_h = 24.0, warmest_at_h = 15.0 } }
 [machine.heat.body.head]
 capacity_J_per_K = 5e4
 winding = false
 conductance_W_per_K = { room = 10.0 }
 errors_per_K = { EZZ = { constant_um = 1.0 } }
+[machine.heat.sensor]
+NAME = { body = "head", noise_K = 0.05 }
 [machine.heat.source]
 pump = { body = "head", kind = "constant", power_W = 10.0 }
 bearings = { body = "head", kind = "spindle", speed_rpm = [0, 1000], power_W = [0, 10.0] }

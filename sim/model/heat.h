@@ -30,10 +30,19 @@ struct HeatSource {
   double share = 1.0;                  // of the friction
 };
 
+/// A temperature sensor on a body.
+struct HeatSensor {
+  std::string name;
+  int body = 0;
+  double noise = 0.0;  // K, standard deviation of each reading
+};
+
 struct HeatSettings {
   plant::ThermalParams network;
   std::vector<HeatSource> sources;
   std::vector<plant::ThermalError> errors;
+  std::vector<HeatSensor> sensors;
+  std::uint64_t noise_seed = 0;          // of the sensors
   std::vector<double> coldest, warmest;  // K, of each body: beyond them the run ends
   double reference = 293.15;             // K, at which the machine has its errors
   std::vector<double>

@@ -78,7 +78,9 @@ class Day {
         at_start_(errors_now()) {
     for (const auto& body : heat_.network.bodies) out_.bodies.push_back(body.name);
     for (const auto& place : day_.places) out_.places.push_back(place.name);
+    for (const auto& sensor : heat_.sensors) out_.sensors.push_back(sensor.name);
     out_.temperatures.resize(out_.bodies.size());
+    out_.readings.resize(out_.sensors.size());
     out_.drift.resize(out_.places.size());
   }
 
@@ -147,6 +149,9 @@ class Day {
     for (std::size_t i = 0; i < out_.bodies.size(); ++i) {
       out_.temperatures[i].push_back(network_.temperatures()[static_cast<Index>(i)]);
     }
+    const auto reading = static_cast<Tick>(out_.time.size());
+    const auto sensed = engine::readings_of(heat_, network_.temperatures(), reading);
+    for (std::size_t i = 0; i < sensed.size(); ++i) out_.readings[i].push_back(sensed[i]);
     now_ = std::make_unique<plant::VolumetricModel>(errors_now());
     for (std::size_t k = 0; k < day_.places.size(); ++k) {
       const plant::VolumetricError d = drift_of(day_.places[k]);

@@ -36,6 +36,8 @@ struct DayCourse {
   std::vector<double> time;                       // s since the start, of each reading
   std::vector<std::string> bodies, places;        // names
   std::vector<std::vector<double>> temperatures;  // K; of each body, at each time
+  std::vector<std::string> sensors;               // names
+  std::vector<std::vector<double>> readings;      // K; of each sensor, at each time
   std::vector<std::vector<std::array<double, kDrifts>>> drift;  // since the start; of each place
   std::vector<DriftRange> ranges;
   std::vector<DayCycle> cycles;

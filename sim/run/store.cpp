@@ -145,7 +145,7 @@ void check_signals(const records::InputFile& file, const std::string& group,
   std::vector<std::string> needed = {"s", "rapid", "section"};
   for (const records::Signal& signal : first.signals()) {
     const bool may_miss =
-        signal.name.starts_with("temperature_") ||
+        signal.name.starts_with("temperature_") || signal.name.starts_with("sensor_") ||
         std::find(kOfSomeCases.begin(), kOfSomeCases.end(), signal.name) != kOfSomeCases.end();
     if (!may_miss) needed.push_back(signal.name);
   }

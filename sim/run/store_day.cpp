@@ -53,11 +53,16 @@ void write_day(records::Hdf5Group group, const DayCourse& day) {
   std::vector<double> hours;
   for (const double t : day.time) hours.push_back(t / kHour);
   group.list("time", hours, {"h", "time since the start of the day"});
-  for (std::size_t i = 0; i < day.bodies.size(); ++i) {
-    std::vector<double> T = day.temperatures[i];
+  const auto write = [&](const std::string& name, std::vector<double> T, const std::string& what) {
     for (double& one : T) one = celsius(one);
-    group.list("temperature_" + day.bodies[i], T, {"degC", "temperature of " + day.bodies[i]},
-               "time");
+    group.list(name, T, {"degC", what}, "time");
+  };
+  for (std::size_t i = 0; i < day.bodies.size(); ++i) {
+    write("temperature_" + day.bodies[i], day.temperatures[i], "temperature of " + day.bodies[i]);
+  }
+  for (std::size_t i = 0; i < day.sensors.size(); ++i) {
+    write("sensor_" + day.sensors[i], day.readings[i],
+          "reading of temperature sensor " + day.sensors[i]);
   }
   for (std::size_t k = 0; k < day.places.size(); ++k) {
     write_drift(group.group("drift/" + day.places[k]), day, k);

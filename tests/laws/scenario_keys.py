@@ -14,7 +14,7 @@ import readmes
 ERROR = [(r"E[XYZ]0[XYZABC]$", "EX0C"), (r"E[ABC]0[XYZABC]$", "EC0Y"), (r"E[XYZABC][XYZABC]$", "EXX")]
 EXAMPLE = "setpoint"  # the strategy that strategies/README.md builds
 NAMES = {"errors": "NAME", "program.subroutines": "NAME", "program.parameters": "#101", "machine.axis": "X", "machine.inertial_deflection": "XX", "machine.heat.surroundings": "NAME",
-         "machine.heat.body": "NAME", "machine.heat.body.NAME.conductance_W_per_K": "NAME", "machine.heat.source": "NAME"}
+         "machine.heat.body": "NAME", "machine.heat.body.NAME.conductance_W_per_K": "NAME", "machine.heat.source": "NAME", "machine.heat.sensor": "NAME"}
 
 
 def listed_keys(servomill, *section):

@@ -98,6 +98,30 @@ TEST(HeatRun, OfTheSpindleFollowsItsSpeed) {
   EXPECT_NEAR(power.back(), 10.0, 1e-9);  // after M5
 }
 
+// Every reading has its own noise, of the standard deviation that is asked for; the tip does not
+// feel it.
+TEST(HeatRun, ReadsItsSensorsWithNoise) {
+  const std::string source = "kind = \"constant\", power_W = 0.0";
+  const run::CaseOutput out = run_named_case(
+      small_scenario(
+          "G1 X50 F150\nM30\n",
+          "[record]\nperiod_ms = 100\n" + kCase + heat(source) +
+              "[machine_override.heat.sensor]\nram = { body = \"head\", noise_K = 0.1 }\n"),
+      "one");
+  const records::Series& servo = out.result.servo;
+  const std::size_t column = servo.column("sensor_ram").value();
+  double sum = 0.0, squares = 0.0;
+  const auto n = static_cast<double>(servo.rows());
+  ASSERT_GT(n, 180.0);
+  for (std::size_t row = 0; row < servo.rows(); ++row) {
+    sum += servo.at(row, column) - 20.0;
+    squares += std::pow(servo.at(row, column) - 20.0, 2);
+  }
+  EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.1 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.1, 4.0 * 0.1 / std::sqrt(2.0 * n));
+  EXPECT_NEAR(last(servo, "temperature_head"), 20.0, 1e-9);
+}
+
 TEST(HeatRun, StopsAtTheLimitOfABody) {
   const model::Scenario scenario =
       small_scenario(kStrokes, kRecord + kCase + heat("kind = \"constant\", power_W = 20000.0"));
