@@ -18,6 +18,24 @@ struct EdgeIntegrals {
     sine_squared += 0.5 * (to - from) - 0.25 * (std::sin(2.0 * to) - std::sin(2.0 * from));
     sine_cosine += 0.25 * (std::cos(2.0 * from) - std::cos(2.0 * to));
   }
+
+  /// Adds a weight times the second integrals from `from` on to phi, of functions that are zero
+  /// outside of [from, to]: they grow linearly beyond `to`.
+  void add_twice(double from, double to, double phi, double weight) {
+    if (phi <= from) return;
+    const double end = phi < to ? phi : to, d = end - from;
+    const double s = std::sin(from), c = std::cos(from), s_end = std::sin(end),
+                 c_end = std::cos(end);
+    const double s2 = 2.0 * s * c, c2 = c * c - s * s;
+    const double s2_end = 2.0 * s_end * c_end, c2_end = c_end * c_end - s_end * s_end;
+    const double rest = phi - end;
+    one += weight * (0.5 * d * d + rest * d);
+    sine += weight * (c * d - (s_end - s) + rest * (c - c_end));
+    cosine += weight * ((c - c_end) - s * d + rest * (s_end - s));
+    sine_squared += weight * (0.25 * d * d + 0.125 * (c2_end - c2) + 0.25 * s2 * d +
+                              rest * (0.5 * d - 0.25 * (s2_end - s2)));
+    sine_cosine += weight * (0.25 * c2 * d - 0.125 * (s2_end - s2) + rest * 0.25 * (c2 - c2_end));
+  }
 };
 
 }  // namespace servomill::plant

@@ -273,11 +273,12 @@ Eigen::Matrix<double, 3, 2> spindle_directions(const Eigen::Vector3d& k) {
   return out;
 }
 
-double spindle_angle_of(const CutterFrame& frame) {
+ToothAngle tooth_angle(const CutterFrame& frame) {
   const Eigen::Vector3d e1 = frame.axes.col(0);
   const Eigen::Matrix<double, 3, 2> across = spindle_directions(frame.axes.col(2));
   const double from_x = std::atan2(e1.dot(across.col(1)), e1.dot(across.col(0)));
-  return frame.axes.determinant() > 0.0 ? from_x : -from_x;
+  if (frame.axes.determinant() > 0.0) return {from_x, 1.0};
+  return {kPi - from_x, -1.0};
 }
 
 std::vector<EngagedArc> engagement(const Cutter& cutter, const CutterMotion& motion,

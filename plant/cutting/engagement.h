@@ -30,12 +30,17 @@ CutterFrame frame_of(const CutterMotion& motion);
 
 /// Directions x, y across an axis k from which angles of the spindle are counted, in the frame in
 /// which k is given: x is its X as far as that is across k (its Y where k is within 0.1 deg of X),
-/// y = k x x. At angle psi of a clockwise spindle, tooth 0 is in the direction
-/// sin(psi) x + cos(psi) y; of a counter-clockwise one in sin(psi) x - cos(psi) y.
+/// y = k x x. At angle psi, clockwise seen from the spindle, tooth 0 is in the direction
+/// sin(psi) x + cos(psi) y.
 Eigen::Matrix<double, 3, 2> spindle_directions(const Eigen::Vector3d& k);
 
-/// phi of tooth 0 at angle 0 of the spindle (rad): phi = psi + this.
-double spindle_angle_of(const CutterFrame& frame);
+/// phi of a tooth at an angle of the spindle: phi = start + sense psi.
+struct ToothAngle {
+  double start = 0.0;  // rad
+  double sense = 1.0;  // 1 clockwise, -1 counter-clockwise
+  double at(double psi) const { return start + sense * psi; }
+};
+ToothAngle tooth_angle(const CutterFrame& frame);
 
 /// True if there is material at a point (m, in the frame of the cutter's position).
 using IsMaterial = std::function<bool(const Eigen::Vector3d&)>;

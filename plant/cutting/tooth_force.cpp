@@ -12,10 +12,10 @@ namespace servomill::plant {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kTurn = 2.0 * kPi;
-constexpr double kMaxLag = kPi / 45.0;  // rad, of one slice: 4 deg
-constexpr double kSameAngle = 1e-9;     // rad, of arcs that continue each other
-constexpr double kSameHeight = 1e-9;    // m
-constexpr double kStraight = 1e-12;     // cosine of kappa on a flank
+constexpr double kMinLag = 1e-3;      // rad: an edge that lags less is straight
+constexpr double kSameAngle = 1e-9;   // rad, of arcs that continue each other
+constexpr double kSameHeight = 1e-9;  // m
+constexpr double kStraight = 1e-12;   // cosine of kappa on a flank
 
 bool continues(const EngagedArc& below, const EngagedArc& above) {
   const double end = below.height + 0.5 * below.width, begin = above.height - 0.5 * above.width;
@@ -39,23 +39,16 @@ std::vector<EngagedArc> joined(std::span<const EngagedArc> arcs) {
   return out;
 }
 
-// A range of phi, and what is integrated over it: h = slope c (across sin(phi) - along) + offset.
-struct Chip {
-  double from, to;       // rad
-  double slope, offset;  // 1, m
-  double is_edge;        // 1: the edge is in contact; 0: a correction of what is added already
-};
-
-void add(const CuttingCoefficients& K, const EdgeSlice& slice, const Chip& chip, double c,
-         double wear, Eigen::Vector3d& F) {
-  EdgeIntegrals I;
-  I.add(chip.from, chip.to);
-  const double a = chip.slope * c * slice.across;
-  const double b = chip.offset * slice.sine - chip.slope * c * slice.along;
+// Adds a chip of thickness slope c (across sin(phi) - along) + offset, integrated over phi.
+// @param is_edge  1: the edge is in contact; 0: a correction of what is added already
+void add(const CuttingCoefficients& K, const EdgeSlice& slice, const EdgeIntegrals& I, double slope,
+         double offset, double is_edge, double c, double wear, Eigen::Vector3d& F) {
+  const double a = slope * c * slice.across;
+  const double b = offset * slice.sine - slope * c * slice.along;
   const double h_one = a * I.sine + b * I.one;
   const double h_sine = a * I.sine_squared + b * I.sine;
   const double h_cosine = a * I.sine_cosine + b * I.cosine;
-  const double edge = chip.is_edge * wear, sk = slice.sine, ck = slice.cosine;
+  const double edge = is_edge * wear, sk = slice.sine, ck = slice.cosine;
   const double outward_c = K.Krc * sk + K.Kac * ck;
   const double outward_e = edge * (K.Kre * sk + K.Kae * ck), Kte = edge * K.Kte;
   F.x() -=
@@ -77,18 +70,47 @@ AngleRange above(const EdgeSlice& slice, double c, double x, double from, double
   return {std::max(from, first), std::min(to, kPi - first)};
 }
 
-// Force of one tooth, integrated over the part [from, to] of a slice's range.
+// A rotation of a tooth: its edge at the lower end of a slice turns from phi by dtheta.
+struct Rotation {
+  double phi, dtheta;
+};
+
+// Integrals over the rotation, mean over the helix of a slice, of functions that are zero outside
+// of [range.from, range.to]. Whole turns apart they are the same.
+EdgeIntegrals integrals(const Rotation& rotation, double lag_span, const AngleRange& range) {
+  EdgeIntegrals I;
+  const double end = rotation.phi + rotation.dtheta, begin = rotation.phi - lag_span;
+  const double first = std::ceil((begin - range.to) / kTurn);
+  const double last = std::floor((end - range.from) / kTurn);
+  for (double turn = first; turn <= last; ++turn) {
+    const double shift = kTurn * turn;
+    if (lag_span < kMinLag) {
+      const double half = 0.5 * lag_span;
+      I.add(std::max(rotation.phi - half - shift, range.from),
+            std::min(end - half - shift, range.to));
+      continue;
+    }
+    const double weight = 1.0 / lag_span;
+    I.add_twice(range.from, range.to, end - shift, weight);
+    I.add_twice(range.from, range.to, rotation.phi - shift, -weight);
+    I.add_twice(range.from, range.to, end - lag_span - shift, -weight);
+    I.add_twice(range.from, range.to, begin - shift, weight);
+  }
+  return I;
+}
+
+// Force of one tooth, integrated over a rotation.
 void add_tooth(const CuttingCoefficients& K, const std::vector<ToothChips::Piece>& pieces,
-               const EdgeSlice& slice, double from, double to, double c, double wear,
+               const EdgeSlice& slice, const Rotation& rotation, double c, double wear,
                Eigen::Vector3d& F) {
-  if (!(to > from)) return;
   double slope = 0.0, offset = 0.0, edge = 1.0;
   for (const ToothChips::Piece& piece : pieces) {
-    const AngleRange range =
-        piece.x > 0.0 ? above(slice, c, piece.x * slice.sine, from, to) : AngleRange{from, to};
+    const AngleRange range = piece.x > 0.0
+                                 ? above(slice, c, piece.x * slice.sine, slice.from, slice.to)
+                                 : AngleRange{slice.from, slice.to};
     if (!(range.to > range.from)) return;
-    add(K, slice, {range.from, range.to, piece.slope - slope, piece.offset - offset, edge}, c, wear,
-        F);
+    const EdgeIntegrals I = integrals(rotation, slice.lag_span, range);
+    add(K, slice, I, piece.slope - slope, piece.offset - offset, edge, c, wear, F);
     slope = piece.slope;
     offset = piece.offset;
     edge = 0.0;
@@ -158,16 +180,12 @@ std::vector<EdgeSlice> edge_slices(const Cutter& cutter, const FeedDirection& fe
     if (contact.empty()) continue;
     const double sk = std::sin(arc.kappa), ck = std::cos(arc.kappa);
     const double span = std::abs(ck) < kStraight ? arc.width * lag_per_height : 0.0;
-    const int parts = std::max(1, static_cast<int>(std::ceil(span / kMaxLag)));
+    const double lag = arc.height * lag_per_height - 0.5 * span;
     for (const double turn : {-kTurn, 0.0, kTurn}) {
       const double from = std::max(arc.from + turn, contact.from);
       const double to = std::min(arc.to + turn, contact.to);
       if (!(to > from)) continue;
-      for (int part = 0; part < parts; ++part) {
-        const double height = arc.height + arc.width * ((part + 0.5) / parts - 0.5);
-        slices.push_back({from, to, arc.width / parts, height * lag_per_height, sk, ck,
-                          feed.across * sk, feed.along * ck});
-      }
+      slices.push_back({from, to, arc.width, lag, span, sk, ck, feed.across * sk, feed.along * ck});
     }
   }
   return slices;
@@ -195,16 +213,12 @@ Eigen::Vector3d mean_tooth_force(const CuttingCoefficients& K, const ToothChips&
   if (!(c > 0.0)) return F;
   const int N = chips.teeth();
   for (const EdgeSlice& slice : slices) {
-    const double length = slice.to - slice.from;
     for (int tooth = 0; tooth < N; ++tooth) {
-      const double turns = (theta - slice.lag - slice.from) / kTurn +
-                           static_cast<double>(tooth) / static_cast<double>(N);
-      const double begin = kTurn * (turns - std::floor(turns)), end = begin + dtheta;
-      const std::vector<ToothChips::Piece>& pieces = chips.pieces(tooth);
-      add_tooth(K, pieces, slice, slice.from + begin, slice.from + std::min(end, length), c, wear,
-                F);
-      add_tooth(K, pieces, slice, slice.from, slice.from + std::min(end - kTurn, length), c, wear,
-                F);
+      const double turns = (theta - slice.lag) / kTurn + static_cast<double>(tooth) / N;
+      const double phi = kTurn * (turns - std::floor(turns));
+      // most teeth are not in contact
+      if (phi - slice.lag_span > slice.to && phi + dtheta < slice.from + kTurn) continue;
+      add_tooth(K, chips.pieces(tooth), slice, {phi, dtheta}, c, wear, F);
     }
   }
   return F / dtheta;

@@ -19,17 +19,20 @@
 
 namespace servomill::plant {
 
-/// A thin piece of each edge, at one angle, and the range of phi in which it cuts.
+/// A piece of each edge and the range of phi in which it cuts.
 struct EdgeSlice {
-  double from = 0.0, to = 0.0;        // rad, within contact_range()
-  double width = 0.0;                 // m, db
-  double lag = 0.0;                   // rad, by which it is behind the tip of its tooth: helix
-  double sine = 1.0, cosine = 0.0;    // of kappa
-  double across = 1.0, along = 0.0;   // h = c (across sin(phi) - along), without run-out
+  double from = 0.0, to = 0.0;  // rad, within contact_range()
+  double width = 0.0;           // m, db
+  // rad, by which its lower end is behind the tip of its tooth and its upper end behind the lower:
+  // helix
+  double lag = 0.0, lag_span = 0.0;
+  double sine = 1.0, cosine = 0.0;   // of kappa
+  double across = 1.0, along = 0.0;  // h = c (across sin(phi) - along), without run-out
 };
 
-/// Slices of the engaged arcs of a cutter. Along a straight flank a slice spans at most 4 deg of
-/// lag. The sum of their widths is that of the arcs.
+/// Slices of the engaged arcs of a cutter: a straight flank with its helix, as far as it is engaged
+/// at the same angles; other arcs each at the angle of its middle. The sum of their widths is that
+/// of the arcs.
 std::vector<EdgeSlice> edge_slices(const Cutter& cutter, const FeedDirection& feed,
                                    std::span<const EngagedArc> arcs);
 
@@ -58,9 +61,9 @@ class ToothChips {
   std::vector<std::vector<Piece>> teeth_;
 };
 
-/// Mean of the force on all teeth while the cutter turns from theta by dtheta: the integral in
-/// closed form, so that intervals that make up a turn have the mean force of the turn, exactly.
-/// Neither allocates nor throws.
+/// Mean of the force on all teeth while the cutter turns from theta by dtheta: the integral over
+/// angle and helix in closed form, so that intervals that make up a turn have the mean force of the
+/// turn, exactly. Neither allocates nor throws.
 /// @param theta   rad, phi of the tip of tooth 0; any
 /// @param dtheta  rad, 0 < dtheta <= 2 pi
 /// @param c       m, feed per tooth

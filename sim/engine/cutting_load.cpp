@@ -70,7 +70,7 @@ void CuttingLoad::turn(double dt) {
   const CuttingTable::Place at = table_.place(s, cursor_);
   rate_ = 2.0 * std::numbers::pi * at.after->turns;
   const double c = at.number(&CuttingTable::Row::chip) * speed_;
-  if (c <= 0.0 || rate_ <= 0.0) return set_force(force);
+  if (c <= 0.0 || rate_ == 0.0) return set_force(force);
   const double edges = wear_.initial + wear_.per_m * at.number(&CuttingTable::Row::cut);
   const auto add = [&](const CuttingTable::Row& row, double share) {
     if (share <= 0.0 || row.teeth < 0) return;

@@ -24,7 +24,7 @@ class CuttingTable {
     Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // N per m of feed per tooth, in W
     Eigen::Vector3d edge = Eigen::Vector3d::Zero();   // N of a new edge, in W
     double cut = 0.0;                                 // m, cut by feed moves until here
-    double turns = 0.0;                               // 1/s, of the spindle, towards this row
+    double turns = 0.0;                               // 1/s, of the spindle, > 0 clockwise, towards this row
     std::int32_t teeth = -1;  // engagement (engaged_teeth.h); -1: none, or none is needed
   };
   /// Place of the last force; makes forward reading O(1).
@@ -80,7 +80,7 @@ class CuttingLoad {
   /// The spindle turns for `dt` (s) from here on: the mean force of the teeth meanwhile. Along the
   /// path the position period goes on at the speed of the last one. @pre there are teeth
   void turn(double dt);
-  /// Angle of the spindle (rad) a time (s) after the last turn() began, counted from the start of
+  /// Angle of the spindle (rad, clockwise) a time (s) after the last turn() began, counted from the start of
   /// the run (plant::spindle_directions).
   double spindle_angle(double after) const { return angle_ + rate_ * after; }
 

@@ -1,6 +1,7 @@
 #include "sim/engine/engaged_teeth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace servomill::sim::engine {
 
@@ -12,8 +13,8 @@ int EngagedTeeth::add(int number, const plant::Cutter& cutter, const plant::Cutt
   const std::vector<plant::EdgeSlice> slices = plant::edge_slices(cutter, frame.feed, arcs);
   slices_.insert(slices_.end(), slices.begin(), slices.end());
   engagements_.push_back(
-      {frame.axes, plant::spindle_angle_of(frame), tool->second, first, slices_.size()});
-  passing_frequency_ = std::max(passing_frequency_, turns * cutter.teeth);
+      {frame.axes, plant::tooth_angle(frame), tool->second, first, slices_.size()});
+  passing_frequency_ = std::max(passing_frequency_, std::abs(turns) * cutter.teeth);
   return static_cast<int>(engagements_.size()) - 1;
 }
 
@@ -22,7 +23,8 @@ Eigen::Vector3d EngagedTeeth::force(int engagement, double angle, double rotatio
   const Engagement& at = engagements_[static_cast<std::size_t>(engagement)];
   const std::span<const plant::EdgeSlice> slices(slices_.data() + at.first, at.end - at.first);
   return at.axes *
-         plant::mean_tooth_force(K_, chips_[at.tool], slices, angle + at.angle, rotation, c, wear);
+         plant::mean_tooth_force(K_, chips_[at.tool], slices, at.phi.at(angle),
+                                           at.phi.sense * rotation, c, wear);
 }
 
 }  // namespace servomill::sim::engine

@@ -21,7 +21,7 @@ class EngagedTeeth {
   /// Adds an engagement. Returns its number.
   /// @param number  of the tool
   /// @param frame   of the cutter, in W
-  /// @param turns   1/s, of the spindle
+  /// @param turns   1/s, of the spindle, counter-clockwise < 0
   int add(int number, const plant::Cutter& cutter, const plant::CutterFrame& frame,
           std::span<const plant::EngagedArc> arcs, double turns);
 
@@ -30,15 +30,15 @@ class EngagedTeeth {
 
   /// Mean force on all teeth (3; N, in W) while the spindle turns. Neither allocates nor throws.
   /// @param engagement  its number
-  /// @param angle       rad, of tooth 0 about the axis, from spindle_directions(); any
-  /// @param rotation    rad, by which the spindle turns; 0 < rotation <= 2 pi
+  /// @param angle       rad, of tooth 0, as plant::spindle_directions() count it; any
+  /// @param rotation    rad, by which the spindle turns; > 0 clockwise, at most a turn
   /// @param c           m, feed per tooth
   Eigen::Vector3d force(int engagement, double angle, double rotation, double c, double wear) const;
 
  private:
   struct Engagement {
     Eigen::Matrix3d axes;        // e1, e2, k in W
-    double angle = 0.0;          // rad, from tooth 0 at the spindle's zero to phi
+    plant::ToothAngle phi;
     std::size_t tool = 0;        // in chips_
     std::size_t first, end = 0;  // in slices_
   };

@@ -66,8 +66,8 @@ void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
                  linear, kLinear});
   if (teeth) {
     all.push_back({"spindle_angle", "deg",
-                   "angle of tooth 0 of the cutter since the start, from the workpiece's Y in the "
-                   "sense of rotation",
+                   "angle of tooth 0 of the cutter since the start, clockwise seen from the spindle, "
+                   "from the workpiece's Y",
                    "", ""});
   }
 }

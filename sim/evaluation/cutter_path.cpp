@@ -48,19 +48,25 @@ const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPa
   return found == source.cutters.end() ? nullptr : &found->second;
 }
 
-const engine::ProgramPath::Piece* CutterPasses::feed_at(std::size_t position) const {
+CutterPasses::Place CutterPasses::place_of(std::size_t position) const {
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (position < passes[i].positions.size()) return feeds[i];
+    if (position < passes[i].positions.size()) return {i, position};
     position -= passes[i].positions.size();
   }
-  return nullptr;
+  return {passes.size(), 0};
+}
+
+const engine::ProgramPath::Piece* CutterPasses::feed_at(std::size_t position) const {
+  const std::size_t pass = place_of(position).pass;
+  return pass < passes.size() ? feeds[pass] : nullptr;
 }
 
 CutterPath::CutterPath(const PartSource& source)
     : servo_(source.servo),
       frame_(model::work_frame(source.chain, source.work_offset)),
       position_column_(*source.servo.column("tool_position_true", 'X')),
-      axis_column_(*source.servo.column("tool_axis_true", 'I')) {
+      axis_column_(*source.servo.column("tool_axis_true", 'I')),
+      angle_column_(source.servo.column("spindle_angle")) {
   PieceOfRow pieces(servo_, source.path);
   const plant::Cutter* cutting = nullptr;
   for (std::size_t row = 0; row < servo_.rows(); ++row) {
@@ -117,6 +123,12 @@ void CutterPath::add(std::size_t pass, std::size_t first, std::size_t end,
   std::vector<plant::CutterPosition>& positions = out.passes.back().positions;
   positions.reserve(end - first);
   for (std::size_t row = first; row < end; ++row) positions.push_back(at(row));
+  std::vector<double>& angles = out.angles.emplace_back();
+  if (!angle_column_) return;
+  angles.reserve(end - first);
+  for (std::size_t row = first; row < end; ++row) {
+    angles.push_back(servo_.at(row, *angle_column_) * deg);
+  }
 }
 
 CutterPasses CutterPath::all() const {

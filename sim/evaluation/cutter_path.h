@@ -40,8 +40,16 @@ const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPa
 struct CutterPasses {
   std::vector<plant::CutterPass> passes;
   std::vector<const engine::ProgramPath::Piece*> feeds;  // of each pass; nullptr: only rapid
+  std::vector<std::vector<double>> angles;               // rad, of the spindle at each position, of
+                                                         // each pass; empty: not recorded
 
-  /// That of the pass which a position (counted through all of them) belongs to.
+  /// The pass that a position (counted through all of them) belongs to, and its place in it;
+  /// pass == passes.size(): none.
+  struct Place {
+    std::size_t pass, position;
+  };
+  Place place_of(std::size_t position) const;
+  /// Its first feed.
   const engine::ProgramPath::Piece* feed_at(std::size_t position) const;
 };
 
@@ -56,6 +64,7 @@ class CutterPath {
   explicit CutterPath(const PartSource& source);
 
   std::size_t positions() const { return positions_; }
+  const model::PartFrame& frame() const { return frame_; }
 
   /// Everything, a pass of the program in one.
   CutterPasses all() const;
@@ -88,6 +97,7 @@ class CutterPath {
   const records::Series& servo_;
   model::PartFrame frame_;
   std::size_t position_column_, axis_column_;
+  std::optional<std::size_t> angle_column_;
   std::size_t positions_ = 0;
   std::vector<Pass> passes_;
   std::vector<Block> blocks_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "plant/cutting/machined_surface.h"
+#include "plant/cutting/tooth_marks.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/vector_at.h"
@@ -94,6 +95,7 @@ class ProbedSurface {
 
   void probe(std::span<const plant::ProbeTarget> targets, const Cut& cut,
              std::vector<Probed>& out) const {
+    const std::size_t first = out.size();
     const auto meetings =
         cmm_.probe_radius > 0.0
             ? cut.surface.touch(targets, cmm_.probe_radius, cmm_.clearance, cmm_.depth)
@@ -101,7 +103,21 @@ class ProbedSurface {
     for (const Meeting& meeting : meetings) {
       const bool is_met = meeting.kind == Meeting::Kind::met;
       out.push_back({meeting, is_met ? cut.passes.feed_at(meeting.position) : nullptr});
+      if (is_met && cmm_.tooth_marks) {
+        add_tooth_mark(cut.passes, targets[out.size() - 1 - first], out.back().meeting);
+      }
     }
+  }
+
+  // In place of the surface of a body that turns, that of its teeth.
+  void add_tooth_mark(const CutterPasses& cut, const plant::ProbeTarget& target,
+                      Meeting& meeting) const {
+    const auto [pass, position] = cut.place_of(meeting.position);
+    if (cut.angles[pass].empty()) return;
+    const auto mark = plant::tooth_mark(
+        cut.passes[pass].cutter, {cut.passes[pass].positions, cut.angles[pass], path_.frame().R_WG},
+        target, position);
+    if (mark) meeting.distance = *mark;
   }
 
   // Boxes of the first targets, as many as may be held together.

@@ -254,6 +254,10 @@ metrology::Cmm read_cmm(config::Reader& root) {
   cmm.clearance =
       table.real_or("approach_mm", cmm.clearance, config::kLength, {config::above(0.0)});
   cmm.depth = table.real_or("search_mm", cmm.depth, config::kLength, {config::above(0.0)});
+  cmm.tooth_marks = table.boolean_or("tooth_marks", false);
+  if (cmm.tooth_marks && cmm.probe_radius > 0.0) {
+    table.fault("tooth_marks", "needs a point: a ball would bridge them (probe_radius_mm = 0)");
+  }
   return cmm;
 }
 

@@ -67,6 +67,7 @@ class ScenarioReader {
     out_.probes = read_probes(root, !out_.program.cutters.empty());
     check_periods(root);
     read_cut(root);
+    refuse_averaged_teeth(root);
     out_.touch_probe = read_touch_probe(root, out_.stock, out_.part);
     refuse_unused(root);
     const std::size_t before = root.faults();
@@ -262,6 +263,19 @@ class ScenarioReader {
     if (!out_.cutting->teeth) return;
     for (const int tool : out_.program.assumed_teeth) {
       cutting.fault("force", fmt::format("needs the number of teeth of tool {}", tool));
+    }
+  }
+
+  // Keys of single teeth have no effect on an average.
+  void refuse_averaged_teeth(config::Reader& root) const {
+    if (out_.cutting && out_.cutting->teeth) return;
+    if (out_.cmm.tooth_marks) {
+      root.table("cmm").fault("tooth_marks", "needs cutting.force = \"instantaneous\"");
+    }
+    for (const auto& [number, cutter] : out_.program.cutters) {
+      if (cutter.runout <= 0.0) continue;
+      root.table("program").fault(fmt::format(
+          "tool: runout_um of tool {} needs cutting.force = \"instantaneous\"", number));
     }
   }
 

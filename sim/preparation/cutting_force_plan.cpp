@@ -125,7 +125,7 @@ class Planner {
     const engine::ProgramPath::Piece p = path_.piece(stage.piece);
     const double length = p.s_end - p.s_begin;
     engine::CuttingTable::Row row{.s = share < 1.0 ? p.s_begin + share * length : p.s_end};
-    row.turns = stage.turns;
+    row.turns = stage.clockwise ? stage.turns : -stage.turns;
     if (!may_meet(stage)) return row;
     const double at = std::max(share, std::min(0.5, kBehind / length));
     const double ahead = std::min(1.0, at + kTangent / length);
@@ -160,7 +160,7 @@ class Planner {
     row.edge = passes_.frame().R_WG * frame.axes * force.edge;
     if (in_.teeth) {
       const plant::CutterFrame in_W{passes_.frame().R_WG * frame.axes, frame.feed};
-      row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, stage.turns);
+      row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, row.turns);
     }
     touches_ = meets_ = true;
     return row;

@@ -40,10 +40,11 @@ TEST(ToothForce, four_straight_teeth_in_a_slot_follow_the_closed_form) {
     // means over the step of sin + cos and of cos - sin
     const auto S = [](double x) { return std::sin(x) - std::cos(x); };
     const auto C = [](double x) { return std::sin(x) + std::cos(x); };
-    const double sum = (S(phi + step) - S(phi)) / step, difference = (C(phi + step) - C(phi)) / step;
-    const Eigen::Vector3d expected(
-        -a * (K.Krc * c + K.Kte * difference + K.Kre * sum),
-        a * (K.Ktc * c + K.Kte * sum - K.Kre * difference), -a * (K.Kac * c * sum + 2.0 * K.Kae));
+    const double sum = (S(phi + step) - S(phi)) / step,
+                 difference = (C(phi + step) - C(phi)) / step;
+    const Eigen::Vector3d expected(-a * (K.Krc * c + K.Kte * difference + K.Kre * sum),
+                                   a * (K.Ktc * c + K.Kte * sum - K.Kre * difference),
+                                   -a * (K.Kac * c * sum + 2.0 * K.Kae));
     const Eigen::Vector3d F = mean_tooth_force(K, chips, slices, theta, step, c);
     ASSERT_LE((F - expected).norm(), 1e-9 * expected.norm()) << n << ": " << F.transpose();
   }
@@ -119,21 +120,47 @@ TEST(ToothForce, over_a_small_rotation_is_the_force_at_an_angle) {
   EXPECT_GT(compared, 150);
 }
 
-TEST(ToothForce, helix_divides_a_flank_in_slices_of_four_degrees_and_keeps_its_width) {
+// One slice of the flank against thousands of straight ones, each at its lag.
+TEST(ToothForce, on_a_helix_is_that_of_many_straight_pieces) {
+  const double a = 20 * mm, c = 0.05 * mm;
+  const EngagedArc whole = flank(a, 0.4, 2.6);
+  for (const double runout : {0.0, 30 * um}) {
+    Cutter cutter = end_mill(3, 40 * deg);  // 240 deg of lag
+    cutter.runout = runout;
+    const ToothChips chips(cutter);
+    const std::vector<EdgeSlice> helix = edge_slices(cutter, {}, {&whole, 1});
+    ASSERT_EQ(helix.size(), 1U);
+    EXPECT_NEAR(helix[0].lag_span, a * std::tan(cutter.helix) / cutter.radius, 1e-12);
+    std::vector<EdgeSlice> straight;
+    constexpr int kPieces = 4000;
+    for (int i = 0; i < kPieces; ++i) {
+      EdgeSlice piece = helix[0];
+      piece.width = a / kPieces;
+      piece.lag = helix[0].lag_span * (i + 0.5) / kPieces;
+      piece.lag_span = 0.0;
+      straight.push_back(piece);
+    }
+    for (int n = 0; n < 40; ++n) {
+      const double theta = 0.31 * n - 3.0;
+      const Eigen::Vector3d F = mean_tooth_force(steel(), chips, helix, theta, 0.05, c);
+      const Eigen::Vector3d sum = mean_tooth_force(steel(), chips, straight, theta, 0.05, c);
+      EXPECT_LE((F - sum).norm(), 1e-4 * sum.norm()) << n;  // of the pieces
+    }
+  }
+}
+
+TEST(ToothForce, arcs_of_a_flank_that_are_engaged_alike_are_one_slice) {
   const double a = 2 * mm;
-  const EngagedArc slot = flank(a, 0.0, kPi);
-  EXPECT_EQ(edge_slices(end_mill(4), {}, {&slot, 1}).size(), 1U);
-  const auto slices = edge_slices(end_mill(4, 30 * deg), {}, {&slot, 1});
-  EXPECT_EQ(slices.size(), 5U);  // 2 mm tan(30 deg) / 4 mm = 16.5 deg
-  double width = 0.0;
-  for (const EdgeSlice& slice : slices) width += slice.width;
-  EXPECT_NEAR(width, a, 1e-15);
-  // pieces that are engaged alike are one
   std::vector<EngagedArc> thin;
   for (int i = 0; i < 40; ++i) {
     thin.push_back({.width = a / 40, .height = (i + 0.5) * a / 40, .from = 0.0, .to = kPi});
   }
-  EXPECT_EQ(edge_slices(end_mill(4, 30 * deg), {}, thin).size(), 5U);
+  const auto slices = edge_slices(end_mill(4, 30 * deg), {}, thin);
+  ASSERT_EQ(slices.size(), 1U);
+  EXPECT_NEAR(slices[0].width, a, 1e-15);
+  EXPECT_NEAR(slices[0].lag, 0.0, 1e-15);
+  thin[20].from = 0.1;
+  EXPECT_EQ(edge_slices(end_mill(4, 30 * deg), {}, thin).size(), 3U);
 }
 
 // The surface behind a cutter at one angle, tooth by tooth: what each finds and leaves.
@@ -144,8 +171,9 @@ TEST(ToothChips, of_teeth_that_run_out_are_those_between_the_surfaces_that_they_
     cutter.runout = 1e-6 * static_cast<double>(random() % 200);
     cutter.runout_direction = 0.01 * static_cast<double>(random() % 628);
     const int N = cutter.teeth;
-    const double x = 1e-6 * static_cast<double>(1 + random() % 100);  // of the centre along r, each tooth passage
-    double surface = -1.0, sum = 0.0;  // m, along r
+    const double x = 1e-6 * static_cast<double>(
+                                1 + random() % 100);  // of the centre along r, each tooth passage
+    double surface = -1.0, sum = 0.0;                 // m, along r
     const ToothChips chips(cutter);
     // tooth j + 1 passes before tooth j
     for (int passage = 0; passage < 20 * N; ++passage) {
@@ -199,8 +227,8 @@ TEST(ToothForce, of_teeth_that_run_out_integrates_their_chips) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (int i = 0; i < kSteps; ++i) {
       for (int tooth = 0; tooth < 3; ++tooth) {
-        const double phi = std::fmod(
-            theta + dtheta * (i + 0.5) / kSteps + tooth * 2.0 * kPi / 3.0, 2.0 * kPi);
+        const double phi =
+            std::fmod(theta + dtheta * (i + 0.5) / kSteps + tooth * 2.0 * kPi / 3.0, 2.0 * kPi);
         const double h = phi > from && phi < to ? chips.at(tooth, c * std::sin(phi)) : 0.0;
         if (h <= 0.0) continue;
         const double Ft = a * (K.Ktc * h + K.Kte), Fr = a * (K.Krc * h + K.Kre);

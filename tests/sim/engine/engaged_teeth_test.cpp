@@ -29,10 +29,10 @@ TEST(EngagedTeeth, mean_over_a_turn_is_the_average_force_in_the_workpiece) {
   EngagedTeeth teeth(steel());
   plant::Cutter cutter{.radius = 4 * mm, .length = 30 * mm, .teeth = 3, .helix = 0.5};
   const plant::CutterFrame at = frame({0.6, 0.0, -0.8}, {0.8, 0.0, 0.6}, false);
-  const int n = teeth.add(1, cutter, at, {&kSlot, 1}, 80.0);
+  const int n = teeth.add(1, cutter, at, {&kSlot, 1}, -80.0);
   Vector3d mean = Vector3d::Zero();
   for (int i = 0; i < 50; ++i) {
-    mean += teeth.force(n, 0.7 + 2.0 * kPi * i / 50, 2.0 * kPi / 50, kChip, 1.5) / 50.0;
+    mean += teeth.force(n, 0.7 - 2.0 * kPi * i / 50, -2.0 * kPi / 50, kChip, 1.5) / 50.0;
   }
   const Vector3d F =
       at.axes * plant::average_force(steel(), 3, at.feed, {&kSlot, 1}).at(kChip, 1.5);
@@ -50,7 +50,7 @@ TEST(EngagedTeeth, tooth_is_where_the_angle_of_the_spindle_puts_it) {
       EngagedTeeth teeth(steel());
       const Vector3d feed(std::cos(a), std::sin(a), 0.0);
       const int n = teeth.add(1, one_tooth(), frame(feed, k, clockwise), {&kSlot, 1}, 80.0);
-      const double step = 1 * deg;
+      const double step = (clockwise ? 1 : -1) * deg;
       double best = 0.0, at_best = 0.0;
       for (int i = 0; i < 360; ++i) {
         const double F = teeth.force(n, i * step, step, kChip, 0.0).norm();
@@ -59,7 +59,7 @@ TEST(EngagedTeeth, tooth_is_where_the_angle_of_the_spindle_puts_it) {
       }
       const auto across = plant::spindle_directions(k);
       const Vector3d tooth = std::sin(at_best) * across.col(0) +
-                             (clockwise ? 1.0 : -1.0) * std::cos(at_best) * across.col(1);
+                             std::cos(at_best) * across.col(1);
       EXPECT_GE(tooth.dot(feed), std::cos(1 * deg)) << "feed at " << a << " " << clockwise;
     }
   }
