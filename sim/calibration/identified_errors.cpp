@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/report.h"
+#include "sim/calibration/short_waves.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
 #include "sim/system/write_file.h"
@@ -92,7 +93,9 @@ std::string list(const double* numbers, std::size_t count) {
   return fmt::format("[{}]", fmt::join(numbers, numbers + count, ", "));
 }
 
-std::string line_of(const ErrorName& name, const FunctionForm& form, const VectorXd& numbers) {
+// @param short_periods  of waves whose amplitudes are 0, as far as is known
+std::string line_of(const ErrorName& name, const FunctionForm& form, const VectorXd& numbers,
+                    const std::vector<double>& short_periods) {
   const Names names = names_of(name);
   std::vector<std::string> parts;
   const double* at = numbers.data();
@@ -116,6 +119,12 @@ std::string line_of(const ErrorName& name, const FunctionForm& form, const Vecto
                                   phase));
     }
   }
+  for (const double period : short_periods) {
+    for (const int phase : {0, 90}) {
+      waves.push_back(fmt::format("{{ amplitude_{} = 0.0, period_{} = {}, phase_deg = {} }}",
+                                  names.value, names.travel, period / names.travel_si, phase));
+    }
+  }
   if (!waves.empty()) parts.push_back(fmt::format("harmonic = [{}]", fmt::join(waves, ", ")));
   if (form.reversal_degree >= 0) {
     parts.push_back(fmt::format("reversal = {{ width_polynomial_{} = {}, distance_{} = {} }}",
@@ -129,16 +138,20 @@ std::string line_of(const ErrorName& name, const FunctionForm& form, const Vecto
 class Collector {
  public:
   Collector(const Adjustment& adjustment, const std::string& model)
-      : adjustment_(adjustment), model_(model) {}
+      : adjustment_(adjustment), model_(model), periods_(number_of_periods()) {}
 
   IdentifiedErrors collect() {
     const Unknowns& unknowns = adjustment_.unknowns;
     for (std::size_t k = 0; k < unknowns.locations.size(); ++k) add_location(k);
-    for (const SoughtFunction& function : unknowns.functions) add_function(function);
+    for (std::size_t f = 0; f < unknowns.functions.size(); ++f) add_function(f);
     const auto n = Index(out_.values.values.size());
     MatrixXd G = MatrixXd::Zero(n, unknowns.size());
     for (const auto& [row, column, factor] : map_) G(row, column) += factor;
-    const MatrixXd C = G * adjustment_.covariance * G.transpose();
+    MatrixXd C = G * adjustment_.covariance * G.transpose();
+    for (const WaveNumbers& one : waves_) {
+      C.block(one.first, one.first, one.map.rows(), one.map.rows()) +=
+          one.variance * one.map * one.map.transpose();
+    }
     out_.values.covariance = 0.5 * (C + C.transpose());
     return std::move(out_);
   }
@@ -169,7 +182,43 @@ class Collector {
                                      plant::to_string(name), unit, value, 2.0 * sigma, unit));
   }
 
-  void add_function(const SoughtFunction& function) {
+  // Periods that short waves of each function have in the file, so that the covariance of all
+  // numbers is written.
+  int number_of_periods() const {
+    constexpr int kUsual = 4;
+    const Unknowns& unknowns = adjustment_.unknowns;
+    std::size_t numbers = unknowns.locations.size(), with_waves = 0;
+    for (std::size_t f = 0; f < unknowns.functions.size(); ++f) {
+      const SoughtFunction& function = unknowns.functions[f];
+      numbers += entries_of(function.name, function.basis.form()).size();
+      if (adjustment_.short_waves.at(f) > 0.0) ++with_waves;
+    }
+    const int free = kMaxCovarianceNumbers - static_cast<int>(numbers);
+    return std::clamp(free / std::max(2 * static_cast<int>(with_waves), 1), 0, kUsual);
+  }
+
+  // Numbers of the waves between the knots of the function that was added last.
+  void add_waves(const SoughtFunction& function, double size, Index first_entry,
+                 const std::vector<Entry>& entries, const ShortWaves& waves) {
+    const FunctionForm& form = function.basis.form();
+    const std::string unit = names_of(function.name).value;
+    const Index numbers = Index(entries.size()), count = waves.tables.cols();
+    const Index table = Index(powers_of(form, has_polynomial(form))), knots = waves.tables.rows();
+    WaveNumbers out{first_entry, size * size,
+                    MatrixXd::Zero(numbers + count, count + waves.lines.cols())};
+    out.map.block(table, 0, knots, count) = -waves.tables / um;
+    out.map.block(table, count, knots, waves.lines.cols()) = waves.lines / um;
+    for (Index k = 0; k < count; ++k) {
+      add_number(fmt::format("{}.harmonic[{}].amplitude_{}", plant::to_string(function.name),
+                             2 * form.periods.size() + std::size_t(k), unit),
+                 unit, 0.0);
+      out.map(numbers + k, k) = waves.amplitude / um;
+    }
+    waves_.push_back(std::move(out));
+  }
+
+  void add_function(std::size_t f) {
+    const SoughtFunction& function = adjustment_.unknowns.functions[f];
     const int n = function.basis.size();
     if (!is_known(function.first, n)) return;
     const FunctionForm& form = function.basis.form();
@@ -188,8 +237,21 @@ class Collector {
         if (column[k] != 0.0) map_.push_back({first + k, function.first + i, column[k]});
       }
     }
-    out_.lines.push_back(line_of(function.name, form, numbers));
+    const double size = adjustment_.short_waves.at(f);
+    ShortWaves waves;
+    if (size > 0.0 && periods_ > 0) {
+      waves = short_waves_of(function.basis, periods_);
+      add_waves(function, size, first, entries, waves);
+    }
+    out_.lines.push_back(line_of(function.name, form, numbers, waves.periods));
   }
+
+  // Errors of variance 1 by the numbers that they change.
+  struct WaveNumbers {
+    Index first = 0;
+    double variance = 0.0;  // m^2, rad^2
+    MatrixXd map;           // numbers x errors
+  };
 
   struct Part {
     Index row;
@@ -198,7 +260,9 @@ class Collector {
   };
   const Adjustment& adjustment_;
   const std::string& model_;
+  int periods_;
   std::vector<Part> map_;
+  std::vector<WaveNumbers> waves_;
   IdentifiedErrors out_;
 };
 

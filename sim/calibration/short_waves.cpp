@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/numerics/dense_solver.h"
+
 namespace servomill::sim::calibration {
 namespace {
 
@@ -88,6 +90,42 @@ double interpolation_variance(const FunctionBasis& basis, double s) {
   const double line = (1.0 + (basis.lines() == 2 ? 3.0 * u * u : 0.0)) / double(form.knots.size());
   return std::max(
       line, 1.0 + a * a + b * b - 2.0 * (a * near + b * far) + line * (2.0 * (near + far) - 1.0));
+}
+
+ShortWaves short_waves_of(const FunctionBasis& basis, int number) {
+  const FunctionForm& form = basis.form();
+  const auto m = static_cast<Eigen::Index>(form.knots.size());
+  const double spacing = (form.knots.back() - form.knots.front()) / static_cast<double>(m - 1);
+  const Eigen::ArrayXd s = Eigen::Map<const Eigen::ArrayXd>(form.knots.data(), m);
+  ShortWaves out;
+  out.amplitude = 1.0 / std::sqrt(number);
+  out.tables.resize(m, Eigen::Index{2} * number);
+  for (int i = 0; i < number; ++i) {
+    // off the middle of its share: aliases of the upper half fall between those of the lower
+    const double frequency = (1.0 + (2.0 * i + 0.5) / number) / spacing;
+    out.periods.push_back(1.0 / frequency);
+    const Eigen::ArrayXd angle = 2.0 * std::numbers::pi * frequency * s;
+    out.tables.col(Eigen::Index{2} * i) = out.amplitude * angle.sin().matrix();
+    out.tables.col(Eigen::Index{2} * i + 1) = out.amplitude * angle.cos().matrix();
+  }
+  // the mean line over all knots is no part of a component error; u as in interpolation_variance()
+  Eigen::MatrixXd line(m, basis.lines());
+  line.col(0).setOnes();
+  if (basis.lines() == 2) {
+    line.col(1) = ((2.0 * s - form.lower - form.upper) / (form.upper - form.lower)).matrix();
+  }
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(basis.lines());
+  for (Eigen::Index k = 0; k < out.tables.cols(); ++k) {
+    const Eigen::VectorXd wave = out.tables.col(k), mean = numerics::least_squares(line, wave);
+    out.tables.col(k) = wave - line * mean;
+    variance += mean.cwiseAbs2();
+  }
+  const Eigen::Vector2d wanted = Eigen::Vector2d(1.0, 3.0) / static_cast<double>(m);
+  out.lines = line;
+  for (Eigen::Index k = 0; k < line.cols(); ++k) {
+    out.lines.col(k) *= std::sqrt(std::max(0.0, wanted[k] - variance[k]));
+  }
+  return out;
 }
 
 }  // namespace servomill::sim::calibration

@@ -28,4 +28,19 @@ double interpolation_variance(const FunctionBasis& basis, double s);
 
 inline constexpr int kMinKnots = 6;
 
+/// Independent errors that together have the variances of interpolation_variance(), nearly: sines
+/// and cosines of a few periods, less what the table shows of them. For a short wave of variance 1.
+struct ShortWaves {
+  std::vector<double> periods;  // m or rad of travel
+  double amplitude = 0.0;       // standard deviation of each sine and cosine
+  /// Values of each of them at the knots less their mean line, in that order (knots x 2 periods):
+  /// its share of the table.
+  Eigen::MatrixXd tables;
+  /// Mean lines that waves of other periods bring into the table (knots x lines).
+  Eigen::MatrixXd lines;
+};
+
+/// @param number  of periods: evenly spread frequencies from one to three a spacing of the knots
+ShortWaves short_waves_of(const FunctionBasis& basis, int number);
+
 }  // namespace servomill::sim::calibration

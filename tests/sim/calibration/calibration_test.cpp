@@ -2,14 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "plant/geometry/volumetric.h"
+#include "plant/vocabulary/units.h"
 #include "sim/calibration/error_effects.h"
+#include "sim/calibration/identified_errors.h"
 #include "sim/calibration/make_up.h"
+#include "sim/calibration/short_waves.h"
 #include "tests/number_of.h"
 #include "tests/sim/calibration/random_machine.h"
 #include "tests/text.h"
@@ -230,13 +234,37 @@ TEST(Calibration, TipIsAsFarOffAsTheCovarianceSays) {
 
 // Errors with waves shorter than the spacing of the targets, which nobody has announced: intervals
 // hold between the targets, too.
+// Standard uncertainty of a table with short waves at s, from the numbers of the file.
+double sigma_in_file(const input::IdentifiedValues& file, const SoughtFunction& function,
+                     double s) {
+  const std::string prefix = "errors.m." + plant::to_string(function.name) + ".";
+  const std::vector<double>& knots = function.basis.form().knots;
+  const ShortWaves waves = short_waves_of(function.basis, 4);
+  Eigen::VectorXd J = Eigen::VectorXd::Zero(Eigen::Index(file.keys.size()));
+  std::size_t knot = 0, wave = 0;
+  for (std::size_t k = 0; k < file.keys.size(); ++k) {
+    if (!file.keys[k].starts_with(prefix)) continue;
+    if (file.keys[k].find("table") != std::string::npos) {
+      std::vector<double> hat(knots.size(), 0.0);
+      hat[knot++] = 1.0;
+      J[Eigen::Index(k)] = plant::linear_table(knots, hat).value(s) * um;
+    } else if (file.keys[k].find("harmonic") != std::string::npos) {
+      const double phase = wave % 2 == 0 ? 0.0 : 0.5 * std::numbers::pi;
+      J[Eigen::Index(k)] = plant::harmonic(1.0, waves.periods[wave / 2], phase).value(s) * um;
+      ++wave;
+    }
+  }
+  EXPECT_EQ(wave, 8U);
+  return std::sqrt(J.dot(file.covariance * J));
+}
+
 TEST(Calibration, UncertaintyHoldsBetweenTargets) {
   const int machines = number_of("SERVOMILL_CALIBRATIONS", 30);
   const readings::Readings empty = shop_readings();
   Normal normal(5);
   boost::random::mt19937_64 generator(6);
   boost::random::uniform_real_distribution<double> frequency(10.5, 29.5), phase(0.0, 6.28);
-  Coverage between;
+  Coverage between, in_file;
   for (int machine = 0; machine < machines; ++machine) {
     plant::ErrorModel truth;
     for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
@@ -250,7 +278,9 @@ TEST(Calibration, UncertaintyHoldsBetweenTargets) {
     }
     readings::Readings taken = empty;
     make_up(taken, gantry(), truth, 900 + std::uint64_t(machine));
-    const Adjustment found = calibrated(taken).adjustment;
+    const Calibration calibration = calibrated(taken);
+    const Adjustment& found = calibration.adjustment;
+    const input::IdentifiedValues file = identified_errors(calibration, "m").values;
     for (const KnownFunction& known : functions_along_travel(found, 71)) {
       const plant::ErrorFunction& actual = truth.component(known.name);
       const bool sloped =
@@ -258,7 +288,13 @@ TEST(Calibration, UncertaintyHoldsBetweenTargets) {
       const auto [mean, slope] = mean_line(actual, sloped);
       for (std::size_t i = 0; i < known.s.size(); ++i) {
         const double s = known.s[i];
-        between.add(known.value[i] - (actual.value(s) - mean - slope * (s - 0.5)), known.sigma[i]);
+        const double off = known.value[i] - (actual.value(s) - mean - slope * (s - 0.5));
+        between.add(off, known.sigma[i]);
+        if (i % 5 != 2) continue;  // enough of them
+        const auto function =
+            std::find_if(found.unknowns.functions.begin(), found.unknowns.functions.end(),
+                         [&](const SoughtFunction& one) { return one.name == known.name; });
+        in_file.add(off, sigma_in_file(file, *function, s));
       }
     }
   }
@@ -266,6 +302,9 @@ TEST(Calibration, UncertaintyHoldsBetweenTargets) {
               between.percent());
   EXPECT_GT(between.percent(), 93.0);
   EXPECT_LT(between.percent(), 97.0);
+  std::printf("in the file %.2f %%\n", in_file.percent());
+  EXPECT_GT(in_file.percent(), 93.0);
+  EXPECT_LT(in_file.percent(), 97.0);
 }
 
 TEST(Calibration, TakesTheFrameThatIsAskedFor) {

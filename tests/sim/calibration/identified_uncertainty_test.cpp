@@ -1,12 +1,14 @@
 /// The file of a calibration holds the uncertainty of the tip that the adjustment has found.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/error_effects.h"
 #include "sim/calibration/identified_errors.h"
+#include "sim/calibration/short_waves.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/uncertain_errors.h"
 #include "sim/readings/readings.h"
@@ -46,8 +48,6 @@ TEST_F(IdentifiedUncertainty, OfTheTipIsThatOfTheAdjustment) {
   ASSERT_TRUE(errors);
   const model::TipUncertainty tip(chain, *errors);
   const ErrorEffects effects(chain, result_.adjustment.unknowns);
-  // between the targets, the adjustment adds waves that the file does not hold
-  result_.adjustment.short_waves.assign(result_.adjustment.short_waves.size(), 0.0);
   for (const double x : {50.0, 333.0, 900.0}) {
     for (const double length : {60.0, 120.0}) {
       Joints Q = Joints::Zero();
@@ -59,6 +59,45 @@ TEST_F(IdentifiedUncertainty, OfTheTipIsThatOfTheAdjustment) {
       // the numbers of the file cancel each other: a thousand times what is left
       EXPECT_LE((found - wanted).norm(), 1e-6 * wanted.norm()) << x << ' ' << length;
     }
+  }
+}
+
+// Waves between the knots of a table, which the report states: nothing where the table was measured
+// but its mean line, most in between. The file has a few periods of them in place of all.
+TEST_F(IdentifiedUncertainty, OfShortWavesIsThatOfTheReportBetweenTheKnots) {
+  const plant::MachineChain& chain = machine_.machine.chain;
+  const ErrorEffects effects(chain, result_.adjustment.unknowns);
+  const auto& functions = result_.adjustment.unknowns.functions;
+  const auto table = std::find_if(functions.begin(), functions.end(), [](const auto& one) {
+    return one.basis.form().knots.size() >= kMinKnots;
+  });
+  ASSERT_NE(table, functions.end());
+  const double wave = 20 * um;
+  const Vector3d p_ST(0.0, 0.0, -60 * mm);
+  const auto found_at = [&](const Joints& Q) {
+    const auto errors = input::uncertain_errors_of_file(file_, "identified", chain.layout);
+    return model::TipUncertainty(chain, errors.value()).covariance(Q, p_ST, Joints::Zero()).eval();
+  };
+  const std::vector<double>& knots = table->basis.form().knots;
+  std::vector<Joints> places;
+  std::vector<Matrix3d> without;
+  for (const double share : {0.0, 0.125, 0.25, 0.5, 0.75, 0.9}) {
+    Joints Q = Joints::Zero();
+    Q[index_of(table->name.axis)] = knots[3] + share * (knots[4] - knots[3]);
+    places.push_back(Q);
+    without.push_back(found_at(Q));
+  }
+  result_.adjustment.short_waves.at(std::size_t(table - functions.begin())) = wave;
+  write_identified_errors(file_, result_, kMachine, "identified", true);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Joints& Q = places[k];
+    const double s = Q[index_of(table->name.axis)];
+    const double wanted = wave * wave * interpolation_variance(table->basis, s);
+    const Matrix3d grown = found_at(Q) - without[k];
+    const double ratio = std::sqrt(grown(1, 1) / wanted);
+    EXPECT_GT(ratio, 0.95) << s;  // four periods in place of all
+    EXPECT_LT(ratio, 1.15) << s;
+    EXPECT_LT(std::abs(grown(2, 2)), 1e-3 * wave * wave) << s;
   }
 }
 
