@@ -274,6 +274,9 @@ std::vector<double> Reader::nested(std::string_view key, std::span<const std::si
   if (logs()) log(key, required_request(KeyType::rows));
   const Value* list = require(key, Value::Type::list);
   std::vector<double> out;
+  // a shape that follows from another key, which has a fault, is not known
+  const bool is_known = std::count(shape.begin(), shape.end(), std::size_t{0}) == 0;
+  if (shape.empty() || !is_known) return {};
   if (list == nullptr || append_nested(*list, shape, out)) return out;
   note(*list, joined_key(path_, key), fmt::format("must consist of {}", shape_text(shape)));
   return {};

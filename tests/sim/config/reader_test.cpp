@@ -46,6 +46,18 @@ TEST(Reader, ReadsRowsOfAnyLength) {
             (Rows{{1.0, 2.5}, {}, {-3e-4}}));
 }
 
+// Lists in lists of a shape that another key should have given: that key has the fault.
+TEST(Reader, AsksForNoShapeThatIsNotKnown) {
+  const auto nested = [](std::vector<std::size_t> shape) {
+    return faults("a = [[1, 2], [3, 4]]", [&](Reader& r) { r.nested("a", shape); });
+  };
+  EXPECT_EQ(nested({2, 2}), "no fault");
+  EXPECT_EQ(nested({}), "no fault");
+  EXPECT_EQ(nested({2, 0}), "no fault");
+  EXPECT_EQ(nested({2, 3}),
+            "s.toml:1:5: error: a = [[1, 2], [3, 4]]; must consist of 2 lists of 3 finite numbers");
+}
+
 TEST(Reader, ReadsTheExampleOfItsHeader) {
   const Document document = Document::from_text("[drives.Y]\nlead_mm = 20\n[nc]\n", "m.toml");
   Reader root(document);

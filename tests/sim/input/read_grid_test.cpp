@@ -118,10 +118,10 @@ TEST(ReadGrid, RefusesWithTheRule) {
 
 TEST(ReadGrid, WantsOneTurnOfAnEndlessAxis) {
   EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 270]], value_um = [0, 0] } }"),
-            "m.toml:1:30: error: EXC.grid.at_deg = [[0, 270]]; must cover one turn of C, whose "
+            "m.toml:1:39: error: EXC.grid.at_deg = [[0, 270]]; must cover one turn of C, whose "
             "travel is endless: 360 deg; covers 0 to 270");
   EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 720]], value_um = [0, 0] } }"),
-            "m.toml:1:30: error: EXC.grid.at_deg = [[0, 720]]; must cover one turn of C, whose "
+            "m.toml:1:39: error: EXC.grid.at_deg = [[0, 720]]; must cover one turn of C, whose "
             "travel is endless: 360 deg; covers 0 to 720");
   EXPECT_EQ(fault_of("EXC = { grid = { axes = \"C\", at_deg = [[0, 360]], value_um = [0, 1] } }"),
             "m.toml:1:16: error: EXC.grid: ends at 1 um or urad where it begins at 0 um or urad; "

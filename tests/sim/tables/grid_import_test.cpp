@@ -91,6 +91,7 @@ TEST(GridImport, KeepsTheValuesAtTheEndsToTheEndsOfTheTravel) {
     config::Reader models = root.table("errors");
     const plant::ErrorModel model =
         input::read_error_models(models, input::MachineAxes(machine)).at("measured");
+    root.finish();
     EXPECT_EQ(verify_import(columns, machine.chain, model), 6000U) << structure;
     EXPECT_EQ(verify_import(in_file, machine.chain, model), 6000U) << structure;
     if (std::string(structure) != "[w b X Y Z t]") continue;
