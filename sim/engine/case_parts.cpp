@@ -40,4 +40,15 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
 
 Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-', 0.0}; }
 
+void CutAlongPath::deviate(const controllers::Trajectory::Sample& reference, const Joints& Q_true,
+                           const Eigen::Vector3d& bend) {
+  const plant::MachineChain& chain = in_.machine.chain;
+  const std::size_t piece = in_.pieces[reference.move];
+  const Eigen::Vector3d& p_ST = in_.tips.at(in_.path.tool_offset(piece));
+  const Joints Q_prog = in_.path.joints(piece, reference.s, chain.layout, reference.Q_ref);
+  const Eigen::Vector3d p_true =
+      in_.machine_errors.forward(Q_true, p_ST).p_WT + plant::linear_jacobian(chain, Q_true) * bend;
+  load_.deviate(p_true - plant::forward(chain, Q_prog, p_ST).p_WT);
+}
+
 }  // namespace servomill::sim::engine

@@ -54,7 +54,8 @@ class CutAlongPath {
  public:
   explicit CutAlongPath(const CaseInputs& in)
       : in_(in),
-        load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth) {}
+        load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth,
+              in.displaced_cuts) {}
 
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
   void advance(const controllers::Trajectory::Sample& reference) {
@@ -64,6 +65,10 @@ class CutAlongPath {
     tool_ = tool;
     load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);
   }
+  /// The depth of cut follows the tool. @pre the case has displaced cuts
+  /// @param bend  m, of the structure under inertia, in each linear axis
+  void deviate(const controllers::Trajectory::Sample& reference, const Joints& Q_true,
+               const Eigen::Vector3d& bend);
   /// Teeth turn for a tooth step from tick n on. @pre the case has teeth
   void turn(Tick n) {
     turns_from_ = in_.machine.nc.periods.seconds(n);

@@ -110,10 +110,16 @@ void CaseRun::record(Tick n) {
   }
   if (cut_) cut_->note(now);
   if (structure_) {
-    now.inertial_deflection = structure_->at(
-        structure_->needs_acceleration() ? axes_.ddQ_true(run_) : Joints::Zero().eval());
+    now.inertial_deflection = inertial_deflection();
   }
   recorder_.record(now, travel_.at(now.Q_true));
+}
+
+// Deflection of the structure under acceleration of the axes (3; m).
+Eigen::Vector3d CaseRun::inertial_deflection() const {
+  if (!structure_) return Eigen::Vector3d::Zero();
+  return structure_->at(structure_->needs_acceleration() ? axes_.ddQ_true(run_)
+                                                         : Joints::Zero().eval());
 }
 
 void CaseRun::interrupt(Tick n) { result_.outcome = interrupted(nc_.periods.seconds(n)); }
@@ -140,6 +146,9 @@ CaseResult CaseRun::finish(Tick n) {
 }
 
 void CaseRun::apply_cutting_force(Tick n) {
+  if (in_.displaced_cuts != nullptr) {
+    cut_->deviate(recorded_.at(nc_.periods.seconds(n)), axes_.Q_true(run_), inertial_deflection());
+  }
   cut_->advance(recorded_.at(nc_.periods.seconds(n)));
   if (!has_teeth()) axes_.load(cut_->load(), run_);
 }

@@ -59,6 +59,7 @@ class CaseRun {
 
  private:
   void apply_cutting_force(Tick n);
+  Eigen::Vector3d inertial_deflection() const;
   bool heat(Tick n);
   void initialise_at_rest();
   strategies::Reading reading_at(double t);

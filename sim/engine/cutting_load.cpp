@@ -1,11 +1,13 @@
 #include "sim/engine/cutting_load.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <numbers>
 #include <utility>
 
 #include "plant/cutting/cutting_force.h"
+#include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
 
 namespace servomill::sim::engine {
@@ -43,8 +45,13 @@ Eigen::Vector3d CuttingTable::force(double s, double speed, double wear, double 
 
 CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
-                         const EngagedTeeth* teeth)
-    : table_(table), wear_(wear), chain_(chain), compliance_(compliance), teeth_(teeth) {}
+                         const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced)
+    : table_(table),
+      wear_(wear),
+      chain_(chain),
+      compliance_(compliance),
+      teeth_(teeth),
+      displaced_(displaced) {}
 
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
   const double speed = std::max(0.0, (s - s_) / dt);
@@ -55,31 +62,62 @@ void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vec
     J_pQ_ = plant::jacobian(chain_, Q, p_ST).J_pQ;
     return;
   }
-  const Eigen::Vector3d force = table_.force(s, speed, wear_.initial, wear_.per_m, cursor_);
+  Eigen::Vector3d force = table_.force(s, speed, wear_.initial, wear_.per_m, cursor_);
   if (!force.isZero(0.0)) J_pQ_ = plant::jacobian(chain_, Q, p_ST).J_pQ;
+  if (displaced_ != nullptr && !force.isZero(0.0)) {
+    force = force_at(table_.place(s, cursor_), speed, 0.0);
+  }
   set_force(force);
 }
 
 void CuttingLoad::turn(double dt) {
   angle_ += rate_ * turned_;
   turned_ = dt;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
   const double s = s_ + speed_ * elapsed_;
   elapsed_ += dt;
-  if (!table_.reaches(s)) return set_force(force);
+  if (!table_.reaches(s)) return set_force(Eigen::Vector3d::Zero());
   const CuttingTable::Place at = table_.place(s, cursor_);
   rate_ = 2.0 * std::numbers::pi * at.after->turns;
-  const double c = at.number(&CuttingTable::Row::chip) * speed_;
-  if (c <= 0.0 || rate_ == 0.0) return set_force(force);
-  const double edges = wear_.initial + wear_.per_m * at.number(&CuttingTable::Row::cut);
-  const auto add = [&](const CuttingTable::Row& row, double share) {
-    if (share <= 0.0 || row.teeth < 0) return;
-    force +=
-        share * teeth_->force(row.teeth, angle_, rate_ * dt, c, plant::bearing_share(c) * edges);
+  set_force(rate_ == 0.0 ? Eigen::Vector3d::Zero() : force_at(at, speed_, rate_ * dt));
+}
+
+// Force at a place of the table.
+// @param rotation  rad, of the teeth, where they are resolved
+Eigen::Vector3d CuttingLoad::force_at(const CuttingTable::Place& at, double speed,
+                                      double rotation) const {
+  const double c = at.number(&CuttingTable::Row::chip) * speed;
+  if (c <= 0.0) return Eigen::Vector3d::Zero();
+  const double edges =
+      plant::bearing_share(c) * (wear_.initial + wear_.per_m * at.number(&CuttingTable::Row::cut));
+  const std::array<ForcesNearby, 2> places = {
+      forces_at(*at.before, 1.0 - at.share, c, edges, rotation),
+      forces_at(*at.after, at.share, c, edges, rotation)};
+  if (displaced_ == nullptr) {
+    return places[0].share * places[0].nominal + places[1].share * places[1].nominal;
+  }
+  const auto J = J_pQ_.leftCols<kLinearJoints>();
+  return force_at_actual_depth(places, deviation_, J * compliance_.asDiagonal() * J.transpose());
+}
+
+// Forces of one row and of its displaced cuts.
+ForcesNearby CuttingLoad::forces_at(const CuttingTable::Row& row, double share, double c,
+                                    double edges, double rotation) const {
+  ForcesNearby out{.share = share};
+  if (share <= 0.0) return out;
+  const auto force = [&](const Eigen::Vector3d& shear, const Eigen::Vector3d& edge,
+                         std::int32_t teeth) -> Eigen::Vector3d {
+    if (teeth_ == nullptr) return c * shear + edges * edge;
+    if (teeth < 0) return Eigen::Vector3d::Zero();
+    return teeth_->force(teeth, angle_, rotation, c, edges);
   };
-  add(*at.before, 1.0 - at.share);
-  add(*at.after, at.share);
-  set_force(force);
+  out.nominal = force(row.shear, row.edge, row.teeth);
+  if (displaced_ == nullptr || row.displaced < 0) return out;
+  out.cut = &(*displaced_)[static_cast<std::size_t>(row.displaced)];
+  for (std::size_t i = 0; i < out.displaced.size(); ++i) {
+    const DisplacedCut::Force& beside = out.cut->at[i];
+    out.displaced[i] = force(beside.shear, beside.edge, beside.teeth);
+  }
+  return out;
 }
 
 void CuttingLoad::set_force(const Eigen::Vector3d& force) {

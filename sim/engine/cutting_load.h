@@ -13,6 +13,8 @@
 namespace servomill::sim::engine {
 
 class EngagedTeeth;
+struct DisplacedCut;
+struct ForcesNearby;
 
 /// Average force of the work on the cutter over the arc length s of the original program. Linear
 /// between rows; rows of equal s are a jump.
@@ -24,8 +26,9 @@ class CuttingTable {
     Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // N per m of feed per tooth, in W
     Eigen::Vector3d edge = Eigen::Vector3d::Zero();   // N of a new edge, in W
     double cut = 0.0;                                 // m, cut by feed moves until here
-    double turns = 0.0;                               // 1/s, of the spindle, > 0 clockwise, towards this row
-    std::int32_t teeth = -1;  // engagement (engaged_teeth.h); -1: none, or none is needed
+    double turns = 0.0;           // 1/s, of the spindle, > 0 clockwise, towards this row
+    std::int32_t teeth = -1;      // engagement (engaged_teeth.h); -1: none, or none is needed
+    std::int32_t displaced = -1;  // displaced cut (depth_of_cut.h); likewise
   };
   /// Place of the last force; makes forward reading O(1).
   struct Cursor {
@@ -68,20 +71,25 @@ class CuttingLoad {
   /// All arguments must outlive this.
   /// @param compliance  m/N, of the structure in each linear axis
   /// @param teeth       engagements of the table; nullptr: the average force acts
+  /// @param displaced   cuts beside the path; nullptr: the depth of cut is the nominal one
   CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
               const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
-              const EngagedTeeth* teeth = nullptr);
+              const EngagedTeeth* teeth = nullptr,
+              const std::vector<DisplacedCut>* displaced = nullptr);
 
   /// Stands at s.
   void start(double s) { s_ = s; }
+  /// The tool is off its nominal path by this (3; m, in W), deflection by cutting left out, from
+  /// here on.
+  void deviate(const Eigen::Vector3d& deviation) { deviation_ = deviation; }
   /// The path has gone on to s within `dt` (s) and the joints are at Q (5; m, rad).
   /// @param p_ST  m, tip of the tool in the spindle
   void advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST);
   /// The spindle turns for `dt` (s) from here on: the mean force of the teeth meanwhile. Along the
   /// path the position period goes on at the speed of the last one. @pre there are teeth
   void turn(double dt);
-  /// Angle of the spindle (rad, clockwise) a time (s) after the last turn() began, counted from the start of
-  /// the run (plant::spindle_directions).
+  /// Angle of the spindle (rad, clockwise) a time (s) after the last turn() began, counted from the
+  /// start of the run (plant::spindle_directions).
   double spindle_angle(double after) const { return angle_ + rate_ * after; }
 
   /// On the cutter, 3; N, in W.
@@ -97,9 +105,14 @@ class CuttingLoad {
   const plant::MachineChain& chain_;
   const Eigen::Vector3d& compliance_;
   const EngagedTeeth* teeth_;
+  const std::vector<DisplacedCut>* displaced_;
   void set_force(const Eigen::Vector3d& force);
+  Eigen::Vector3d force_at(const CuttingTable::Place& at, double speed, double rotation) const;
+  ForcesNearby forces_at(const CuttingTable::Row& row, double share, double c, double edges,
+                         double rotation) const;
 
   CuttingTable::Cursor cursor_;
+  Eigen::Vector3d deviation_ = Eigen::Vector3d::Zero();
   double s_ = 0.0, speed_ = 0.0;
   double elapsed_ = 0.0;                            // s, of the position period
   double angle_ = 0.0, rate_ = 0.0, turned_ = 0.0;  // rad, rad/s, s; of the step in progress

@@ -53,6 +53,10 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     set = setpoint_.advance(sample, t, set.Q_cmd);
     now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
+    if (in_.displaced_cuts != nullptr) {
+      cut_->deviate(reference_at(n), Q_true_of(set),
+                    structure_ ? structure_->at(motion_.ddQ()) : Eigen::Vector3d::Zero().eval());
+    }
     if (cut_) cut_->advance(reference_at(n));
     if (in_.teeth != nullptr) cut_->turn(n);
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;

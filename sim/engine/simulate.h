@@ -51,7 +51,9 @@ struct CaseInputs {
   std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
   const EngagedTeeth* teeth = nullptr;    // of `cutting`; nullptr: the average force acts
-  Tick tooth_step = 0;                    // period of the force of the teeth
+  // cuts beside `cutting`; nullptr: the depth of cut is the nominal one
+  const std::vector<DisplacedCut>* displaced_cuts = nullptr;
+  Tick tooth_step = 0;  // period of the force of the teeth
   model::CuttingWear wear = {};
   // of a machine with heat: its errors at the reference temperature, and the speed of the spindle
   // (rad/s) during each move that the NC runs

@@ -50,7 +50,9 @@ plant::CuttingCoefficients read_material(config::Reader& table) {
   return plant::materials()[index].typical;
 }
 
-void read_teeth(config::Reader& table, model::CuttingSpec& spec) {
+void read_force(config::Reader& table, model::CuttingSpec& spec) {
+  constexpr std::string_view kDepths[] = {"nominal", "actual"};
+  spec.actual_depth = table.choice_or("depth_of_cut", 0, kDepths) == 1;
   constexpr std::string_view kForces[] = {"average", "instantaneous"};
   spec.teeth = table.choice_or("force", 0, kForces) == 1;
   if (!spec.teeth && table.has("steps_per_tooth")) {
@@ -92,7 +94,7 @@ model::CuttingSpec read_cutting(config::Reader& table) {
                       : table.real(K.name, quantity, {config::at_least(0.0)});
   }
   spec.wear.initial = table.real_or("wear", 1.0, config::kNumber, {config::at_least(0.0)});
-  read_teeth(table, spec);
+  read_force(table, spec);
   spec.wear.per_m = table.real_or("wear_per_m", 0.0, config::kPerLength, {config::at_least(0.0)});
   return spec;
 }

@@ -284,6 +284,8 @@ constexpr KeyHelp kScenario[] = {
     {"cutting", "wear_per_m", "growth of the factor per metre of cut"},
     {"cutting", "force",
      "\"average\" over a turn of the cutter, or \"instantaneous\": of each tooth at its angle"},
+    {"cutting", "depth_of_cut",
+     "\"nominal\", or \"actual\": it follows errors and deflections across the feed"},
     {"cutting", "steps_per_tooth",
      "least number of steps in which the force follows the passage of a tooth"},
     {"case", "name", "name of the case"},

@@ -310,6 +310,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
                                     scenario_.program.cutters,
                                     scenario_.cutting->coefficients,
                                     scenario_.cutting->teeth,
+                                    scenario_.cutting->actual_depth,
                                     scenario_.program.file,
                                     scenario_.cutting->place};
   system::MemoKey key;
@@ -320,6 +321,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
   add(key, inputs.stock);
   add(key, inputs.cutters);
   key.add(inputs.teeth);
+  key.add(inputs.displaced);
   for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
     key.add(inputs.coefficients.*K.member);
   }

@@ -10,6 +10,7 @@
 #include "plant/cutting/removed_volume.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
 #include "sim/preparation/tool_passes.h"
 
@@ -50,6 +51,10 @@ class Planner {
     }
     plan_.program = in_.program;
     plan_.table = engine::CuttingTable(std::move(rows_));
+    if (in_.displaced) {
+      plan_.displaced =
+          std::make_shared<const std::vector<engine::DisplacedCut>>(std::move(displaced_));
+    }
     if (in_.teeth) plan_.teeth = std::make_shared<const engine::EngagedTeeth>(std::move(teeth_));
     return std::move(plan_);
   }
@@ -162,8 +167,34 @@ class Planner {
       const plant::CutterFrame in_W{passes_.frame().R_WG * frame.axes, frame.feed};
       row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, row.turns);
     }
+    if (in_.displaced) row.displaced = add_displaced(stage, motion, row.turns, is_material);
     touches_ = meets_ = true;
     return row;
+  }
+
+  // Cuts of a cutter beside its path: across the feed, the first direction along e2 if it is not
+  // plunging.
+  std::int32_t add_displaced(const Stage& stage, const plant::CutterMotion& motion, double turns,
+                             const plant::IsMaterial& is_material) {
+    const Eigen::Matrix3d& R_WG = passes_.frame().R_WG;
+    const plant::CutterFrame frame = plant::frame_of(motion);
+    const Vector3d first = frame.axes.col(1), second = motion.feed.cross(first).normalized();
+    engine::DisplacedCut cut{.across = {R_WG * first, R_WG * second}, .at = {}};
+    for (std::size_t i = 0; i < cut.at.size(); ++i) {
+      plant::CutterMotion beside = motion;
+      beside.position.tip +=
+          (i % 2 == 0 ? 1.0 : -1.0) * engine::DisplacedCut::kStep * (i < 2 ? first : second);
+      const auto arcs = plant::engagement(*stage.cutter, beside, is_material, in_.stock.bounds());
+      if (arcs.empty()) continue;
+      const plant::CuttingForce force =
+          plant::average_force(in_.coefficients, stage.cutter->teeth, frame.feed, arcs);
+      cut.at[i] = {R_WG * frame.axes * force.shear, R_WG * frame.axes * force.edge};
+      if (!in_.teeth) continue;
+      const plant::CutterFrame in_W{R_WG * frame.axes, frame.feed};
+      cut.at[i].teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, turns);
+    }
+    displaced_.push_back(cut);
+    return static_cast<std::int32_t>(displaced_.size()) - 1;
   }
 
   // Height of the stock above the tip, along the tool.
@@ -276,6 +307,7 @@ class Planner {
   const plant::RemovedVolume* removed_ = nullptr;
   std::vector<engine::CuttingTable::Row> rows_;
   engine::EngagedTeeth teeth_{in_.coefficients};
+  std::vector<engine::DisplacedCut> displaced_;
   bool cut_before_ = false, meets_ = false, touches_ = false;
   std::size_t rapids_ = 0;
   double rapid_depth_ = 0.0;     // m, of the present move

@@ -23,6 +23,7 @@ struct CuttingPlanInputs {
   const std::map<int, plant::Cutter>& cutters;        // by number of tool
   plant::CuttingCoefficients coefficients;
   bool teeth;        // engagements of single teeth are planned
+  bool displaced;    // cuts beside the path are planned
   std::string file;  // of the program, for messages
   Place place;       // of [cutting]
 };

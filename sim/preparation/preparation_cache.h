@@ -95,6 +95,8 @@ struct PlannedCutting {
   std::shared_ptr<const InterpretedProgram> program;
   engine::CuttingTable table;
   std::shared_ptr<const engine::EngagedTeeth> teeth;  // nullptr: the average force acts
+  // nullptr: the depth of cut is the nominal one
+  std::shared_ptr<const std::vector<engine::DisplacedCut>> displaced;
   // rapid moves through material, shanks in it; of every case that cuts it so
   std::vector<Fault> warnings;
 };

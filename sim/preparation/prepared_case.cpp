@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plant/kinematics/chain.h"
+#include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/nominal_part.h"
@@ -153,6 +154,7 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
     inputs.cutting = &p.cutting->table;
     inputs.teeth = p.cutting->teeth.get();
     inputs.tooth_step = p.tooth_step;
+    inputs.displaced_cuts = p.cutting->displaced.get();
     inputs.wear = p.spec.wear;
   }
   if (p.machine().heat) {

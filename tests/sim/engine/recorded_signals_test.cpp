@@ -34,26 +34,30 @@ TEST(RecordedSignals, HaveAColumnForEachAxisOfTheMachine) {
 
 TEST(RecordedSignals, HaveTheNamesOfAPartOnlyWhereTheCaseHasIt) {
   const auto plain = signals_on("hsm600u.toml");
-  for (const char* name :
-       {"imposed_linear", "uncorrectable_tcp", "cutting_force", "programmed_linear"}) {
+  for (const char* name : {"imposed_linear", "uncorrectable_tcp", "cutting_force", "spindle_angle",
+                           "programmed_linear"}) {
     EXPECT_EQ(find(plain, name), nullptr) << name;
   }
   EXPECT_NE(find(signals_on("hsm600u.toml", {.imposed = true}), "imposed_linear"), nullptr);
   EXPECT_NE(find(signals_on("hsm600u.toml", {.uncorrectable = true}), "uncorrectable_axis"),
             nullptr);
   EXPECT_NE(find(signals_on("hsm600u.toml", {.cut = true}), "structural_deflection"), nullptr);
+  EXPECT_NE(find(signals_on("hsm600u.toml", {.cut = true, .teeth = true}), "spindle_angle"),
+            nullptr);
   EXPECT_NE(find(signals_on("hsm600u.toml", {.programmed = true}), "programmed_linear"), nullptr);
 }
 
 // 1 nm: 2^-20 mm = 0.95 nm, 2^-10 um = 0.98 nm; 1 nm at 1 m: 1 nrad = 5.7e-8 deg, above 2^-25 deg.
 TEST(RecordedSignals, AreRoundedToThePowerOfTwoNextBelowTheResolution) {
-  auto signals = signals_on("hsm600u.toml");
+  auto signals = signals_on("hsm600u.toml", {.cut = true, .teeth = true});
   round_to({.resolution = 1e-9, .storage = records::Storage::float32}, signals);
   EXPECT_EQ(find(signals, "true_linear")->quantum, std::ldexp(1.0, -20));
   EXPECT_EQ(find(signals, "contour_error")->quantum, std::ldexp(1.0, -10));
   EXPECT_EQ(find(signals, "true_rotary")->quantum, std::ldexp(1.0, -25));
   EXPECT_EQ(find(signals, "tool_axis_true")->quantum, std::ldexp(1.0, -30));
   EXPECT_EQ(find(signals, "true_linear")->storage, records::Storage::float32);
+  // grows with every turn: float32 would lose the angle after a minute
+  EXPECT_EQ(find(signals, "spindle_angle")->storage, records::Storage::float64);
   for (const char* name : {"time", "line", "rapid"}) {
     EXPECT_EQ(find(signals, name)->quantum, 0.0) << name;
     EXPECT_EQ(find(signals, name)->storage, records::Storage::float64) << name;
