@@ -110,10 +110,20 @@ class HeatReader {
         links.fault(to, "must be the name of a body or of surroundings: " + names());
       } else if (other->second == from) {
         links.fault(to, "leads back to the same body");
+      } else if (are_linked(from, other->second)) {
+        links.fault(to, fmt::format("is linked to {} there; one direction is enough",
+                                    out_.network.bodies[static_cast<std::size_t>(from)].name));
       } else {
         out_.network.links.push_back({from, other->second, G});
       }
     }
+  }
+
+  bool are_linked(int a, int b) const {
+    return std::any_of(out_.network.links.begin(), out_.network.links.end(),
+                       [&](const plant::ThermalLink& one) {
+                         return (one.from == a && one.to == b) || (one.from == b && one.to == a);
+                       });
   }
 
   void read_thermal_errors(config::Reader& body, int index) {

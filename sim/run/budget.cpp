@@ -64,6 +64,7 @@ class BudgetRun {
         control_(control),
         store_(std::make_shared<records::SignalStore>(control.scratch_folder)) {
     scenario_.quantities.assign(quantities.begin(), quantities.end());
+    scenario_.day.reset();  // no signal of a budget is of it
     const Causes all = all_causes();
     for (const model::QuantitySpec& quantity : quantities) {
       Budget budget;

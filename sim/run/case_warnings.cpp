@@ -11,6 +11,7 @@
 #include "sim/evaluation/nominal_part.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/input/implausible.h"
+#include "sim/model/heat.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/residual_errors.h"
 
@@ -139,6 +140,19 @@ std::optional<Fault> shifted_program(const preparation::PreparedParts& one) {
                            fmt::join(unshifted, " and "))};
 }
 
+// Ideal axes move without current.
+std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
+  const auto& heat = one.scenario.machine_of(one.spec).heat;
+  if (heat == nullptr || one.spec.servo != model::ServoModel::ideal) return std::nullopt;
+  const bool has_drives =
+      std::any_of(heat->sources.begin(), heat->sources.end(), [](const model::HeatSource& source) {
+        return source.kind == model::HeatKind::motor || source.kind == model::HeatKind::friction;
+      });
+  if (!has_drives) return std::nullopt;
+  return fmt::format("case {}: an ideal servo has no current: motors and friction heat nothing",
+                     one.spec.name);
+}
+
 }  // namespace
 
 std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
@@ -159,6 +173,7 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
     out.push_back("warning: " + value);
   }
   add_overshoots(one, out);
+  if (auto cold = cold_drives(one)) out.push_back(std::move(*cold));
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
   for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
   return out;

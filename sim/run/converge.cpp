@@ -10,6 +10,7 @@
 #include "sim/config/quantity.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/run/day_course.h"
 #include "sim/run/test_sheet.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
@@ -97,6 +98,7 @@ struct Halved {
 Halved halve(const input::ScenarioSource& source, const std::vector<std::string>& changes) {
   try {
     Halved out{source.at(changes), ""};
+    out.scenario->day.reset();
     check_scenario(*out.scenario);
     return out;
   } catch (const InputError& error) {
@@ -235,7 +237,9 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
   model::Scenario base = source.at();
-  const std::optional<std::string> note = note_of_missing_tests(base, "converge");
+  std::optional<std::string> note = note_of_missing_tests(base, "converge");
+  if (base.day && !note) note = kDayLeftOut;
+  base.day.reset();
   add_residuals_of_shares(base);
   preparation::PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());

@@ -109,6 +109,7 @@ class Day {
         for (int n = 0; n < phase.cycles && out_.stopped.empty(); ++n) run_cycle();
         return;
       case model::Activity::probe:
+        now_ = std::make_unique<plant::VolumetricModel>(errors_now());
         datum_ = drift_of(day_.places[static_cast<std::size_t>(phase.place)]).dp_W;
         return;
     }
@@ -160,7 +161,7 @@ class Day {
     }
   }
 
-  // At the temperatures of the last reading, against the start.
+  // Errors `now_` against those at the start.
   plant::VolumetricError drift_of(const model::DayPlace& place) const {
     const plant::VolumetricError a = now_->error(place.Q, place.p_ST);
     const plant::VolumetricError b = at_start_.error(place.Q, place.p_ST);

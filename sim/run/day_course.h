@@ -15,6 +15,9 @@ struct PreparedParts;
 
 namespace servomill::sim::run {
 
+/// Note of commands that run a scenario without its day.
+inline constexpr const char* kDayLeftOut = "[day] is left out; servomill run computes it";
+
 /// Directions of drift: along X, Y, Z (m), about X and Y (rad).
 inline constexpr std::array<const char*, 5> kDriftNames = {"X", "Y", "Z", "A", "B"};
 inline constexpr std::size_t kDrifts = kDriftNames.size();

@@ -231,7 +231,9 @@ model::Scenario Sweep::at(std::uint64_t point) const {
     changes.push_back(fmt::format("cmm.seed={}", base_.cmm.seed + sample));
   }
   try {
-    return source_.at(changes);
+    model::Scenario scenario = source_.at(changes);
+    scenario.day.reset();  // no point stores it
+    return scenario;
   } catch (const InputError& error) {
     throw at_the_list(error, values);
   }

@@ -10,6 +10,7 @@
 #include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_store.h"
+#include "sim/run/day_course.h"
 #include "sim/system/json.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
@@ -225,6 +226,7 @@ int budget_command(const Arguments& arguments) {
   const sim::model::Scenario scenario =
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::vector<sim::model::QuantitySpec> quantities = chosen(scenario, options);
+  if (scenario.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
   std::optional<sim::run::BudgetStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);

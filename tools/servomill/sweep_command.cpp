@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
+#include "sim/run/day_course.h"
 #include "sim/sweep/point_series.h"
 #include "sim/sweep/run_sweep.h"
 #include "sim/sweep/sweep.h"
@@ -235,6 +236,7 @@ int sweep_command(const Arguments& arguments) {
   const sim::sweep::Selection selection = selection_of(options, sweep);
   const SweepFiles files = files_of(options, sweep, selection);
   const auto of_a_point = sweep.refuse_hopeless();
+  if (sweep.base().day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
 
   PointsLeft left(files.table, selection.size());
   const KeptWhenInterrupted when_interrupted([&left] { return left.said(); });

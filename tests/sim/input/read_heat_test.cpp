@@ -70,6 +70,19 @@ TEST(ReadHeat, RefusesNetworksThatAreNotPassiveOrNotConnected) {
       "machine.heat.body.head.conductance_W_per_K.head = 1.0; leads back to the same body\n");
 }
 
+TEST(ReadHeat, RefusesALinkInBothDirections) {
+  EXPECT_EQ(fault_of(kBody + "[machine_override.heat.body.column]\ncapacity_J_per_K = 5.0\n"
+                             "conductance_W_per_K = { head = 1.0 }\n"),
+            "none");
+  EXPECT_EQ(
+      fault_of("[machine_override.heat.body.head]\ncapacity_J_per_K = 500.0\n"
+               "conductance_W_per_K = { room = 4.0, column = 1.0 }\n"
+               "[machine_override.heat.body.column]\ncapacity_J_per_K = 5.0\n"
+               "conductance_W_per_K = { head = 1.0 }\n"),
+      "machine.heat.body.column.conductance_W_per_K.head = 1.0; is linked to column there; one "
+      "direction is enough\n");
+}
+
 TEST(ReadHeat, RefusesSourcesWithoutBodyOrAxis) {
   EXPECT_EQ(fault_of(kBody + "[machine_override.heat.source]\na = { body = \"column\", kind = "
                              "\"motor\", axis = \"U\", resistance = 1.0 }\n"),

@@ -97,6 +97,25 @@ TEST(DayCourse, TakesADatum) {
   EXPECT_GT(with.cycles[0].most, 0.04 * 10e-6 * rise(3600.0));
 }
 
+// Between two readings, too.
+TEST(DayCourse, TakesADatumAtTheTemperaturesOfItsTime) {
+  const DayCourse day = day_of(phase("activity = \"idle\"\nduration_min = 20.5") +
+                               phase("activity = \"probe\"\nplace = \"centre\"") +
+                               phase("activity = \"program\"\ncycles = 1"));
+  EXPECT_LT(day.cycles.at(0).most, 0.05 * 10e-6 * rise(20.5 * 60.0) + 1e-12);
+}
+
+TEST(DayCourse, NotesThatIdealAxesHeatNothing) {
+  const std::string motor =
+      "m = { body = \"head\", kind = \"motor\", axis = \"X\", resistance = "
+      "5.0 }\n";
+  const CaseOutput out = run_named_case(
+      small_scenario(kStrokes, "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + heat(motor)),
+      "one");
+  EXPECT_EQ(out.notes.back(),
+            "case one: an ideal servo has no current: motors and friction heat nothing");
+}
+
 // --- repeated cycles ----------------------------------------------------------------------------
 
 // The same program six times in one run, every tick of it simulated.
