@@ -22,8 +22,8 @@ std::string grid_of(char direction, char axis) {
            "900]], value_um = [[0, 5, 20], [-30, -8, 0], [10, 0, 5]] }";
   }
   if (direction == 'A' && axis == 'Y') {
-    return ", grid = { axes = \"CY\", at_mm_deg = [[-40000, 40000], [-900, 900]], value_urad = "
-           "[[30, -20], [0, 10]] }";
+    return ", grid = { axes = \"CY\", at_mm_deg = [[-180, 40, 180], [-900, 900]], value_urad = "
+           "[[30, -20], [0, 10], [30, -20]] }";
   }
   return "";
 }

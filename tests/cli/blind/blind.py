@@ -33,6 +33,23 @@ def truth_of(machine, key):
     return name, function.values[int(re.search(r"\[(\d+)\]", rest)[1])] / unit
 
 
+def at_knots(keys, errors):
+    """Keys without those of waves, and the matrix from all numbers to theirs: an error at a knot of its table is the value there
+    and what its waves have there (amplitude sin(2 pi s / period + phase))."""
+    kept = [key for key in keys if ".harmonic" not in key]
+    J = np.zeros((len(kept), len(keys)))
+    for row, key in enumerate(kept):
+        J[row, keys.index(key)] = 1.0
+        name, knot = re.fullmatch(r"errors\.identified\.(\w+)\.(?:table\.value\w*\[(\d+)\]|.*)", key).groups()
+        for n, wave in enumerate(errors[name].get("harmonic", []) if knot is not None else []):
+            s = next(errors[name]["table"][at] for at in ("at_mm", "at_deg") if at in errors[name]["table"])[int(knot)]
+            period = next(wave[word] for word in ("period_mm", "period_deg") if word in wave)
+            amplitude = next(word for word in wave if word.startswith("amplitude"))
+            column = keys.index(f"errors.identified.{name}.harmonic[{n}].{amplitude}")
+            J[row, column] = np.sin(2.0 * np.pi * s / period + np.deg2rad(wave.get("phase_deg", 0.0)))
+    return kept, J
+
+
 class Machines(unittest.TestCase):
     def calibrate(self, folder, kind, seed):
         machine = foreign_readings.make(folder, seed, kind)
@@ -40,32 +57,34 @@ class Machines(unittest.TestCase):
                               cwd=folder, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, f"{kind} {seed}: {done.stderr}")
         with open(os.path.join(folder, "identified.toml"), "rb") as file:
-            identified = tomllib.load(file)["identified"]
+            written = tomllib.load(file)
         with open(os.path.join(folder, "errors.csv"), encoding="utf-8") as file:
             combined = {line.split(",")[0] for line in file if line.rstrip().endswith(",1")}
-        return machine, identified, combined, done
+        return machine, written["identified"], written["errors"]["identified"], combined, done
 
     def measure(self, kind, count):
         inside, all_of, squares, ranks, left_out, warnings = {}, {}, 0.0, 0, set(), []
         with tempfile.TemporaryDirectory() as folder:
             for seed in range(1, count + 1):
-                machine, identified, combined, done = self.calibrate(folder, kind, seed)
+                machine, identified, errors, combined, done = self.calibrate(folder, kind, seed)
                 truth = projected(machine) if kind == "three" else machine
                 left_out |= combined
                 warnings += [f"{kind} {seed}: {line}" for line in done.stderr.splitlines()]
-                named = [truth_of(truth, key) for key in identified["keys"]]
-                C = np.array(identified["covariance"])
+                keys, J = at_knots(identified["keys"], errors)
+                named = [truth_of(truth, key) for key in keys]
+                values = J @ np.array(identified["values"])
+                C = J @ np.array(identified["covariance"]) @ J.T
                 used = [k for k, (name, _) in enumerate(named) if name not in combined and C[k, k] > 0]
-                e = np.array([identified["values"][k] - named[k][1] for k in used])
+                e = np.array([values[k] - named[k][1] for k in used])
                 C = C[np.ix_(used, used)]
                 sigma = np.sqrt(np.diag(C))
                 for k, z in zip(used, e / sigma):
                     name = named[k][0]
                     inside[name] = inside.get(name, 0) + (abs(z) <= COVERED)
                     all_of[name] = all_of.get(name, 0) + 1
-                values, vectors = np.linalg.eigh(C / np.outer(sigma, sigma))
-                kept = values > SMALL * values[-1]
-                squares += (((vectors.T @ (e / sigma))[kept]) ** 2 / values[kept]).sum()
+                eigenvalues, vectors = np.linalg.eigh(C / np.outer(sigma, sigma))
+                kept = eigenvalues > SMALL * eigenvalues[-1]
+                squares += (((vectors.T @ (e / sigma))[kept]) ** 2 / eigenvalues[kept]).sum()
                 ranks += kept.sum()
         pooled = 100.0 * sum(inside.values()) / sum(all_of.values())
         each = {name: 100.0 * inside[name] / all_of[name] for name in inside}
