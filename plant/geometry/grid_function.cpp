@@ -72,6 +72,8 @@ std::optional<std::string> axis_fault(const GridPoints& points, std::size_t k, d
   return std::nullopt;
 }
 
+constexpr double kClosed = 1e-12;  // m, rad; rounding
+
 // Errors that repeat must end as they begin.
 std::optional<std::string> repetition_fault(const GridPoints& points, std::size_t k) {
   std::size_t stride = 1;
@@ -79,7 +81,7 @@ std::optional<std::string> repetition_fault(const GridPoints& points, std::size_
   const std::size_t last = stride * (points.at[k].size() - 1), block = stride + last;
   for (std::size_t begin = 0; begin < points.error.size(); begin += block) {
     for (std::size_t i = begin; i < begin + stride; ++i) {
-      if (points.error[i] == points.error[i + last]) continue;
+      if (std::abs(points.error[i] - points.error[i + last]) <= kClosed) continue;
       return fmt::format(
           "ends at {:g} um or urad where it begins at {:g} um or urad; over {}, which repeats, "
           "both must be equal",

@@ -54,11 +54,17 @@ void HeatSources::powers(const HeatInputs& now, VectorXd& out) const {
   }
 }
 
-plant::ThermalNetwork network_at_start(const model::HeatSettings& heat) {
+plant::ThermalNetwork network_at_start(const model::MachineSettings& machine) {
+  const model::HeatSettings& heat = *machine.heat;
   plant::ThermalNetwork network(heat.network);
   const auto n = static_cast<Index>(heat.network.bodies.size());
-  network.start(heat.start.empty() ? network.settled(VectorXd::Zero(n), heat.clock)
-                                   : VectorXd(Eigen::Map<const VectorXd>(heat.start.data(), n)));
+  if (!heat.start.empty()) {
+    network.start(Eigen::Map<const VectorXd>(heat.start.data(), n));
+    return network;
+  }
+  VectorXd at_rest(n);
+  HeatSources(machine).powers({}, at_rest);
+  network.start(network.settled(at_rest, heat.clock));
   return network;
 }
 
@@ -73,9 +79,9 @@ std::string fault_of(const model::HeatSettings& heat, const VectorXd& T) {
   return "";
 }
 
-std::vector<double> readings_of(const model::HeatSettings& heat, const VectorXd& T, Tick step) {
+std::vector<double> readings_of(const model::HeatSettings& heat, const VectorXd& T, Tick step,
+                                std::uint32_t stream) {
   std::vector<double> out;
-  std::uint32_t stream = 0;
   for (const model::HeatSensor& sensor : heat.sensors) {
     const double noise = plant::white_noise({heat.noise_seed, stream++}, 0, step)[0];
     out.push_back(T[sensor.body] + sensor.noise * noise);
@@ -87,7 +93,7 @@ HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel&
     : machine_(machine),
       errors_(errors),
       sources_(machine),
-      network_(network_at_start(*machine.heat)),
+      network_(network_at_start(machine)),
       t_(machine.heat->clock) {
   const double period = machine.nc.periods.seconds(machine.nc.periods.position);
   periods_per_step_ = std::max(1, static_cast<int>(std::lround(kStep / period)));

@@ -82,11 +82,12 @@ std::string fault_of(const model::HeatSettings& heat, const Eigen::VectorXd& T);
 
 /// Readings of the sensors (K).
 /// @param T     of each body (K)
-/// @param step  number of the reading; equal ones have equal noise
+/// @param step  number of the reading; equal ones of a stream have equal noise
+/// @param stream  of the noise of the first sensor
 std::vector<double> readings_of(const model::HeatSettings& heat, const Eigen::VectorXd& T,
-                                Tick step);
+                                Tick step, std::uint32_t stream = 0);
 
 /// A network at the temperatures at which runs begin.
-plant::ThermalNetwork network_at_start(const model::HeatSettings& heat);
+plant::ThermalNetwork network_at_start(const model::MachineSettings& machine);
 
 }  // namespace servomill::sim::engine

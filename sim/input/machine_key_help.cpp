@@ -51,7 +51,7 @@ constexpr KeyHelp kMachine[] = {
      "temperatures of the machine; default: always at its reference temperature"},
     {"machine.heat", "reference_degC", "temperature at which the machine has its errors"},
     {"machine.heat", "start_degC",
-     "temperature of all bodies at the start; default: that of bodies long without sources"},
+     "temperature of all bodies at the start; default: settled, the machine on and at rest"},
     {"machine.heat", "clock_h", "time of the day at the start"},
     {"machine.heat", "surroundings", "rooms and coolants, whose temperatures are given"},
     {"machine.heat.surroundings", "NAME", "one of them"},

@@ -115,7 +115,7 @@ std::shared_ptr<const model::WorkingDay> read_day(config::Reader& root,
   if (!root.has("day")) return nullptr;
   config::Reader day = root.table("day");
   if (scenario.machine.heat == nullptr && root.faults() == 0) {
-    day.fault("needs a machine with [heat]");
+    day.fault("needs [heat] in the machine of the scenario; that of a case alone is not enough");
     day.skip_rest();
     return nullptr;
   }

@@ -45,9 +45,8 @@ struct HeatSettings {
   std::uint64_t noise_seed = 0;          // of the sensors
   std::vector<double> coldest, warmest;  // K, of each body: beyond them the run ends
   double reference = 293.15;             // K, at which the machine has its errors
-  std::vector<double>
-      start;  // K, of each body; empty: as the surroundings have made them, long without sources
-  double clock = 0.0;  // s, time of the day at the start of a run
+  std::vector<double> start;  // K, of each body; empty: settled, the machine on and at rest
+  double clock = 0.0;         // s, time of the day at the start of a run
 };
 
 }  // namespace servomill::sim::model

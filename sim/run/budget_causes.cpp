@@ -16,7 +16,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"lag", "lag of servo loops and drives", CauseGroup::servo},
     {"table", "points and layout of compensation tables"},
     {"delay", "response and update of tables, signal delay, model period", CauseGroup::servo},
-    {"saturation", "limits of virtual displacements", CauseGroup::servo},
+    {"saturation", "limits of virtual displacements"},
     {"single_evaluation", "errors evaluated at a displaced position"},
     {"identification", "identified errors or origin differ from the actual ones"},
     {"friction", "dry friction, backlash, cogging, and their compensation", CauseGroup::servo},
@@ -27,7 +27,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"interpolation", "chords, path tolerance and filter of the NC", CauseGroup::servo},
     {"uncorrected", "errors that no strategy of the case compensates or imposes"},
     {"uncorrectable", "not possible with the axes, or of no cause that the strategy declares"},
-    {"imposed", "imposed on purpose by strategies"},
+    {"imposed", "imposed on purpose by strategies", CauseGroup::imposed},
 }};
 
 constexpr double kFine = 0.01;       // share of tolerances that are taken away

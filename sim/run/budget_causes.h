@@ -40,10 +40,11 @@ enum class Cause : std::uint8_t {
 };
 inline constexpr std::size_t kCauses = 15;
 /// Kinds of errors that a machine has: after Andolfatto et al. (2011) static, servo, dynamic and
-/// thermal, here with the force of the cut.
-enum class CauseGroup : std::uint8_t { geometry, servo, inertia, heat, force };
-inline constexpr std::array<std::string_view, 5> kCauseGroups = {"static geometry", "servo",
-                                                                 "inertia", "heat", "force"};
+/// thermal, here with the force of the cut. Static geometry: all that its errors and their
+/// compensation leave. Imposed errors are on purpose.
+enum class CauseGroup : std::uint8_t { geometry, servo, inertia, heat, force, imposed };
+inline constexpr std::array<std::string_view, 6> kCauseGroups = {
+    "static geometry", "servo", "inertia", "heat", "force", "imposed"};
 struct CauseInfo {
   std::string_view name;  // "lag", "table", ...
   std::string_view help;

@@ -18,8 +18,9 @@ namespace servomill::sim::run {
 /// Note of commands that run a scenario without its day.
 inline constexpr const char* kDayLeftOut = "[day] is left out; servomill run computes it";
 
-/// Directions of drift: along X, Y, Z (m), about X and Y (rad).
-inline constexpr std::array<const char*, 5> kDriftNames = {"X", "Y", "Z", "A", "B"};
+/// Directions of drift, of the machine: of the tip along X, Y, Z (m), of the tool axis about X, Y,
+/// Z (rad).
+inline constexpr std::array<const char*, 6> kDriftNames = {"X", "Y", "Z", "A", "B", "C"};
 inline constexpr std::size_t kDrifts = kDriftNames.size();
 
 /// Drift at one place; ISO 230-3:2020 states these of each of its tests.
@@ -53,6 +54,9 @@ struct DayCourse {
 /// @pre the scenario has a day, and the machine of the case heat
 DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::HeatCourse& cycle,
                         double duration);
+
+/// The ranges as one JSON object.
+std::string day_json(const std::string& case_name, const DayCourse& day);
 
 /// Ranges of the drift and the cycles with the least and the greatest error, as a table.
 std::string day_table(const DayCourse& day);

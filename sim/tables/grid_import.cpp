@@ -187,6 +187,22 @@ void refuse_part_of_turn(const ErrorGrid& grid, Axis axis, double from, double t
                                grid.name, from / deg, to / deg, letter(axis)));
 }
 
+// Over an endless axis, errors repeat: they end as they begin.
+void refuse_step_of_turn(const ErrorGrid& grid, std::size_t argument) {
+  constexpr double kClosed = 1e-12;  // m, rad; rounding
+  plant::GridPoints points{grid.axes, grid.at, {}, {}};
+  points.at[argument] = {grid.at[argument].front()};
+  AxisWords q = AxisWords::Zero();
+  for_all_points(points, 0, q, [&](AxisWords at) {
+    const double begin = value_at(grid, at);
+    at[index_of(grid.axes[argument])] = grid.at[argument].back();
+    if (std::abs(value_at(grid, at) - begin) <= kClosed) return;
+    throw InputError({grid.file, grid.line},
+                     fmt::format("{} is not the same at both ends of a turn of {}", grid.name,
+                                 letter(grid.axes[argument])));
+  });
+}
+
 // Positions from one end of the travel to the other.
 std::vector<double> over_travel(std::vector<double> at, double lower, double upper) {
   if (std::isfinite(lower) && lower < at.front()) at.insert(at.begin(), lower);
@@ -220,6 +236,7 @@ ErrorGrid covering(const ErrorGrid& grid, const model::MachineSettings& machine)
         !is_linear(grid.axes[k]) && !std::isfinite(lower) && !std::isfinite(upper);
     if (is_endless) {
       refuse_part_of_turn(grid, grid.axes[k], grid.at[k].front(), grid.at[k].back());
+      refuse_step_of_turn(grid, k);
     }
     out.at[k] = over_travel(grid.at[k], lower, upper);
   }

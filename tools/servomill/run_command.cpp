@@ -104,12 +104,12 @@ int print_output(const sim::run::RunOutput& output, const Options& options,
   const bool json = options.has("json"), quiet = options.has("quiet");
   if (options.has("touches")) write_touches(output, options);
   if (options.has("readings")) write_readings(output, options);
-  bool finished = true;
+  bool finished = all_days_ended(output);
   for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
   print_notes(output);
   if (json) {
     for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
-    print_test_json(output);
+    print_report_json(output);
   } else if (!quiet) {
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);

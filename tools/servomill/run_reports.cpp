@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -49,9 +50,10 @@ void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& 
   }
 }
 
-void print_test_json(const sim::run::RunOutput& output) {
+void print_report_json(const sim::run::RunOutput& output) {
   for (const sim::run::CaseOutput& one : output.cases) {
     for (const auto& test : one.tests) fmt::print("{}\n", sim::standards::json(test->report));
+    if (one.day) fmt::print("{}\n", sim::run::day_json(one.name, *one.day));
   }
 }
 
@@ -59,6 +61,12 @@ void print_days(const sim::run::RunOutput& output) {
   for (const sim::run::CaseOutput& one : output.cases) {
     if (one.day) fmt::print("\nday of {}\n{}", one.name, sim::run::day_table(*one.day));
   }
+}
+
+bool all_days_ended(const sim::run::RunOutput& output) {
+  return std::all_of(output.cases.begin(), output.cases.end(), [](const auto& one) {
+    return one.day == nullptr || one.day->stopped.empty();
+  });
 }
 
 }  // namespace servomill::tools

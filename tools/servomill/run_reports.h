@@ -17,9 +17,11 @@ void write_readings(const sim::run::RunOutput& output, const Options& options);
 
 /// Parameters of each test, the cases that finished side by side.
 void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& scenario);
-void print_test_json(const sim::run::RunOutput& output);
+void print_report_json(const sim::run::RunOutput& output);
 
 /// Drift and cycles of the day of each case.
 void print_days(const sim::run::RunOutput& output);
+/// False if a body went beyond its limits on one of them.
+bool all_days_ended(const sim::run::RunOutput& output);
 
 }  // namespace servomill::tools

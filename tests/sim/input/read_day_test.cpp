@@ -52,8 +52,9 @@ TEST(ReadDay, HasSiUnits) {
 }
 
 TEST(ReadDay, WantsAMachineWithHeat) {
-  EXPECT_EQ(fault_of(kPlace + phase("activity = \"idle\"\nduration_min = 1"), ""),
-            "day: needs a machine with [heat]\n");
+  EXPECT_EQ(
+      fault_of(kPlace + phase("activity = \"idle\"\nduration_min = 1"), ""),
+      "day: needs [heat] in the machine of the scenario; that of a case alone is not enough\n");
 }
 
 // Every axis: where one of them is, nobody may guess.

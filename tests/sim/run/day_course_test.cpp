@@ -22,7 +22,7 @@ const char* const kStrokes =
 
 std::string heat(const std::string& sources) {
   return "[machine_override.heat]\nstart_degC = 20.0\n"
-         "surroundings = { room = { mean_degC = 20.0 } }\n"
+         "[machine_override.heat.surroundings.room]\nmean_degC = 20.0\n"
          "[machine_override.heat.body.head]\ncapacity_J_per_K = 20000.0\n"
          "conductance_W_per_K = { room = 10.0 }\n"
          "errors_per_K = { EZZ = { constant_um = -2.0 }, EXX = { um_per_m = 10.0 } }\n"
@@ -36,6 +36,10 @@ const std::string kPlace =
     "C_deg = 0.0 }\ntool_length_mm = 100.0\n"
     "[[day.place]]\nname = \"right\"\nat = { X_mm = 200.0, Y_mm = 0.0, Z_mm = 100.0, B_deg = 0.0, "
     "C_deg = 0.0 }\ntool_length_mm = 100.0\n";
+
+std::string sampled(const std::string& minutes) {
+  return "[[case]]\nname = \"one\"\n[day]\nsample_min = " + minutes + "\n" + kPlace;
+}
 
 std::string phase(const std::string& keys) { return "[[day.phase]]\n" + keys + "\n"; }
 
@@ -71,6 +75,48 @@ TEST(DayCourse, StatesTheRangesOfIso230Part3) {
   EXPECT_NEAR(range.whole[2], 2.0 * um * rise(10800.0), 1e-12);
   EXPECT_NEAR(range.reached[2], 10800.0, 1e-9);
   EXPECT_EQ(range.whole[4], 0.0);
+}
+
+// A room that swings, read every minute and twice a day: the same temperatures at the same time,
+// and the range of the first 60 min.
+TEST(DayCourse, DoesNotDependOnTheTimeBetweenReadings) {
+  const auto day = [](const std::string& minutes) {
+    const std::string toml = sampled(minutes) + phase("activity = \"idle\"\nduration_min = 1440") +
+                             "[machine_override.heat.surroundings.hall]\namplitude_K = 5.0\n"
+                             "[machine_override.heat.body.bed]\ncapacity_J_per_K = 40000.0\n"
+                             "conductance_W_per_K = { hall = 10.0 }\n" +
+                             heat(kPump);
+    return *run_named_case(small_scenario(kStrokes, toml), "one").day;
+  };
+  const DayCourse often = day("1.0"), rarely = day("720.0");
+  ASSERT_EQ(rarely.time.size(), 4U);  // at 0, 1, 12 and 24 h
+  for (std::size_t body = 0; body < 2; ++body) {
+    EXPECT_NEAR(often.temperatures[body][720], rarely.temperatures[body][2], 1e-5);
+    EXPECT_NEAR(often.temperatures[body].back(), rarely.temperatures[body].back(), 1e-5);
+  }
+  EXPECT_NEAR(rarely.ranges[0].first_hour[2], often.ranges[0].first_hour[2], 1e-12);
+  EXPECT_NEAR(rarely.ranges[0].first_hour[2], 2.0 * um * rise(3600.0), 1e-11);
+}
+
+// On a table that has turned by 90 degrees the drift still is along the axes of the machine, and
+// the tilt of a column about X is an A.
+TEST(DayCourse, DriftsAlongTheAxesOfTheMachine) {
+  const std::string places =
+      "[[day.place]]\nname = \"turned\"\nat = { X_mm = 200.0, Y_mm = 0.0, Z_mm = 100.0, B_deg = "
+      "0.0, "
+      "C_deg = 90.0 }\ntool_length_mm = 100.0\n";
+  const std::string toml =
+      "[[case]]\nname = \"one\"\n[day]\nsample_min = 60.0\n" + places +
+      phase("activity = \"idle\"\nduration_min = 60") + heat(kPump) +
+      "[machine_override.heat.body.column]\ncapacity_J_per_K = 20000.0\n"
+      "conductance_W_per_K = { room = 10.0 }\nerrors_per_K = { EAZ = { constant_urad = 3.0 } }\n"
+      "[machine_override.heat.source.oil]\nbody = \"column\"\nkind = \"constant\"\npower_W = "
+      "100.0\n";
+  const DayCourse day = *run_named_case(small_scenario(kStrokes, toml), "one").day;
+  const std::array<double, kDrifts>& drift = day.drift[0].back();
+  EXPECT_NEAR(drift[0], 0.2 * 10e-6 * rise(3600.0), 1e-9);
+  EXPECT_NEAR(drift[3], 3e-6 * rise(3600.0), 1e-9);
+  EXPECT_NEAR(drift[4], 0.0, 1e-9);
 }
 
 TEST(DayCourse, OfTheSpindleHasItsPower) {
@@ -136,6 +182,28 @@ TEST(DayCourse, RepeatsACycleAsIfItWereSimulated) {
   const double risen = servo.at(end, T) - 20.0;
   EXPECT_GT(risen, 0.5);
   EXPECT_NEAR(celsius(day.temperatures[0].back()) - 20.0, risen, 0.01 * risen);
+}
+
+// Position periods of which 0.1 s is no multiple: no power is lost or played too fast.
+TEST(DayCourse, RepeatsACycleOfAnyPositionPeriod) {
+  const std::string sources =
+      "s = { body = \"head\", kind = \"spindle\", speed_rpm = [0, 6000], power_W = [0, 2000] }\n";
+  const auto risen = [&](const std::string& period) {
+    const std::string toml = sampled("1.0") + phase("activity = \"program\"\ncycles = 20") +
+                             "[machine_override.nc]\nposition_period_us = " + period +
+                             "\nvelocity_period_us = 600\n" + heat(sources);
+    return celsius(run_named_case(
+                       small_scenario("G17 G21 G90 G94 G64 P0.001\nG4 P60.0\nS6000 M3\nG1 X50 "
+                                      "F1200\nG1 X0\nM30\n",
+                                      toml),
+                       "one")
+                       .day->temperatures[0]
+                       .back()) -
+           20.0;
+  };
+  const double wanted = risen("600");
+  EXPECT_GT(wanted, 2.0);
+  EXPECT_NEAR(risen("3000"), wanted, 0.01 * wanted);
 }
 
 TEST(DayCourse, EndsAtTheLimitOfABody) {

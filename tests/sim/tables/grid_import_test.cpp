@@ -114,6 +114,34 @@ TEST(GridImport, WantsOneTurnOfAnEndlessAxis) {
   }
 }
 
+// Conversion turns by 360 degrees, whose sine is not exactly 0.
+TEST(GridImport, ClosesATurnThatIsConverted) {
+  const model::MachineSettings machine = machine_of("[w C' b X Y Z t]");
+  ImportedColumns columns = columns_of(
+      "C X EXC\n-180 0 -0.005\n-180 1 -0.005\n0 0 0.005\n0 1 0.005\n180 0 -0.005\n180 1 -0.005\n");
+  std::vector<std::string> notes;
+  cover_travel(columns, machine, notes);
+  const ErrorImport imported = import_errors(columns, machine.chain);
+  const config::Document document = config::Document::from_text(
+      errors_toml(imported.errors, "measured", imported.notes), "errors.toml");
+  config::Reader root(document);
+  config::Reader models = root.table("errors");
+  const auto all = input::read_error_models(models, input::MachineAxes(machine));
+  root.finish();
+  EXPECT_GT(verify_import(columns, machine.chain, all.at("measured")), 0U);
+}
+
+TEST(GridImport, RefusesATurnThatDoesNotClose) {
+  ImportedColumns columns = columns_of("C X EXX\n0 0 0.1\n0 1 0\n360 0 0\n360 1 0\n");
+  std::vector<std::string> notes;
+  try {
+    cover_travel(columns, machine_of("[w C' b X Y Z t]"), notes);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "v.csv:1: error: EXX is not the same at both ends of a turn of C");
+  }
+}
+
 TEST(GridImport, AnotherModelIsFound) {
   const plant::MachineChain chain = machine_of("[w b X Y Z t]").chain;
   const ImportedColumns columns = columns_of(kText);
