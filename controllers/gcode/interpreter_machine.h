@@ -96,8 +96,8 @@ class Interpreter::Machine {
  private:
   std::optional<double> macro_position(long number, std::string& why) const;
   std::optional<double> macro_tool_length(long number, std::string& why) const;
+  int setting_mode(long number) const;
   std::optional<double> macro_mode(long number, std::string& why) const;
-
   struct Text {
     ProgramText lines;
     PercentRule percent;

@@ -98,6 +98,28 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
   return at[axis] / unit_of(one);
 }
 
+// G code of a group that always has one: plane, distances, feed, units, compensations, cycle.
+int Interpreter::Machine::setting_mode(long number) const {
+  switch (number) {
+    case 4002:
+      return 19 - state_.normal_axis;
+    case 4003:
+      return state_.is_incremental ? 91 : 90;
+    case 4005:
+      if (state_.feed_mode == FeedMode::inverse_time) return 93;
+      return state_.feed_mode == FeedMode::units_per_minute ? 94 : 95;
+    case 4006:
+      return is_inch() ? 20 : 21;
+    case 4007:
+      if (!state_.compensation.is_on) return 40;
+      return state_.compensation.cutter.is_left ? 41 : 42;
+    case 4008:
+      return state_.tool_offset_number > 0 ? 43 : 49;
+    default:
+      return state_.motion > 30 ? state_.motion / 10 : 80;
+  }
+}
+
 std::optional<double> Interpreter::Machine::macro_mode(long number, std::string& why) const {
   const auto code = [](double value) { return std::optional<double>(value); };
   const bool is_fanuc = setup_.reader == Reader::fanuc, is_haas = setup_.reader == Reader::haas;
@@ -107,29 +129,14 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
         "no G0, G1, G2 or G3 precedes it: the active one is a control setting (Fanuc, parameter "
         "3402#0); program one";
   }
-  if (number == 4008) return code(state_.tool_offset_number > 0 ? 43 : 49);
-  if (number == 4009) return code(state_.motion > 30 ? state_.motion / 10 : 80);
-  if (number == 4002) return code(19 - state_.normal_axis);
-  if (number == 4003) return code(state_.is_incremental ? 91 : 90);
-  if (number == 4005) {
-    constexpr std::array kModes = {93, 94, 95};
-    const int mode = state_.feed_mode == FeedMode::inverse_time       ? 0
-                     : state_.feed_mode == FeedMode::units_per_minute ? 1
-                                                                      : 2;
-    return code(kModes[static_cast<std::size_t>(mode)]);
-  }
-  if (number == 4006) return code(is_inch() ? 20 : 21);
-  if (number == 4007 && !state_.compensation.is_on) return code(40);
-  if (number == 4007) return code(state_.compensation.cutter.is_left ? 41 : 42);
+  if (number >= 4002 && number <= 4009 && number != 4004) return code(setting_mode(number));
   if (number == 4109 && state_.feed_linear > 0.0) return code(feed_in_force());
   if (number == 4119) return code(state_.spindle_speed / rpm);
   if (number == 4120 && state_.selected_tool >= 0) return code(state_.selected_tool);
-  if (number == 4012 || number == 4014) {
-    if ((number == 4014 && is_fanuc) || (number == 4012 && is_haas)) {
-      if (state_.work_system <= 6) return code(53 + state_.work_system);
-    } else {
-      why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader fanuc or haas";
-    }
+  const bool is_work_system = (number == 4014 && is_fanuc) || (number == 4012 && is_haas);
+  if (is_work_system && state_.work_system <= 6) return code(53 + state_.work_system);
+  if (!is_work_system && (number == 4012 || number == 4014)) {
+    why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader fanuc or haas";
   }
   if (why.empty()) why = "it is not tracked here";
   return std::nullopt;

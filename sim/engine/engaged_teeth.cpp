@@ -22,8 +22,7 @@ Eigen::Vector3d EngagedTeeth::force(int engagement, double angle, double rotatio
                                     double wear) const {
   const Engagement& at = engagements_[static_cast<std::size_t>(engagement)];
   const std::span<const plant::EdgeSlice> slices(slices_.data() + at.first, at.end - at.first);
-  return at.axes *
-         plant::mean_tooth_force(K_, chips_[at.tool], slices, at.phi.at(angle),
+  return at.axes * plant::mean_tooth_force(K_, chips_[at.tool], slices, at.phi.at(angle),
                                            at.phi.sense * rotation, c, wear);
 }
 

@@ -37,7 +37,7 @@ class EngagedTeeth {
 
  private:
   struct Engagement {
-    Eigen::Matrix3d axes;        // e1, e2, k in W
+    Eigen::Matrix3d axes;  // e1, e2, k in W
     plant::ToothAngle phi;
     std::size_t tool = 0;        // in chips_
     std::size_t first, end = 0;  // in slices_

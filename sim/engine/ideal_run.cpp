@@ -53,12 +53,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     set = setpoint_.advance(sample, t, set.Q_cmd);
     now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
-    if (in_.displaced_cuts != nullptr) {
-      cut_->deviate(reference_at(n), Q_true_of(set),
-                    structure_ ? structure_->at(motion_.ddQ()) : Eigen::Vector3d::Zero().eval());
-    }
-    if (cut_) cut_->advance(reference_at(n));
-    if (in_.teeth != nullptr) cut_->turn(n);
+    if (cut_) cut(n, set);
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
     const bool is_recorded = n % in_.record_period == 0;
     if (!is_recorded && !travel_.matters() && !structure_) continue;
@@ -115,6 +110,15 @@ void IdealRun::record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
   if (structure_) now.inertial_deflection = structure_->at(motion_.ddQ());
   recorder_.record(now, travel_.at(now.Q_true));
   add_saturations(now.time);
+}
+
+void IdealRun::cut(Tick n, const AxisSetpoint& set) {
+  if (in_.displaced_cuts != nullptr) {
+    cut_->deviate(reference_at(n), Q_true_of(set),
+                  structure_ ? structure_->at(motion_.ddQ()) : Eigen::Vector3d::Zero().eval());
+  }
+  cut_->advance(reference_at(n));
+  if (in_.teeth != nullptr) cut_->turn(n);
 }
 
 // Ideal axes need no current: only the spindle and constant sources heat. False if the machine has

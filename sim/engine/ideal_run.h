@@ -31,6 +31,7 @@ class IdealRun {
   void add_saturations(double time);
   void record(Tick n, const AxisSetpoint& set, const Joints& Q_true);
   void bend(const Joints& Q_true);
+  void cut(Tick n, const AxisSetpoint& set);
   bool heat(const controllers::Trajectory::Sample& sample, Outcome& outcome);
   Joints Q_true_of(const AxisSetpoint& set);
 

@@ -65,10 +65,11 @@ void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
                  "of tool_position_true",
                  linear, kLinear});
   if (teeth) {
-    all.push_back({"spindle_angle", "deg",
-                   "angle of tooth 0 of the cutter since the start, clockwise seen from the spindle, "
-                   "from the workpiece's Y",
-                   "", ""});
+    all.push_back(
+        {"spindle_angle", "deg",
+         "angle of tooth 0 of the cutter since the start, clockwise seen from the spindle, "
+         "from the workpiece's Y",
+         "", ""});
   }
 }
 

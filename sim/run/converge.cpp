@@ -233,13 +233,23 @@ std::vector<std::string> halved(Refinement refinement, const model::Scenario& sc
   return {};
 }
 
+namespace {
+
+// Note on parts of the scenario that the command leaves out, if any.
+std::optional<std::string> leave_out_day(model::Scenario& base) {
+  std::optional<std::string> note = note_of_missing_tests(base, "converge");
+  if (base.day && !note) note = kDayLeftOut;
+  base.day.reset();
+  return note;
+}
+
+}  // namespace
+
 std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
   model::Scenario base = source.at();
-  std::optional<std::string> note = note_of_missing_tests(base, "converge");
-  if (base.day && !note) note = kDayLeftOut;
-  base.day.reset();
+  const std::optional<std::string> note = leave_out_day(base);
   add_residuals_of_shares(base);
   preparation::PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());

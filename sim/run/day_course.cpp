@@ -11,6 +11,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/heat_run.h"
 #include "sim/model/working_day.h"
+#include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/system/json.h"
 

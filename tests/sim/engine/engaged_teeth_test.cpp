@@ -58,8 +58,7 @@ TEST(EngagedTeeth, tooth_is_where_the_angle_of_the_spindle_puts_it) {
         best = std::max(best, F);
       }
       const auto across = plant::spindle_directions(k);
-      const Vector3d tooth = std::sin(at_best) * across.col(0) +
-                             std::cos(at_best) * across.col(1);
+      const Vector3d tooth = std::sin(at_best) * across.col(0) + std::cos(at_best) * across.col(1);
       EXPECT_GE(tooth.dot(feed), std::cos(1 * deg)) << "feed at " << a << " " << clockwise;
     }
   }
