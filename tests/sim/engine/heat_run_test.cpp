@@ -98,6 +98,19 @@ TEST(HeatRun, OfTheSpindleFollowsItsSpeed) {
   EXPECT_NEAR(power.back(), 10.0, 1e-9);  // after M5
 }
 
+// Without start_degC the machine has been on for days: 100 W over 4 W/K are in it already, and
+// stay.
+TEST(HeatRun, BeginsSettledWithTheMachineOn) {
+  std::string settled = heat("kind = \"constant\", power_W = 100.0");
+  settled.erase(settled.find("start_degC = 20.0\n"), std::string("start_degC = 20.0\n").size());
+  const run::CaseOutput out =
+      run_named_case(small_scenario(kStrokes, kRecord + kCase + settled), "one");
+  const records::Series& servo = out.result.servo;
+  const std::size_t T = servo.column("temperature_head").value();
+  EXPECT_NEAR(servo.at(0, T), 45.0, 1e-9);
+  EXPECT_NEAR(servo.at(servo.rows() - 1, T), 45.0, 1e-9);
+}
+
 // Every reading has its own noise, of the standard deviation that is asked for; the tip does not
 // feel it.
 TEST(HeatRun, ReadsItsSensorsWithNoise) {
