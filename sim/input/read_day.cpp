@@ -18,7 +18,7 @@ namespace {
 constexpr double kLongestPhase = 30.0 * 86400.0;  // s
 constexpr int kCycleLimit = 1000000;
 
-// All axes: where one of them is, nobody may guess.
+// Positions of all axes: none is taken to be at 0.
 Joints read_pose(config::Reader& place, const model::MachineSettings& machine) {
   config::Reader at = place.table("at");
   Joints Q = Joints::Zero();

@@ -207,7 +207,7 @@ std::vector<double> read_targets(config::Reader& table, const MachineTest& test)
   if (table.has(keys.targets)) {
     for (const char* const key : {keys.from, keys.to, "target_count", keys.spread}) {
       if (table.raw(key) != nullptr) {
-        table.fault(key, fmt::format("has no effect beside {}", keys.targets));
+        table.fault(key, fmt::format("has no effect with {}", keys.targets));
       }
     }
     std::vector<double> targets = table.reals(keys.targets, keys.quantity);

@@ -225,7 +225,7 @@ TEST(MachineTest, IsRefusedWithTheRule) {
             "test[0].targets_mm = [-15, -40, 3, 20, 45]; must be two targets or more in rising "
             "order");
   EXPECT_EQ(refusal(kTest + "from_mm = 1.0\n"),
-            "test[0].from_mm = 1.0; has no effect beside targets_mm");
+            "test[0].from_mm = 1.0; has no effect with targets_mm");
   EXPECT_EQ(
       refusal(changed("\"X\"", "\"a (b)\"")),
       "test[0].name = \"a (b)\"; must not contain ( ) / or line breaks: it names a section of "
