@@ -128,7 +128,7 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "HSC Kontrol, Pulser3, Sub Programs (O9001.cnc); Fanuc, Haas and Mach from memory"},
     {smoothing, "G5.1 Q, G5 P, G8 P, G187 and the like", "ignored: smoothing is not simulated",
      "Fanuc, Haas", kFanuc | kHaas,
-     "Fanuc B-63944EN, AI contour control, from memory; E of G187: a list of Haas's "
+     "Fanuc B-63944EN, AICC (G5.1), from memory; E of G187: a list of Haas's "
      "address codes, not the manual itself"},
     {machine_function, "M codes for coolant, clamps, chips, gears and the like",
      "without effect on motion", "Haas, builders of other machines", kHaas | kFanuc,
