@@ -79,6 +79,11 @@ struct NcSettings {
   NominalFilter filter;
   std::array<GainPlaces, kJoints> gain_place;
   bool check_stability = true;  // refuse gains with which the linear loop diverges
+
+  /// A rotary joint without ends of travel.
+  bool is_endless(int joint) const {
+    return joint >= kLinearJoints && (std::isinf(lower[joint]) || std::isinf(upper[joint]));
+  }
 };
 
 /// Integrator that moves the drives between two instants.

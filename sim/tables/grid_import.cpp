@@ -232,9 +232,7 @@ ErrorGrid covering(const ErrorGrid& grid, const model::MachineSettings& machine)
     const auto joint = machine.chain.layout.joint_of(grid.axes[k]);
     if (!joint) return grid;  // refused where it is imported
     const double lower = machine.nc.lower[*joint], upper = machine.nc.upper[*joint];
-    const bool is_endless =
-        !is_linear(grid.axes[k]) && !std::isfinite(lower) && !std::isfinite(upper);
-    if (is_endless) {
+    if (machine.nc.is_endless(*joint)) {
       refuse_part_of_turn(grid, grid.axes[k], grid.at[k].front(), grid.at[k].back());
       refuse_step_of_turn(grid, k);
     }

@@ -25,8 +25,7 @@ std::array<bool, 3> endless_axes(const input::MachineDescription& described) {
   std::array<bool, 3> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::optional<int> j = layout.joint_of(kAllAxes[kLinearJoints + i]);
-    const model::NcSettings& nc = described.machine.nc;
-    out[i] = j && (std::isinf(nc.lower[*j]) || std::isinf(nc.upper[*j]));
+    out[i] = j && described.machine.nc.is_endless(*j);
   }
   return out;
 }

@@ -91,8 +91,7 @@ DialectSettings settings_of(const model::MachineSettings& machine, Dialect diale
     if (!joint) continue;
     out.axes.push_back(axis);
     if (is_linear(axis)) continue;
-    out.is_endless[std::size_t(index_of(axis) - kLinearJoints)] =
-        std::isinf(machine.nc.lower[*joint]) || std::isinf(machine.nc.upper[*joint]);
+    out.is_endless[std::size_t(index_of(axis) - kLinearJoints)] = machine.nc.is_endless(*joint);
   }
   return out;
 }
