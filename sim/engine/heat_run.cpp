@@ -15,17 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Power (W) of the spindle at a speed (rad/s): linear between points, held beyond the last.
-double spindle_power(const model::HeatSource& source, double speed) {
-  const std::vector<double>& at = source.speeds;
-  if (speed >= at.back()) return source.powers.back();
-  const auto above = std::upper_bound(at.begin(), at.end(), speed);
-  if (above == at.begin()) return source.powers.front();
-  const auto i = static_cast<std::size_t>(above - at.begin());
-  const double share = (speed - at[i - 1]) / (at[i] - at[i - 1]);
-  return source.powers[i - 1] + share * (source.powers[i] - source.powers[i - 1]);
-}
-
 }  // namespace
 
 HeatSources::HeatSources(const model::MachineSettings& machine) : heat_(*machine.heat) {
@@ -42,7 +31,7 @@ void HeatSources::powers(const HeatInputs& now, VectorXd& out) const {
         P += source.power;
         break;
       case model::HeatKind::spindle:
-        P += spindle_power(source, now.spindle);
+        P += source.spindle.value(now.spindle);
         break;
       case model::HeatKind::motor:
         P += source.resistance * now.current[j] * now.current[j];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -191,16 +192,18 @@ class HeatReader {
 
   static void read_spindle(config::Reader& table, model::HeatSource& source) {
     const std::size_t before = table.faults();
-    source.speeds = table.reals("speed_rpm", config::kAngularVelocity, {config::at_least(0.0)});
-    source.powers = table.reals("power_W", kPower, {config::at_least(0.0)});
+    std::vector<double>& speeds = source.spindle.s;
+    std::vector<double>& powers = source.spindle.error;
+    speeds = table.reals("speed_rpm", config::kAngularVelocity, {config::at_least(0.0)});
+    powers = table.reals("power_W", kPower, {config::at_least(0.0)});
     if (table.faults() > before) return;
-    const bool rises = std::is_sorted(source.speeds.begin(), source.speeds.end(),
-                                      [](double a, double b) { return a <= b; });
-    if (source.speeds.size() < 2 || source.speeds.front() != 0.0 || !rises) {
+    const bool rises =
+        std::adjacent_find(speeds.begin(), speeds.end(), std::greater_equal<>()) == speeds.end();
+    if (speeds.size() < 2 || speeds.front() != 0.0 || !rises) {
       table.fault("speed_rpm", "must have at least two speeds, rising from 0");
-    } else if (source.powers.size() != source.speeds.size()) {
+    } else if (powers.size() != speeds.size()) {
       table.fault("power_W", fmt::format("has {} powers for {} speeds; must have one for each",
-                                         source.powers.size(), source.speeds.size()));
+                                         powers.size(), speeds.size()));
     }
   }
 

@@ -23,11 +23,11 @@ struct HeatSource {
   std::string name;
   HeatKind kind = HeatKind::constant;
   int body = 0;
-  double power = 0.0;                  // W, constant
-  std::vector<double> speeds, powers;  // spindle: rad/s, rising from 0, and W
-  int joint = 0;                       // motor, friction
-  double resistance = 0.0;             // motor: ohm
-  double share = 1.0;                  // of the friction
+  double power = 0.0;          // W, constant
+  plant::LinearTable spindle;  // W by the speed of the spindle in rad/s, from 0 on
+  int joint = 0;               // motor, friction
+  double resistance = 0.0;     // motor: ohm
+  double share = 1.0;          // of the friction
 };
 
 /// A temperature sensor on a body.

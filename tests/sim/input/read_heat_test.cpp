@@ -49,7 +49,7 @@ TEST(ReadHeat, HasSiUnits) {
   EXPECT_NEAR(heat.errors.at(0).per_kelvin.component(*plant::error_name_of("EZZ")).value(0.0),
               3 * um, 1e-18);
   ASSERT_EQ(heat.sources.size(), 2U);
-  EXPECT_NEAR(heat.sources[0].speeds[1], 60 * rpm, 1e-12);
+  EXPECT_NEAR(heat.sources[0].spindle.s[1], 60 * rpm, 1e-12);
   EXPECT_EQ(heat.sources[1].joint, 4);
   EXPECT_EQ(heat.sources[1].kind, model::HeatKind::friction);
 }
