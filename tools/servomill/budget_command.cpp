@@ -37,7 +37,7 @@ std::string causes_help() {
       "together "
       "is\n"
       "in the remainder. What stays without all is uncorrected, uncorrectable or imposed.\n"
-      "Their sums by kind: static geometry, servo, inertia, heat, force.\n"
+      "Their sums by kind: static geometry, servo, inertia, heat, force, imposed.\n"
       "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
       "tool_deviation,\n"
       "following_error.";
