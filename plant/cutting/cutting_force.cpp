@@ -65,6 +65,20 @@ CuttingForce average_force(const CuttingCoefficients& K, int teeth, const FeedDi
   return sum;
 }
 
+CuttingTorque average_torque(const CuttingCoefficients& K, int teeth, const FeedDirection& feed,
+                             std::span<const EngagedArc> arcs) {
+  CuttingTorque sum;
+  for (const EngagedArc& arc : arcs) {
+    const EdgeIntegrals I = integrals_of(arc, contact_range(feed, arc.kappa));
+    const double h_one =
+        feed.across * std::sin(arc.kappa) * I.sine - feed.along * std::cos(arc.kappa) * I.one;
+    const double per_turn = teeth * arc.width * arc.radius / kTurn;
+    sum.shear += per_turn * K.Ktc * h_one;
+    sum.edge += per_turn * K.Kte * I.one;
+  }
+  return sum;
+}
+
 Eigen::Vector3d force_at_rotation(const CuttingCoefficients& K, const Cutter& cutter,
                                   const FeedDirection& feed, std::span<const EngagedArc> arcs,
                                   double theta, double c, double wear) {

@@ -23,6 +23,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -37,6 +38,7 @@ struct EngagedArc {
   double height = 0.0;                    // m, of its middle above the tip
   double kappa = 0.5 * std::numbers::pi;  // rad
   double from = 0.0, to = 0.0;            // rad, phi; 0 <= to - from <= 2 pi
+  double radius = std::numeric_limits<double>::quiet_NaN();  // m, of its middle from the axis
 };
 
 /// Direction of feed f = across e1 + along k, a unit vector, across >= 0. along < 0: it plunges.
@@ -69,6 +71,22 @@ AngleRange contact_range(const FeedDirection& feed, double kappa);
 /// F . e2 = (N a/4) K_tc c + (N a/pi) K_te, F . k = -(N a/pi) K_ac c - (N a/2) K_ae.
 CuttingForce average_force(const CuttingCoefficients& K, int teeth, const FeedDirection& feed,
                            std::span<const EngagedArc> arcs);
+
+/// Average over a turn of the torque about the axis that turns the cutter, likewise.
+struct CuttingTorque {
+  double shear = 0.0;  // N, per m of feed per tooth
+  double edge = 0.0;   // N m
+
+  double at(double c, double wear = 1.0) const { return c * shear + wear * edge; }
+};
+
+/// The same for the force along t times the radius at which it acts. Power at the edges is this
+/// times the speed of the spindle; that of the feed is less than 1 % of it as a rule.
+/// @pre the arcs have a radius
+///
+/// Known answer: a slot, N a R / (2 pi) (2 K_tc c + pi K_te).
+CuttingTorque average_torque(const CuttingCoefficients& K, int teeth, const FeedDirection& feed,
+                             std::span<const EngagedArc> arcs);
 
 /// (1) summed over the teeth where they stand: tooth j at height z has
 /// phi = theta + 2 pi j / N - z tan(helix) / R.

@@ -222,7 +222,7 @@ class Search {
     bool inside = is(kShares.front());
     double begin = 0.0;
     const auto close = [&](double end) {
-      out.push_back({width, place.height, place.kappa, angle(begin), angle(end)});
+      out.push_back({width, place.height, place.kappa, angle(begin), angle(end), place.radius});
     };
     for (std::size_t k = 0; k + 1 < kShares.size(); ++k) {
       if (is(kShares[k + 1]) == inside) continue;

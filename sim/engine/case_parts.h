@@ -75,6 +75,8 @@ class CutAlongPath {
     load_.turn(in_.machine.nc.periods.seconds(in_.tooth_step));
   }
   const Joints& load() const { return load_.load(); }
+  /// W, at the edges: by the spindle and by the axes, which move at dQ (5; m/s, rad/s).
+  double power(const Joints& dQ) { return load_.power() - load_.load().dot(dQ); }
   void note(Snapshot& now) const {
     now.cutting_force = load_.force();
     now.deflection = load_.deflection();

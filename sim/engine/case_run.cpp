@@ -167,7 +167,10 @@ bool CaseRun::heat(Tick n) {
     now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
   }
   now.dQ = axes_.dQ_true(run_);
-  if (cut_) now.load = cut_->load();
+  if (cut_) {
+    now.load = cut_->load();
+    now.cut = cut_->power(now.dQ);
+  }
   now.spindle = in_.spindle_speeds[reference.move];
   if (!heat_->advance(now)) return true;
   recorder_.use(heat_->errors(), heat_->temperatures());

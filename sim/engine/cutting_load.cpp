@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -43,6 +44,16 @@ Eigen::Vector3d CuttingTable::force(double s, double speed, double wear, double 
   return c * between(&Row::shear) + plant::bearing_share(c) * edges * between(&Row::edge);
 }
 
+double CuttingTable::power(double s, double speed, double wear, double wear_per_m,
+                           Cursor& cursor) const {
+  if (!reaches(s)) return 0.0;
+  const Place at = place(s, cursor);
+  const double c = at.number(&Row::chip) * speed;
+  const double edges = plant::bearing_share(c) * (wear + wear_per_m * at.number(&Row::cut));
+  const double torque = c * at.number(&Row::torque_shear) + edges * at.number(&Row::torque_edge);
+  return 2.0 * std::numbers::pi * std::abs(at.after->turns) * torque;
+}
+
 CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
                          const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced)
@@ -56,8 +67,8 @@ CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& we
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
   const double speed = std::max(0.0, (s - s_) / dt);
   s_ = s;
+  speed_ = speed;
   if (teeth_ != nullptr) {
-    speed_ = speed;
     elapsed_ = 0.0;
     J_pQ_ = plant::jacobian(chain_, Q, p_ST).J_pQ;
     return;
@@ -68,6 +79,10 @@ void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vec
     force = force_at(table_.place(s, cursor_), speed, 0.0);
   }
   set_force(force);
+}
+
+double CuttingLoad::power() {
+  return table_.power(s_, speed_, wear_.initial, wear_.per_m, cursor_);
 }
 
 void CuttingLoad::turn(double dt) {

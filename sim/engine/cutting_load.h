@@ -29,6 +29,8 @@ class CuttingTable {
     double turns = 0.0;           // 1/s, of the spindle, > 0 clockwise, towards this row
     std::int32_t teeth = -1;      // engagement (engaged_teeth.h); -1: none, or none is needed
     std::int32_t displaced = -1;  // displaced cut (depth_of_cut.h); likewise
+    double torque_shear = 0.0,
+           torque_edge = 0.0;  // N m per m of feed per tooth, N m; of a new edge
   };
   /// Place of the last force; makes forward reading O(1).
   struct Cursor {
@@ -47,6 +49,9 @@ class CuttingTable {
   /// @param speed  ds/dt, m/s
   Eigen::Vector3d force(double s, double speed, double wear, double wear_per_m,
                         Cursor& cursor) const;
+
+  /// Average power (W) by which the spindle cuts; wear and standstill as above.
+  double power(double s, double speed, double wear, double wear_per_m, Cursor& cursor) const;
 
   /// The rows around s and how far s is from the first to the second, 0 to 1.
   /// @pre s is within the rows
@@ -96,6 +101,8 @@ class CuttingLoad {
   const Eigen::Vector3d& force() const { return force_; }
   /// On each joint (5; N, N m), towards +: J_pQ^T F by virtual work, of F acting at the tip.
   const Joints& load() const { return load_; }
+  /// Average power (W) by which the spindle cuts: at the nominal depth of cut, teeth or not.
+  double power();
   /// By which the structure gives way in each linear axis (3; m): compliance times load.
   const Eigen::Vector3d& deflection() const { return deflection_; }
 

@@ -36,6 +36,9 @@ void HeatSources::powers(const HeatInputs& now, VectorXd& out) const {
       case model::HeatKind::motor:
         P += source.resistance * now.current[j] * now.current[j];
         break;
+      case model::HeatKind::cutting:
+        P += source.share * now.cut;
+        break;
       case model::HeatKind::friction:
         P += source.share * (now.torque[j] / ratio_[j] + now.load[j]) * now.dQ[j];
         break;

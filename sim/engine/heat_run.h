@@ -23,6 +23,7 @@ struct HeatInputs {
   Joints dQ = Joints::Zero();       // m/s, rad/s
   Joints load = Joints::Zero();     // N, N m, of the cut, towards + of each joint
   double spindle = 0.0;             // rad/s
+  double cut = 0.0;                 // W, at the edges
 };
 
 /// Power (W) of each source.

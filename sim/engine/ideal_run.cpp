@@ -121,11 +121,12 @@ void IdealRun::cut(Tick n, const AxisSetpoint& set) {
   if (in_.teeth != nullptr) cut_->turn(n);
 }
 
-// Ideal axes need no current: only the spindle and constant sources heat. False if the machine has
-// become too hot or too cold.
+// Ideal axes need no current: the spindle, the cut and constant sources heat. False if the machine
+// has become too hot or too cold.
 bool IdealRun::heat(const controllers::Trajectory::Sample& sample, Outcome& outcome) {
   HeatInputs now;
   now.spindle = in_.spindle_speeds[sample.move];
+  if (cut_) now.cut = cut_->power(now_.dQ_ref);
   if (!heat_->advance(now)) return true;
   recorder_.use(heat_->errors(), heat_->temperatures());
   const std::string fault = heat_->fault();

@@ -10,6 +10,7 @@
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/recorded_signals.h"
+#include "sim/model/heat.h"
 
 namespace servomill::sim::engine {
 namespace {
@@ -141,6 +142,7 @@ class Recorder::Rows {
                    std::vector<ToolPose>& out) const;
   void find_sides(std::span<const double> directions);
   void find_poses(std::span<const double> directions);
+  void displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) const;
   void make_row(const Snapshot& now, std::size_t place, double* to);
   void put_residual(std::size_t place, RowWriter& row) const;
 
@@ -235,12 +237,21 @@ void Recorder::Rows::find_poses(std::span<const double> directions) {
   imposed_->joint_offsets(Q_prog_, p_ST_, displacement_);
 }
 
+// Adds what the structure and the temperature of the part displace the tip by.
+void Recorder::Rows::displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) const {
+  if (cuts_ || bends_) {
+    p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) *
+            (now.deflection + now.inertial_deflection);
+  }
+  if (!machine_.heat || !machine_.heat->part) return;
+  const model::PartExpansion& part = *machine_.heat->part;
+  const double T = temperatures_[static_cast<std::size_t>(part.body)];
+  p_WT = part.measured(p_WT, T - machine_.heat->reference);
+}
+
 void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to) {
   const ProgramPath::Piece piece = path_.piece(pieces_[place]);
-  if (cuts_ || bends_) {
-    actual_[place].p_WT += plant::linear_jacobian(machine_.chain, now.Q_true) *
-                           (now.deflection + now.inertial_deflection);
-  }
+  displace_tip(now, actual_[place].p_WT);
   const ToolPose &nominal = nominal_[place], &actual = actual_[place];
   const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
     if (piece.is_tip) return actual.p_WT;

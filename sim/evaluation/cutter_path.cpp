@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "plant/cutting/swept_cutter.h"
+#include "plant/heat/temperature.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/vector_at.h"
+#include "sim/model/heat.h"
 
 namespace servomill::sim::evaluation {
 namespace {
@@ -67,6 +69,13 @@ CutterPath::CutterPath(const PartSource& source)
       position_column_(*source.servo.column("tool_position_true", 'X')),
       axis_column_(*source.servo.column("tool_axis_true", 'I')),
       angle_column_(source.servo.column("spindle_angle")) {
+  if (source.heat != nullptr && source.heat->part) {
+    const model::PartExpansion& part = *source.heat->part;
+    const auto body = static_cast<std::size_t>(part.body);
+    temperature_column_ = servo_.column("temperature_" + source.heat->network.bodies[body].name);
+    expansion_ = part.expansion;
+    reference_ = celsius(source.heat->reference);
+  }
   PieceOfRow pieces(servo_, source.path);
   const plant::Cutter* cutting = nullptr;
   for (std::size_t row = 0; row < servo_.rows(); ++row) {
@@ -123,11 +132,11 @@ void CutterPath::add(std::size_t pass, std::size_t first, std::size_t end,
   std::vector<plant::CutterPosition>& positions = out.passes.back().positions;
   positions.reserve(end - first);
   for (std::size_t row = first; row < end; ++row) positions.push_back(at(row));
-  std::vector<double>& angles = out.angles.emplace_back();
-  if (!angle_column_) return;
-  angles.reserve(end - first);
+  std::vector<double>&angles = out.angles.emplace_back(), &strains = out.strains.emplace_back();
   for (std::size_t row = first; row < end; ++row) {
-    angles.push_back(servo_.at(row, *angle_column_) * deg);
+    if (angle_column_) angles.push_back(servo_.at(row, *angle_column_) * deg);
+    if (!temperature_column_) continue;
+    strains.push_back(expansion_ * (servo_.at(row, *temperature_column_) - reference_));
   }
 }
 

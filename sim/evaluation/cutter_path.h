@@ -18,6 +18,10 @@
 #include "sim/model/work_frame.h"
 #include "sim/records/series.h"
 
+namespace servomill::sim::model {
+struct HeatSettings;  // sim/model/heat.h
+}  // namespace servomill::sim::model
+
 namespace servomill::sim::evaluation {
 
 /// Inputs from a case: moves and cutters of its part.
@@ -31,6 +35,7 @@ struct PartSource {
   AxisWords work_offset = AxisWords::Zero();        // m, rad, machine coordinates
   const plant::VolumetricModel* imposed = nullptr;  // or none
   const plant::Stock* stock = nullptr;              // the stock; none: it is everywhere
+  const model::HeatSettings* heat = nullptr;        // the part may grow with it
 };
 
 const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPath::Piece& piece);
@@ -42,6 +47,7 @@ struct CutterPasses {
   std::vector<const engine::ProgramPath::Piece*> feeds;  // of each pass; nullptr: only rapid
   std::vector<std::vector<double>> angles;               // rad, of the spindle at each position, of
                                                          // each pass; empty: not recorded
+  std::vector<std::vector<double>> strains;              // of the part, likewise
 
   /// The pass that a position (counted through all of them) belongs to, and its place in it;
   /// pass == passes.size(): none.
@@ -97,7 +103,8 @@ class CutterPath {
   const records::Series& servo_;
   model::PartFrame frame_;
   std::size_t position_column_, axis_column_;
-  std::optional<std::size_t> angle_column_;
+  std::optional<std::size_t> angle_column_, temperature_column_;
+  double expansion_ = 0.0, reference_ = 0.0;  // 1/K, degC
   std::size_t positions_ = 0;
   std::vector<Pass> passes_;
   std::vector<Block> blocks_;

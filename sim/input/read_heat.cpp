@@ -52,6 +52,7 @@ class HeatReader {
     read_bodies();
     read_sources();
     read_sensors();
+    read_part();
     read_start();
     if (heat_.faults() == before) {
       for (const std::string& rule : plant::implausible(out_.network)) heat_.fault(rule);
@@ -148,8 +149,8 @@ class HeatReader {
       model::HeatSource source;
       source.name = name;
       source.body = read_body(table);
-      constexpr std::array<std::string_view, 4> kKinds = {"constant", "spindle", "motor",
-                                                          "friction"};
+      constexpr std::array<std::string_view, 5> kKinds = {"constant", "spindle", "motor",
+                                                          "friction", "cutting"};
       const std::size_t before = table.faults();
       source.kind = static_cast<model::HeatKind>(table.choice("kind", kKinds));
       if (table.faults() > before) {
@@ -159,6 +160,34 @@ class HeatReader {
       read_power(table, source);
       out_.sources.push_back(std::move(source));
     }
+    check_cutting(all);
+  }
+
+  void check_cutting(config::Reader& all) const {
+    double shares = 0.0;
+    for (const model::HeatSource& one : out_.sources) {
+      if (one.kind == model::HeatKind::cutting) shares += one.share;
+    }
+    if (shares > 1.0 + 1e-12) {
+      all.fault(
+          fmt::format("shares of the cutting power add up to {:g}; must not exceed 1", shares));
+    }
+  }
+
+  void read_part() {
+    if (!heat_.has("part")) return;
+    config::Reader table = heat_.table("part");
+    model::PartExpansion part;
+    part.body = read_body(table);
+    part.expansion =
+        table.real("expansion", config::kExpansion, {config::at_least(0.0), config::at_most(2e-4)});
+    const std::vector<double> fixed = table.reals("fixed_at_mm", config::kLength);
+    if (fixed.size() == 3) {
+      part.fixed = Eigen::Map<const Eigen::Vector3d>(fixed.data());
+    } else if (table.has("fixed_at_mm")) {
+      table.fault("fixed_at_mm", "must be three coordinates, X, Y, Z of the workpiece");
+    }
+    out_.part = part;
   }
 
   int read_body(config::Reader& source) {
@@ -186,6 +215,10 @@ class HeatReader {
         source.joint = read_axis(table);
         source.share = table.real_or("share", 1.0, config::kNumber,
                                      {config::above(0.0), config::at_most(1.0)});
+        return;
+      case model::HeatKind::cutting:
+        source.share =
+            table.real("share", config::kNumber, {config::above(0.0), config::at_most(1.0)});
         return;
     }
   }

@@ -42,6 +42,7 @@ start_degC = 20.0
 clock_h = 7.0
 noise_seed = 1
 surroundings = { room = { mean_degC = 20.0, amplitude_K = 1.0, period_h = 24.0, warmest_at_h = 15.0 } }
+part = { body = "head", expansion = "11.5 um/m/K", fixed_at_mm = [0.0, 0.0, 0.0] }
 [machine.heat.body.head]
 capacity_J_per_K = 5e4
 winding = false
@@ -53,6 +54,7 @@ NAME = { body = "head", noise_K = 0.05 }
 pump = { body = "head", kind = "constant", power_W = 10.0 }
 bearings = { body = "head", kind = "spindle", speed_rpm = [0, 1000], power_W = [0, 10.0] }
 motor = { body = "head", kind = "motor", axis = "Z", resistance = 1.0 }
+chips = { body = "head", kind = "cutting", share = 0.1 }
 nut = { body = "head", kind = "friction", axis = "Z", share = 0.5 }
 
 [program]

@@ -1,7 +1,9 @@
 /// Heat of a machine: bodies, where the heat comes from, what temperatures do to the geometry.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@ enum class HeatKind : std::uint8_t {
   motor,     // resistance times the square of the current of an axis
   friction,  // mechanical power of the motor of an axis and of the cut on it; kinetic energy, which
              // it includes, comes back within a cycle
+  cutting,   // power of the cut, at the edges
 };
 
 /// Heat that one body receives.
@@ -27,7 +30,21 @@ struct HeatSource {
   plant::LinearTable spindle;  // W by the speed of the spindle in rad/s, from 0 on
   int joint = 0;               // motor, friction
   double resistance = 0.0;     // motor: ohm
-  double share = 1.0;          // of the friction
+  double share = 1.0;          // of the friction, of the cutting power
+};
+
+/// The part, all of it at the temperature of one body, grows with it: points at p in the workpiece
+/// are those at  p_0 + (p - p_0) / (1 + expansion (T - reference))  of the part when it is
+/// measured.
+struct PartExpansion {
+  int body = 0;
+  double expansion = 0.0;                           // 1/K
+  Eigen::Vector3d fixed = Eigen::Vector3d::Zero();  // p_0, m, in W: where the part is held
+
+  /// @param rise  K, above the reference
+  Eigen::Vector3d measured(const Eigen::Vector3d& p_W, double rise) const {
+    return fixed + (p_W - fixed) / (1.0 + expansion * rise);
+  }
 };
 
 /// A temperature sensor on a body.
@@ -42,6 +59,7 @@ struct HeatSettings {
   std::vector<HeatSource> sources;
   std::vector<plant::ThermalError> errors;
   std::vector<HeatSensor> sensors;
+  std::optional<PartExpansion> part;
   std::uint64_t noise_seed = 0;          // of the sensors
   std::vector<double> coldest, warmest;  // K, of each body: beyond them the run ends
   double reference = 293.15;             // K, at which the machine has its errors

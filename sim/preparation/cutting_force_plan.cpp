@@ -163,6 +163,10 @@ class Planner {
     row.chip = tangent.norm() / (stage.turns * stage.cutter->teeth);
     row.shear = passes_.frame().R_WG * frame.axes * force.shear;
     row.edge = passes_.frame().R_WG * frame.axes * force.edge;
+    const plant::CuttingTorque torque =
+        plant::average_torque(in_.coefficients, stage.cutter->teeth, frame.feed, arcs);
+    row.torque_shear = torque.shear;
+    row.torque_edge = torque.edge;
     if (in_.teeth) {
       const plant::CutterFrame in_W{passes_.frame().R_WG * frame.axes, frame.feed};
       row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, row.turns);

@@ -15,7 +15,8 @@ void probe(const preparation::PreparedParts& p, CaseOutput& out) {
   evaluation::ProbedPart part = evaluation::probe_part(
       {p.spec.name, out.result.servo, p.program.path, p.scenario.program.cutters, p.program.tips,
        out.chain, p.scenario.program.work_offset + p.spec.work_offset, p.imposed,
-       p.scenario.stock.empty() ? nullptr : &p.scenario.stock},
+       p.scenario.stock.empty() ? nullptr : &p.scenario.stock,
+       p.scenario.machine_of(p.spec).heat.get()},
       p.scenario.probes, p.scenario.cmm);
   out.probes = std::move(part.features);
   out.notes = std::move(part.notes);

@@ -58,6 +58,8 @@ HEAT = [
     heat("heat: a network that is not passive", HEAD.replace("room = 10.0", "room = -10.0")),
     heat("heat: a link to a body that there is not", HEAD.replace("{ room = 10.0", "{ room = 10.0, colum = 5.0")),
     heat("heat: a source of no body and no axis", HEAD + '[heat.source]\ns = { body = "spindle", kind = "motor", axis = "W", resistance = 1.0 }'),
+    heat("heat: more than all of the cutting power, and a part of no body", 'part = { body = "vice", expansion = "23.5 um/m/K", fixed_at_mm = [0.0] }\n' + HEAD +
+         '[heat.source]\nchips = { body = "head", kind = "cutting", share = 0.8 }\ntool = { body = "head", kind = "cutting", share = 0.3 }'),
     heat("heat: a room above the limits", HEAD.replace("20.0", "120.0")),
     heat("heat: an error that the machine cannot have", HEAD + "errors_per_K = { EXA = { constant_um = 1.0 } }"),
 ]

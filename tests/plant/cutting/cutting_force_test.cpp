@@ -36,6 +36,34 @@ TEST(CuttingForce, average_in_a_slot_is_that_of_the_closed_form) {
   expect_near(F.edge, {-N * a / kPi * K.Kre, N * a / kPi * K.Kte, -0.5 * N * a * K.Kae}, kRounding);
 }
 
+TEST(CuttingTorque, average_in_a_slot_is_that_of_the_closed_form) {
+  const CuttingCoefficients& K = steel();
+  const int N = 4;
+  const double a = 2 * mm, R = 5 * mm;
+  EngagedArc slot = flank(a, 0.0, kPi);
+  slot.radius = R;
+  const CuttingTorque M = average_torque(K, N, {}, {&slot, 1});
+  EXPECT_NEAR(M.shear, N * a * R / kPi * K.Ktc, kRounding * M.shear);
+  EXPECT_NEAR(M.edge, 0.5 * N * a * R * K.Kte, kRounding * M.edge);
+}
+
+// A drill-like plunge of a flat bottom: every edge removes c at every angle.
+TEST(CuttingTorque, average_of_a_plunge_is_that_of_the_closed_form) {
+  const CuttingCoefficients& K = steel();
+  const double R = 4 * mm;
+  std::vector<EngagedArc> bottom;
+  for (int i = 0; i < 8; ++i) {
+    bottom.push_back({.width = R / 8,
+                      .kappa = 0.0,
+                      .from = -0.5 * kPi,
+                      .to = 1.5 * kPi,
+                      .radius = (i + 0.5) * R / 8});
+  }
+  const CuttingTorque M = average_torque(K, 2, {0.0, -1.0}, bottom);
+  EXPECT_NEAR(M.shear, 2 * 0.5 * R * R * K.Ktc, kRounding * M.shear);
+  EXPECT_NEAR(M.edge, 2 * 0.5 * R * R * K.Kte, kRounding * M.edge);
+}
+
 // Y. Altintas 2012, averages between entry and exit angles; its z counts from the spindle to the
 // tip.
 TEST(CuttingForce, average_between_two_angles_is_that_of_the_literature) {

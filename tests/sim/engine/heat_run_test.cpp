@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "plant/cutting/material.h"
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/units.h"
+#include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::engine::heat_run_test {
@@ -148,6 +151,60 @@ TEST(HeatRun, StopsAtTheLimitOfABody) {
   EXPECT_NE(out.result.outcome.reason.find("degC, beyond its limits of -10 to 100 degC"),
             std::string::npos)
       << out.result.outcome.reason;
+}
+
+// In a slot of depth a, two shares of the power of spindle and feed:
+// P = w N a R / (2 pi) (2 Ktc c + pi Kte) + F v, with R and the feed from the program.
+double slot_power() {
+  const plant::CuttingCoefficients& K = plant::find_material("42CrMo4")->typical;
+  constexpr double a = 2 * mm, R = 4 * mm, pi = std::numbers::pi;
+  constexpr double speed = 4775 * rpm, feed = 1394 * mm / 60.0, c = 1394.0 / (4775.0 * 4) * mm;
+  const double torque = 4 * a * R / (2.0 * pi) * (2.0 * K.Ktc * c + pi * K.Kte);
+  return speed * torque + feed * (a * K.Krc * c + 4.0 * a / pi * K.Kre);
+}
+
+double power_in_slot(const run::CaseOutput& out) {
+  const std::vector<double>& power = out.result.heat.power;
+  return *std::max_element(power.begin(), power.end());
+}
+
+TEST(HeatRun, OfTheCutIsThePowerOfSpindleAndFeed) {
+  const std::string share = "kind = \"cutting\", share = 0.25";
+  const std::string cut = kTool + kBlock + kSteel;
+  for (const char* servo : {"", "servo = \"ideal\"\n"}) {
+    const run::CaseOutput out =
+        run_named_case(small_scenario(kSlot, cut + kRecord + kCase + servo + heat(share)), "one");
+    EXPECT_NEAR(power_in_slot(out), 0.25 * slot_power(), 1e-3 * slot_power()) << servo;
+    EXPECT_EQ(out.result.heat.power.back(), 0.0) << "out of the block";
+  }
+}
+
+// Teeth that are resolved heat with their average.
+TEST(HeatRun, OfTheCutIsTheSameForSingleTeeth) {
+  const std::string share = "kind = \"cutting\", share = 1.0";
+  const std::string teeth = kTool + kBlock + kSteel + "force = \"instantaneous\"\n";
+  const run::CaseOutput out =
+      run_named_case(small_scenario(kSlot, teeth + kRecord + kCase + heat(share)), "one");
+  EXPECT_NEAR(power_in_slot(out), slot_power(), 5e-3 * slot_power());
+}
+
+// A part of aluminium at 30 degC, held at X = 10 mm: a point 40 mm off shrinks by 40 mm alpha dT.
+TEST(HeatRun, OfThePartIsTakenOffWhereItIsMeasured) {
+  const std::string part =
+      "[machine_override.heat.part]\nbody = \"head\"\nexpansion = \"23.5 um/m/K\"\n"
+      "fixed_at_mm = [10.0, 0.0, 0.0]\n";
+  const auto x_at_the_end = [&](const std::string& more, const std::string& start) {
+    std::string warm = heat("kind = \"constant\", power_W = 0.0") + more;
+    warm.replace(warm.find("20.0"), 4, start);
+    warm.replace(warm.find("mean_degC = 20.0"), 16, "mean_degC = " + start);
+    const run::CaseOutput out = run_named_case(
+        small_scenario("G1 X50 F6000\nG4 P0.5\nM30\n", kRecord + kCase + warm), "one");
+    return last(out.result.servo, "tool_position_true", 'X');
+  };
+  const double strain = 23.5e-6 * 10.0;
+  EXPECT_NEAR(x_at_the_end(part, "30.0"), 10.0 + 40.0 / (1.0 + strain), 2e-5);
+  EXPECT_NEAR(x_at_the_end(part, "20.0"), 50.0, 2e-5) << "at the reference temperature";
+  EXPECT_NEAR(x_at_the_end("", "30.0"), 50.0, 2e-5) << "without a part";
 }
 
 // Ideal axes need no current; the spindle heats all the same.

@@ -317,5 +317,26 @@ TEST(ProbedPart, DoesNotDependOnHowMuchOfThePathIsHeld) {
   }
 }
 
+// Cut at 30 degC and measured at 20 degC, a boss has lost 10 K of expansion, all of its radius: the
+// cutter that went round it did not shrink.
+TEST(ProbedPart, OfAWarmPartShrinksUntilItIsMeasured) {
+  const std::string heat =
+      "[machine_override.heat]\nstart_degC = 30.0\nsurroundings = { room = { mean_degC = 30.0 } }\n"
+      "part = { body = \"part\", expansion = \"23.5 um/m/K\", fixed_at_mm = [0.0, 0.0, 0.0] }\n"
+      "[machine_override.heat.body.part]\ncapacity_J_per_K = 500.0\n"
+      "conductance_W_per_K = { room = 4.0 }\n";
+  const model::Scenario scenario =
+      asking({std::string(kBoss) + kSide + heat,
+              quantity("diameter", "probe = \"boss\"") +
+                  quantity("probed_position", "probe = \"boss\"\naxis = \"X\"") +
+                  quantity("probed_deviation", "probe = \"side\"\nstatistic = \"mean\""),
+              "", ""});
+  const std::vector<double> found = values(run(scenario).comparison);
+  const double shrinks = 235e-6 / (1.0 + 235e-6);
+  EXPECT_NEAR(found.at(0), -40e3 * shrinks, kPerfect);
+  EXPECT_NEAR(found.at(1), -50e3 * shrinks, kPerfect);
+  EXPECT_NEAR(found.at(2), -100e3 * shrinks, kPerfect);
+}
+
 }  // namespace
 }  // namespace servomill::sim::evaluation::probed_part_test

@@ -99,7 +99,33 @@ TEST(ReadHeat, RefusesSourcesWithoutBodyOrAxis) {
   EXPECT_EQ(fault_of(kBody + "[machine_override.heat.source]\na = { body = \"head\", kind = "
                              "\"fire\", power_W = 3.0 }\n"),
             "machine.heat.source.a.kind = \"fire\"; must be one of constant, spindle, motor, "
-            "friction\n");
+            "friction, cutting\n");
+}
+
+TEST(ReadHeat, RefusesMoreThanTheWholeCuttingPower) {
+  const auto shares = [](const std::string& a, const std::string& b) {
+    return kBody + "[machine_override.heat.source]\na = { body = \"head\", kind = \"cutting\", " +
+           a + " }\nb = { body = \"head\", kind = \"cutting\", " + b + " }\n";
+  };
+  EXPECT_EQ(fault_of(shares("share = 0.4", "share = 0.6")), "none");
+  EXPECT_EQ(fault_of(shares("share = 0.5", "share = 0.6")),
+            "machine.heat.source: shares of the cutting power add up to 1.1; must not exceed 1\n");
+  EXPECT_EQ(fault_of(shares("share = 0.5", "axis = \"X\"")),
+            "machine.heat.source.b.share is missing\nmachine.heat.source.b.axis is not known\n");
+}
+
+TEST(ReadHeat, ReadsThePartThatGrows) {
+  const std::string part = kBody + "[machine_override.heat.part]\n";
+  const model::Scenario scenario = read(
+      part + "body = \"head\"\nexpansion = \"23.5 um/m/K\"\nfixed_at_mm = [10.0, 0.0, -5.0]\n");
+  const model::PartExpansion& read = scenario.machine.heat->part.value();
+  EXPECT_NEAR(read.expansion, 23.5e-6, 1e-18);
+  EXPECT_TRUE(read.fixed.isApprox(Eigen::Vector3d(10e-3, 0.0, -5e-3)));
+  EXPECT_EQ(fault_of(part + "body = \"vice\"\nexpansion = -1e-6\nfixed_at_mm = [1.0]\n"),
+            "machine.heat.part.body = \"vice\"; no such body; known are: head\n"
+            "machine.heat.part.expansion = -1e-6; must be >= 0 and <= 0.0002 1/K\n"
+            "machine.heat.part.fixed_at_mm = [1.0]; must be three coordinates, X, Y, Z of the "
+            "workpiece\n");
 }
 
 TEST(ReadHeat, RefusesTemperaturesBeyondTheLimits) {
