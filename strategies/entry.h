@@ -22,6 +22,8 @@ struct Entry {
   bool reads_gains = false;  ///< false: IdentifiedMachine::Kv is NaN, so that nothing depends on it
   bool reads_errors = true;  ///< false: knows no geometric errors, and takes neither model nor sign
   bool acts = true;          ///< false: leaves everything as it is
+  /// Margins from which its gain follows (IdentifiedMachine::added_gain); nullptr or nullopt: none.
+  std::optional<WantedMargins> (*wanted_margins)(const Parameters&) = nullptr;
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;

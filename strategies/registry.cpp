@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "strategies/cross_coupling.h"
 #include "strategies/exact.h"
 #include "strategies/feedback.h"
 #include "strategies/gcode.h"
@@ -14,9 +15,9 @@
 namespace servomill::strategies {
 
 std::span<const Entry> entries() {
-  static const std::array kEntries = {exact_entry(),    feedback_entry(), gcode_entry(),
-                                      harmonic_entry(), none_entry(),     parabolic_entry(),
-                                      table_entry()};
+  static const std::array kEntries = {contour_entry(),   exact_entry(),    feedback_entry(),
+                                      gcode_entry(),     harmonic_entry(), none_entry(),
+                                      parabolic_entry(), table_entry()};
   return kEntries;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/kinematics/chain.h"
+#include "plant/vocabulary/added_gain.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/move.h"
@@ -33,6 +35,9 @@ struct IdentifiedMachine {
   Joints part_shift = Joints::Zero();
   Joints Kv = Joints::Zero();  // 1/s, position gains that the NC is set to;
                                // NaN unless the entry reads_gains
+  // 1/s, the largest gain that leaves the position loops of X, Y and Z the margins that the entry
+  // wants, 0 if none does; NaN if it wants none
+  double added_gain = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Reading of a run at one instant, as a strategy may see it.
@@ -166,6 +171,9 @@ class Strategy {
     (void)position_period;
     return nullptr;
   }
+  /// Gain of its term in the position loops along some direction, for their margins; nullopt: it
+  /// has no such term, or one that is no gain.
+  virtual std::optional<AddedGain> added_gain() const { return std::nullopt; }
   /// The ends of tables beyond which Q (5; m, rad) lies: they hold their last value there.
   virtual std::vector<BeyondTable> beyond_tables(const Joints& Q) const {
     (void)Q;

@@ -14,6 +14,7 @@
 #include "plant/cutting/tooth_marks.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/cutter_path.h"
 #include "sim/evaluation/vector_at.h"
 #include "sim/model/work_frame.h"
 

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/cutter_path.h"
 #include "sim/metrology/cmm.h"
 #include "sim/metrology/probing_plan.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim::evaluation {
+
+struct PartSource;  // sim/evaluation/cutter_path.h
 
 /// Result of the CMM for one feature of one case.
 struct ProbedFeature {

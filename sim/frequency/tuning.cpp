@@ -10,6 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/added_gain.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
@@ -17,8 +18,6 @@
 namespace servomill::sim::frequency {
 namespace {
 
-constexpr double kLowest = 0.5;         // Hz
-constexpr std::size_t kGrid = 150;      // frequencies of a curve, before those where it turns
 constexpr double kScan = 1.15;          // factor between gains that are tried
 constexpr double kGainTol = 1e-4;       // of a gain that is sought
 constexpr double kMinBandwidth = 20.0;  // rad/s; below, friction holds the motor, not its inertia
@@ -35,22 +34,9 @@ ResponseAt open_velocity(FrequencyResponse& response) {
                  AxisSignal::speed_error);
   };
 }
-ResponseAt open_position(FrequencyResponse& response) {
-  return [&](double f) {
-    return ratio(response.at(Entry::setpoint, f), AxisSignal::reading, AxisSignal::position_error);
-  };
-}
-
-std::vector<double> position_grid(const model::MachineSettings& machine, int joint,
-                                  Tick reading_delay) {
-  const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.position);
-  return logarithmic(
-      kLowest, nyquist, kGrid,
-      ringing_frequencies(machine, joint, reading_delay, PositionLoop::closed, nyquist));
-}
 std::vector<double> velocity_grid(const model::MachineSettings& machine, int joint) {
   const double nyquist = 0.5 / machine.nc.periods.seconds(machine.nc.periods.velocity);
-  return logarithmic(kLowest, nyquist, kGrid,
+  return logarithmic(kLowestFrequency, nyquist, kFrequencies,
                      ringing_frequencies(machine, joint, 0, PositionLoop::open, nyquist));
 }
 

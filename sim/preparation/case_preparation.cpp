@@ -10,6 +10,7 @@
 #include "controllers/path/travel.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/evaluation/nominal_part.h"
+#include "sim/preparation/added_gains.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/cutting_force_plan.h"
 #include "sim/preparation/refusals.h"
@@ -192,6 +193,7 @@ SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
   Joints Kv;
   Kv << gain(0), gain(1), gain(2), gain(3), gain(4);
   const Joints shift = machine_.chain.layout.joints(spec_.work_offset);
+  const double added = added_gain(spec);
   system::MemoKey key;
   add(key, spec);
   add(key, machine_.chain);
@@ -202,10 +204,24 @@ SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
   key.add(start_);
   key.add(shift);
   key.add(Kv);
+  key.add(added);
   return cache_.strategies.get(key, [&] {
     return make(spec, {machine_.chain.layout, *model(spec.model), tip, machine_.nc.lower,
-                       machine_.nc.upper, start_, shift, Kv});
+                       machine_.nc.upper, start_, shift, Kv, added});
   });
+}
+
+double CasePreparation::added_gain(const model::StrategySpec& spec) const {
+  const auto wanted = spec.entry->wanted_margins;
+  const std::optional<WantedMargins> margins =
+      wanted != nullptr ? wanted(spec.parameters) : std::nullopt;
+  if (!margins) return std::numeric_limits<double>::quiet_NaN();
+  return preparation::largest_added_gain(scenario_, spec_, *margins, cache_);
+}
+
+std::vector<std::string> CasePreparation::check_added_gain(const model::StrategySpec& strategy,
+                                                           const AddedGain& added) const {
+  return preparation::check_added_gain(scenario_, spec_, strategy, added, cache_);
 }
 
 // A strategy knows the fault, but not the place of the key.

@@ -44,6 +44,9 @@ class CasePreparation {
 
   /// @param tip  p_ST (m) of the first tool that works
   SharedStrategy strategy(const model::StrategySpec& spec, const Eigen::Vector3d& tip) const;
+  /// Warnings of the margins that its term in the position loops leaves.
+  std::vector<std::string> check_added_gain(const model::StrategySpec& strategy,
+                                            const AddedGain& added) const;
 
   /// The program that a strategy makes of `moves`, as LinuxCNC reads its text.
   std::shared_ptr<const RewrittenProgram> rewritten(const SharedMoves& moves,
@@ -60,6 +63,7 @@ class CasePreparation {
   double distance_of_plan() const;
 
  private:
+  double added_gain(const model::StrategySpec& spec) const;
   SharedStrategy make(const model::StrategySpec& spec,
                       const strategies::IdentifiedMachine& machine) const;
   /// The surroundings of probing moves; nullptr without a touch probe.

@@ -1,5 +1,7 @@
 #include "sim/preparation/preparation_cache.h"
 
+#include "sim/frequency/margins.h"
+
 #include <algorithm>
 
 namespace servomill::sim::preparation {
@@ -132,6 +134,7 @@ PreparationCache::PreparationCache()
       models(kModels),
       strategies(kModels),
       spectral_radii(kRadii),
+      open_loops(kDrives),
       plan_distances(kModels) {}
 
 void add(system::MemoKey& key, const JointLayout& layout) {

@@ -23,6 +23,9 @@
 #include "sim/system/shared_texts.h"
 #include "strategies/strategy.h"
 
+namespace servomill::sim::frequency {
+struct Curve;
+}  // namespace servomill::sim::frequency
 namespace servomill::sim::metrology {
 class TriangleMesh;
 }  // namespace servomill::sim::metrology
@@ -122,6 +125,7 @@ struct PreparationCache {
   system::SharedCache<plant::VolumetricModel> models;
   system::SharedCache<strategies::Strategy> strategies;
   system::SharedCache<double> spectral_radii;
+  system::SharedCache<frequency::Curve> open_loops;  // of position loops
   system::SharedCache<PlanDistance> plan_distances;
   plant::PreparedDrives drives{kDrives};
 };

@@ -51,6 +51,7 @@ struct PreparedCase::Parts {
   Joints machine_start;
   std::optional<records::ThinningLimits> thinning = {};  // of its recording
   double distance_of_plan = 0.0;                         // m, of nominal points from the part
+  std::vector<std::string> warnings = {};                // of added gains
   std::string stops_with = {};  // why a plug-in could not rewrite the program
 
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
@@ -65,6 +66,12 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
     strategies.push_back(prepare.strategy(strategy, program->first_tip));
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
+    if (const auto added = strategies.back()->added_gain();
+        added && spec.servo != model::ServoModel::ideal) {
+      for (std::string& note : prepare.check_added_gain(strategy, *added)) {
+        warnings.push_back(std::move(note));
+      }
+    }
     if (!strategies.back()->rewrites()) continue;
     refuse_rewritten_probing(strategy, *program, spec.name);
     refuse_tip_moves(strategy, *strategies.back(), *program, scenario.program.file, spec.name);
@@ -185,8 +192,8 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
 
 PreparedParts PreparedCase::parts() const {
   const Parts& p = *parts_;
-  return {p.scenario,        p.spec,          *p.program,      *p.motion,         p.strategies,
-          p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan};
+  return {p.scenario,        p.spec,          *p.program,      *p.motion,          p.strategies,
+          p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan, p.warnings};
 }
 
 const std::string& PreparedCase::stops_with() const { return parts_->stops_with; }

@@ -35,6 +35,7 @@ struct PreparedParts {
   const PlannedCutting* cutting;          // nullptr: it runs in air
   const plant::VolumetricModel* imposed;  // nullptr: no errors are imposed
   double distance_of_plan;                // m, of nominal points from the part
+  std::span<const std::string> warnings;  // of margins that strategies leave
 };
 
 /// A case ready to be simulated. Preparing it finds every fault of the input.

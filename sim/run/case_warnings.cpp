@@ -159,6 +159,7 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
                                       std::span<const strategies::Saturation> held) {
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
+  out.insert(out.end(), one.warnings.begin(), one.warnings.end());
   if (const auto shifted = shifted_program(one)) out.push_back(note_of(*shifted));
   if (one.cutting != nullptr) {
     for (const auto& [place, message] : one.cutting->warnings) {

@@ -3,11 +3,13 @@
 #include <utility>
 
 #include "sim/engine/simulate.h"
+#include "sim/evaluation/cutter_path.h"
 #include "sim/model/machine_test.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 #include "sim/run/day_course.h"
 #include "sim/run/machine_tests.h"
+
 namespace servomill::sim::run {
 namespace {
 

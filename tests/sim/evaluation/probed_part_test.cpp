@@ -1,5 +1,6 @@
 /// The simulated part on the virtual CMM: from the program to the quantities that are printed.
 #include "sim/evaluation/probed_part.h"
+#include "sim/evaluation/cutter_path.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

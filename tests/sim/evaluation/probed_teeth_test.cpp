@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/evaluation/cutter_path.h"
 #include "sim/evaluation/probed_part.h"
 #include "tests/sim/small_scenario.h"
 

@@ -1,0 +1,22 @@
+/// Gains that act in the position loops beside Kv, and the margins that they have to leave.
+#pragma once
+
+#include <numbers>
+
+namespace servomill {
+
+/// C (1 + 1 / (Ti s)) beside the proportional gain of a position loop.
+struct AddedGain {
+  double C = 0.0;   // 1/s
+  double Ti = 0.0;  // s; 0: no integral part
+};
+
+/// Margins of a position loop with an added gain.
+struct WantedMargins {
+  double phase = 0.25 * std::numbers::pi;  // rad
+  double gain = 2.0;                       // factor by which the gain may rise
+  // Ti (Kv + C): an integral part costs at most its inverse (rad) at the crossover; 0: none
+  double reset_ratio = 0.0;
+};
+
+}  // namespace servomill

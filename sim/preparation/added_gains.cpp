@@ -1,0 +1,98 @@
+#include "sim/preparation/added_gains.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
+#include "sim/frequency/added_gain.h"
+#include "sim/frequency/stability.h"
+#include "sim/preparation/preparation_cache.h"
+
+namespace servomill::sim::preparation {
+namespace {
+
+// The open position loops of X, Y and Z of a case.
+class LinearLoops {
+ public:
+  LinearLoops(const model::Scenario& scenario, const model::CaseSpec& spec, PreparationCache& cache)
+      : machine_(scenario.machine_of(spec)),
+        delay_(machine_.scale_delay +
+               (spec.feedback_hardware ? scenario.hardware.signal_delay : 0)),
+        cache_(cache) {}
+
+  std::vector<int> joints() const {
+    std::vector<int> out;
+    for (const int j : machine_.joints()) {
+      if (j < kLinearJoints) out.push_back(j);
+    }
+    return out;
+  }
+  double Kv(int joint) const { return machine_.nc.cascade[static_cast<std::size_t>(joint)].Kv; }
+  char letter(int joint) const { return machine_.chain.layout.letter_of(joint); }
+  bool is_checked() const { return machine_.nc.check_stability; }
+
+  std::shared_ptr<const frequency::Curve> open(int joint) const {
+    system::MemoKey key;
+    key.add(delay_);
+    add_linear_axis(key, frequency::linearised(machine_), joint);
+    return cache_.open_loops.get(
+        key, [&] { return frequency::open_position_loop(machine_, joint, delay_); });
+  }
+
+ private:
+  const model::MachineSettings& machine_;
+  Tick delay_;
+  PreparationCache& cache_;
+};
+
+double decibels(double factor) { return 20.0 * std::log10(factor); }
+
+}  // namespace
+
+double largest_added_gain(const model::Scenario& scenario, const model::CaseSpec& spec,
+                          const WantedMargins& wanted, PreparationCache& cache) {
+  const LinearLoops loops(scenario, spec, cache);
+  double least = std::numeric_limits<double>::infinity();
+  for (const int j : loops.joints()) {
+    least = std::min(least, frequency::largest_added_gain(*loops.open(j), loops.Kv(j), wanted));
+  }
+  return least;
+}
+
+std::vector<std::string> check_added_gain(const model::Scenario& scenario,
+                                          const model::CaseSpec& spec,
+                                          const model::StrategySpec& strategy,
+                                          const AddedGain& added, PreparationCache& cache) {
+  constexpr double kRounding = 1e-3;
+  const WantedMargins usual;
+  const LinearLoops loops(scenario, spec, cache);
+  std::vector<std::string> notes;
+  for (const int j : loops.joints()) {
+    const auto margins = frequency::margins_with(*loops.open(j), loops.Kv(j), added);
+    const std::string what = fmt::format(
+        "case {}: strategy {}: with {:.4g} 1/s beside Kv = {:.4g} 1/s the position loop "
+        "of {}",
+        spec.name, strategy.entry->name, added.C, loops.Kv(j), loops.letter(j));
+    if (loops.is_checked() && (margins.gain <= 1.0 || margins.phase <= 0.0)) {
+      throw InputError(strategy.place,
+                       what +
+                           " is unstable; lower the gain, or set nc.check_stability = false to "
+                           "simulate it anyway");
+    }
+    if (margins.gain > usual.gain * (1.0 - kRounding) && margins.phase > usual.phase - kRounding) {
+      continue;
+    }
+    notes.push_back(
+        fmt::format("warning: {} has a phase margin of {:.1f} deg and a gain margin of "
+                    "{:.1f} dB; usual are 45 deg and 6 dB",
+                    what, margins.phase / deg, decibels(margins.gain)));
+  }
+  return notes;
+}
+
+}  // namespace servomill::sim::preparation
