@@ -19,7 +19,9 @@ namespace servomill::plant {
 namespace {
 
 // Unknowns that CVODE integrates; the travel counts from the start of a piece.
-enum Unknown : int { kCurrent, kSpeed, kWindUp, kVelocity, kWay, kBristle, kUnknowns };
+// The bed has unknowns only where there is one: CVODE's error norm depends on their number.
+enum Unknown : int { kCurrent, kSpeed, kWindUp, kVelocity, kWay, kBristle, kBed, kBedSpeed };
+int unknowns_of(const FeedDriveParams& p) { return p.on_bed() ? kBedSpeed + 1 : kBristle + 1; }
 
 // Events that may end a piece: each function is positive until its event.
 enum Event : int {
@@ -106,6 +108,7 @@ struct CvodeDrive::Impl {
   LaneState start;
   bool positive = true;  // the direction whose friction counts
   Eigen::Matrix<double, 5, 7> A;
+  Eigen::Matrix<double, 7, 9> on_bed;
 
   Context context;
   Vector y;
@@ -118,12 +121,12 @@ struct CvodeDrive::Impl {
 CvodeDrive::Impl::Impl(const FeedDriveParams& params, const CvodeTolerances& tolerances)
     : p(params),
       context(make_context()),
-      y(N_VNew_Serial(kUnknowns, context.get())),
-      jacobian(SUNDenseMatrix(kUnknowns, kUnknowns, context.get())),
+      y(N_VNew_Serial(unknowns_of(p), context.get())),
+      jacobian(SUNDenseMatrix(unknowns_of(p), unknowns_of(p), context.get())),
       solver(SUNLinSol_Dense(y.get(), jacobian.get(), context.get())),
       cvode(CVodeCreate(CV_ADAMS, context.get())) {
   if (!y || !jacobian || !solver || !cvode) throw std::runtime_error("SUNDIALS is out of memory");
-  const Vector absolute(N_VNew_Serial(kUnknowns, context.get()));
+  const Vector absolute(N_VNew_Serial(unknowns_of(p), context.get()));
   double* atol = N_VGetArrayPointer(absolute.get());
   atol[kCurrent] = tolerances.i;
   atol[kSpeed] = tolerances.w;
@@ -131,6 +134,10 @@ CvodeDrive::Impl::Impl(const FeedDriveParams& params, const CvodeTolerances& tol
   atol[kVelocity] = tolerances.v;
   atol[kWay] = tolerances.x;
   atol[kBristle] = tolerances.z;
+  if (p.on_bed()) {
+    atol[kBed] = tolerances.x;
+    atol[kBedSpeed] = tolerances.v;
+  }
   N_VConst(0.0, y.get());
 
   void* const memory = cvode.get();
@@ -188,8 +195,13 @@ void CvodeDrive::Impl::begin(const LaneState& s) {
   start = s;
   const bool set_valued = p.friction.kind == FrictionKind::set_valued;
   positive = set_valued ? s.slide == SlideMode::positive : s.v >= 0.0;
-  A = drive_equations(p, set_valued && s.slide == SlideMode::sticking,
-                      p.gap > 0.0 && s.contact == ContactMode::gap);
+  const bool sticking = set_valued && s.slide == SlideMode::sticking;
+  const bool gap = p.gap > 0.0 && s.contact == ContactMode::gap;
+  if (p.on_bed()) {
+    on_bed = drive_equations_on_bed(p, sticking, gap);
+  } else {
+    A = drive_equations(p, sticking, gap);
+  }
   double* values = N_VGetArrayPointer(y.get());
   values[kCurrent] = s.i;
   values[kSpeed] = s.w;
@@ -197,6 +209,9 @@ void CvodeDrive::Impl::begin(const LaneState& s) {
   values[kVelocity] = s.v;
   values[kWay] = 0.0;
   values[kBristle] = s.z;
+  if (!p.on_bed()) return;
+  values[kBed] = s.bed_x;
+  values[kBedSpeed] = s.bed_v;
 }
 
 LaneState CvodeDrive::Impl::state_at(const double* at) const {
@@ -205,6 +220,10 @@ LaneState CvodeDrive::Impl::state_at(const double* at) const {
   s.w = at[kSpeed];
   s.delta = at[kWindUp];
   s.z = at[kBristle];
+  if (p.on_bed()) {
+    s.bed_x = at[kBed];
+    s.bed_v = at[kBedSpeed];
+  }
   if (p.friction.kind == FrictionKind::set_valued && s.slide == SlideMode::sticking) return s;
   s.v = at[kVelocity];
   s.x += at[kWay];
@@ -256,12 +275,23 @@ void CvodeDrive::Impl::rates(const double* at, double* dy) const {
   const double v = at[kVelocity], z = at[kBristle];
   const double against = p.F_load + F + cogging_force(p, start.x + at[kWay]) + friction_force(v, z);
   const double offset = p.gap > 0.0 ? contact_offset(p, start.contact) : 0.0;
+  dy[kBristle] =
+      p.friction.kind == FrictionKind::lugre ? bristle_rate(p.friction, positive, v, z) : 0.0;
+  if (p.on_bed()) {
+    Eigen::Matrix<double, 9, 1> values;
+    values << at[kCurrent], at[kSpeed], at[kWindUp] - offset, v, at[kBed], at[kBedSpeed], 0.0,
+        command, against;
+    const Eigen::Matrix<double, 7, 1> rate = on_bed * values;
+    for (const int n : {kCurrent, kSpeed, kWindUp, kVelocity}) dy[n] = rate[n];
+    dy[kBed] = rate[4];
+    dy[kBedSpeed] = rate[5];
+    dy[kWay] = rate[6];
+    return;
+  }
   Eigen::Matrix<double, 7, 1> values;
   values << at[kCurrent], at[kSpeed], at[kWindUp] - offset, v, 0.0, command, against;
   Eigen::Map<Eigen::Matrix<double, 5, 1>> rate(dy);
   rate.noalias() = A.lazyProduct(values);
-  dy[kBristle] =
-      p.friction.kind == FrictionKind::lugre ? bristle_rate(p.friction, positive, v, z) : 0.0;
 }
 
 void CvodeDrive::Impl::distances(const double* at, double* g) const {

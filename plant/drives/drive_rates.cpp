@@ -42,11 +42,12 @@ std::vector<FrictionRate> friction_rates(const FeedDriveParams& p) {
 }  // namespace
 
 double fastest_rate_of(const FeedDriveParams& p) {
-  double rate = fastest_rate(drive_equations(p, false, false));
-  if (p.friction.kind == FrictionKind::set_valued) {
-    rate = std::max(rate, fastest_rate(drive_equations(p, true, false)));
-  }
-  return rate;
+  const auto while_sticking = [&](bool sticking) {
+    return p.on_bed() ? fastest_rate<7>(drive_equations_on_bed(p, sticking, false))
+                      : fastest_rate<5>(drive_equations(p, sticking, false));
+  };
+  const double rate = while_sticking(false);
+  return p.friction.kind == FrictionKind::set_valued ? std::max(rate, while_sticking(true)) : rate;
 }
 
 int halvings_of(const FeedDriveParams& p, double base_period) {

@@ -8,8 +8,8 @@ LaneState DriveState::lane(std::size_t l) const {
   assert(l / kLaneWidth < blocks.size());
   const DriveBlock& b = blocks[l / kLaneWidth];
   const std::size_t j = l % kLaneWidth;
-  return {b.i[j], b.w[j],     b.delta[j],   b.v[j],      b.x[j],
-          b.z[j], b.slide[j], b.contact[j], b.control[j]};
+  return {b.i[j],     b.w[j],       b.delta[j],   b.v[j],     b.x[j],    b.z[j],
+          b.slide[j], b.contact[j], b.control[j], b.bed_x[j], b.bed_v[j]};
 }
 
 void DriveState::set_lane(std::size_t l, const LaneState& s) {
@@ -26,6 +26,8 @@ void DriveState::set_lane(std::size_t l, const LaneState& s) {
   b.slide[j] = s.slide;
   b.contact[j] = s.contact;
   b.control[j] = s.control;
+  b.bed_x[j] = s.bed_x;
+  b.bed_v[j] = s.bed_v;
 }
 
 }  // namespace servomill::plant

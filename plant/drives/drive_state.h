@@ -35,6 +35,8 @@ struct LaneState {
   SlideMode slide = SlideMode::sticking;        // counts with set-valued friction only
   ContactMode contact = ContactMode::positive;  // counts with backlash only
   StepControl control{};
+  double bed_x = 0.0;  // m, machine bed along the axis, from where it rests; of a drive on a bed
+  double bed_v = 0.0;  // m/s
 };
 
 /// One number eight times.
@@ -57,6 +59,7 @@ struct DriveBlock {
   std::array<SlideMode, kLaneWidth> slide{};
   std::array<ContactMode, kLaneWidth> contact{};
   std::array<StepControl, kLaneWidth> control{};
+  LaneArray bed_x{}, bed_v{};  // m, m/s
 };
 
 /// States of any number of drives: lane l is number l % 8 of block l / 8. What the last block has

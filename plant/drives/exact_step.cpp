@@ -18,30 +18,9 @@ constexpr int kMaxHalvings = 26;
 constexpr double kNewtonShare = 0.02;  // of the tolerance
 constexpr double kNoTravel = 1e-14;    // m: a reversal that moves less in a sub-step is none
 
-double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
-
-// Fraction at which a straight line from a to b >= 0 reaches 0.
-double rise(double a, double b) { return a >= 0.0 ? 0.0 : a / (a - b); }
-
 template <std::size_t n>
 void add(std::array<double, n>& sum, const std::array<double, n>& column, double factor) {
   for (std::size_t row = 0; row < n; ++row) sum[row] += column[row] * factor;
-}
-
-// A drive with cogging nowhere is linear, one with backlash may be but has events there, too.
-Gliding gliding_of(const FeedDriveParams& p) {
-  const FrictionParams& f = p.friction;
-  if (p.cogging.T != 0.0 || p.gap > 0.0 || f.b_positive > 0.0 || f.b_negative > 0.0) return {};
-  Gliding g{.speed = 0.0};
-  if (f.kind == FrictionKind::none) return g;
-  if (f.Fs_positive != f.Fc_positive || f.Fs_negative != f.Fc_negative) {
-    g.speed = kStribeckEnd * f.vs;
-  }
-  if (f.kind == FrictionKind::regularised) g.speed = std::max(g.speed, kTanhEnd * f.v0);
-  g.Fc_positive = f.Fc_positive;
-  g.Fc_negative = f.Fc_negative;
-  if (f.kind == FrictionKind::lugre) g.sigma0 = f.sigma0;
-  return g;
 }
 
 }  // namespace
@@ -53,7 +32,7 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
   finest_ = std::ldexp(base_period, -sub_ticks_);
   const double longest =
       std::min({static_cast<double>(longest_step) * base_period, resolution.longest,
-                PropagatorSeries::kMaxRate / fastest_rate_of(params)});
+                PropagatorSeries<5>::kMaxRate / fastest_rate_of(params)});
   const int coarsest =
       std::max(0, static_cast<int>(std::floor(std::log2(longest / finest_) + 1e-9)));
   const bool may_stick = params.friction.kind == FrictionKind::set_valued;
@@ -83,10 +62,22 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
 
 void ExactStep::prepare(bool sticking, bool gap, int coarsest) {
   Linear& mode = linear_.emplace_back();
+  const auto length = [&](int level) {
+    return std::ldexp(static_cast<long double>(finest_), level);
+  };
+  if (params_.on_bed()) {
+    mode.on_bed = drive_equations_on_bed(params_, sticking, gap);
+    const PropagatorSeries<7> series(mode.on_bed);
+    for (int level = 0; level <= coarsest; ++level) {
+      mode.ladder.push_back(series.over(length(level)));
+      mode.bed.push_back(series.bed_over(length(level)));
+    }
+    return;
+  }
   mode.A = drive_equations(params_, sticking, gap);
-  const PropagatorSeries series(mode.A);
+  const PropagatorSeries<5> series(mode.A);
   for (int level = 0; level <= coarsest; ++level) {
-    mode.ladder.push_back(series.over(std::ldexp(static_cast<long double>(finest_), level)));
+    mode.ladder.push_back(series.over(length(level)));
   }
 }
 
@@ -127,10 +118,11 @@ struct ExactStep::Rows {
   std::array<double, Propagator::kInnerRows> inner{};
   bool looks_within;  // the inner rows are wanted, too
 
-  void add(const Propagator& P, std::size_t column, double factor) {
-    for (std::size_t n = 0; n < slide.size(); ++n) slide[n] += P.slide[column][n] * factor;
-    if (!looks_within) return;
-    for (std::size_t n = 0; n < inner.size(); ++n) inner[n] += P.inner[column][n] * factor;
+  // @param P  Propagator or BedPropagator
+  template <class P>
+  void add(const P& propagator, std::size_t column, double factor) {
+    plant::add(slide, propagator.slide[column], factor);
+    if (looks_within) plant::add(inner, propagator.inner[column], factor);
   }
 };
 
@@ -243,7 +235,8 @@ bool ExactStep::happens(const LaneState& s, double F) const {
 
 ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F,
                                     std::size_t level) const {
-  const Propagator& P = linear_of(s).ladder[level];
+  const Linear& linear = linear_of(s);
+  const Propagator& P = linear.ladder[level];
   const double h = std::ldexp(finest_, static_cast<int>(level));
   const double offset = contact_offset(params_, s.contact);
   Trial trial;
@@ -251,11 +244,16 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
   Rows y{.looks_within = looks_within(s)};
   const double start[] = {s.i, s.w, s.delta - offset, s.v, command};
   for (std::size_t column = 0; column < 5; ++column) y.add(P, column, start[column]);
+  if (params_.on_bed()) {
+    y.add(linear.bed[level], 0, s.bed_x);
+    y.add(linear.bed[level], 1, s.bed_v);
+  }
   const bool slides = !sticks(s);
   if (slides && !collocate(s, F, h, P, y, trial)) {
     trial.error = kInfinity;
     return trial;
   }
+  if (params_.on_bed()) move_bed(linear.bed[level], start, s, trial);
   for (std::size_t node = 0; node < kNodes; ++node) {
     LaneState& at = trial.at[node];
     const bool last = node + 1 == kNodes;
@@ -279,79 +277,19 @@ ExactStep::Trial ExactStep::attempt(const LaneState& s, double command, double F
   return trial;
 }
 
-// Over a time so short that two terms of the Taylor series do, in the mode of the start.
-LaneState ExactStep::coast(const LaneState& s, double command, double F, double dt) const {
-  const Equations& A = linear_of(s).A;
-  Eigen::Matrix<double, 7, 1> y;
-  const double offset = contact_offset(params_, s.contact);
-  y << s.i, s.w, s.delta - offset, s.v, 0.0, command, sticks(s) ? 0.0 : force(s, F);
-  const Eigen::Matrix<double, 5, 1> rate = A * y;
-  const Eigen::Matrix<double, 5, 1> change = dt * rate + 0.5 * dt * dt * (A.leftCols<5>() * rate);
-  LaneState next = s;
-  next.i += change[0];
-  next.w += change[1];
-  next.delta += change[2];
-  next.v += change[3];
-  next.x += change[4];
-  if (params_.friction.kind == FrictionKind::lugre) {
-    next.z += dt * bristle_rate(params_.friction, s.v, s.z);
+// The bed, once the force against the slide is known.
+void ExactStep::move_bed(const BedPropagator& P, const double (&start)[5], const LaneState& s,
+                         Trial& trial) {
+  const double in[] = {start[0],   start[1],   start[2],   start[3], start[4],
+                       trial.f[0], trial.f[1], trial.f[2], s.bed_x,  s.bed_v};
+  std::array<double, 2 * kNodes> bed{};
+  for (std::size_t column = 0; column < BedPropagator::kColumns; ++column) {
+    plant::add(bed, P.bed[column], in[column]);
   }
-  return next;
-}
-
-// The slide has stopped.
-void ExactStep::from_rest(LaneState& s, double F) const {
-  s.v = 0.0;
-  if (params_.is_rigid()) s.w = 0.0;
-  s.slide = slide_from_rest(params_.friction, driving_force(params_, s, F));
-}
-
-// Fraction of the step from s to end at which the slide stops or breaks away; 1: it does not.
-double ExactStep::slide_event(const LaneState& s, const LaneState& end, double F) const {
-  const FrictionParams& f = params_.friction;
-  if (f.kind != FrictionKind::set_valued) return 1.0;
-  if (sticks(s)) {
-    const double D0 = driving_force(params_, s, F), D1 = driving_force(params_, end, F);
-    if (D1 > f.Fs_positive) return rise(D0 - f.Fs_positive, D1 - f.Fs_positive);
-    if (D1 < -f.Fs_negative) return rise(-D0 - f.Fs_negative, -D1 - f.Fs_negative);
-    return 1.0;
+  for (std::size_t node = 0; node < kNodes; ++node) {
+    trial.at[node].bed_x = bed[2 * node];
+    trial.at[node].bed_v = bed[2 * node + 1];
   }
-  const double v0 = direction(s.slide) * s.v, v1 = direction(s.slide) * end.v;
-  return v1 < 0.0 ? rise(-v0, -v1) : 1.0;
-}
-
-// Fraction of the step at which a flank makes or loses contact; 1: it does not.
-double ExactStep::contact_event(const LaneState& s, const LaneState& end) const {
-  const ContactMode next = params_.gap > 0.0 ? contact_after(params_, end) : s.contact;
-  if (next == s.contact) return 1.0;
-  const ContactMode flank = next == ContactMode::gap ? s.contact : next;
-  const double away = flank == ContactMode::positive ? 1.0 : -1.0;
-  const double S0 = away * flank_force(params_, s, flank);
-  const double S1 = away * flank_force(params_, end, flank);
-  if (next == ContactMode::gap) return rise(-S0, -S1);
-  const double offset = contact_offset(params_, flank);
-  return std::max(rise(S0, S1), rise(away * (s.delta - offset), away * (end.delta - offset)));
-}
-
-// Through the finest sub-step, in which something happens: to the event, then on in the new mode.
-void ExactStep::cross(LaneState& s, double command, double F) const {
-  const LaneState end = coast(s, command, F, finest_);
-  const double slide_at = slide_event(s, end, F), contact_at = contact_event(s, end);
-  const double first = std::min(slide_at, contact_at);
-  LaneState next = coast(s, command, F, first * finest_);
-  if (first >= 1.0) {
-    // it only grazed
-  } else if (contact_at == first) {
-    next.contact = contact_after(params_, end);
-  } else if (sticks(s)) {
-    const bool upwards = driving_force(params_, end, F) > params_.friction.Fs_positive;
-    next.slide = upwards ? SlideMode::positive : SlideMode::negative;
-  } else {
-    from_rest(next, F);
-  }
-  s = coast(next, command, F, (1.0 - first) * finest_);
-  const bool slides = params_.friction.kind == FrictionKind::set_valued && !sticks(s);
-  if (slides && direction(s.slide) * s.v <= 0.0) from_rest(s, F);
 }
 
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {

@@ -9,6 +9,7 @@
 
 #include "plant/drives/collocation.h"
 #include "plant/drives/feed_drive.h"
+#include "plant/drives/gliding.h"
 #include "plant/drives/propagator.h"
 #include "plant/vocabulary/ticks.h"
 
@@ -22,24 +23,7 @@ struct Resolution {
   double longest = std::numeric_limits<double>::infinity();
 };
 
-/// Speeds at which the force against a slide is constant to the last bit, so that its drive is
-/// linear.
-struct Gliding {
-  double speed = std::numeric_limits<double>::infinity();  // m/s: beyond it; infinite: nowhere
-  double Fc_positive = 0.0, Fc_negative = 0.0;             // N
-  double sigma0 = 0.0;                                     // N/m; 0: no bristles
-
-  bool holds(double v) const { return std::abs(v) > speed; }
-  /// The same of a state: its bristles must have settled, too.
-  bool holds(double v, double z) const {
-    constexpr double kSettled = 1e-10;  // of Fc
-    return holds(v) &&
-           (sigma0 == 0.0 || std::abs(sigma0 * z - force(v)) <= kSettled * std::abs(force(v)));
-  }
-  double force(double v) const { return v > 0.0 ? Fc_positive : -Fc_negative; }
-};
-
-/// Propagator of one drive that is not linear.
+/// Propagator of one drive that is not linear or stands on a bed.
 ///
 /// Between two events a drive is linear but for the force f against its slide (load, friction,
 /// cogging). Over a sub-step of length h the force is a parabola through its values at 0, h/2, h,
@@ -78,11 +62,13 @@ class ExactStep {
 
  private:
   static constexpr std::size_t kNodes = Propagator::kNodes, kNone = kNodes;
-  using Equations = Eigen::Matrix<double, 5, 7>;
   // A linear mode with its propagators for the lengths finest_ 2^n.
   struct Linear {
-    Equations A;
+    DriveEquations<5> A;
     std::vector<Propagator> ladder;
+    // of a drive on a bed
+    DriveEquations<7> on_bed;
+    std::vector<BedPropagator> bed;
   };
   struct Trial {
     std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
@@ -93,6 +79,7 @@ class ExactStep {
   };
   struct Rows;
 
+  static double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
   void prepare(bool sticking, bool gap, int coarsest);
   bool sticks(const LaneState& s) const;
   const Linear& linear_of(const LaneState& s) const;
@@ -105,6 +92,8 @@ class ExactStep {
   bool collocate(const LaneState& s, double F, double h, const Propagator& P, Rows& y,
                  Trial& trial) const;
   bool looks_within(const LaneState& s) const;
+  static void move_bed(const BedPropagator& P, const double (&start)[5], const LaneState& s,
+                       Trial& trial);
   double error_of(double F, double h, const Trial& trial) const;
   LaneState coast(const LaneState& s, double command, double F, double dt) const;
   double slide_event(const LaneState& s, const LaneState& end, double F) const;

@@ -19,10 +19,11 @@ Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p, bool ga
   A(kWindUp, kSpeed) = p.r;
   A(kWindUp, kVelocity) = -1.0;
   // M dv/dt = F_s - b_load v - F
-  A(kVelocity, kSpeed) = p.r * c / p.M;
-  A(kVelocity, kWindUp) = k / p.M;
-  A(kVelocity, kVelocity) = -(c + p.b_load) / p.M;
-  A(kVelocity, kForce) = -1.0 / p.M;
+  const double M = p.slide_mass();
+  A(kVelocity, kSpeed) = p.r * c / M;
+  A(kVelocity, kWindUp) = k / M;
+  A(kVelocity, kVelocity) = -(c + p.b_load) / M;
+  A(kVelocity, kForce) = -1.0 / M;
   return A;
 }
 
@@ -58,6 +59,33 @@ Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool stick
     A(kCurrent, kCommand) = 1.0 / p.T_i;
   }
   return A;
+}
+
+Eigen::Matrix<double, 7, 9> drive_equations_on_bed(const FeedDriveParams& p, bool sticking,
+                                                   bool gap) {
+  enum Row : int { kBed = 4, kBedSpeed = 5, kWay = 6 };
+  const Eigen::Matrix<double, 5, 7> drive = drive_equations(p, sticking, gap);
+  const double stiffness = p.bed.w * p.bed.w, damping = 2.0 * p.bed.zeta * p.bed.w;
+  Eigen::Matrix<double, 7, 9> A = Eigen::Matrix<double, 7, 9>::Zero();
+  A.topLeftCorner<4, 4>() = drive.topLeftCorner<4, 4>();
+  A.topRightCorner<4, 2>() = drive.topRightCorner<4, 2>();
+  A(kWay, kVelocity) = drive(kPosition, kVelocity);
+  if (!sticking) {
+    A(kVelocity, kBed) = p.travelling_mass() * stiffness / p.slide_mass();
+    A(kVelocity, kBedSpeed) = p.travelling_mass() * damping / p.slide_mass();
+    if (p.is_rigid()) A.row(kSpeed).segment<2>(kBed) = A.row(kVelocity).segment<2>(kBed) / p.r;
+  }
+  // b'' = -2 zeta w b' - w^2 b - share x''
+  A.row(kBedSpeed) = -p.bed_share() * A.row(kVelocity);
+  A(kBedSpeed, kBed) -= stiffness;
+  A(kBedSpeed, kBedSpeed) -= damping;
+  A(kBed, kBedSpeed) = 1.0;
+  return A;
+}
+
+double bed_force(const FeedDriveParams& p, const LaneState& s) {
+  if (!p.on_bed()) return 0.0;
+  return p.travelling_mass() * (2.0 * p.bed.zeta * p.bed.w * s.bed_v + p.bed.w * p.bed.w * s.bed_x);
 }
 
 double contact_offset(const FeedDriveParams& p, ContactMode contact) {
@@ -100,7 +128,8 @@ ContactMode contact_after(const FeedDriveParams& p, const LaneState& s) {
 }
 
 double driving_force(const FeedDriveParams& p, const LaneState& s, double F) {
-  const double against = p.F_load + F + cogging_force(p, s.x) + p.b_load * s.v;
+  double against = p.F_load + F + cogging_force(p, s.x) + p.b_load * s.v;
+  if (p.on_bed()) against -= bed_force(p, s);
   if (p.is_rigid()) return (p.Kt * s.i - p.b_motor * s.w) / p.r - against;
   return screw_force(p, s) - against;
 }
@@ -163,6 +192,9 @@ std::vector<std::string> implausible(const FeedDriveParams& p) {
   demand(p.gap == 0.0 || !p.is_rigid(), "gap needs a two-mass drive");
   demand(p.b_motor >= 0.0, "b_motor must be >= 0");
   demand(p.b_load >= 0.0, "b_load must be >= 0");
+  demand(p.bed.M >= 0.0, "bed.M must be >= 0");
+  demand(p.bed.w >= 0.0, "bed.w must be >= 0");
+  demand(p.bed.zeta >= 0.0 && p.bed.zeta < 1.0, "bed.zeta must be >= 0 and < 1");
   demand(p.cogging.T == 0.0 || p.kind == DriveKind::direct, "cogging needs a direct drive");
   const FrictionParams& f = p.friction;
   if (f.kind == FrictionKind::none) return faults;

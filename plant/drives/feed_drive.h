@@ -26,6 +26,14 @@ struct Cogging {
   bool operator==(const Cogging&) const = default;
 };
 
+/// Bed of the machine on its mounts, which the reaction of a drive pushes back along the axis.
+struct MachineBed {
+  double M = 0.0;  // kg, what moves with the bed along the axis, the slide left out; 0: held still
+  double w = 0.0;  // rad/s, undamped natural frequency while the slide is held on the bed
+  double zeta = 0.0;  // damping ratio, the same
+  bool operator==(const MachineBed&) const = default;
+};
+
 /// m, rad; of the reference problem to 0.0004 nm after 10 s.
 inline constexpr double kSolverTolerance = 2e-12;
 
@@ -37,6 +45,17 @@ inline constexpr double kSolverTolerance = 2e-12;
 ///                              phi                                 ^ F_load, friction
 ///
 /// With a winding (L > 0) the input is the voltage u instead: L di/dt = u - R i - Ke w.
+///
+/// On a bed x counts from the bed, as the scale reads it, and the slide moves by x + b in space:
+///
+///     M (x'' + b'') = F_x,   (M + M_bed)(b'' + 2 zeta w b' + w^2 b) = -M x''
+///
+/// (rigid: (M + J/r^2) x'' + M b'' = F_x, of a linear motor with M + J for M).
+/// F_x is the sum of the forces between slide and bed; that of the cut is one of them, since it
+/// acts between two bodies of the machine. b counts from where weights leave the bed. From F_x to x
+/// there is a zero at w and a pole above it; with mu = M M_bed / (M + M_bed)
+///
+///     (s^2 + 2 zeta w s + w^2) / (mu s^2 (s^2 + (M + M_bed)/M_bed (2 zeta w s + w^2)))
 struct FeedDriveParams {
   DriveKind kind = DriveKind::two_mass;
   double r = 1.0;        // m/rad, slide travel per motor angle: lead / (2 pi)
@@ -57,6 +76,7 @@ struct FeedDriveParams {
                          // counterbalance
   FrictionParams friction;
   Cogging cogging;  // of a direct drive
+  MachineBed bed;   // of a linear axis
   // m: what a sub-step of a drive that is not linear may add to the error of the position
   double solver_tolerance = kSolverTolerance;
 
@@ -67,8 +87,16 @@ struct FeedDriveParams {
   bool is_rigid() const { return kind != DriveKind::two_mass; }
   /// Inertia that the motor sees (kg m^2): J + M r^2.
   double J_total() const { return J + M * r * r; }
-  /// Mass that a force on the slide accelerates at once (kg).
-  double slide_mass() const { return is_rigid() ? M + J / (r * r) : M; }
+  bool on_bed() const { return bed.M > 0.0; }
+  /// Mass that moves along the axis (kg): M, and the primary part of a linear motor.
+  double travelling_mass() const { return kind == DriveKind::direct ? M + J : M; }
+  /// Share of the travelling mass in all that moves once the bed does.
+  double bed_share() const { return travelling_mass() / (travelling_mass() + bed.M); }
+  /// Mass that a force on the slide accelerates at once (kg), against the bed.
+  double slide_mass() const {
+    const double all = is_rigid() ? M + J / (r * r) : M;
+    return on_bed() ? all - bed_share() * travelling_mass() : all;
+  }
   /// True if the equations are linear: no friction but viscous, no gap, no cogging.
   bool is_linear() const {
     return friction.kind == FrictionKind::none && gap == 0.0 && cogging.T == 0.0;
@@ -82,6 +110,13 @@ struct FeedDriveParams {
 ///                  from where they touch: contact_offset() less than that of the state.
 Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& params, bool sticking = false,
                                             bool gap = false);
+
+/// The same on a bed, states (i, w, delta, v, b, db/dt, x); columns 7 and 8 hold B.
+Eigen::Matrix<double, 7, 9> drive_equations_on_bed(const FeedDriveParams& params,
+                                                   bool sticking = false, bool gap = false);
+
+/// Force of a bed that is off its rest on the slide (N): what M x'' is but for forces on the slide.
+double bed_force(const FeedDriveParams& params, const LaneState& state);
 
 /// delta at which the flanks touch (m): gap/2, -gap/2, and 0 within the gap.
 double contact_offset(const FeedDriveParams& params, ContactMode contact);
@@ -101,8 +136,8 @@ double flank_force(const FeedDriveParams& params, const LaneState& state, Contac
 ContactMode contact_after(const FeedDriveParams& params, const LaneState& state);
 
 /// Sum of the forces on the slide but for set-valued, regularised or LuGre friction (N): what a
-/// sticking slide must bear. Viscous friction included; of a rigid drive the motor's force, too,
-/// for which state.i must be the command where current_is_command().
+/// sticking slide must bear. Viscous friction and bed_force() included; of a rigid drive the
+/// motor's force, too, for which state.i must be the command where current_is_command().
 /// @param F  N, external force against the slide, in addition to F_load
 double driving_force(const FeedDriveParams& params, const LaneState& state, double F);
 

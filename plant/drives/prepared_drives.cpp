@@ -61,10 +61,10 @@ PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::v
       stops.push_back({held(2 * stop).row(kPosition), {}});
     }
   }
-  if (params.is_linear() || steps.empty()) return;
+  if ((params.is_linear() && !params.on_bed()) || steps.empty()) return;
   exact.emplace(params, base_period, longest, Resolution{.tolerance = params.solver_tolerance});
   if (!smooth()) return;
-  const PropagatorSeries series(drive_equations(params));
+  const PropagatorSeries<5> series(drive_equations(params));
   for (const Tick step : steps) {
     whole.push_back(series.over(static_cast<long double>(step) * base_period));
   }
@@ -84,7 +84,7 @@ PreparedDrive::PreparedDrive(const FeedDriveParams& drive, double period, std::v
 bool PreparedDrive::smooth() const {
   const FrictionKind kind = params.friction.kind;
   return (kind == FrictionKind::regularised || kind == FrictionKind::lugre) && params.gap == 0.0 &&
-         params.cogging.T == 0.0;
+         params.cogging.T == 0.0 && !params.on_bed();
 }
 
 std::shared_ptr<const PreparedDrive> PreparedDrives::get(const FeedDriveParams& params,

@@ -7,9 +7,10 @@ namespace {
 
 // Similar to A with rows and columns of equal size (Osborne's iteration): the size of its entries
 // is that of its eigenvalues.
-Eigen::Matrix4d balanced(Eigen::Matrix4d A) {
+template <int n>
+Eigen::Matrix<double, n, n> balanced(Eigen::Matrix<double, n, n> A) {
   for (int sweep = 0; sweep < 30; ++sweep) {
-    for (int j = 0; j < 4; ++j) {
+    for (int j = 0; j < n; ++j) {
       const double column = A.col(j).cwiseAbs().sum() - std::abs(A(j, j));
       const double row = A.row(j).cwiseAbs().sum() - std::abs(A(j, j));
       if (column == 0.0 || row == 0.0) continue;
@@ -23,9 +24,11 @@ Eigen::Matrix4d balanced(Eigen::Matrix4d A) {
 
 }  // namespace
 
-double fastest_rate(const Eigen::Matrix<double, 5, 7>& A) {
-  Eigen::Matrix4d B = balanced(A.topLeftCorner<4, 4>());
-  for (int j = 0; j < 4; ++j) {
+template <int kStates>
+double fastest_rate(const DriveEquations<kStates>& A) {
+  constexpr int n = kStates - 1;
+  Eigen::Matrix<double, n, n> B = balanced<n>(A.template topLeftCorner<n, n>());
+  for (int j = 0; j < n; ++j) {
     const double diagonal = B(j, j);
     B(j, j) = 0.0;
     if (B.row(j).cwiseAbs().sum() == 0.0 || B.col(j).cwiseAbs().sum() == 0.0) {
@@ -37,24 +40,27 @@ double fastest_rate(const Eigen::Matrix<double, 5, 7>& A) {
   return B.cwiseAbs().rowwise().sum().maxCoeff();
 }
 
-struct PropagatorSeries::Values {
-  Matrix5l E = Matrix5l::Zero();
-  Vector5l command = Vector5l::Zero();
-  std::array<Vector5l, 3> moment = {Vector5l::Zero(), Vector5l::Zero(), Vector5l::Zero()};
+template <int kStates>
+struct PropagatorSeries<kStates>::Values {
+  Matrix E = Matrix::Zero();
+  Vector command = Vector::Zero();
+  std::array<Vector, 3> moment = {Vector::Zero(), Vector::Zero(), Vector::Zero()};
 };
 
-PropagatorSeries::PropagatorSeries(const Eigen::Matrix<double, 5, 7>& equations)
-    : rate_(static_cast<long double>(fastest_rate(equations))) {
-  const Matrix5l A = equations.leftCols<5>().cast<long double>();
+template <int kStates>
+PropagatorSeries<kStates>::PropagatorSeries(const DriveEquations<kStates>& equations)
+    : rate_(static_cast<long double>(fastest_rate<kStates>(equations))) {
+  const Matrix A = equations.template leftCols<kStates>().template cast<long double>();
   A_[0].setIdentity();
   for (std::size_t k = 1; k < kTerms; ++k) A_[k] = A * A_[k - 1];
   for (std::size_t k = 0; k < kTerms; ++k) {
-    command_[k] = A_[k] * equations.col(5).cast<long double>();
-    force_[k] = A_[k] * equations.col(6).cast<long double>();
+    command_[k] = A_[k] * equations.col(kStates).template cast<long double>();
+    force_[k] = A_[k] * equations.col(kStates + 1).template cast<long double>();
   }
 }
 
-PropagatorSeries::Values PropagatorSeries::at(long double t) const {
+template <int kStates>
+typename PropagatorSeries<kStates>::Values PropagatorSeries<kStates>::at(long double t) const {
   Values S;
   // An entry begins with one of the first terms; each further one is smaller by rate t / k.
   constexpr std::size_t kFirst = 6;
@@ -73,20 +79,25 @@ PropagatorSeries::Values PropagatorSeries::at(long double t) const {
   return S;
 }
 
-// Contribution of a column of Propagator, for a sub-step of length h, to a state.
-long double PropagatorSeries::entry(const Values& S, State state, std::size_t column,
-                                    long double h) {
+// Contribution of a column of BedPropagator, for a sub-step of length h, to a state.
+template <int kStates>
+long double PropagatorSeries<kStates>::entry(const Values& S, State state, std::size_t column,
+                                             long double h) {
   // The parabolas that are 1 at one of 0, 1/2, 1 and 0 at the others: coefficients of 1, s, s^2.
   constexpr double kLagrange[3][3] = {{1.0, -3.0, 2.0}, {0.0, 4.0, -4.0}, {0.0, -1.0, 2.0}};
   if (column < 4) return S.E(state, static_cast<Eigen::Index>(column));
   if (column == 4) return S.command(state);
+  if (column >= Propagator::kColumns) {
+    return S.E(state, static_cast<Eigen::Index>(column - Propagator::kColumns) + b);
+  }
   const double(&l)[3] = kLagrange[column - 5];
   return l[0] * S.moment[0](state) + l[1] * S.moment[1](state) / h +
          l[2] * S.moment[2](state) / (h * h);
 }
 
-std::array<double, Propagator::kColumns> PropagatorSeries::position_at(long double t,
-                                                                       long double h) const {
+template <int kStates>
+std::array<double, Propagator::kColumns> PropagatorSeries<kStates>::position_at(
+    long double t, long double h) const {
   const Values S = at(t);
   std::array<double, Propagator::kColumns> row{};
   for (std::size_t column = 0; column < row.size(); ++column) {
@@ -95,7 +106,8 @@ std::array<double, Propagator::kColumns> PropagatorSeries::position_at(long doub
   return row;
 }
 
-Propagator PropagatorSeries::over(long double h) const {
+template <int kStates>
+Propagator PropagatorSeries<kStates>::over(long double h) const {
   Propagator P;
   for (std::size_t node = 0; node < Propagator::kNodes; ++node) {
     const Values S = at(h * static_cast<long double>(node + 1) / 4.0L);
@@ -109,5 +121,33 @@ Propagator PropagatorSeries::over(long double h) const {
   }
   return P;
 }
+
+template <>
+BedPropagator PropagatorSeries<7>::bed_over(long double h) const {
+  BedPropagator P;
+  for (std::size_t node = 0; node < Propagator::kNodes; ++node) {
+    const Values S = at(h * static_cast<long double>(node + 1) / 4.0L);
+    const auto value = [&](State state, std::size_t column) {
+      return static_cast<double>(entry(S, state, column, h));
+    };
+    for (std::size_t n = 0; n < 2; ++n) {
+      const std::size_t column = Propagator::kColumns + n;
+      P.slide[n][node] = value(v, column);
+      const bool last = node + 1 == Propagator::kNodes;
+      double* to = last ? &P.slide[n][Propagator::kCurrent] : &P.inner[n][4 * node];
+      for (const State state : {i, w, delta, x}) *to++ = value(state, column);
+    }
+    for (std::size_t column = 0; column < BedPropagator::kColumns; ++column) {
+      P.bed[column][2 * node] = value(b, column);
+      P.bed[column][2 * node + 1] = value(db, column);
+    }
+  }
+  return P;
+}
+
+template double fastest_rate<5>(const DriveEquations<5>&);
+template double fastest_rate<7>(const DriveEquations<7>&);
+template class PropagatorSeries<5>;
+template class PropagatorSeries<7>;
 
 }  // namespace servomill::plant

@@ -1,5 +1,8 @@
-/// How the structure between scales and tool tip gives way to the acceleration of one axis.
+/// How the structure between scales and tool tip gives way to the acceleration of one axis and to
+/// a force at the tip.
 #pragma once
+
+#include <Eigen/Core>
 
 #include "plant/vocabulary/axes.h"
 
@@ -31,6 +34,24 @@ struct InertialCompliance {
   bool operator==(const InertialCompliance&) const = default;
   bool is_static() const { return mode.w == 0.0; }
   double gain_at(const Joints& Q) const { return gain + gain_slope * Q[along]; }
+};
+
+/// One mode of the structure. With the force F (3; N, towards + of the linear axes) that acts at
+/// the tip it moves along u by q,
+///
+///   q = c G(s) (u . F),   d = u q,   G = 1 or that of a mode
+///
+/// so that modes add up to the compliance C = sum c u u^T, which is symmetric (Maxwell and Betti: a
+/// force along Y moves the tip along X as much as the same force along X moves it along Y) and
+/// positive.
+/// Source: D. J. Ewins, Modal Testing, 2000, eq. (2.60): receptance of one mode.
+struct StructuralMode {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // u, unit, along the linear axes
+  double compliance = 0.0;                               // c, m/N
+  Mode mode = {};                                        // w = 0: static
+
+  bool operator==(const StructuralMode&) const = default;
+  bool is_static() const { return mode.w == 0.0; }
 };
 
 }  // namespace servomill::plant

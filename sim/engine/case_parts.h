@@ -55,14 +55,16 @@ class CutAlongPath {
   explicit CutAlongPath(const CaseInputs& in)
       : in_(in),
         load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth,
-              in.displaced_cuts) {}
+              in.displaced_cuts, in.machine.structural_modes) {}
 
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
-  void advance(const controllers::Trajectory::Sample& reference) {
+  /// The path goes on at the time `at` (s).
+  void advance(const controllers::Trajectory::Sample& reference, double at) {
     const model::NcSettings& nc = in_.machine.nc;
     const int tool = in_.path.tool_offset(in_.pieces[reference.move]);
     if (tool != tool_) p_ST_ = in_.tips.at(tool);
     tool_ = tool;
+    forced_from_ = at;
     load_.advance(reference.s, nc.periods.seconds(nc.periods.position), reference.Q_ref, p_ST_);
   }
   /// The depth of cut follows the tool. @pre the case has displaced cuts
@@ -71,7 +73,7 @@ class CutAlongPath {
                const Eigen::Vector3d& bend);
   /// Teeth turn for a tooth step from tick n on. @pre the case has teeth
   void turn(Tick n) {
-    turns_from_ = in_.machine.nc.periods.seconds(n);
+    turns_from_ = forced_from_ = in_.machine.nc.periods.seconds(n);
     load_.turn(in_.machine.nc.periods.seconds(in_.tooth_step));
   }
   const Joints& load() const { return load_.load(); }
@@ -79,7 +81,7 @@ class CutAlongPath {
   double power(const Joints& dQ) { return load_.power() - load_.load().dot(dQ); }
   void note(Snapshot& now) const {
     now.cutting_force = load_.force();
-    now.deflection = load_.deflection();
+    now.deflection = load_.deflection(now.time - forced_from_);
     now.spindle_angle = load_.spindle_angle(now.time - turns_from_);
   }
 
@@ -87,7 +89,7 @@ class CutAlongPath {
   const CaseInputs& in_;
   CuttingLoad load_;
   int tool_ = 0;
-  double turns_from_ = 0.0;  // s
+  double turns_from_ = 0.0, forced_from_ = 0.0;  // s
   Eigen::Vector3d p_ST_ = Eigen::Vector3d::Zero();
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/engine/recorded_signals.h"
+
 namespace servomill::sim::engine {
 namespace {
 
@@ -33,7 +35,8 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
                 in.keeping, in.teeth != nullptr, in.records_orientation),
       travel_(in.machine_errors, Joints::Zero()),
       last_ticks_(in.machine.joints()),
-      structure_(structure_of(in.machine, schedule)) {
+      structure_(structure_of(in.machine, schedule)),
+      on_bed_(stands_on_bed(in.machine)) {
   end_ =
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
@@ -112,6 +115,7 @@ void CaseRun::record(Tick n) {
   if (structure_) {
     now.inertial_deflection = inertial_deflection();
   }
+  if (on_bed_) now.bed = axes_.bed(run_).head<kLinearJoints>();
   recorder_.record(now, travel_.at(now.Q_true));
 }
 
@@ -149,7 +153,7 @@ void CaseRun::apply_cutting_force(Tick n) {
   if (in_.displaced_cuts != nullptr) {
     cut_->deviate(recorded_.at(nc_.periods.seconds(n)), axes_.Q_true(run_), inertial_deflection());
   }
-  cut_->advance(recorded_.at(nc_.periods.seconds(n)));
+  cut_->advance(recorded_.at(nc_.periods.seconds(n)), nc_.periods.seconds(n));
   if (!has_teeth()) axes_.load(cut_->load(), run_);
 }
 

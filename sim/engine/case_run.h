@@ -77,6 +77,7 @@ class CaseRun {
   LastTicks last_ticks_;
   std::optional<CutAlongPath> cut_;
   std::optional<plant::InertialDeflection> structure_;
+  bool on_bed_;
   std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   Tick end_ = 0;
   AxisSetpoint set_;

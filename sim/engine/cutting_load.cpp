@@ -56,13 +56,15 @@ double CuttingTable::power(double s, double speed, double wear, double wear_per_
 
 CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
-                         const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced)
+                         const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced,
+                         const std::vector<plant::StructuralMode>& modes)
     : table_(table),
       wear_(wear),
       chain_(chain),
       compliance_(compliance),
       teeth_(teeth),
-      displaced_(displaced) {}
+      displaced_(displaced),
+      modes_(modes) {}
 
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
   const double speed = std::max(0.0, (s - s_) / dt);
@@ -73,6 +75,7 @@ void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vec
     J_pQ_ = plant::jacobian(chain_, Q, p_ST).J_pQ;
     return;
   }
+  swing(dt);
   Eigen::Vector3d force = table_.force(s, speed, wear_.initial, wear_.per_m, cursor_);
   if (!force.isZero(0.0)) J_pQ_ = plant::jacobian(chain_, Q, p_ST).J_pQ;
   if (displaced_ != nullptr && !force.isZero(0.0)) {
@@ -87,7 +90,7 @@ double CuttingLoad::power() {
 
 void CuttingLoad::turn(double dt) {
   angle_ += rate_ * turned_;
-  turned_ = dt;
+  swing(std::exchange(turned_, dt));
   const double s = s_ + speed_ * elapsed_;
   elapsed_ += dt;
   if (!table_.reaches(s)) return set_force(Eigen::Vector3d::Zero());
@@ -111,7 +114,12 @@ Eigen::Vector3d CuttingLoad::force_at(const CuttingTable::Place& at, double spee
     return places[0].share * places[0].nominal + places[1].share * places[1].nominal;
   }
   const auto J = J_pQ_.leftCols<kLinearJoints>();
-  return force_at_actual_depth(places, deviation_, J * compliance_.asDiagonal() * J.transpose());
+  if (modes_.is_rigid()) {
+    return force_at_actual_depth(places, deviation_, J * compliance_.asDiagonal() * J.transpose());
+  }
+  // a mode is where the force until now has taken it
+  const Eigen::Matrix3d C = Eigen::Matrix3d(compliance_.asDiagonal()) + modes_.static_compliance();
+  return force_at_actual_depth(places, deviation_ + J * modes_.of_modes(), J * C * J.transpose());
 }
 
 // Forces of one row and of its displaced cuts.
@@ -140,10 +148,11 @@ void CuttingLoad::set_force(const Eigen::Vector3d& force) {
   if (force_.isZero(0.0)) {
     load_.setZero();
     deflection_.setZero();
-    return;
+  } else {
+    load_ = J_pQ_.transpose() * force_;
+    deflection_ = compliance_.cwiseProduct(load_.head<kLinearJoints>());
   }
-  load_ = J_pQ_.transpose() * force_;
-  deflection_ = compliance_.cwiseProduct(load_.head<kLinearJoints>());
+  swing(0.0);
 }
 
 }  // namespace servomill::sim::engine

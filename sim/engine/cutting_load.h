@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
+#include "plant/structure/structural_deflection.h"
 #include "sim/model/run_settings.h"
 
 namespace servomill::sim::engine {
@@ -77,10 +78,12 @@ class CuttingLoad {
   /// @param compliance  m/N, of the structure in each linear axis
   /// @param teeth       engagements of the table; nullptr: the average force acts
   /// @param displaced   cuts beside the path; nullptr: the depth of cut is the nominal one
+  /// @param modes       of the structure, in addition to its compliance
   CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
               const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
               const EngagedTeeth* teeth = nullptr,
-              const std::vector<DisplacedCut>* displaced = nullptr);
+              const std::vector<DisplacedCut>* displaced = nullptr,
+              const std::vector<plant::StructuralMode>& modes = {});
 
   /// Stands at s.
   void start(double s) { s_ = s; }
@@ -103,8 +106,12 @@ class CuttingLoad {
   const Joints& load() const { return load_; }
   /// Average power (W) by which the spindle cuts: at the nominal depth of cut, teeth or not.
   double power();
-  /// By which the structure gives way in each linear axis (3; m): compliance times load.
-  const Eigen::Vector3d& deflection() const { return deflection_; }
+  /// By which the structure gives way in each linear axis (3; m), a time (s) after advance() or, of
+  /// single teeth, after turn(): compliance times load, and the modes.
+  Eigen::Vector3d deflection(double after) const {
+    if (modes_.is_rigid()) return deflection_;
+    return deflection_ + modes_.after(after);
+  }
 
  private:
   const CuttingTable& table_;
@@ -114,6 +121,10 @@ class CuttingLoad {
   const EngagedTeeth* teeth_;
   const std::vector<DisplacedCut>* displaced_;
   void set_force(const Eigen::Vector3d& force);
+  // The structure goes on by dt (s) under the force that has been held.
+  void swing(double dt) {
+    if (!modes_.is_rigid()) modes_.advance(dt, load_.head<kLinearJoints>());
+  }
   Eigen::Vector3d force_at(const CuttingTable::Place& at, double speed, double rotation) const;
   ForcesNearby forces_at(const CuttingTable::Row& row, double share, double c, double edges,
                          double rotation) const;
@@ -126,6 +137,7 @@ class CuttingLoad {
   Eigen::Matrix<double, 3, kJoints> J_pQ_ = Eigen::Matrix<double, 3, kJoints>::Zero();
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), deflection_ = Eigen::Vector3d::Zero();
   Joints load_ = Joints::Zero();
+  plant::StructuralDeflection modes_;
 };
 
 }  // namespace servomill::sim::engine

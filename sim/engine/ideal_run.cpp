@@ -117,7 +117,7 @@ void IdealRun::cut(Tick n, const AxisSetpoint& set) {
     cut_->deviate(reference_at(n), Q_true_of(set),
                   structure_ ? structure_->at(motion_.ddQ()) : Eigen::Vector3d::Zero().eval());
   }
-  cut_->advance(reference_at(n));
+  cut_->advance(reference_at(n), periods_.seconds(n));
   if (in_.teeth != nullptr) cut_->turn(n);
 }
 

@@ -1,5 +1,6 @@
 #include "sim/engine/recorded_signals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -82,6 +83,12 @@ void add_states(const model::MachineSettings& machine, const std::string& linear
                    "axes, part of tool_position_true",
                    linear, kLinear});
   }
+  if (stands_on_bed(machine)) {
+    all.push_back({"bed_displacement", "um",
+                   "displacement of the machine bed under the reaction of the drives, which all "
+                   "scales see",
+                   linear, kLinear});
+  }
   if (machine.heat) {
     for (const plant::ThermalBody& body : machine.heat->network.bodies) {
       all.push_back({"temperature_" + body.name, "degC", "temperature of " + body.name, "", ""});
@@ -109,6 +116,11 @@ void add_tool_signals(SignalParts parts, std::vector<Signal>& all) {
 }
 
 }  // namespace
+
+bool stands_on_bed(const model::MachineSettings& machine) {
+  return std::any_of(machine.drives.begin(), machine.drives.end(),
+                     [](const plant::FeedDriveParams& drive) { return drive.on_bed(); });
+}
 
 std::vector<Signal> recorded_signals(const model::MachineSettings& machine, SignalParts parts) {
   const std::string linear = letters(machine, 0, kLinearJoints);

@@ -19,6 +19,9 @@ struct SignalParts {
   bool oriented = false;       // direction of the tool across its axis
 };
 
+/// True if the bed of the machine moves under some axis.
+bool stands_on_bed(const model::MachineSettings& machine);
+
 /// All signals of a row, in the order of its columns.
 std::vector<records::Signal> recorded_signals(const model::MachineSettings& machine,
                                               SignalParts parts);

@@ -84,6 +84,7 @@ class Recorder::Rows {
         cuts_(cuts),
         teeth_(teeth),
         bends_(!machine.inertial_compliances.empty()),
+        has_bed_(stands_on_bed(machine)),
         keeping_(std::move(keeping)),
         oriented_(oriented) {
     for (int joint = 0; joint < kJoints; ++joint) {
@@ -144,6 +145,7 @@ class Recorder::Rows {
   void find_poses(std::span<const double> directions);
   void displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) const;
   void make_row(const Snapshot& now, std::size_t place, double* to);
+  void put_structure(const Snapshot& now, RowWriter& row) const;
   void put_residual(std::size_t place, RowWriter& row) const;
 
   const model::MachineSettings& machine_;
@@ -156,7 +158,8 @@ class Recorder::Rows {
   const std::vector<const strategies::Strategy*> correcting_;
   const bool cuts_;
   const bool teeth_;
-  const bool bends_;  // under acceleration
+  const bool bends_;    // under acceleration
+  const bool has_bed_;  // that moves
   const plant::VolumetricModel ideal_{machine_.chain, {}};
   const plant::InverseKinematics inverse_{machine_.chain};
   std::vector<int> linear_, rotary_;  // joints that the machine has
@@ -294,6 +297,13 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   row.put(contour_error / um);
   if (oriented_) row.put(side_[place], 1.0);
   if (!correcting_.empty()) put_residual(place, row);
+  put_structure(now, row);
+  for (const double T : temperatures_) row.put(celsius(T));
+  if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
+}
+
+// Force, and how the structure and the bed give way.
+void Recorder::Rows::put_structure(const Snapshot& now, RowWriter& row) const {
   if (cuts_) {
     row.put(now.cutting_force, 1.0);
     for (const int joint : linear_) row.put(now.deflection[joint] / um);
@@ -302,8 +312,9 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   if (bends_) {
     for (const int joint : linear_) row.put(now.inertial_deflection[joint] / um);
   }
-  for (const double T : temperatures_) row.put(celsius(T));
-  if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
+  if (has_bed_) {
+    for (const int joint : linear_) row.put(now.bed[joint] / um);
+  }
 }
 
 void Recorder::Rows::put_residual(std::size_t place, RowWriter& row) const {

@@ -36,6 +36,7 @@ struct Snapshot {
   double spindle_angle = 0.0;                               // rad, where teeth cut
   // m, the same by acceleration
   Eigen::Vector3d inertial_deflection = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bed = Eigen::Vector3d::Zero();  // m, displacement of the machine bed
 };
 
 /// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the

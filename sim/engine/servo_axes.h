@@ -125,6 +125,8 @@ class ServoAxes {
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   /// Accelerations by all forces on the slides at this instant (5; m/s^2, rad/s^2).
   Joints ddQ_true(std::size_t run = 0) const;
+  /// Displacement of the machine bed along each axis (5; m).
+  Joints bed(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::bed_x, run); }
   Joints current(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::i, run); }
   /// Command to the drives: A, with a winding V.
   Joints command(std::size_t run = 0) const {
@@ -315,6 +317,10 @@ void ServoAxes::each_state(int joint, Visit visit) {
   }
   visit(state.v[k]);
   visit(state.x[k]);
+  if (drive.on_bed()) {
+    visit(state.bed_x[k]);
+    visit(state.bed_v[k]);
+  }
   visit(input_.blocks[block(l)].command[k]);
   // the loops
   controllers::CascadeLanesState& loops = servo.cascade_state;

@@ -106,6 +106,12 @@ double resonance_frequency(const plant::FeedDriveParams& p) {
   return std::sqrt(p.k * (1.0 / p.M + p.r * p.r / p.J)) / (2.0 * std::numbers::pi);
 }
 
+std::array<double, 2> bed_frequencies(const plant::FeedDriveParams& p) {
+  if (!p.on_bed()) return {0.0, 0.0};
+  const double f = p.bed.w / (2.0 * std::numbers::pi);
+  return {f, f * std::sqrt((p.travelling_mass() + p.bed.M) / p.bed.M)};
+}
+
 double antiresonance_frequency(const plant::FeedDriveParams& p) {
   return p.is_rigid() ? 0.0 : std::sqrt(p.k / p.M) / (2.0 * std::numbers::pi);
 }
@@ -119,6 +125,7 @@ std::vector<double> ringing_frequencies(const model::MachineSettings& machine, i
   };
   add(resonance_frequency(drive));
   add(antiresonance_frequency(drive));
+  for (const double f : bed_frequencies(drive)) add(f);
   std::vector<PositionLoop> loops = {PositionLoop::open};
   if (loop == PositionLoop::closed) loops.push_back(loop);
   for (const PositionLoop one : loops) {

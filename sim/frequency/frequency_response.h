@@ -1,6 +1,8 @@
 /// Exact frequency response of one axis with its sampled loops.
 #pragma once
 
+#include <array>
+
 #include "sim/frequency/fundamental.h"
 
 namespace servomill::sim::frequency {
@@ -57,6 +59,9 @@ double velocity_spectral_radius(const model::MachineSettings& machine, int joint
 
 /// Frequency at which motor and load oscillate against one another (Hz); 0 for a rigid drive.
 double resonance_frequency(const plant::FeedDriveParams& drive);
+/// Frequencies at which the bed of the machine swings with the slide held on it, and under a slide
+/// that nothing holds (Hz): zero and pole of the slide on its bed; 0 for a bed that stands still.
+std::array<double, 2> bed_frequencies(const plant::FeedDriveParams& drive);
 /// Frequency at which the load alone would oscillate on a motor held still (Hz); 0 for a rigid one.
 double antiresonance_frequency(const plant::FeedDriveParams& drive);
 

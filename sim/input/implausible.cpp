@@ -81,6 +81,7 @@ void add_linear(const model::MachineSettings& machine, int joint, Rows& rows) {
         "50 N/um"},
        {"backlash", drive.gap, 0.0, 1e-3, "m", "5 um"},
        {"moving_mass", drive.M, 1e-2, 1e5, "kg", "500 kg"},
+       {"machine_bed.mass", drive.bed.M, 1.0, 1e6, "kg", "10000 kg"},
        {"lead_mm", lead_mm, 0.1, 500.0, "mm", "20 mm"},
        {"slide_viscous_friction", drive.b_load, 1e-3, 1e8, "N s/m", "1.5 N s/mm"},
        {"gravity_load", std::abs(drive.F_load), 1e-3, 1e6, "N", "2 kN"},

@@ -11,6 +11,7 @@ imposed = "NAME"
 [machine]
 name = "first"
 structure = "[w C' b X Y Z t]"
+structural_mode = [{ direction = [1.0, 0.0, 1.0], stiffness = 5e7, frequency_Hz = 60.0, damping = 0.05 }]
 [machine.nc]
 Kv = 50.0
 
@@ -22,6 +23,7 @@ moving_mass = 750.0
 stiffness = 2.2e8
 damping = 4.0e4
 structural_stiffness = 5e7
+machine_bed = { mass = 9000.0, frequency_Hz = 20.0, damping = 0.05 }
 Kt = 1.6
 i_max_A = 50.0
 current_loop = "pi"
@@ -96,7 +98,6 @@ retract_mm = 100.0
 v_max = 0.6
 a_max = 6.0
 j_max = 100.0
-
 [machine.axis.C]
 drive = "two_mass"
 ratio = 0.01
@@ -116,7 +117,6 @@ direction = [0.0, 0.0, 1.0]
 v_max = 2.0
 a_max = 20.0
 j_max = 400.0
-
 [machine.inertial_deflection]
 XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 60.0, damping = 0.05, along = "Z", slope_um_per_m_s2_per_m = 0.5 }
 ZC = { gain_um_per_rad_s2 = 0.1, along = "Z", slope_um_per_rad_s2_per_m = 0.1 }

@@ -79,6 +79,8 @@ void read_slope(config::Reader& table, const JointLayout& layout, bool linear,
   }
 }
 
+}  // namespace
+
 void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::Mode& mode) {
   const bool has_damping = table.has("damping");
   if (!table.has("frequency_Hz")) {
@@ -101,8 +103,6 @@ void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::
   }
   mode = {2.0 * std::numbers::pi * f, zeta};
 }
-
-}  // namespace
 
 std::vector<plant::InertialCompliance> read_inertial_deflection(
     config::Reader& machine_table, const model::MachineSettings& machine) {

@@ -15,4 +15,7 @@ namespace servomill::sim::input {
 std::vector<plant::InertialCompliance> read_inertial_deflection(
     config::Reader& table, const model::MachineSettings& machine);
 
+/// Reads frequency_Hz and damping of a mode; without them it is static.
+void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::Mode& mode);
+
 }  // namespace servomill::sim::input

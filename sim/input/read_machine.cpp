@@ -13,6 +13,7 @@
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/machine_document.h"
+#include "sim/input/read_bed.h"
 #include "sim/input/read_drive.h"
 #include "sim/input/read_encoder.h"
 #include "sim/input/read_errors.h"
@@ -21,6 +22,7 @@
 #include "sim/input/read_loop_periods.h"
 #include "sim/input/read_program.h"
 #include "sim/input/read_servo.h"
+#include "sim/input/read_structural_modes.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -132,12 +134,14 @@ void read_axis(config::Reader& axis, const Common& common, int j, model::Machine
   const auto lane = static_cast<std::size_t>(j);
   const bool linear = j < kLinearJoints;
   const std::size_t before_drive = axis.faults();
-  machine.drives[lane] = read_drive(axis, linear, common.friction_model);
+  plant::FeedDriveParams& drive = machine.drives[lane];
+  drive = read_drive(axis, linear, common.friction_model);
+  read_bed(axis, linear, machine.nc.periods.base, drive);
   const bool in_sub_steps =
-      machine.integrator == model::Integrator::exact && !machine.drives[lane].is_linear();
+      machine.integrator == model::Integrator::exact && (!drive.is_linear() || drive.on_bed());
   if (axis.faults() == before_drive && in_sub_steps) {
     const double base = machine.nc.periods.base;
-    for (const std::string& why : plant::unrepresentable(machine.drives[lane], base)) {
+    for (const std::string& why : plant::unrepresentable(drive, base)) {
       axis.fault(why + "; reduce it, shorten base_period_us or use integrator = \"cvode\"");
     }
   }
@@ -149,7 +153,7 @@ void read_axis(config::Reader& axis, const Common& common, int j, model::Machine
   read_servo(axis, common.servo, j, machine);
   machine.nc.gain_place[lane] = {axis.has("Kv") ? axis.place("Kv") : common.Kv_place,
                                  axis.place("velocity_bandwidth"), winding_place(axis)};
-  refuse_unbearable_load(axis, machine.drives[lane], machine.nc.cascade[lane], linear);
+  refuse_unbearable_load(axis, drive, machine.nc.cascade[lane], linear);
   read_dynamic_limits(axis, linear, j, machine.nc);
   read_travel(axis, linear, j, machine.nc);
   read_axis_geometry(axis, j, machine);
@@ -220,13 +224,19 @@ bool describes_drives(const config::Document& machine) {
   });
 }
 
+// For machines whose axes are not known, and for those without drives.
+void skip_structure(config::Reader& table) {
+  for (const char* key : {"structural_mode", "inertial_deflection", "heat"}) table.raw(key);
+}
+
 // A machine file without drives: structure, travel, limits, errors.
 model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors) {
   model::MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
   machine.chain = read_chain(table);
-  for (const char* key : {"nc", "inertial_deflection", "heat"}) table.raw(key);
+  table.raw("nc");
+  skip_structure(table);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
@@ -254,6 +264,18 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
   }
   read_models(table, machine, errors);
   return machine;
+}
+
+// Delay from the scale to the position feedback of the NC (ticks).
+Tick read_scale_delay(config::Reader& nc, double base) {
+  const double delay = nc.real_or("scale_delay_us", 0.0, config::kTime,
+                                  {config::at_least(0.0), config::at_most(kLongestPeriod)});
+  const auto delay_ticks = whole_ticks(delay, base);
+  if (!delay_ticks) {
+    nc.fault("scale_delay_us",
+             fmt::format("must be an integer multiple of base_period_us = {:g}", base / us));
+  }
+  return delay_ticks.value_or(0);
 }
 
 }  // namespace
@@ -300,15 +322,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   machine.nc.block_time = nc.real_or("block_processing_time_ms", 0.0, config::kTime,
                                      {config::at_least(0.0), config::at_most(kLongestPeriod)});
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
-  const double delay = nc.real_or("scale_delay_us", 0.0, config::kTime,
-                                  {config::at_least(0.0), config::at_most(kLongestPeriod)});
-  const double base = machine.nc.periods.base;
-  const auto delay_ticks = whole_ticks(delay, base);
-  if (!delay_ticks) {
-    nc.fault("scale_delay_us",
-             fmt::format("must be an integer multiple of base_period_us = {:g}", base / us));
-  }
-  machine.scale_delay = delay_ticks.value_or(0);
+  machine.scale_delay = read_scale_delay(nc, machine.nc.periods.base);
 
   machine.integrator =
       static_cast<model::Integrator>(table.choice_or("integrator", 0, kIntegrators));
@@ -324,7 +338,8 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
       static_cast<std::uint64_t>(table.integer_or("noise_seed", 0, {config::at_least(0.0)}));
 
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
-    for (const char* key : {"axis", "errors", "inertial_deflection", "heat"}) table.raw(key);
+    for (const char* key : {"axis", "errors"}) table.raw(key);
+    skip_structure(table);
     return machine;
   }
   config::Reader axes = table.table("axis");
@@ -334,6 +349,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
     read_axis(axis, common, j, machine);
     machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
+  machine.structural_modes = read_structural_modes(table, machine);
   machine.inertial_compliances = read_inertial_deflection(table, machine);
   machine.heat = read_heat(table, machine);
   read_models(table, machine, errors);

@@ -111,6 +111,7 @@ struct MachineSettings {
   std::array<plant::ScrewError, kJoints> screw;
   // m/N, of what lies between the scales of linear axes and the tip: 0: rigid
   Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
+  std::vector<plant::StructuralMode> structural_modes;          // in addition to it
   std::vector<plant::InertialCompliance> inertial_compliances;  // none: rigid under acceleration
   std::shared_ptr<const HeatSettings> heat;  // nullptr: at its reference temperature, always
   Tick scale_delay = 0;

@@ -240,10 +240,10 @@ void add_linear_axis(system::MemoKey& key, const model::MachineSettings& linear,
   for (const Tick period : {position, velocity, current}) key.add(period);
   {
     const auto& [kind, r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke, F_load,
-                 friction, cogging, solver_tolerance] = linear.drives[j];
+                 friction, cogging, bed, solver_tolerance] = linear.drives[j];
     key.add(kind);
     for (const double value : {r, J, M, k, c, gap, b_motor, b_load, Kt, i_max, T_i, L, R, Ke,
-                               F_load, solver_tolerance}) {
+                               F_load, bed.M, bed.w, bed.zeta, solver_tolerance}) {
       key.add(value);
     }
   }

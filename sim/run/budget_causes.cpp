@@ -22,7 +22,8 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"friction", "dry friction, backlash, cogging, and their compensation", CauseGroup::servo},
     {"measurement", "encoders and, where the motor is read, screws", CauseGroup::servo},
     {"cutting", "cutting forces", CauseGroup::force},
-    {"inertia", "deflection of the structure under acceleration", CauseGroup::inertia},
+    {"inertia", "structure under acceleration, and the bed that drives push back",
+     CauseGroup::inertia},
     {"heat", "temperatures of the machine", CauseGroup::heat},
     {"interpolation", "chords, path tolerance and filter of the NC", CauseGroup::servo},
     {"uncorrected", "errors that no strategy of the case compensates or imposes"},
@@ -80,6 +81,15 @@ bool remove_friction(model::MachineSettings& machine) {
     drive.cogging = {};
     functions.friction = {};
     functions.backlash = {};
+  }
+  return any;
+}
+
+// The structure is rigid under acceleration, and its bed stands still.
+bool remove_inertia(model::MachineSettings& machine) {
+  bool any = !std::exchange(machine.inertial_compliances, {}).empty();
+  for (plant::FeedDriveParams& drive : machine.drives) {
+    any |= std::exchange(drive.bed, {}).M > 0.0;
   }
   return any;
 }
@@ -199,7 +209,7 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
     case Cause::cutting:
       return std::exchange(one.cutting, false);
     case Cause::inertia:
-      return !std::exchange(own_machine(scenario, one).inertial_compliances, {}).empty();
+      return remove_inertia(own_machine(scenario, one));
     case Cause::heat:
       return std::exchange(own_machine(scenario, one).heat, nullptr) != nullptr;
     case Cause::interpolation:

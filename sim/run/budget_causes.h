@@ -29,7 +29,7 @@ enum class Cause : std::uint8_t {
   friction,        // dry friction, backlash, cogging, and what the NC does against them: none
   measurement,     // errors, noise, steps, marks of encoders, errors of screws: none
   cutting,         // the case runs in air
-  inertia,         // deflection of the structure under acceleration: rigid
+  inertia,         // structure under acceleration: rigid, and its bed stands still
   heat,            // temperatures: the machine at its reference temperature
   interpolation,   // chords of rewritten programs and path tolerances a hundredth, no
                    // nominal-position filter, no block time

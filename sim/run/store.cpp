@@ -136,8 +136,9 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
 
 // Signals that a case has only if it is loaded by cutting forces or its structure gives way to
 // acceleration: another one of the same run may be in air, or rigid. So with temperatures.
-constexpr std::array<std::string_view, 4> kOfSomeCases = {"cutting_force", "structural_deflection",
-                                                          "inertial_deflection", "spindle_angle"};
+constexpr std::array<std::string_view, 5> kOfSomeCases = {"cutting_force", "structural_deflection",
+                                                          "inertial_deflection", "spindle_angle",
+                                                          "bed_displacement"};
 
 // Checks that a group has the signals that every comparison needs, and those of the other cases.
 void check_signals(const records::InputFile& file, const std::string& group,

@@ -216,6 +216,20 @@ TEST(BudgetCauses, OfInertiaAlone) {
   EXPECT_LE(budget.remainder.rms, 1e-3);
 }
 
+// A bed is in the loops: without it the following error is that of the lag.
+TEST(BudgetCauses, OfTheBed) {
+  const auto budget = [](const std::string& bed) {
+    return budget_of(bed + "[[case]]\nname = \"one\"\n" + quantity("following_error", 'X'),
+                     "G21 G90 G94 G61\n(MSG, flank)\nG1 X20 F6000\nG1 X0\nM30\n");
+  };
+  const Budget with = budget(
+      "[machine_override.axis.X]\nmachine_bed = { mass = 2000.0, frequency_Hz = 18.0, damping = "
+      "0.04 }\n");
+  EXPECT_GT(part(with, Cause::inertia).rms, 0.1);
+
+  EXPECT_FALSE(part(budget(""), Cause::inertia).present);
+}
+
 // A head that is 3 K above the reference lowers the tip by 6 um; no servo and no force is in it.
 TEST(BudgetCauses, OfHeatAlone) {
   const Budget budget = budget_of(
