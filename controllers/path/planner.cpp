@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "controllers/path/chain_memory.h"
 #include "controllers/path/chain_speeds.h"
 #include "controllers/path/path_leg.h"
 #include "controllers/path/trajectory.h"
@@ -311,10 +312,8 @@ class Planner {
       chain.t = t_;
       chain.begin = out_.end_;
       chain.end = Q_;
-      chain.path = smooth(std::move(vertices_), limits_.j);
-      chain.path.pieces.shrink_to_fit();
-      chain.law = fastest_law(chain.path, speeds_, limits_, options_);
-      chain.duration = chain.law.duration;
+      chain.plan = memory_.plan(vertices_, speeds_, [this] { return plan_chain(); });
+      chain.duration = chain.plan->law.duration;
       chain.spans.assign(speeds_.spans.begin(), speeds_.spans.end());
       chain.shares = std::move(shares_);
       t_ += chain.duration;
@@ -322,6 +321,15 @@ class Planner {
     }
     out_.end_ = Q_;
     restart();
+  }
+
+  // Plans the motion along the vertices, which are gone afterwards.
+  ChainMemory::Plan plan_chain() {
+    auto plan = std::make_shared<Chain::Plan>();
+    plan->path = smooth(std::move(vertices_), limits_.j);
+    plan->path.pieces.shrink_to_fit();
+    plan->law = fastest_law(plan->path, speeds_, limits_, options_);
+    return plan;
   }
 
   // The end lies within kMinChord of the last vertex, but not on it.
@@ -346,6 +354,7 @@ class Planner {
   JointLimits limits_;  // scaled
   LegRules rules_;
   Trajectory out_;
+  ChainMemory memory_;
   double t_ = 0.0;
   // of the chain being collected
   AxisWords words_;                   // where it is, machine coordinates

@@ -24,20 +24,20 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   if (c.chain >= chains_.size() || t < chains_[c.chain].t) c = {};
   while (c.chain + 1 < chains_.size() && t >= chains_[c.chain + 1].t) c = {c.chain + 1, 0, 0, 0};
   const Chain& chain = chains_[c.chain];
-  if (chain.path.pieces.empty()) return rest(chain.begin, chain.spans.front().move, false);
+  if (chain.plan == nullptr) return rest(chain.begin, chain.spans.front().move, false);
 
   // position on the path
   const double time = t - chain.t;
-  const std::vector<Phase>& phases = chain.law.phases;
+  const std::vector<Phase>& phases = chain.plan->law.phases;
   if (time < phases[c.phase].t) c = {c.chain, 0, 0, 0};
   while (c.phase + 1 < phases.size() && time >= phases[c.phase + 1].t) ++c.phase;
   const Phase& p = phases[c.phase];
   const Phase::State now = p.at(time);
-  const double s = std::clamp(now.s, 0.0, chain.path.length());
+  const double s = std::clamp(now.s, 0.0, chain.plan->path.length());
   const double v = std::max(now.v, 0.0), a = now.a;
 
   // the path there
-  const std::vector<CubicPiece>& pieces = chain.path.pieces;
+  const std::vector<CubicPiece>& pieces = chain.plan->path.pieces;
   while (c.piece > 0 && s < pieces[c.piece].s) --c.piece;
   while (c.piece + 1 < pieces.size() && s >= pieces[c.piece + 1].s) ++c.piece;
   const CubicPiece& q = pieces[c.piece];

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -50,15 +51,19 @@ class Trajectory {
     };
     static constexpr std::uint32_t kWhole = 0xffffffff;
 
-    double t = 0.0, duration = 0.0;  // s
-    SmoothPath path;                 // rotary joints times the rotary radius
-    TimeLaw law;
+    struct Plan {
+      SmoothPath path;  // rotary joints times the rotary radius
+      TimeLaw law;
+    };
+
+    double t = 0.0, duration = 0.0;    // s
+    std::shared_ptr<const Plan> plan;  // shared by equal motions; nullptr: a dwell
     std::vector<Span> spans;
     std::vector<Share> shares;
     Joints begin, end;
 
-    double begin_of(const Span& span) const { return path.s[span.first]; }  // m
-    double end_of(const Span& span) const { return path.s[span.last]; }     // m
+    double begin_of(const Span& span) const { return plan->path.s[span.first]; }  // m
+    double end_of(const Span& span) const { return plan->path.s[span.last]; }     // m
     Share share_of(const Span& span) const {
       return span.share == kWhole ? Share{} : shares[span.share];
     }

@@ -13,7 +13,8 @@ std::size_t weight_of(const MoveList& moves) { return moves.size() + 1; }
 std::size_t weight_of(const PlannedMotion& motion) {
   std::size_t weight = weight_of(*motion.moves);
   for (const auto& chain : motion.trajectory.chains()) {
-    weight += chain.law.phases.size() + chain.path.pieces.size();
+    if (chain.plan == nullptr) continue;
+    weight += chain.plan->law.phases.size() + chain.plan->path.pieces.size();
   }
   return weight;
 }

@@ -120,8 +120,9 @@ int run(const char* file, double tolerance) {
              peak_megabytes());
   std::size_t pieces = 0, phases = 0;
   for (const auto& chain : path.chains()) {
-    pieces += chain.path.pieces.size();
-    phases += chain.law.phases.size();
+    if (chain.plan == nullptr) continue;
+    pieces += chain.plan->path.pieces.size();
+    phases += chain.plan->law.phases.size();
   }
   fmt::print("{} pieces, {} phases\n", pieces, phases);
   if (std::getenv("PLANNER_BENCH_QUICK") == nullptr) measure(path, moves.all());

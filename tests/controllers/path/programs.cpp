@@ -189,11 +189,11 @@ std::vector<Station> stations(const Trajectory::Chain& chain, const std::vector<
                               const JointLimits& limits, const PathOptions& options,
                               double radius) {
   std::vector<Station> out;
-  const double step = chain.path.length() / 500.0;
+  const double step = chain.plan->path.length() / 500.0;
   std::size_t span = 0;
-  for (std::size_t i = 0; i < chain.path.pieces.size(); ++i) {
-    const CubicPiece& q = chain.path.pieces[i];
-    const double h = chain.path.end_of(i) - q.s;
+  for (std::size_t i = 0; i < chain.plan->path.pieces.size(); ++i) {
+    const CubicPiece& q = chain.plan->path.pieces[i];
+    const double h = chain.plan->path.end_of(i) - q.s;
     const int n = 1 + static_cast<int>(h / step);
     while (span + 1 < chain.spans.size() && q.s + h / 2 > chain.end_of(chain.spans[span])) ++span;
     const Move& move = moves[chain.spans[span].move];
@@ -275,11 +275,11 @@ double time_bound(const Trajectory& trajectory, const std::vector<Move>& moves,
                   const JointLimits& limits, const PathOptions& options) {
   double time = 0.0;
   for (const Trajectory::Chain& chain : trajectory.chains()) {
-    time += chain.path.pieces.empty() ? chain.duration
-                                      : std::max(joint_bound(chain, limits),
-                                                 chain_bound(stations(chain, moves, limits, options,
-                                                                      trajectory.rotary_radius()),
-                                                             chain.path.length(), limits));
+    time += chain.plan == nullptr ? chain.duration
+                                  : std::max(joint_bound(chain, limits),
+                                             chain_bound(stations(chain, moves, limits, options,
+                                                                  trajectory.rotary_radius()),
+                                                         chain.plan->path.length(), limits));
   }
   return time;
 }
