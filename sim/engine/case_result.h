@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,9 @@ struct CaseResult {
   records::Series last_ticks;  // when stopped: what happened in the last position periods
   std::vector<strategies::Saturation> saturations;  // of the feedback
   HeatCourse heat;
-  double simulated_time = 0.0;  // s
-  double wall_time = 0.0;       // s, of all that ran in lockstep
+  std::vector<std::size_t> left_out;  // rows of feed motion outside the windows, by section
+  double simulated_time = 0.0;        // s
+  double wall_time = 0.0;             // s, of all that ran in lockstep
 };
 
 }  // namespace servomill::sim::engine

@@ -32,7 +32,7 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       recorded_(references.of(in.reference, setpoint_.delay())),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr, in.records_orientation),
+                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows),
       travel_(in.machine_errors, Joints::Zero()),
       last_ticks_(in.machine.joints()),
       structure_(structure_of(in.machine, schedule)),
@@ -144,6 +144,7 @@ CaseResult CaseRun::finish(Tick n) {
   axes_.end(run_);
   result_.simulated_time = nc_.periods.seconds(n);
   result_.servo = recorder_.take();
+  result_.left_out = recorder_.left_out();
   if (heat_) result_.heat = std::move(*heat_).course();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
   return std::move(result_);

@@ -12,7 +12,7 @@ IdealRun::IdealRun(CaseInputs& in)
       feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr, in.records_orientation),
+                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows),
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)) {
   if (in.machine.heat) {
@@ -40,6 +40,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     result.outcome = stopped_at_begin(in_.stops_with);
     record(0, set, Q_true_of(set));
     result.servo = recorder_.take();
+    result.left_out = recorder_.left_out();
     return result;
   }
   for (; periods_.seconds(n) <= end; n += periods_.position) {
@@ -64,6 +65,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   }
   result.simulated_time = periods_.seconds(n);
   result.servo = recorder_.take();
+  result.left_out = recorder_.left_out();
   result.saturations = std::move(saturations_);
   if (heat_) result.heat = std::move(*heat_).course();
   return result;

@@ -46,7 +46,10 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
   std::optional<int> tool;
   for (const Move& move : moves) {
     if (move.kind == MoveKind::tool) tool = move.number;
-    if (move.kind == MoveKind::message) section = index_of_section(sections_, move.text);
+    if (move.kind == MoveKind::message) {
+      section = index_of_section(sections_, move.text);
+      section_begins_.push_back(pieces_.size());
+    }
     if (!is_motion(move.kind)) continue;
     Piece piece{{},
                 move.end_machine,

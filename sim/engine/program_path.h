@@ -57,6 +57,7 @@ class ProgramPath {
   double s_end(std::size_t index) const { return pieces_[index].s_end; }  // m
   int tool_offset(std::size_t index) const { return setting_of(pieces_[index]).tool_offset; }
   bool is_rapid(std::size_t index) const { return setting_of(pieces_[index]).rapid; }
+  int section(std::size_t index) const { return setting_of(pieces_[index]).section; }
   std::size_t size() const { return pieces_.size(); }
 
   /// Programmed position at arc length s within that piece (6; m, rad).
@@ -76,6 +77,8 @@ class ProgramPath {
 
   /// Names of the program's sections: a comment (MSG, name) begins one; the first is "".
   const std::vector<std::string>& sections() const { return sections_; }
+  /// Indices of the pieces before which a comment begins a section, anew or again; rising.
+  const std::vector<std::size_t>& section_begins() const { return section_begins_; }
 
  private:
   // Blocks that follow each other mostly have these in common.
@@ -122,6 +125,7 @@ class ProgramPath {
   std::vector<Setting> settings_;
   std::vector<Curved> curved_;
   std::vector<std::string> sections_ = {""};
+  std::vector<std::size_t> section_begins_;
 };
 
 }  // namespace servomill::sim::engine

@@ -161,6 +161,12 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
                    "position of the ideal machine on the programmed path, linear axes", linear,
                    kLinear});
   }
+  if (parts.windows) {
+    all.push_back(
+        {"window", "1", "number of the window; rows between windows are not recorded", "", ""});
+    all.push_back(
+        {"in_window", "1", "1 in a window, 0 in the row before and the row behind it", "", ""});
+  }
   return all;
 }
 

@@ -17,6 +17,7 @@ struct SignalParts {
   bool teeth = false;          // the force is that of single teeth: angle of the spindle
   bool programmed = false;     // positions on the programmed path
   bool oriented = false;       // direction of the tool across its axis
+  bool windows = false;        // number of the window, and rows around it
 };
 
 /// True if the bed of the machine moves under some axis.

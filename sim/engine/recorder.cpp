@@ -1,6 +1,5 @@
 #include "sim/engine/recorder.h"
 
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include "plant/heat/temperature.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
+#include "sim/engine/recorded_row.h"
 #include "sim/engine/recorded_signals.h"
 #include "sim/model/heat.h"
 
@@ -19,52 +19,6 @@ using records::Signal;
 
 constexpr std::size_t kBlockRows = 1024;
 
-// Writes values one after the other, in the order of recorded_signals().
-class RowWriter {
- public:
-  explicit RowWriter(double* row) : next_(row) {}
-  void put(double value) { *next_++ = value; }
-  void put(const Joints& Q, const std::vector<int>& joints, double unit) {
-    for (const int joint : joints) put(Q[joint] / unit);
-  }
-  void put(const Eigen::Vector3d& v, double unit) {
-    for (int i = 0; i < 3; ++i) put(v[i] / unit);
-  }
-
- private:
-  double* next_;
-};
-
-// Rounds rows to what is kept of them.
-class Rounding {
- public:
-  explicit Rounding(const records::Series& series) {
-    for (const Signal& signal : series.signals()) {
-      for (std::size_t c = 0; c < signal.columns(); ++c) {
-        // in the binade of the shift, the last bit of a double is one quantum
-        shift_.push_back(1.5 * 0x1p52 * signal.quantum);
-        largest_.push_back(signal.quantum > 0.0 ? 0x1p51 * signal.quantum : -1.0);
-        any_single_ |= signal.storage == records::Storage::float32;
-        single_.push_back(signal.storage == records::Storage::float32);
-      }
-    }
-  }
-  void apply(double* row) const {
-    for (std::size_t c = 0; c < shift_.size(); ++c) {
-      const double rounded = (row[c] + shift_[c]) - shift_[c];
-      row[c] = std::abs(row[c]) <= largest_[c] ? rounded : row[c];
-    }
-    for (std::size_t c = 0; any_single_ && c < single_.size(); ++c) {
-      if (single_[c]) row[c] = static_cast<double>(static_cast<float>(row[c]));
-    }
-  }
-
- private:
-  std::vector<double> shift_, largest_;
-  std::vector<bool> single_;
-  bool any_single_ = false;
-};
-
 }  // namespace
 
 class Recorder::Rows {
@@ -73,7 +27,7 @@ class Recorder::Rows {
        const plant::VolumetricModel* imposed, const ProgramPath& path,
        const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
        bool rotary_displaced, std::vector<const strategies::Strategy*> correcting, bool cuts,
-       records::RowKeeping keeping, bool teeth, bool oriented)
+       records::RowKeeping keeping, bool teeth, bool oriented, bool windows)
       : machine_(machine),
         machine_errors_(&machine_errors),
         imposed_(imposed),
@@ -86,7 +40,8 @@ class Recorder::Rows {
         bends_(!machine.inertial_compliances.empty()),
         has_bed_(stands_on_bed(machine)),
         keeping_(std::move(keeping)),
-        oriented_(oriented) {
+        oriented_(oriented),
+        windows_(windows) {
     for (int joint = 0; joint < kJoints; ++joint) {
       if (!machine.chain.layout.has(joint)) continue;
       (joint < kLinearJoints ? linear_ : rotary_).push_back(joint);
@@ -97,7 +52,8 @@ class Recorder::Rows {
                                    .cut = cuts_,
                                    .teeth = teeth_,
                                    .programmed = keeping_.thinning.has_value(),
-                                   .oriented = oriented_});
+                                   .oriented = oriented_,
+                                   .windows = windows_});
     round_to(format, all);
     const records::Series columns(std::move(all));
     signals_ = columns.signals();
@@ -171,6 +127,7 @@ class Recorder::Rows {
   std::vector<Eigen::Vector3d> displacement_, side_;
   const records::RowKeeping keeping_;
   const bool oriented_;  // the direction across the tool axis is recorded
+  const bool windows_;   // rows outside of some are left out
   std::vector<Signal> signals_;
   std::size_t width_ = 0;
   Rounding rounding_{records::Series()};
@@ -300,6 +257,8 @@ void Recorder::Rows::make_row(const Snapshot& now, std::size_t place, double* to
   put_structure(now, row);
   for (const double T : temperatures_) row.put(celsius(T));
   if (keeping_.thinning) row.put(Q_prog_[place], linear_, mm);
+  if (windows_) row.put(now.window);
+  if (windows_) row.put(now.in_window);
 }
 
 // Force, and how the structure and the bed give way.
@@ -333,10 +292,13 @@ Recorder::Recorder(const model::MachineSettings& machine,
                    const plant::VolumetricModel* imposed, const ProgramPath& path,
                    const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format,
                    bool rotary_displaced, std::vector<const strategies::Strategy*> correcting,
-                   bool cuts, records::RowKeeping keeping, bool teeth, bool oriented)
+                   bool cuts, records::RowKeeping keeping, bool teeth, bool oriented,
+                   RecordingWindows windows)
     : rows_(std::make_unique<Rows>(machine, machine_errors, imposed, path, tips, format,
                                    rotary_displaced, std::move(correcting), cuts,
-                                   std::move(keeping), teeth, oriented)) {
+                                   std::move(keeping), teeth, oriented, windows.limited())),
+      path_(path),
+      windows_(std::move(windows)) {
   filling_.snapshots.reserve(kBlockRows);
   filling_.directions.reserve(kBlockRows * machine_errors.plays().size());
 }
@@ -346,7 +308,44 @@ Recorder::~Recorder() = default;
 void Recorder::expect(std::size_t rows) { rows_->expect(rows); }
 
 void Recorder::record(const Snapshot& now, std::span<const double> directions) {
+  if (!windows_.limited()) return add(now, directions);
+  const bool inside = windows_.contains(now.piece, now.time);
+  if (!inside) count_outside(now.piece);
+  if (inside || was_inside_) {  // or it is the first row, or the one behind a window
+    if (!held_.snapshots.empty()) add_held();
+    add(now, directions, inside);
+  } else {
+    has_gap_ |= !held_.snapshots.empty();
+    held_.snapshots.assign(1, now);
+    held_.directions.assign(directions.begin(), directions.end());
+    held_.machine_errors = filling_.machine_errors;
+    held_.temperatures = filling_.temperatures;
+  }
+  was_inside_ = inside;
+}
+
+void Recorder::count_outside(std::size_t piece) {
+  left_out_.resize(path_.sections().size());
+  if (!path_.is_rapid(piece)) ++left_out_[static_cast<std::size_t>(path_.section(piece))];
+}
+
+// Adds the row that is held, with the errors of the machine at its time.
+void Recorder::add_held() {
+  auto errors_now = filling_.machine_errors;
+  auto temperatures_now = filling_.temperatures;
+  const bool differs = held_.machine_errors != errors_now;
+  if (differs) use(held_.machine_errors, held_.temperatures);
+  add(held_.snapshots.front(), held_.directions, false);
+  held_.snapshots.clear();
+  if (differs) use(std::move(errors_now), std::move(temperatures_now));
+}
+
+void Recorder::add(const Snapshot& now, std::span<const double> directions, bool inside) {
+  if (has_gap_) window_ += 1.0;
+  has_gap_ = false;
   filling_.snapshots.push_back(now);
+  filling_.snapshots.back().window = window_;
+  filling_.snapshots.back().in_window = inside ? 1.0 : 0.0;
   filling_.directions.insert(filling_.directions.end(), directions.begin(), directions.end());
   if (filling_.snapshots.size() == kBlockRows) hand_over();
 }
@@ -376,6 +375,7 @@ void Recorder::make_rows(const Block& block) {
 }
 
 records::Series Recorder::take() {
+  if (!held_.snapshots.empty()) add_held();
   background_.wait();
   make_rows(filling_);
   filling_ = {};

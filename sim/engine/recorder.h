@@ -9,6 +9,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "sim/engine/program_path.h"
+#include "sim/engine/recording_windows.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
@@ -37,6 +38,8 @@ struct Snapshot {
   // m, the same by acceleration
   Eigen::Vector3d inertial_deflection = Eigen::Vector3d::Zero();
   Eigen::Vector3d bed = Eigen::Vector3d::Zero();  // m, displacement of the machine bed
+  // set by the Recorder: number of the window, and 1 in it, 0 in rows around it
+  double window = 0.0, in_window = 1.0;
 };
 
 /// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the
@@ -52,12 +55,14 @@ class Recorder {
   /// @param teeth  the force is that of single teeth: the angle of the spindle is recorded
   /// @param correcting  strategies of which is recorded what they cannot correct, in all
   /// @param oriented  the direction of the tool across its axis is recorded
+  /// @param windows  rows outside are left out but for the first and the last row of the case and
+  ///                 those that enclose a window: what is interpolated inside it is complete
   Recorder(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
            bool cuts = false, records::RowKeeping keeping = {}, bool teeth = false,
-           bool oriented = false);
+           bool oriented = false, RecordingWindows windows = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -71,10 +76,15 @@ class Recorder {
   void record(const Snapshot& now, std::span<const double> directions = {});
   /// All rows; once.
   records::Series take();
+  /// Rows of feed motion outside the windows, by section; empty: none.
+  const std::vector<std::size_t>& left_out() const { return left_out_; }
 
  private:
   class Rows;
   struct Block;
+  void add(const Snapshot& now, std::span<const double> directions, bool inside = true);
+  void add_held();
+  void count_outside(std::size_t piece);
   void hand_over();
   void make_rows(const Block& block);
 
@@ -86,7 +96,13 @@ class Recorder {
     std::vector<double> temperatures;                              // K
   };
   Block filling_;
-  Block working_;                    // what the thread turns into rows
+  Block working_;  // what the thread turns into rows
+  const ProgramPath& path_;
+  const RecordingWindows windows_;
+  Block held_;  // the row before this one, if it lies outside and has not been recorded
+  bool was_inside_ = true, has_gap_ = false;
+  double window_ = 0.0;
+  std::vector<std::size_t> left_out_;
   system::WorkerThread background_;  // last: its thread uses the others
 };
 

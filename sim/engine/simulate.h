@@ -15,6 +15,7 @@
 #include "sim/engine/case_result.h"
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
+#include "sim/engine/recording_windows.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
@@ -60,7 +61,8 @@ struct CaseInputs {
   const plant::ErrorModel* component_errors = nullptr;
   std::vector<double> spindle_speeds = {};
   bool records_orientation = false;  // of the tool about its axis
-  std::string stops_with = {};       // why the case stops where it begins; empty: it does not
+  RecordingWindows windows = {};
+  std::string stops_with = {};  // why the case stops where it begins; empty: it does not
 };
 
 /// True if two cases can run in lockstep: the same axes, moved at the same instants. Everything

@@ -28,6 +28,24 @@ std::string unlike(const CaseData& one, const CaseData& base) {
                      *one.signal_delay / us, base.name, *base.signal_delay / us);
 }
 
+// Values of a recording of some windows: those of shapes need every row, others are of what is
+// there.
+QuantityValue inside_windows(const model::QuantitySpec& spec, CaseEvaluation& one,
+                             const CaseData* base) {
+  const QuantityEntry& entry = quantity_entry(spec.name);
+  if (entry.is_of_program || rows_left_out(one.data, spec.sections) == 0) {
+    return entry.evaluate(spec, one, base);
+  }
+  if (entry.needs_every_row()) return {.note = "needs every row; record.windows leave out some"};
+  if (one.samples.rows(spec.sections).size() == 0) {
+    return {.note = "record.windows leave out every row"};
+  }
+  QuantityValue found = entry.evaluate(spec, one, base);
+  const bool has_more = !found.note.empty();
+  found.note = "inside record.windows" + std::string(has_more ? "; " : "") + found.note;
+  return found;
+}
+
 // Value of a quantity of one case, with a note on it.
 QuantityValue answer(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const QuantityEntry& entry = quantity_entry(spec.name);
@@ -35,7 +53,7 @@ QuantityValue answer(const model::QuantitySpec& spec, CaseEvaluation& one, const
     return {.note = "is compared with itself"};
   const bool both_finished = one.data.finished && (base == nullptr || base->finished);
   QuantityValue found;
-  if (entry.is_of_program || both_finished) found = entry.evaluate(spec, one, base);
+  if (entry.is_of_program || both_finished) found = inside_windows(spec, one, base);
   if (found.note.empty() && base != nullptr) found.note = unlike(one.data, *base);
   return found;
 }

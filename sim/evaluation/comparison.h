@@ -34,6 +34,8 @@ struct CaseData {
   // s, of the feedback hardware, 0 where none is connected; none of an ideal servo
   std::optional<double> signal_delay = {};
   std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
+  // rows of feed motion outside the windows of the recording, by section; empty: none
+  std::vector<std::size_t> left_out = {};
 };
 
 /// One line of the printed comparison.

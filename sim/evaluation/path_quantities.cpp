@@ -1,5 +1,7 @@
 #include "sim/evaluation/path_quantities.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -184,9 +186,11 @@ std::optional<double> statistic_of_samples(const model::QuantitySpec& spec, std:
 double lag_time(const CaseData& one, const AtRow& residual, const AtRow& imposed,
                 const RowRanges& rows) {
   const std::size_t time = *one.servo->column("time");
+  const auto window = one.servo->column("window");
   double re = 0.0, ee = 0.0;
   rows.for_each([&](std::size_t row) {
     if (row == 0 || row + 1 >= one.servo->rows()) return;
+    if (!follows(*one.servo, window, row) || !follows(*one.servo, window, row + 1)) return;
     const double de = (imposed(row + 1) - imposed(row - 1)) /
                       (one.servo->at(row + 1, time) - one.servo->at(row - 1, time));
     re += residual(row) * de;
@@ -195,8 +199,23 @@ double lag_time(const CaseData& one, const AtRow& residual, const AtRow& imposed
   return ee > 0.0 ? -re / ee * kMsPerS : kNone;
 }
 
-std::string note_on_rows(const CaseData& one) {
-  return is_thinned(one) ? "at the recorded rows (record.period_ms)" : "";
+// Rows at which a case is compared with its base, and what is to be said of them.
+struct ComparedRows {
+  RowRanges rows;
+  std::string note;
+};
+
+ComparedRows compared_rows(const model::QuantitySpec& spec, CaseEvaluation& one,
+                           const CaseData* base) {
+  const RowRanges& all = one.samples.rows(spec.sections);
+  ComparedRows out{base != nullptr ? rows_with_counterpart(one.data, *base, all) : all,
+                   is_thinned(one.data) ? "at the recorded rows (record.period_ms)" : ""};
+  if (out.rows.size() < all.size()) {
+    out.note += fmt::format("{}{} of {} rows are not compared: {} left out its rows there",
+                            out.note.empty() ? "" : "; ", all.size() - out.rows.size(), all.size(),
+                            base->name);
+  }
+  return out;
 }
 
 using Signal = AtRow (*)(const model::QuantitySpec&, const CaseData&, const CaseData*);
@@ -207,13 +226,14 @@ template <Signal kValue, const char* kRecorded = nullptr>
 QuantityValue along_path(const model::QuantitySpec& spec, CaseEvaluation& compared,
                          const CaseData* base) {
   const CaseData& one = compared.data;
-  const RowRanges& rows = compared.samples.rows(spec.sections);
   if (base == nullptr) {
+    const RowRanges& rows = compared.samples.rows(spec.sections);
     std::string_view signal = spec.name;
     if constexpr (kRecorded != nullptr) signal = kRecorded;
     if (const auto of_samples = statistic_of_samples(spec, signal, one, rows)) return {*of_samples};
   }
-  return {statistic_of(spec.statistic, kValue(spec, one, base), rows), note_on_rows(one)};
+  const ComparedRows at = compared_rows(spec, compared, base);
+  return {statistic_of(spec.statistic, kValue(spec, one, base), at.rows), at.note};
 }
 
 double realised_share(const CaseData&, const AtRow& residual, const AtRow& imposed,
@@ -228,10 +248,9 @@ QuantityValue of_imposed_curve(const model::QuantitySpec& spec, CaseEvaluation& 
   const CaseData& one = compared.data;
   const AtRow residual = imposed_error_residual(spec, one, base);
   const AtRow imposed = column_of(one, "imposed_linear", spec.axis);
-  QuantityValue out{.note = note_on_rows(one)};
-  if (residual && imposed) {
-    out.value = kValue(one, residual, imposed, compared.samples.rows(spec.sections));
-  }
+  const ComparedRows at = compared_rows(spec, compared, base);
+  QuantityValue out{.note = at.note};
+  if (residual && imposed) out.value = kValue(one, residual, imposed, at.rows);
   return out;
 }
 

@@ -72,6 +72,8 @@ struct QuantityEntry {
   std::string_view derived_from = {};  // the signal that it condenses; in % it is a share of it
 
   bool needs_axis() const { return !axes.empty(); }
+  /// True if it is of a shape, whose points at equal intervals all count.
+  bool needs_every_row() const { return circles > 0 || is_r_test; }
 };
 
 /// All of them, by family.

@@ -1,7 +1,9 @@
 #include "sim/input/read_record.h"
 
 #include <array>
+#include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_ticks.h"
@@ -12,6 +14,41 @@ namespace {
 constexpr double kLongestSettling = 3600.0;  // s
 constexpr double kCoarsestResolution = 1 * um;
 constexpr std::array<std::string_view, 2> kStorages = {"float64", "float32"};
+
+// Intervals [begin, end] of time.
+std::vector<std::array<double, 2>> read_times(config::Reader& table) {
+  std::vector<std::array<double, 2>> out;
+  if (!table.has("time_s")) return out;
+  const std::size_t before = table.faults();
+  const std::vector<std::vector<double>> rows = table.rows("time_s");
+  if (table.faults() > before) return out;
+  for (const std::vector<double>& row : rows) {
+    if (row.size() != 2 || row[0] < 0.0 || row[1] <= row[0]) {
+      table.fault("time_s", "must be a list of [begin, end] with 0 <= begin < end");
+      return {};
+    }
+    out.push_back({row[0], row[1]});
+  }
+  return out;
+}
+
+model::RecordWindows read_windows(config::Reader& record) {
+  model::RecordWindows out;
+  if (!record.has("windows")) return out;
+  config::Reader table = record.table("windows");
+  const std::size_t before = table.faults();
+  out.sections = table.texts_or("sections", {});
+  out.sections_place = table.place("sections");
+  out.times = read_times(table);
+  out.every =
+      static_cast<int>(table.integer_or("every", 1, {config::at_least(1.0), config::at_most(1e9)}));
+  if (table.faults() > before) return out;
+  if (!out.limited()) table.fault("needs sections or time_s: what is recorded");
+  if (out.sections.empty() && table.has("every")) {
+    table.fault("every", "needs sections, whose passes it counts");
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -27,6 +64,8 @@ void read_record(config::Reader& root, model::Scenario& out) {
   record.compression = static_cast<int>(table.integer_or(
       "compression", record.compression,
       {config::at_least(records::kNoCompression), config::at_most(records::kMaxCompression)}));
+  record.windows = read_windows(table);
+  record.extremes = table.boolean_or("extremes", false);
   record.uncorrectable = table.boolean_or("uncorrectable", false);
   constexpr double kGigabyte = 1e9, kHour = 3600.0, kMaxGigabytes = 1e6, kMaxHours = 1e4;
   record.max_size =
@@ -37,6 +76,24 @@ void read_record(config::Reader& root, model::Scenario& out) {
                             {config::above(0.0), config::at_most(kMaxHours)});
   out.settle_time = table.real_or("settle_ms", 100 * ms, config::kTime,
                                   {config::at_least(0.0), config::at_most(kLongestSettling)});
+}
+
+void check_record(config::Reader& root, const model::Scenario& scenario) {
+  if (!root.has("record")) return;
+  config::Reader record = root.table("record");
+  if (scenario.record.windows.limited()) {
+    config::Reader windows = record.table("windows");
+    if (!scenario.tests.empty()) {
+      windows.fault("cannot be used with [[test]]: its readings need every row");
+    } else if (!scenario.probes.empty()) {
+      windows.fault("cannot be used with [[probe]]: a part is probed on the path of every row");
+    }
+  }
+  if (scenario.record.extremes && !scenario.tests.empty()) {
+    record.fault("extremes",
+                 "must be false with [[test]]: its readings are means over rows at equal "
+                 "intervals");
+  }
 }
 
 }  // namespace servomill::sim::input

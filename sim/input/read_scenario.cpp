@@ -65,6 +65,7 @@ class ScenarioReader {
     out_.day = read_day(root, out_);
     out_.cmm = read_cmm(root);
     out_.probes = read_probes(root, !out_.program.cutters.empty());
+    check_record(root, out_);
     check_periods(root);
     read_cut(root);
     refuse_averaged_teeth(root);

@@ -78,6 +78,10 @@ cycles = 10
 activity = "probe"
 place = "table"
 
+[record.windows]
+sections = ["SECTION"]
+time_s = [[0, 1], [10, 12]]
+every = 10
 [[case]]
 name = "nominal"
 )";

@@ -1,8 +1,12 @@
 /// How a case is to be run: loops, feedback hardware, wear, and how exactly it is recorded.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"
 #include "sim/records/chunk_encoder.h"
 
@@ -37,5 +41,21 @@ struct RecordFormat {
   /// Storage of all signals but time, s and counts, which stay float64.
   records::Storage storage = records::Storage::float64;
 };
+
+/// Rows of these sections and those of these times are recorded; without any, all rows.
+struct RecordWindows {
+  std::vector<std::string> sections;
+  Place sections_place;
+  std::vector<std::array<double, 2>> times;  // s since the start of the program, both ends included
+  int every = 1;  // of the passes of each section: the first, then each so many-th
+
+  bool limited() const { return !sections.empty() || !times.empty(); }
+  /// True if every row of a section is recorded, whenever it comes.
+  bool covers(const std::string& section) const;
+};
+
+/// Note of commands that run a scenario without them.
+inline constexpr const char* kWindowsLeftOut =
+    "record.windows are left out: every row is evaluated";
 
 }  // namespace servomill::sim::model

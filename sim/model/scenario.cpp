@@ -9,6 +9,11 @@ bool CaseSpec::needs_feedback_hardware() const {
                      [](const StrategySpec& one) { return one.entry->uses_feedback_hardware; });
 }
 
+bool RecordWindows::covers(const std::string& section) const {
+  if (!limited()) return true;
+  return every == 1 && std::find(sections.begin(), sections.end(), section) != sections.end();
+}
+
 const CaseSpec* Scenario::find_case(std::string_view case_name) const {
   for (const CaseSpec& one : cases) {
     if (one.name == case_name) return &one;

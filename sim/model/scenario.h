@@ -125,6 +125,8 @@ struct RecordSpec {
   double max_size = 8e9;          // bytes of the signals of all cases, as estimated before a run
   bool period_is_given = false;   // else rows of long programs are thinned
   double max_duration = 86400.0;  // s, of the motion of a case
+  RecordWindows windows;          // that are recorded
+  bool extremes = false;          // rows tell of every tick since the row before
 };
 
 /// Limits on the computing effort of cutting.

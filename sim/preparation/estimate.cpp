@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <system_error>
 #include <vector>
 
@@ -20,20 +21,22 @@ namespace {
 
 constexpr double kGigabyte = 1e9;
 constexpr double kTicksPerSecond = 1e7;  // of one case on one core; measured with five axes
+constexpr double kRowsPerSecond = 9e5;   // with five axes, where every tick is recorded
 constexpr double kMemoryShare = 0.8;  // of the memory; the rest is the program's and the system's
 
 // Columns of the recorded signals (sim/records/README.md); those that only some cases have are
 // rounded up.
-double columns_of(const model::MachineSettings& machine) {
-  constexpr double kOfRow = 27.0, kOfAxis = 10.0;
-  return kOfRow + kOfAxis * static_cast<double>(machine.joints().size());
+double columns_of(const model::Scenario& scenario) {
+  constexpr double kOfRow = 27.0, kOfAxis = 10.0, kExtremesOfRow = 29.0, kExtremesOfAxis = 6.0;
+  const auto axes = static_cast<double>(scenario.machine.joints().size());
+  const double extremes = scenario.record.extremes ? kExtremesOfRow + kExtremesOfAxis * axes : 0.0;
+  return kOfRow + kOfAxis * axes + extremes;
 }
 
 constexpr double kUsualCompression = 6.0, kMinCompression = 4.0;
 
 bool needs_every_row(const model::QuantitySpec& quantity) {
-  const evaluation::QuantityEntry& info = evaluation::quantity_entry(quantity.name);
-  return info.circles > 0 || info.is_r_test;
+  return evaluation::quantity_entry(quantity.name).needs_every_row();
 }
 
 std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / kGigabyte); }
@@ -47,7 +50,8 @@ std::string in_time(double seconds) {
 
 // Probes, and quantities of balls that name no section, look at the whole path.
 bool can_be_thinned(const model::Scenario& scenario) {
-  return !scenario.record.period_is_given && scenario.probes.empty() &&
+  return !scenario.record.period_is_given && !scenario.record.windows.limited() &&
+         !scenario.record.extremes && scenario.probes.empty() &&
          std::none_of(scenario.quantities.begin(), scenario.quantities.end(),
                       [](const model::QuantitySpec& one) {
                         return needs_every_row(one) && one.sections.empty();
@@ -61,7 +65,7 @@ double compression_of(const model::Scenario& scenario) {
 // Rows of short cases are held, of long ones a chunk while they run and pages while they are
 // compared; where the path of a cutter counts, so many places of it as are held at once, where that
 // of a ball does, all.
-double memory_of(const model::Scenario& scenario, std::span<const double> motions, double row,
+double memory_of(const model::Scenario& scenario, std::span<const double> recorded, double row,
                  unsigned threads) {
   constexpr double kCaseRuns = 25e6, kCaseIsCompared = 8e6;
   constexpr double kPlaceOfCutter = 200.0, kPlaceOfBall = 100.0;
@@ -73,13 +77,13 @@ double memory_of(const model::Scenario& scenario, std::span<const double> motion
       [](const model::QuantitySpec& one) { return needs_every_row(one) && one.sections.empty(); });
   double sum = system::resident_memory();
   double longest = 0.0;
-  for (const double motion : motions) {
-    const double rows = (motion + scenario.settle_time) / period;
+  for (const double motion : recorded) {
+    const double rows = motion / period;
     longest = std::max(longest, rows);
     sum += rows * row > keeping.most_in_memory ? kCaseIsCompared : rows * row;
   }
   const double at_once =
-      std::min<double>(system::thread_count(threads), static_cast<double>(motions.size()));
+      std::min<double>(system::thread_count(threads), static_cast<double>(recorded.size()));
   double places = has_ball ? longest * kPlaceOfBall : 0.0;
   if (!scenario.probes.empty()) places += std::min(longest, most_of_cutter) * kPlaceOfCutter;
   return sum + at_once * (kCaseRuns + places);
@@ -88,33 +92,42 @@ double memory_of(const model::Scenario& scenario, std::span<const double> motion
 }  // namespace
 
 RunEstimate estimate(const model::Scenario& scenario, std::span<const double> motions,
-                     unsigned threads) {
+                     unsigned threads, std::span<const double> recorded) {
   RunEstimate out;
   double longest = 0.0, ticks = 0.0;
   const model::LoopPeriods& periods = scenario.machine.nc.periods;
+  std::vector<double> in_rows(recorded.begin(), recorded.end());
   for (const double one : motions) {
     const double motion = one + scenario.settle_time;
+    if (recorded.empty()) in_rows.push_back(motion);
     out.motion += motion;
     ticks += motion / periods.base;
     longest = std::max(longest, motion / periods.base);
   }
-  out.rows = out.motion / periods.seconds(scenario.record_period);
-  const double row = columns_of(scenario.machine) * static_cast<double>(sizeof(double));
+  out.rows = std::accumulate(in_rows.begin(), in_rows.end(), 0.0) /
+             periods.seconds(scenario.record_period);
+  const double row = columns_of(scenario) * static_cast<double>(sizeof(double));
   out.size = out.rows * row;
   out.is_thinned = out.size > scenario.record.max_size && can_be_thinned(scenario);
   out.file = out.is_thinned ? scenario.record.max_size / kMinCompression
                             : out.size / compression_of(scenario);
-  out.memory = memory_of(scenario, motions, row, threads);
+  out.memory = memory_of(scenario, in_rows, row, threads);
   const double cores = std::min<double>(system::thread_count(threads), system::thread_count(0));
-  out.computing = std::max(longest, ticks / cores) / kTicksPerSecond;
+  const double of_tick =
+      1.0 / kTicksPerSecond + (scenario.record.extremes ? 1.0 / kRowsPerSecond : 0.0);
+  out.computing = std::max(longest, ticks / cores) * of_tick;
   return out;
 }
 
 RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads) {
   std::vector<double> motions;
-  for (const PreparedCase& one : cases) motions.push_back(one.duration());
-  return estimate(scenario, motions, threads);
+  std::vector<double> recorded;
+  for (const PreparedCase& one : cases) {
+    motions.push_back(one.duration());
+    recorded.push_back(one.recorded_duration());
+  }
+  return estimate(scenario, motions, threads, recorded);
 }
 
 std::string to_string(const RunEstimate& estimate) {

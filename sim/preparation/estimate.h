@@ -29,8 +29,9 @@ struct RunEstimate {
 
 /// @param motions  of the cases, s
 /// @param threads  that share the cases; 0: one a core
+/// @param recorded  what is recorded of each motion, s; empty: all
 RunEstimate estimate(const model::Scenario& scenario, std::span<const double> motions,
-                     unsigned threads);
+                     unsigned threads, std::span<const double> recorded = {});
 RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads);
 

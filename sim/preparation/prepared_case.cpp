@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plant/kinematics/chain.h"
+#include "plant/vocabulary/units.h"
 #include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
 #include "sim/engine/simulate.h"
@@ -33,6 +34,16 @@ std::vector<double> spindle_speeds(const MoveRange& moves) {
     out.push_back(speed);
   }
   return out;
+}
+
+// Rows of the record period tell of every tick, of an ideal servo of every position period: that is
+// when its axes move.
+void record_every_tick(engine::CaseInputs& inputs) {
+  const model::LoopPeriods& periods = inputs.machine.nc.periods;
+  const Tick step = inputs.servo == model::ServoModel::ideal ? periods.position : 1;
+  inputs.keeping.thinning = {.every = static_cast<std::size_t>(inputs.record_period / step),
+                             .row_period = periods.seconds(step)};
+  inputs.record_period = step;
 }
 
 }  // namespace
@@ -106,7 +117,9 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   refuse_endless(scenario, least_time);
   // planning takes memory and time for every second of motion
   const std::vector<double> motions(scenario.cases.size(), least_time);
-  refuse_too_large(scenario, estimate(scenario, motions, 0));
+  std::vector<double> recorded;  // windows are known once it is planned
+  if (scenario.record.windows.limited()) recorded.assign(motions.size(), 0.0);
+  refuse_too_large(scenario, estimate(scenario, motions, 0, recorded));
   refuse_start_outside(scenario, parts.machine(), prepare.start());
 
   const SharedMoves moves = parts.apply_strategies(prepare);
@@ -131,6 +144,24 @@ void PreparedCase::thin(double bytes) {
 }
 
 double PreparedCase::duration() const { return parts_->motion->trajectory.duration(); }
+
+double PreparedCase::recorded_duration() const {
+  constexpr double kStep = 10.0 * ms;  // s, between two looks at short programs
+  constexpr double kMaxLooks = 1e5;
+  const Parts& p = *parts_;
+  const double whole = duration() + p.scenario.settle_time;
+  const engine::RecordingWindows windows(p.scenario.record.windows, p.program->path);
+  if (!windows.limited()) return whole;
+  const std::vector<std::size_t> pieces = p.program->path.pieces_of(*p.motion->moves);
+  const double looks = std::clamp(whole / kStep, 1.0, kMaxLooks);
+  controllers::Trajectory::Cursor cursor{};
+  double inside = 0.0;
+  for (double n = 0.5; n < looks; n += 1.0) {
+    const double t = n / looks * whole;
+    if (windows.contains(pieces[p.motion->trajectory.at(t, cursor).move], t)) inside += 1.0;
+  }
+  return inside / looks * whole;
+}
 
 PreparedCase::~PreparedCase() = default;
 PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
@@ -171,6 +202,8 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
   inputs.records_orientation =
       std::any_of(p.scenario.tests.begin(), p.scenario.tests.end(),
                   [](const auto& test) { return test->needs_orientation(); });
+  inputs.windows = {p.scenario.record.windows, p.program->path};
+  if (p.scenario.record.extremes) record_every_tick(inputs);
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;
   const model::LoopPeriods& periods = p.machine().nc.periods;
@@ -265,6 +298,7 @@ std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, Prepara
     if (!spec.machine) longest = std::max(longest, reading_delay(spec));
   }
   check_stability(scenario.machine, longest, cache);
+  refuse_narrow_windows(scenario);
   std::vector<PreparedCase> prepared;
   CaseFaults faults;
   for (const model::CaseSpec& spec : scenario.cases) {

@@ -59,6 +59,8 @@ class PreparedCase {
 
   /// Duration of the planned motion, s.
   double duration() const;
+  /// Time recorded of it and of the standstill afterwards, s; about, if there are windows.
+  double recorded_duration() const;
 
   /// Names of the sections of the original program.
   const std::vector<std::string>& sections() const;

@@ -7,6 +7,7 @@
 
 #include "controllers/gcode/modal_state.h"
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim::preparation {
@@ -158,16 +159,42 @@ void refuse_absent_sections(const model::Scenario& scenario,
     if (!name.empty()) known.push_back(name);
   }
   std::vector<Fault> faults;
-  for (const model::QuantitySpec& quantity : scenario.quantities) {
-    for (const std::string& name : quantity.sections) {
+  const auto look = [&](const std::vector<std::string>& names, const Place& place) {
+    for (const std::string& name : names) {
       if (std::find(sections.begin(), sections.end(), name) != sections.end()) continue;
       const std::string near = did_you_mean(name, known);
+      add_once(faults, {place, fmt::format("{} has no section '{}'{}", scenario.program.file, name,
+                                           !near.empty()   ? near
+                                           : known.empty() ? "; a comment (MSG, NAME) starts one"
+                                                           : fmt::format("; known are: {}",
+                                                                         fmt::join(known, ", ")))});
+    }
+  };
+  for (const model::QuantitySpec& quantity : scenario.quantities) {
+    look(quantity.sections, quantity.sections_place);
+  }
+  look(scenario.record.windows.sections, scenario.record.windows.sections_place);
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void refuse_narrow_windows(const model::Scenario& scenario) {
+  const model::RecordWindows& windows = scenario.record.windows;
+  std::vector<Fault> faults;
+  for (const model::QuantitySpec& quantity : scenario.quantities) {
+    if (!windows.limited() || !evaluation::quantity_entry(quantity.name).needs_every_row())
+      continue;
+    if (quantity.sections.empty()) {
       add_once(faults, {quantity.sections_place,
-                        fmt::format("{} has no section '{}'{}", scenario.program.file, name,
-                                    !near.empty() ? near
-                                    : known.empty()
-                                        ? "; a comment (MSG, NAME) starts one"
-                                        : fmt::format("; known are: {}", fmt::join(known, ", ")))});
+                        fmt::format("{} needs every row: give it sections, and list these in "
+                                    "record.windows.sections",
+                                    quantity.name)});
+    }
+    for (const std::string& name : quantity.sections) {
+      if (windows.covers(name)) continue;
+      add_once(faults, {quantity.sections_place,
+                        fmt::format("{} needs every row of section '{}': list it in "
+                                    "record.windows.sections, without every",
+                                    quantity.name, name)});
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));

@@ -73,7 +73,11 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
 /// @throws InputError at the program
 void refuse_endless(const model::Scenario& scenario, double duration);
 
-/// Sections that quantities name, among those that the program has.
+/// Quantities of circles and balls, of sections that the recording leaves out.
+/// @throws InputError for each such section
+void refuse_narrow_windows(const model::Scenario& scenario);
+
+/// Sections that quantities and windows of the recording name, among those that the program has.
 /// @throws InputError for each that it has not
 void refuse_absent_sections(const model::Scenario& scenario,
                             const std::vector<std::string>& sections);

@@ -33,10 +33,18 @@ RowKeeper::RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keepi
     limits.rows = rows;
     thinning_.emplace(signals, limits);
     series_ = Series(thinning_->signals());
+    if (limits.every > 0) {
+      make_room(keeping, rows / limits.every + 1);
+      return;
+    }
     spool_ = std::make_shared<SeriesSpool>(series_.signals(),
                                            format_of(keeping, rows_within(limits, series_)));
     return;
   }
+  make_room(keeping, rows);
+}
+
+void RowKeeper::make_room(const RowKeeping& keeping, std::size_t rows) {
   const double size = static_cast<double>(rows) * static_cast<double>(series_.width()) *
                       static_cast<double>(sizeof(double));
   if (size > keeping.most_in_memory) {
@@ -52,7 +60,7 @@ void RowKeeper::add(std::span<const double> rows) {
   staying_.clear();
   thinning_->add(rows, staying_);
   keep(staying_);
-  thinning_->account(spool_->bytes(), spool_->rows_on_disk());
+  if (spool_ != nullptr) thinning_->account(spool_->bytes(), spool_->rows_on_disk());
 }
 
 void RowKeeper::keep(std::span<const double> rows) {

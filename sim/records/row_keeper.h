@@ -36,6 +36,7 @@ class RowKeeper {
   Series take();
 
  private:
+  void make_room(const RowKeeping& keeping, std::size_t rows);
   void keep(std::span<const double> rows);
 
   std::optional<RowThinning> thinning_;

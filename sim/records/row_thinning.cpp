@@ -35,6 +35,9 @@ RowThinning::RowThinning(const std::vector<Signal>& signals, ThinningLimits limi
     : limits_(std::move(limits)), signals_(signals) {
   const Series coming(signals);
   width_ = coming.width();
+  if (limits_.every > 0) time_ = column_of(coming, "time");
+  window_ = coming.column("window");
+  in_window_ = coming.column("in_window");
   line_ = column_of(coming, "line");
   section_ = column_of(coming, "section");
   rapid_ = column_of(coming, "rapid");
@@ -97,7 +100,25 @@ void RowThinning::watch(const Signal& signal, Watched watched) {
 }
 
 void RowThinning::add(std::span<const double> rows, std::vector<double>& out) {
-  for (; !rows.empty(); rows = rows.subspan(width_)) add_row(rows.first(width_), out);
+  for (; !rows.empty(); rows = rows.subspan(width_)) {
+    if (limits_.every > 0) {
+      add_row_of_period(rows.first(width_), out);
+    } else {
+      add_row(rows.first(width_), out);
+    }
+  }
+}
+
+void RowThinning::add_row_of_period(std::span<const double> row, std::vector<double>& out) {
+  const bool begins = before_.empty() || (window_ && row[*window_] != before_[*window_]);
+  if (!before_.empty() && samples_ > 0 && must_stay(before_, row)) stay(before_, out);
+  tell_of(row);
+  if (begins || is_at_period(row)) stay(row, out);
+  before_.assign(row.begin(), row.end());
+}
+
+bool RowThinning::is_at_period(std::span<const double> row) const {
+  return std::llround(row[time_] / limits_.row_period) % static_cast<long long>(limits_.every) == 0;
 }
 
 void RowThinning::add_row(std::span<const double> row, std::vector<double>& out) {
@@ -120,9 +141,11 @@ void RowThinning::finish(std::vector<double>& out) {
   if (samples_ > 0) stay(before_, out);
 }
 
-// A row may stand for others of its own section only, and either of feed or of rapid.
+// A row may stand for others of its own section and window only, and either of feed or of rapid.
 bool RowThinning::must_stay(std::span<const double> before, std::span<const double> row) const {
-  return row[section_] != before[section_] || row[rapid_] != before[rapid_];
+  return row[section_] != before[section_] || row[rapid_] != before[rapid_] ||
+         (window_ && row[*window_] != before[*window_]) ||
+         (in_window_ && row[*in_window_] != before[*in_window_]);
 }
 
 bool RowThinning::keeps_all(std::span<const double> row) const {

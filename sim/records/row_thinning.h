@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ struct ThinningLimits {
   double bytes = 0.0;               // of its chunks on the disk
   std::size_t rows = 0;             // that will come, about
   std::vector<bool> keep_all = {};  // by section: every row of it stays, whatever that takes
+  // > 0: each so many-th row since time 0 stays, whatever that takes; no other limit counts
+  std::size_t every = 0;
+  double row_period = 0.0;  // s, of the rows that come, then
 };
 
 /// Thins rows of a fixed period. The rows that stay: the first and the last, those where the
@@ -33,6 +37,9 @@ struct ThinningLimits {
 /// included) and, of some signals, least and greatest value, mean and root mean square: largest
 /// values, ranges, means and rms of these are those of all rows. Which rows stay depends on the
 /// rows alone.
+///
+/// With ThinningLimits::every those stay that such a period would have recorded, the ends of
+/// sections, of rapid moves and of windows, and the last row.
 class RowThinning {
  public:
   /// @param signals  of the rows that come; among them line, section and rapid
@@ -67,6 +74,8 @@ class RowThinning {
   void watch(const Signal& signal, Watched watched);
   void watch_tool(const Series& coming);
   void add_row(std::span<const double> row, std::vector<double>& out);
+  void add_row_of_period(std::span<const double> row, std::vector<double>& out);
+  bool is_at_period(std::span<const double> row) const;
   bool must_stay(std::span<const double> before, std::span<const double> row) const;
   bool is_event(std::span<const double> before, std::span<const double> row);
   bool contour_error_has_changed(std::span<const double> row);
@@ -82,7 +91,8 @@ class RowThinning {
   std::size_t width_ = 0;  // of the rows that come
   std::vector<Watched> watched_;
   std::vector<std::size_t> axes_;  // columns of the interpolated position
-  std::size_t line_ = 0, section_ = 0, rapid_ = 0, contour_error_ = 0;
+  std::size_t time_ = 0, line_ = 0, section_ = 0, rapid_ = 0, contour_error_ = 0;
+  std::optional<std::size_t> window_, in_window_;  // where rows of some windows come
 
   std::vector<double> before_;          // the row before; empty: there was none
   std::vector<int> senses_;             // in which the axes went last

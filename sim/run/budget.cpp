@@ -65,6 +65,7 @@ class BudgetRun {
         store_(std::make_shared<records::SignalStore>(control.scratch_folder)) {
     scenario_.quantities.assign(quantities.begin(), quantities.end());
     scenario_.day.reset();  // no signal of a budget is of it
+    scenario_.record.windows = {};
     const Causes all = all_causes();
     for (const model::QuantitySpec& quantity : quantities) {
       Budget budget;

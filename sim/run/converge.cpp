@@ -89,6 +89,12 @@ std::vector<std::string> halved_solver(const model::Scenario& scenario) {
   return {assignment("machine.solver_tolerance_nm", 0.5 * tolerance, "m")};
 }
 
+// No change of a comparison is of these.
+void leave_out(model::Scenario& scenario) {
+  scenario.day.reset();
+  scenario.record.windows = {};
+}
+
 // The scenario with a step halved, or why it cannot be.
 struct Halved {
   std::optional<model::Scenario> scenario;
@@ -98,7 +104,7 @@ struct Halved {
 Halved halve(const input::ScenarioSource& source, const std::vector<std::string>& changes) {
   try {
     Halved out{source.at(changes), ""};
-    out.scenario->day.reset();
+    leave_out(*out.scenario);
     check_scenario(*out.scenario);
     return out;
   } catch (const InputError& error) {
@@ -236,10 +242,13 @@ std::vector<std::string> halved(Refinement refinement, const model::Scenario& sc
 namespace {
 
 // Note on parts of the scenario that the command leaves out, if any.
-std::optional<std::string> leave_out_day(model::Scenario& base) {
+std::optional<std::string> leave_out_parts(model::Scenario& base) {
   std::optional<std::string> note = note_of_missing_tests(base, "converge");
   if (base.day && !note) note = kDayLeftOut;
-  base.day.reset();
+  if (base.record.windows.limited()) {
+    note = fmt::format("{}{}", note ? *note + "; " : "", model::kWindowsLeftOut);
+  }
+  leave_out(base);
   return note;
 }
 
@@ -249,7 +258,7 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
                                             const std::set<Refinement>& refinements,
                                             const ConvergeControl& control) {
   model::Scenario base = source.at();
-  const std::optional<std::string> note = leave_out_day(base);
+  const std::optional<std::string> note = leave_out_parts(base);
   add_residuals_of_shares(base);
   preparation::PreparationCache cache;
   const double runs = 1.0 + static_cast<double>(refinements.size());

@@ -94,6 +94,8 @@ void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   write(to, result.heat.bodies);
   write(to, result.heat.power.size());
   for (const double P : result.heat.power) write(to, P);
+  write(to, result.left_out.size());
+  for (const std::size_t rows : result.left_out) write(to, rows);
   write(to, result.simulated_time);
 }
 
@@ -114,6 +116,8 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   result.heat.bodies = from.read<std::size_t>();
   result.heat.power.resize(from.read<std::size_t>());
   for (double& P : result.heat.power) P = from.read<double>();
+  result.left_out.resize(from.read<std::size_t>());
+  for (std::size_t& rows : result.left_out) rows = from.read<std::size_t>();
   result.simulated_time = from.read<double>();
   return result;
 }

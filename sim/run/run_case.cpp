@@ -30,11 +30,12 @@ void probe(const preparation::PreparedParts& p, CaseOutput& out) {
 }  // namespace
 
 evaluation::CaseData CaseOutput::data() const {
-  return {name,         &result.servo,
-          sections,     duration,
-          blocks,       result.outcome.finished,
-          chain,        probes.empty() ? nullptr : &probes,
-          signal_delay, uncertain};
+  return {name,           &result.servo,
+          sections,       duration,
+          blocks,         result.outcome.finished,
+          chain,          probes.empty() ? nullptr : &probes,
+          signal_delay,   uncertain,
+          result.left_out};
 }
 
 CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "plant/vocabulary/simd.h"
 #include "sim/input/read_scenario.h"
@@ -172,6 +174,20 @@ std::optional<double> signal_delay_of(const model::Scenario& scenario, const std
   return one != nullptr ? scenario.signal_delay_of(*one) : std::nullopt;
 }
 
+// Rows that the windows of a recording left out, by section.
+std::vector<std::size_t> left_out_of(const records::InputFile& file, const std::string& group) {
+  std::vector<std::size_t> out;
+  if (!file.has_attribute(group, "rows_left_out")) return out;
+  for (const std::string& rows : split_lines(file.text(group, "rows_left_out"))) {
+    std::size_t number = 0;
+    if (std::from_chars(rows.data(), rows.data() + rows.size(), number).ec != std::errc{}) {
+      throw InputError({file.path()}, fmt::format("'{}' has wrong rows_left_out", group));
+    }
+    out.push_back(number);
+  }
+  return out;
+}
+
 void check_schema(const records::InputFile& file, const std::string& path,
                   const std::string& kind) {
   if (!file.has_attribute("/", "schema_version")) {
@@ -270,6 +286,9 @@ void RunStore::add(const CaseOutput& one) {
   group.attribute("blocks", one.blocks);
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
   if (!one.program.empty()) group.attribute("program", one.program);
+  if (!one.result.left_out.empty()) {
+    group.attribute("rows_left_out", fmt::format("{}", fmt::join(one.result.left_out, "\n")));
+  }
   group.attribute("finished", one.result.outcome.finished ? 1 : 0);
   // A kill meanwhile spoils nothing but this case; from now on it is one of the complete ones.
   root.flush_file();
@@ -307,11 +326,12 @@ StoredRun read_run(const std::string& path) {
     run.probes.push_back(std::make_unique<std::vector<evaluation::ProbedFeature>>(
         read_probed(file, group + "/probes", scenario.probes)));
     const std::vector<evaluation::ProbedFeature>& probes = *run.probes.back();
+    if (auto day = read_day(file, group + "/day")) run.days.push_back({name, std::move(day)});
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0, chain_of(scenario, name),
                          probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name),
-                         scenario.uncertain});
+                         scenario.uncertain, left_out_of(file, group)});
   }
   return run;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/records/output_file.h"
+#include "sim/run/day_comparison.h"
 #include "sim/run/result_file.h"
 #include "sim/run/run.h"
 
@@ -51,6 +52,7 @@ struct StoredRun {
   std::vector<std::unique_ptr<std::vector<evaluation::ProbedFeature>>> probes;
   std::vector<evaluation::CaseData> cases;      // point into `series` and `probes`
   std::vector<model::QuantitySpec> quantities;  // of the stored scenario
+  std::vector<NamedDay> days;                   // of the cases that have one
 };
 
 /// @throws InputError if the file is none of ours or of another schema version

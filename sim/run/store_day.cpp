@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "plant/heat/temperature.h"
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/run/day_course.h"
 
@@ -69,6 +71,72 @@ void write_day(records::Hdf5Group group, const DayCourse& day) {
   }
   if (!day.cycles.empty()) write_cycles(group.group("cycles"), day);
   if (!day.stopped.empty()) group.attribute("stopped", day.stopped);
+}
+
+namespace {
+
+// Values of a list times a unit.
+std::vector<double> read_list(const records::InputFile& file, const std::string& path, double unit,
+                              std::size_t length) {
+  std::vector<double> values = file.values(path);
+  if (values.size() != length) {
+    throw InputError({file.path()},
+                     fmt::format("'{}' has {} values in place of {}", path, values.size(), length));
+  }
+  for (double& value : values) value *= unit;
+  return values;
+}
+
+DriftRange read_range(const records::InputFile& file, const std::string& group,
+                      const std::string& place) {
+  DriftRange out{place, {}, {}, {}};
+  for (std::size_t c = 0; c < kDrifts; ++c) {
+    const std::string name = kDriftNames[c];
+    out.first_hour[c] = read_list(file, group + "/range_60min_" + name, um, 1)[0];
+    out.whole[c] = read_list(file, group + "/range_" + name, um, 1)[0];
+    out.reached[c] = read_list(file, group + "/reached_" + name, kHour, 1)[0];
+  }
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const DayCourse> read_day(const records::InputFile& file,
+                                          const std::string& group) {
+  if (!file.has(group)) return nullptr;
+  auto out = std::make_shared<DayCourse>();
+  const std::size_t readings = file.values(group + "/time").size();
+  out->time = read_list(file, group + "/time", kHour, readings);
+  for (const std::string& name : file.datasets(group)) {
+    const bool is_body = name.starts_with("temperature_"), is_sensor = name.starts_with("sensor_");
+    if (!is_body && !is_sensor) continue;
+    std::vector<double> T = read_list(file, group + "/" + name, 1.0, readings);
+    for (double& one : T) one = kelvin(one);
+    (is_body ? out->bodies : out->sensors).push_back(name.substr(name.find('_') + 1));
+    (is_body ? out->temperatures : out->readings).push_back(std::move(T));
+  }
+  if (file.has(group + "/drift")) {
+    for (const std::string& place : file.groups(group + "/drift")) {
+      const std::string path = group + "/drift/" + place;
+      out->places.push_back(place);
+      out->ranges.push_back(read_range(file, path, place));
+      auto& drift = out->drift.emplace_back(readings);
+      for (std::size_t c = 0; c < kDrifts; ++c) {
+        const auto one = read_list(file, path + "/" + kDriftNames[c], um, readings);
+        for (std::size_t n = 0; n < readings; ++n) drift[n][c] = one[n];
+      }
+    }
+  }
+  if (file.has(group + "/cycles")) {
+    const std::string path = group + "/cycles";
+    const std::size_t count = file.values(path + "/begin").size();
+    const auto begin = read_list(file, path + "/begin", kHour, count),
+               rms = read_list(file, path + "/rms", um, count),
+               most = read_list(file, path + "/largest", um, count);
+    for (std::size_t n = 0; n < count; ++n) out->cycles.push_back({begin[n], rms[n], most[n]});
+  }
+  if (file.has_attribute(group, "stopped")) out->stopped = file.text(group, "stopped");
+  return out;
 }
 
 }  // namespace servomill::sim::run

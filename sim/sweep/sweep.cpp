@@ -232,7 +232,8 @@ model::Scenario Sweep::at(std::uint64_t point) const {
   }
   try {
     model::Scenario scenario = source_.at(changes);
-    scenario.day.reset();  // no point stores it
+    scenario.record.windows = {};  // columns of a table have no note that they are not of all rows
+    scenario.day.reset();          // no point stores it
     return scenario;
   } catch (const InputError& error) {
     throw at_the_list(error, values);

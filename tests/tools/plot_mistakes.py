@@ -74,7 +74,7 @@ class Mistakes(WithFiles):
             done = plot_names(self.side, "-o", self.out / "all")
             self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [   # a failure is reported unasked
                 "figure9: not drawn, drawing it failed (LinAlgError: SVD did not converge)",
-                "17 figures skipped: the file lacks their data (--why)"]))
+                "18 figures skipped: the file lacks their data (--why)"]))
 
     def test_a_file_that_cannot_be_read_costs_no_other(self):
         missing = self.root / "missing.h5"

@@ -10,6 +10,7 @@ from plot_looks import *
 from plot_mistakes import *
 from plot_numbers import *
 from plot_parts import *
+from plot_windows import *
 
 if __name__ == "__main__":
     with plot_files.shared_files(sys.argv.pop(1)):

@@ -2,7 +2,7 @@
 import dataclasses
 from typing import Callable
 
-from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, experiment2, five_axis, lag,
+from figures import (balls, bode, budget, circular, compensated, deviations, error_functions, experiment2, five_axis, inertia, lag,
                      nonlinear, notches, parts, step, straightness, sweeps, volumetric, warming)
 
 
@@ -54,6 +54,7 @@ FIGURES = (
            five_axis.draw),
     Figure("deviations", "run", "following error, tool deviation and contour error over time",
            deviations.draw),
+    Figure("inertia", "run", "circle or corner: what the structure does under acceleration and no scale shows", inertia.draw),
     Figure("day", "run", "a day of a machine that warms up: temperatures, drift, each part", warming.draw),
     Figure("position", "bode", "position loop over frequency: open, closed, with feed-forward",
            lambda responses: bode.draw(responses, "position")),

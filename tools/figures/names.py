@@ -41,3 +41,20 @@ def parse(texts, allowed, option):
         if found.setdefault(name, own) != own:
             raise InputError(f"plot.py: error: --{option} lists {name} twice: {found[name]} and {own}")
     return found
+
+
+DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "choice"}
+
+
+def is_sampled(table, key):
+    """Whether the table [sweep] gives this key a distribution, nested or quoted as it may be, or draws it as identified."""
+    if not isinstance(table, dict):
+        return False
+    for name, value in table.items():
+        if name == key and isinstance(value, dict) and DISTRIBUTIONS & value.keys():
+            return True
+        if name == "samples" and any(key == f"machine.{one}" for drawn in value.get("identified", []) for one in drawn["keys"]):
+            return True
+        if key.startswith(name + ".") and is_sampled(value, key[len(name) + 1:]):
+            return True
+    return False

@@ -80,7 +80,12 @@ class Case:
         self.sections = str(group.attrs["sections"]).split("\n")
         self._servo = group["servo"]
         self._kept = of_file.kept_rows(self._servo) if "s" in self._servo else None
+        self._gaps = of_file.gaps(of_file.read(self._servo["window"], self._kept)) if "window" in self._servo else []
         self._read = {}
+
+    def has_gaps(self):
+        """Whether rows were left out (record.windows). There a blank row stands in the columns."""
+        return len(self._gaps) > 0
 
     def has(self, name):
         return name in self._servo
@@ -98,18 +103,26 @@ class Case:
             if letter is not None and letter not in self.labels(name):
                 raise NotInFile(f"{name} has no axis {letter}")
             column = None if letter is None else self.labels(name).index(letter)
-            self._read[name, letter] = of_file.read(data, self._kept, column)
+            self._read[name, letter] = of_file.with_blank_rows(name, of_file.read(data, self._kept, column), self._gaps)
         return self._read[name, letter]
 
     def along(self, name, letter, s):
-        """Values of a column at other arc lengths: of_file.along_path, from all rows."""
+        """Values of a column at other arc lengths: of_file.along_path, from all rows.
+        NotInFile: some of these were left out"""
         if self._kept is None:
-            return of_file.along_path(self, self.column(name, letter), s)
-        return of_file.values_along(self._servo["s"], self._servo[name], self.labels(name).index(letter), s)
+            values = of_file.along_path(self, self.column(name, letter), s)
+        else:
+            values = of_file.values_along(self._servo["s"], self._servo[name], self.labels(name).index(letter), s,
+                                          self._servo.get("window"))
+        if self.has_gaps() and np.isnan(values).any():
+            raise NotInFile(f"case {self.name} has no rows at some of these places (record.windows)")
+        return values
 
     def samples(self, sections=None):
-        """Indices of the samples of feed motion, in the sections named (all without)."""
+        """Indices of the samples of feed motion in the windows of the recording, in the sections named (all without)."""
         chosen = self.column("rapid") == 0.0
+        if self.has("in_window"):
+            chosen &= self.column("in_window") == 1.0
         if sections is not None:
             numbers = [i for i, name in enumerate(self.sections) if name in sections]
             chosen &= np.isin(self.column("section"), numbers)
@@ -249,7 +262,7 @@ class Sweep(ResultFile):
         key = str(data.attrs["key"])
         texts = tuple(str(data.attrs["values"]).split("\n")) if "values" in data.attrs else ()
         return Parameter(key, str(data.attrs["units"]), data[:][self.run].astype(float), texts,
-                         _is_sampled(self.scenario.get("sweep", {}), key))
+                         naming.is_sampled(self.scenario.get("sweep", {}), key))
 
     def varied(self, sampled):
         """Parameters with more than one value: the sampled ones, or those of the grid, of which only the
@@ -264,23 +277,6 @@ class Sweep(ResultFile):
             else:
                 found[leader] = dataclasses.replace(found[leader], others=found[leader].others + 1)
         return found
-
-
-DISTRIBUTIONS = {"uniform", "log_uniform", "normal", "choice"}
-
-
-def _is_sampled(table, key):
-    """Whether the table [sweep] gives this key a distribution, nested or quoted as it may be, or draws it as identified."""
-    if not isinstance(table, dict):
-        return False
-    for name, value in table.items():
-        if name == key and isinstance(value, dict) and DISTRIBUTIONS & value.keys():
-            return True
-        if name == "samples" and any(key == f"machine.{one}" for drawn in value.get("identified", []) for one in drawn["keys"]):
-            return True
-        if key.startswith(name + ".") and _is_sampled(value, key[len(name) + 1:]):
-            return True
-    return False
 
 
 class Responses(ResultFile):

@@ -9,7 +9,7 @@ import numpy as np
 MOST = 200_000      # rows that are held
 BLOCK = 1 << 18     # rows that are read at once, about
 DECIDING = ("contour_error", "tool_deviation", "following_error_linear", "following_error_rotary")
-FLAGS = ("section", "rapid")
+FLAGS = ("section", "rapid", "window", "in_window")
 
 
 def blocks(rows, size):
@@ -85,6 +85,20 @@ def read(data, kept, column=None):
     return np.concatenate(out)
 
 
+def gaps(window):
+    """Rows before which rows were left out, from the numbers of their windows."""
+    return np.flatnonzero(np.diff(window)) + 1
+
+
+def with_blank_rows(name, values, rows):
+    """Values of a dataset with a blank row before each of some rows, so that no line joins two windows: NaN, in no section,
+    at the time and place of the row before."""
+    if not len(rows):
+        return values
+    fill = values[rows - 1] if name in ("time", "s", "line") else -1.0 if name == "section" else np.nan
+    return np.insert(values.astype(float), rows, fill, axis=0)
+
+
 def interpolated(s_base, values, s):
     """Linear between the value at or before s and the next one, the last of those at the same s."""
     row = np.clip(np.searchsorted(s_base, s, side="right") - 1, 0, len(s_base) - 1)
@@ -101,8 +115,8 @@ def along_path(base, values, s):
     return interpolated(base.column("s"), values, s)
 
 
-def values_along(s_data, data, column, s):
-    """What along_path finds in all rows, read in blocks; `s` in any order."""
+def values_along(s_data, data, column, s, window=None):
+    """What along_path finds in all rows, read in blocks; `s` in any order. NaN between two windows of the recording."""
     rows = s_data.shape[0]
     order = np.argsort(s, kind="stable")
     wanted, out = s[order], np.empty(len(s))
@@ -113,6 +127,9 @@ def values_along(s_data, data, column, s):
         if first >= last:
             continue
         values = data[begin:min(end + 1, rows)] if column is None else data[begin:min(end + 1, rows), column]
+        if window is not None:
+            between = gaps(window[begin:min(end + 1, rows)])
+            s_here, values = (with_blank_rows(name, one, between) for name, one in (("s", s_here), ("", values)))
         out[first:last] = interpolated(s_here, values, wanted[first:last])
     found = np.empty(len(s))
     found[order] = out

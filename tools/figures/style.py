@@ -200,13 +200,24 @@ def noisy_line(axes, x, y, look, buckets=300, **more):
 
 
 def thin(x, y, buckets=1500):
-    """Fewer points for drawing; each bucket keeps its lowest and highest, so peaks stay."""
+    """Fewer points for drawing; each bucket keeps its lowest and highest, so peaks stay, and gaps (NaN)."""
     if len(y) <= 4 * buckets:
         return x, y
     size = len(y) // buckets
     cut = size * (len(y) // size)
-    blocks = np.nan_to_num(np.asarray(y[:cut], float)).reshape(-1, size)
+    blocks = np.asarray(y[:cut], float).reshape(-1, size)
+    blank = np.isnan(blocks)
     start = np.arange(len(blocks)) * size
-    pair = np.sort(np.stack([start + blocks.argmin(1), start + blocks.argmax(1)], 1), axis=1)
-    keep = np.append(pair.ravel(), len(y) - 1)
+    least, greatest = np.where(blank, np.inf, blocks).argmin(1), np.where(blank, -np.inf, blocks).argmax(1)
+    keep = np.unique(np.concatenate([start + least, start + greatest, np.flatnonzero(np.isnan(y)), [len(y) - 1]]))
     return x[keep], y[keep]
+
+
+def band(x, least, greatest, buckets=1500):
+    """Fewer points of a band for drawing: of each bucket the lowest and the highest value."""
+    if len(x) <= 4 * buckets:
+        return x, least, greatest
+    starts = np.arange(0, len(x), len(x) // buckets)
+    blank = np.logical_and.reduceat(np.isnan(least), starts)
+    low, high = np.fmin.reduceat(least, starts), np.fmax.reduceat(greatest, starts)
+    return x[starts], np.where(blank, np.nan, low), np.where(blank, np.nan, high)

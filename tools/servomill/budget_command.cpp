@@ -227,6 +227,9 @@ int budget_command(const Arguments& arguments) {
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::vector<sim::model::QuantitySpec> quantities = chosen(scenario, options);
   if (scenario.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  if (scenario.record.windows.limited()) {
+    fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
+  }
   std::optional<sim::run::BudgetStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);

@@ -196,6 +196,14 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
   }
 }
 
+// Names parts of the scenario that a sweep leaves out.
+void tell_left_out(const sim::model::Scenario& base) {
+  if (base.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  if (base.record.windows.limited()) {
+    fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
+  }
+}
+
 // Prints that nothing is left to be done; the exit status.
 int print_complete(const Options& options, const sim::sweep::SweepTable& table,
                    const SweepFiles& files, std::uint64_t points) {
@@ -236,7 +244,7 @@ int sweep_command(const Arguments& arguments) {
   const sim::sweep::Selection selection = selection_of(options, sweep);
   const SweepFiles files = files_of(options, sweep, selection);
   const auto of_a_point = sweep.refuse_hopeless();
-  if (sweep.base().day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  tell_left_out(sweep.base());
 
   PointsLeft left(files.table, selection.size());
   const KeptWhenInterrupted when_interrupted([&left] { return left.said(); });
