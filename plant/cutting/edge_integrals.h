@@ -1,7 +1,9 @@
 /// Integrals over angles of rotation that forces on edges consist of.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace servomill::plant {
 
@@ -37,5 +39,37 @@ struct EdgeIntegrals {
     sine_cosine += weight * (0.25 * c2 * d - 0.125 * (s2_end - s2) + rest * 0.25 * (c2 - c2_end));
   }
 };
+
+/// A rotation of a tooth: its edge at the lower end of a slice turns from phi by dtheta.
+struct EdgeRotation {
+  double phi, dtheta;  // rad
+};
+
+/// Integrals over a rotation, mean over the helix of a slice, of functions that are zero outside of
+/// [from, to]. Whole turns apart they are the same.
+/// @param lag_span  rad, by which the upper end of the slice is behind the lower
+inline EdgeIntegrals rotation_integrals(const EdgeRotation& rotation, double lag_span, double from,
+                                        double to) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kMinLag = 1e-3;  // rad: an edge that lags less is straight
+  EdgeIntegrals I;
+  const double end = rotation.phi + rotation.dtheta, begin = rotation.phi - lag_span;
+  const double first = std::ceil((begin - to) / kTurn);
+  const double last = std::floor((end - from) / kTurn);
+  for (double turn = first; turn <= last; ++turn) {
+    const double shift = kTurn * turn;
+    if (lag_span < kMinLag) {
+      const double half = 0.5 * lag_span;
+      I.add(std::max(rotation.phi - half - shift, from), std::min(end - half - shift, to));
+      continue;
+    }
+    const double weight = 1.0 / lag_span;
+    I.add_twice(from, to, end - shift, weight);
+    I.add_twice(from, to, rotation.phi - shift, -weight);
+    I.add_twice(from, to, end - lag_span - shift, -weight);
+    I.add_twice(from, to, begin - shift, weight);
+  }
+  return I;
+}
 
 }  // namespace servomill::plant

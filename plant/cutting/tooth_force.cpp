@@ -12,7 +12,6 @@ namespace servomill::plant {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kTurn = 2.0 * kPi;
-constexpr double kMinLag = 1e-3;      // rad: an edge that lags less is straight
 constexpr double kSameAngle = 1e-9;   // rad, of arcs that continue each other
 constexpr double kSameHeight = 1e-9;  // m
 constexpr double kStraight = 1e-12;   // cosine of kappa on a flank
@@ -70,38 +69,9 @@ AngleRange above(const EdgeSlice& slice, double c, double x, double from, double
   return {std::max(from, first), std::min(to, kPi - first)};
 }
 
-// A rotation of a tooth: its edge at the lower end of a slice turns from phi by dtheta.
-struct Rotation {
-  double phi, dtheta;
-};
-
-// Integrals over the rotation, mean over the helix of a slice, of functions that are zero outside
-// of [range.from, range.to]. Whole turns apart they are the same.
-EdgeIntegrals integrals(const Rotation& rotation, double lag_span, const AngleRange& range) {
-  EdgeIntegrals I;
-  const double end = rotation.phi + rotation.dtheta, begin = rotation.phi - lag_span;
-  const double first = std::ceil((begin - range.to) / kTurn);
-  const double last = std::floor((end - range.from) / kTurn);
-  for (double turn = first; turn <= last; ++turn) {
-    const double shift = kTurn * turn;
-    if (lag_span < kMinLag) {
-      const double half = 0.5 * lag_span;
-      I.add(std::max(rotation.phi - half - shift, range.from),
-            std::min(end - half - shift, range.to));
-      continue;
-    }
-    const double weight = 1.0 / lag_span;
-    I.add_twice(range.from, range.to, end - shift, weight);
-    I.add_twice(range.from, range.to, rotation.phi - shift, -weight);
-    I.add_twice(range.from, range.to, end - lag_span - shift, -weight);
-    I.add_twice(range.from, range.to, begin - shift, weight);
-  }
-  return I;
-}
-
 // Force of one tooth, integrated over a rotation.
 void add_tooth(const CuttingCoefficients& K, const std::vector<ToothChips::Piece>& pieces,
-               const EdgeSlice& slice, const Rotation& rotation, double c, double wear,
+               const EdgeSlice& slice, const EdgeRotation& rotation, double c, double wear,
                Eigen::Vector3d& F) {
   double slope = 0.0, offset = 0.0, edge = 1.0;
   for (const ToothChips::Piece& piece : pieces) {
@@ -109,7 +79,7 @@ void add_tooth(const CuttingCoefficients& K, const std::vector<ToothChips::Piece
                                  ? above(slice, c, piece.x * slice.sine, slice.from, slice.to)
                                  : AngleRange{slice.from, slice.to};
     if (!(range.to > range.from)) return;
-    const EdgeIntegrals I = integrals(rotation, slice.lag_span, range);
+    const EdgeIntegrals I = rotation_integrals(rotation, slice.lag_span, range.from, range.to);
     add(K, slice, I, piece.slope - slope, piece.offset - offset, edge, c, wear, F);
     slope = piece.slope;
     offset = piece.offset;

@@ -47,7 +47,8 @@ class Marks {
     const CutterPosition& here = path_.positions[i];
     const Vector3d d = target_.point - here.tip;
     const double step = (path_.positions[i + 1].tip - here.tip).norm();
-    const double window = kNear + step + kTurnsAround * kTurn * step / std::abs(to - from);
+    const double window = kNear + step + std::sqrt(2.0 * cutter_.radius * path_.swing) +
+                          kTurnsAround * kTurn * step / std::abs(to - from);
     const auto flank = flank_at(here);
     if (!flank || std::abs(flank->along.dot(d)) > window ||
         std::abs(-flank->n.dot(d) - cutter_.radius) > kReach) {

@@ -32,13 +32,15 @@ struct TurningPath {
   std::span<const double> angles;                      // rad, psi, one for each position
   Eigen::Matrix3d R_WG = Eigen::Matrix3d::Identity();  // from the frame of the positions to that
                                                        // in which the angles are counted
+  double swing = 0.0;  // m, by which vibration displaces the cutter back and forth: marks of
+                       // swing reach sqrt(2 R swing) farther along a wall
 };
 
 /// Distance along the normal from a target to the surface that the teeth leave there (m), as
 /// Meeting::distance. None where the flank with a turning spindle does not pass the target, or its
 /// normal is more than 1 deg from across the axis.
 /// @param position  of the path, at which the flank passes the target: its neighbours, as far as
-///                  they are within three halves of a turn, decide
+///                  they are within three halves of a turn and the reach of the swing, decide
 std::optional<double> tooth_mark(const Cutter& cutter, const TurningPath& path,
                                  const ProbeTarget& target, std::size_t position);
 

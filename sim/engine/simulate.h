@@ -54,7 +54,8 @@ struct CaseInputs {
   const EngagedTeeth* teeth = nullptr;    // of `cutting`; nullptr: the average force acts
   // cuts beside `cutting`; nullptr: the depth of cut is the nominal one
   const std::vector<DisplacedCut>* displaced_cuts = nullptr;
-  Tick tooth_step = 0;  // period of the force of the teeth
+  bool regeneration = false;  // of the chips of `teeth`, by the tool-point modes of the machine
+  Tick tooth_step = 0;        // period of the force of the teeth
   model::CuttingWear wear = {};
   // of a machine with heat: its errors at the reference temperature, and the speed of the spindle
   // (rad/s) during each move that the NC runs

@@ -55,6 +55,12 @@ void read_force(config::Reader& table, model::CuttingSpec& spec) {
   spec.actual_depth = table.choice_or("depth_of_cut", 0, kDepths) == 1;
   constexpr std::string_view kForces[] = {"average", "instantaneous"};
   spec.teeth = table.choice_or("force", 0, kForces) == 1;
+  spec.regeneration = table.boolean_or("regeneration", false);
+  if (spec.regeneration && !spec.teeth) {
+    table.fault("regeneration", "needs force = \"instantaneous\"");
+  } else if (spec.regeneration && spec.actual_depth) {
+    table.fault("regeneration", "needs depth_of_cut = \"nominal\": chips follow the vibration");
+  }
   if (!spec.teeth && table.has("steps_per_tooth")) {
     table.raw("steps_per_tooth");
     table.fault("steps_per_tooth", "needs force = \"instantaneous\"");

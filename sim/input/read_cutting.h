@@ -12,7 +12,7 @@ namespace servomill::sim::input {
 plant::Stock read_stock(config::Reader& part);
 
 /// Keys of [cutting]: material, Ktc to Kae, wear, wear_per_m, force, steps_per_tooth,
-/// depth_of_cut.
+/// regeneration, depth_of_cut.
 model::CuttingSpec read_cutting(config::Reader& table);
 
 /// Keys cutting and wear of a case.

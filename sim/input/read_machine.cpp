@@ -23,6 +23,7 @@
 #include "sim/input/read_program.h"
 #include "sim/input/read_servo.h"
 #include "sim/input/read_structural_modes.h"
+#include "sim/input/read_tool_point_modes.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -237,6 +238,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
   machine.chain = read_chain(table);
   table.raw("nc");
   skip_structure(table);
+  machine.tool_point_modes = read_tool_point_modes(table);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
@@ -324,6 +326,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   machine.scale_delay = read_scale_delay(nc, machine.nc.periods.base);
 
+  machine.tool_point_modes = read_tool_point_modes(table);
   machine.integrator =
       static_cast<model::Integrator>(table.choice_or("integrator", 0, kIntegrators));
   const double solver_tolerance =

@@ -290,6 +290,8 @@ constexpr KeyHelp kScenario[] = {
     {"cutting", "wear_per_m", "growth of the factor per metre of cut"},
     {"cutting", "force",
      "\"average\" over a turn of the cutter, or \"instantaneous\": of each tooth at its angle"},
+    {"cutting", "regeneration",
+     "true: each tooth meets the surface that the vibrating teeth before it have left (chatter)"},
     {"cutting", "depth_of_cut",
      "\"nominal\", or \"actual\": it follows errors and deflections across the feed"},
     {"cutting", "steps_per_tooth",

@@ -134,6 +134,7 @@ struct CuttingSpec {
   plant::CuttingCoefficients coefficients;
   CuttingWear wear;
   bool teeth = false;         // forces are those of single teeth, else their average
+  bool regeneration = false;  // teeth meet the surface that vibration has left
   bool actual_depth = false;  // the depth of cut follows the actual position of the tool
   int steps_per_tooth = 20;   // forces of teeth are means over a step; at least so many while one
                               // tooth follows the other

@@ -35,6 +35,7 @@ int sweep_command(const Arguments& arguments);
 int merge_command(const Arguments& arguments);
 int bode_command(const Arguments& arguments);
 int step_command(const Arguments& arguments);
+int lobes_command(const Arguments& arguments);
 int tune_command(const Arguments& arguments);
 int budget_command(const Arguments& arguments);
 int converge_command(const Arguments& arguments);

@@ -25,7 +25,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 21> kCommands = {{
+constexpr std::array<Command, 22> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -40,6 +40,9 @@ constexpr std::array<Command, 21> kCommands = {{
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},
     {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
+    {"lobes", "[MACHINE.toml|SCENARIO.toml] [--teeth N] [--material NAME]",
+     "stability lobes: depth of cut at which a cutter begins to chatter, over its speed",
+     lobes_command},
     {"table", "SCENARIO.toml --format FORMAT -o FOLDER", "writes compensation tables for a real NC",
      table_command},
     {"compensate", "PROGRAM --machine M.toml [-o OUT]",

@@ -177,5 +177,22 @@ TEST(ToothMarks, are_none_beyond_the_flank_and_of_a_spindle_that_does_not_turn) 
       tooth_mark(end_mill(), {pass.positions, still}, {{0.0, 0.0, -1 * mm}, out}, pass.near(0.0)));
 }
 
+// A tooth that is 40 um deeper in the wall leaves a circle of sqrt(2 R 40 um) = 0.57 mm to both
+// sides, farther than three halves of a turn (0.44 mm).
+TEST(ToothMarks, of_a_vibration_reach_as_far_as_its_swing) {
+  constexpr double kDeep = 40 * um, kAway = 0.5 * mm;
+  const Pass pass(1.0, 90.0,
+                  [](double angle) { return std::abs(angle - 12.0 * kPi) < 0.3 ? kDeep : 0.0; });
+  const double x = 6.0 * 4.0 * kFeed - 2 * mm + kAway;
+  const auto mark = [&](double swing) {
+    TurningPath path = pass.path();
+    path.swing = swing;
+    return tooth_mark(end_mill(), path, {{x, 0.0, -1 * mm}, -Vector3d::UnitY()}, pass.near(x))
+        .value();
+  };
+  EXPECT_GT(mark(0.0), -1 * nm) << "marks of the feed alone";
+  EXPECT_NEAR(mark(kDeep), -(kDeep - kAway * kAway / (2.0 * kRadius)), 1 * um);
+}
+
 }  // namespace
 }  // namespace servomill::plant::tooth_marks_test

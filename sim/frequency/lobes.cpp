@@ -1,0 +1,51 @@
+#include "sim/frequency/lobes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "plant/vocabulary/interrupt.h"
+
+namespace servomill::sim::frequency {
+
+std::vector<plant::ChatterMode> modes_across(std::span<const plant::ToolPointMode> modes,
+                                             const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
+  constexpr double kAlong = 1e-6;  // share across the axis of a mode along it
+  std::vector<plant::ChatterMode> out;
+  for (const plant::ToolPointMode& mode : modes) {
+    const Eigen::Vector2d across(mode.direction.dot(e1), mode.direction.dot(e2));
+    const double share = across.norm();
+    if (share < kAlong) continue;
+    // q is displaced by share q, and driven by the share of the force
+    out.push_back({.stiffness = mode.stiffness / (share * share),
+                   .frequency = mode.mode.w,
+                   .damping = mode.mode.zeta,
+                   .direction = across / share});
+  }
+  return out;
+}
+
+std::vector<LobesPoint> stability_lobes(const LobesRequest& request, unsigned threads) {
+  std::vector<LobesPoint> out(static_cast<std::size_t>(request.points));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double share = static_cast<double>(i) / std::max(1, request.points - 1);
+    out[i].turns = request.from + share * (request.to - request.from);
+  }
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < out.size() && !interrupt_wanted; i = next++) {
+      LobesPoint& point = out[i];
+      point.zeroth_order = plant::zeroth_order_limit(request.cut, request.modes, point.turns);
+      point.limit =
+          plant::limit_of_stability(request.cut, request.modes, point.turns, request.deepest);
+    }
+  };
+  std::vector<std::thread> others;
+  for (unsigned n = 1; n < threads; ++n) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  throw_if_interrupted();
+  return out;
+}
+
+}  // namespace servomill::sim::frequency
