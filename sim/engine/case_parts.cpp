@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sim/engine/engaged_teeth.h"
+
 namespace servomill::sim::engine {
 
 double model_period_of(const CaseInputs& in) {
@@ -39,6 +41,21 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
 }
 
 Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-', 0.0}; }
+
+CutAlongPath::CutAlongPath(const CaseInputs& in)
+    : in_(in),
+      regeneration_(in.regeneration ? std::make_unique<ChipRegeneration>(
+                                          in.machine.tool_point_modes,
+                                          in.machine.nc.periods.seconds(in.tooth_step),
+                                          in.teeth->longest_passage())
+                                    : nullptr),
+      load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth,
+            in.displaced_cuts, in.machine.structural_modes, regeneration_.get()) {}
+
+std::string_view CutAlongPath::fault() const {
+  return load_.digs_in() ? "the tool digs in: the cut draws it in faster than the structure resists"
+                         : "";
+}
 
 void CutAlongPath::deviate(const controllers::Trajectory::Sample& reference, const Joints& Q_true,
                            const Eigen::Vector3d& bend) {

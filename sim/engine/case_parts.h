@@ -1,11 +1,13 @@
 /// Parts of a case that cascade and ideal axes share: travel, cut, outcome, standstill.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "plant/geometry/reversal_memory.h"
+#include "sim/engine/chip_regeneration.h"
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/simulate.h"
@@ -52,10 +54,7 @@ class TravelDirections {
 /// that of single teeth once a tooth step.
 class CutAlongPath {
  public:
-  explicit CutAlongPath(const CaseInputs& in)
-      : in_(in),
-        load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth,
-              in.displaced_cuts, in.machine.structural_modes) {}
+  explicit CutAlongPath(const CaseInputs& in);
 
   void start(const controllers::Trajectory::Sample& reference) { load_.start(reference.s); }
   /// The path goes on at the time `at` (s).
@@ -77,6 +76,9 @@ class CutAlongPath {
     load_.turn(in_.machine.nc.periods.seconds(in_.tooth_step));
   }
   const Joints& load() const { return load_.load(); }
+  double beside() const { return load_.beside(); }
+  /// Why the cut cannot go on; empty if it can.
+  std::string_view fault() const;
   /// W, at the edges: by the spindle and by the axes, which move at dQ (5; m/s, rad/s).
   double power(const Joints& dQ) { return load_.power() - load_.load().dot(dQ); }
   void note(Snapshot& now) const {
@@ -87,6 +89,7 @@ class CutAlongPath {
 
  private:
   const CaseInputs& in_;
+  std::unique_ptr<ChipRegeneration> regeneration_;  // nullptr: chips are those of the feed
   CuttingLoad load_;
   int tool_ = 0;
   double turns_from_ = 0.0, forced_from_ = 0.0;  // s

@@ -59,6 +59,7 @@ bool CaseRun::command_axes(Tick n) {
                    axes_.current(run_));
   axes_.follow(set_, run_);
   if (cut_) apply_cutting_force(n);
+  if (cut_ && !cut_->fault().empty()) return stop_with(cut_->fault(), t);
   if (heat_ && n > 0 && !heat(n)) return false;
   std::string_view failure = setpoint_.failure();
   if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
@@ -146,6 +147,7 @@ CaseResult CaseRun::finish(Tick n) {
   result_.servo = recorder_.take();
   result_.left_out = recorder_.left_out();
   if (heat_) result_.heat = std::move(*heat_).course();
+  if (cut_) result_.beside = cut_->beside();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
   return std::move(result_);
 }

@@ -57,13 +57,15 @@ double CuttingTable::power(double s, double speed, double wear, double wear_per_
 CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
                          const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced,
-                         const std::vector<plant::StructuralMode>& modes)
+                         const std::vector<plant::StructuralMode>& modes,
+                         ChipRegeneration* regeneration)
     : table_(table),
       wear_(wear),
       chain_(chain),
       compliance_(compliance),
       teeth_(teeth),
       displaced_(displaced),
+      regeneration_(regeneration),
       modes_(modes) {}
 
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
@@ -93,16 +95,20 @@ void CuttingLoad::turn(double dt) {
   swing(std::exchange(turned_, dt));
   const double s = s_ + speed_ * elapsed_;
   elapsed_ += dt;
-  if (!table_.reaches(s)) return set_force(Eigen::Vector3d::Zero());
+  if (!table_.reaches(s)) {
+    if (regeneration_ != nullptr) regeneration_->rest(J_pQ_.leftCols<kLinearJoints>());
+    return set_force(Eigen::Vector3d::Zero());
+  }
   const CuttingTable::Place at = table_.place(s, cursor_);
   rate_ = 2.0 * std::numbers::pi * at.after->turns;
+  if (regeneration_ != nullptr) return set_force(regenerated_force(at, rate_ * dt));
   set_force(rate_ == 0.0 ? Eigen::Vector3d::Zero() : force_at(at, speed_, rate_ * dt));
 }
 
 // Force at a place of the table.
 // @param rotation  rad, of the teeth, where they are resolved
 Eigen::Vector3d CuttingLoad::force_at(const CuttingTable::Place& at, double speed,
-                                      double rotation) const {
+                                      double rotation) {
   const double c = at.number(&CuttingTable::Row::chip) * speed;
   if (c <= 0.0) return Eigen::Vector3d::Zero();
   const double edges =
@@ -114,12 +120,52 @@ Eigen::Vector3d CuttingLoad::force_at(const CuttingTable::Place& at, double spee
     return places[0].share * places[0].nominal + places[1].share * places[1].nominal;
   }
   const auto J = J_pQ_.leftCols<kLinearJoints>();
+  ForceAtDepth found;
   if (modes_.is_rigid()) {
-    return force_at_actual_depth(places, deviation_, J * compliance_.asDiagonal() * J.transpose());
+    found = force_at_actual_depth(places, deviation_, J * compliance_.asDiagonal() * J.transpose());
+  } else {
+    // a mode is where the force until now has taken it
+    const Eigen::Matrix3d C =
+        Eigen::Matrix3d(compliance_.asDiagonal()) + modes_.static_compliance();
+    found =
+        force_at_actual_depth(places, deviation_ + J * modes_.of_modes(), J * C * J.transpose());
   }
-  // a mode is where the force until now has taken it
-  const Eigen::Matrix3d C = Eigen::Matrix3d(compliance_.asDiagonal()) + modes_.static_compliance();
-  return force_at_actual_depth(places, deviation_ + J * modes_.of_modes(), J * C * J.transpose());
+  beside_ = std::max(beside_, found.beside);
+  digs_in_ |= found.digs_in;
+  return found.force;
+}
+
+// The same of teeth that meet the surface of the teeth before. A step of the vibration.
+Eigen::Vector3d CuttingLoad::regenerated_force(const CuttingTable::Place& at, double rotation) {
+  const Eigen::Matrix3d J = J_pQ_.leftCols<kLinearJoints>();
+  const std::array<std::pair<const CuttingTable::Row*, double>, 2> rows = {
+      {{at.before, 1.0 - at.share}, {at.after, at.share}}};
+  const double c = at.number(&CuttingTable::Row::chip) * speed_;
+  const auto cuts = [](const auto& row) { return row.second > 0.0 && row.first->teeth >= 0; };
+  const auto* const cutting = std::find_if(rows.begin(), rows.end(), cuts);
+  if (rotation == 0.0 || c <= 0.0 || cutting == rows.end()) {
+    regeneration_->rest(J);
+    return Eigen::Vector3d::Zero();
+  }
+  const double edges =
+      plant::bearing_share(c) * (wear_.initial + wear_.per_m * at.number(&CuttingTable::Row::cut));
+  const double passage =
+      2.0 * std::numbers::pi / std::abs(rate_) / teeth_->teeth(cutting->first->teeth);
+  return regeneration_->step(J, passage, [&](const DisplacementsBefore& before) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (const auto& [row, share] : rows) {
+      if (share <= 0.0 || row->teeth < 0) continue;
+      force += share * teeth_->force(row->teeth, angle_, rotation, c, edges, before);
+    }
+    return force;
+  });
+}
+
+Eigen::Vector3d CuttingLoad::deflection(double after) const {
+  Eigen::Vector3d out = deflection_;
+  if (!modes_.is_rigid()) out += modes_.after(after);
+  if (regeneration_ != nullptr) out += regeneration_->deflection(after);
+  return out;
 }
 
 // Forces of one row and of its displaced cuts.

@@ -15,6 +15,7 @@ namespace servomill::sim::engine {
 
 class EngagedTeeth;
 struct DisplacedCut;
+class ChipRegeneration;
 struct ForcesNearby;
 
 /// Average force of the work on the cutter over the arc length s of the original program. Linear
@@ -79,11 +80,13 @@ class CuttingLoad {
   /// @param teeth       engagements of the table; nullptr: the average force acts
   /// @param displaced   cuts beside the path; nullptr: the depth of cut is the nominal one
   /// @param modes       of the structure, in addition to its compliance
+  /// @param regeneration  of the chips of `teeth`; nullptr: chips are those of the feed
   CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
               const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
               const EngagedTeeth* teeth = nullptr,
               const std::vector<DisplacedCut>* displaced = nullptr,
-              const std::vector<plant::StructuralMode>& modes = {});
+              const std::vector<plant::StructuralMode>& modes = {},
+              ChipRegeneration* regeneration = nullptr);
 
   /// Stands at s.
   void start(double s) { s_ = s; }
@@ -107,11 +110,14 @@ class CuttingLoad {
   /// Average power (W) by which the spindle cuts: at the nominal depth of cut, teeth or not.
   double power();
   /// By which the structure gives way in each linear axis (3; m), a time (s) after advance() or, of
-  /// single teeth, after turn(): compliance times load, and the modes.
-  Eigen::Vector3d deflection(double after) const {
-    if (modes_.is_rigid()) return deflection_;
-    return deflection_ + modes_.after(after);
-  }
+  /// single teeth, after turn(): compliance times load, the modes and, with regeneration, the
+  /// vibration of the tool point.
+  Eigen::Vector3d deflection(double after) const;
+  /// Largest distance of the cutter from its nominal path across the feed while it cut (m), where
+  /// the depth of cut is the actual one.
+  double beside() const { return beside_; }
+  /// True once the cut has drawn the tool in faster than the structure resists.
+  bool digs_in() const { return digs_in_; }
 
  private:
   const CuttingTable& table_;
@@ -120,16 +126,20 @@ class CuttingLoad {
   const Eigen::Vector3d& compliance_;
   const EngagedTeeth* teeth_;
   const std::vector<DisplacedCut>* displaced_;
+  ChipRegeneration* regeneration_;
   void set_force(const Eigen::Vector3d& force);
   // The structure goes on by dt (s) under the force that has been held.
   void swing(double dt) {
     if (!modes_.is_rigid()) modes_.advance(dt, load_.head<kLinearJoints>());
   }
-  Eigen::Vector3d force_at(const CuttingTable::Place& at, double speed, double rotation) const;
+  Eigen::Vector3d regenerated_force(const CuttingTable::Place& at, double rotation);
+  Eigen::Vector3d force_at(const CuttingTable::Place& at, double speed, double rotation);
   ForcesNearby forces_at(const CuttingTable::Row& row, double share, double c, double edges,
                          double rotation) const;
 
   CuttingTable::Cursor cursor_;
+  double beside_ = 0.0;  // m
+  bool digs_in_ = false;
   Eigen::Vector3d deviation_ = Eigen::Vector3d::Zero();
   double s_ = 0.0, speed_ = 0.0;
   double elapsed_ = 0.0;                            // s, of the position period

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace servomill::sim::engine {
 namespace {
@@ -24,22 +25,40 @@ Eigen::Matrix3d slope(const std::array<ForcesNearby, 2>& places, const Eigen::Ve
   return G;
 }
 
+// Part of a displacement across the feed (m).
+double across(const std::array<ForcesNearby, 2>& places, const Eigen::Vector3d& d) {
+  double largest = 0.0;
+  for (const ForcesNearby& place : places) {
+    if (place.cut == nullptr) continue;
+    largest =
+        std::max(largest, std::hypot(d.dot(place.cut->across[0]), d.dot(place.cut->across[1])));
+  }
+  return largest;
+}
+
 }  // namespace
 
-Eigen::Vector3d force_at_actual_depth(const std::array<ForcesNearby, 2>& places,
-                                      const Eigen::Vector3d& deviation, const Eigen::Matrix3d& C) {
+ForceAtDepth force_at_actual_depth(const std::array<ForcesNearby, 2>& places,
+                                   const Eigen::Vector3d& deviation, const Eigen::Matrix3d& C) {
   Eigen::Vector3d nominal = Eigen::Vector3d::Zero();
   for (const ForcesNearby& place : places) nominal += place.share * place.nominal;
-  if (nominal.isZero(0.0)) return nominal;
-  const double size = deviation.norm();
+  if (nominal.isZero(0.0)) return {};
+  const double size = across(places, deviation);
   const Eigen::Vector3d d =
       deviation * std::min(1.0, DisplacedCut::kLargest / std::max(size, 1e-12));
-  Eigen::Vector3d F = nominal;
+  ForceAtDepth out{.force = nominal};
   for (int n = 0; n < kIterations; ++n) {
-    const Eigen::Matrix3d G = slope(places, d + C * F);
-    F = (Eigen::Matrix3d::Identity() - G * C).inverse() * (nominal + G * d);
+    const Eigen::Matrix3d G = slope(places, d + C * out.force);
+    const Eigen::Matrix3d balance = Eigen::Matrix3d::Identity() - G * C;
+    out.digs_in = balance.determinant() <= 0.0;
+    out.force = balance.inverse() * (nominal + G * d);
   }
-  return F.dot(nominal) > 0.0 ? F : Eigen::Vector3d::Zero();
+  if (out.digs_in || out.force.dot(nominal) <= 0.0) {
+    out.force.setZero();
+  } else {
+    out.beside = across(places, deviation + C * out.force);
+  }
+  return out;
 }
 
 }  // namespace servomill::sim::engine

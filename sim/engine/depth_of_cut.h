@@ -32,16 +32,24 @@ struct ForcesNearby {
   std::array<Eigen::Vector3d, 4> displaced = {};      // N, in W
 };
 
-/// Force at the actual depth of cut (3; N, in W): linear in the displacement on each side, and in
-/// balance with the structure,
+/// Force at the actual depth of cut, and how far from the nominal path it acts.
+struct ForceAtDepth {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in W
+  double beside = 0.0;   // m, of the cutter from its nominal path across the feed
+  bool digs_in = false;  // the cut draws the cutter in faster than the structure resists
+};
+
+/// Force at the actual depth of cut: linear in the displacement on each side, and in balance with
+/// the structure,
 ///
 ///     F = F_nominal + G (d + C F)
 ///
-/// A force that would turn round is zero: the cutter has left the material.
+/// A force that would turn round is zero: the cutter has left the material. Without a balance,
+/// det(I - G C) <= 0, the tool digs in. Across the feed d counts up to kLargest.
 /// @param places     one or two
 /// @param deviation  d, m, of the tool from its nominal path without that by cutting, in W
 /// @param C          m/N, compliance of the structure in W
-Eigen::Vector3d force_at_actual_depth(const std::array<ForcesNearby, 2>& places,
-                                      const Eigen::Vector3d& deviation, const Eigen::Matrix3d& C);
+ForceAtDepth force_at_actual_depth(const std::array<ForcesNearby, 2>& places,
+                                   const Eigen::Vector3d& deviation, const Eigen::Matrix3d& C);
 
 }  // namespace servomill::sim::engine

@@ -10,13 +10,16 @@
 #include "plant/cutting/engagement.h"
 #include "plant/cutting/material.h"
 #include "plant/cutting/tooth_force.h"
+#include "sim/engine/chip_regeneration.h"
 
 namespace servomill::sim::engine {
 
 /// Engagements of a cutting table (cutting_load.h): edges of all teeth at the places of its rows.
 class EngagedTeeth {
  public:
-  explicit EngagedTeeth(const plant::CuttingCoefficients& coefficients) : K_(coefficients) {}
+  /// @param regeneration  forces of teeth that vibrate are asked for
+  explicit EngagedTeeth(const plant::CuttingCoefficients& coefficients, bool regeneration = false)
+      : K_(coefficients), regeneration_(regeneration) {}
 
   /// Adds an engagement. Returns its number.
   /// @param number  of the tool
@@ -27,6 +30,8 @@ class EngagedTeeth {
 
   /// Largest number of teeth that pass in a second (1/s) where anything is cut.
   double passing_frequency() const { return passing_frequency_; }
+  /// Largest time from tooth to tooth (s) where anything is cut.
+  double longest_passage() const { return longest_passage_; }
 
   /// Mean force on all teeth (3; N, in W) while the spindle turns. Neither allocates nor throws.
   /// @param engagement  its number
@@ -34,6 +39,11 @@ class EngagedTeeth {
   /// @param rotation    rad, by which the spindle turns; > 0 clockwise, at most a turn
   /// @param c           m, feed per tooth
   Eigen::Vector3d force(int engagement, double angle, double rotation, double c, double wear) const;
+  /// The same of teeth that meet the surface of the displacements before.
+  Eigen::Vector3d force(int engagement, double angle, double rotation, double c, double wear,
+                        const DisplacementsBefore& before) const;
+  /// Number of teeth of an engagement.
+  int teeth(int engagement) const;
 
  private:
   struct Engagement {
@@ -44,11 +54,13 @@ class EngagedTeeth {
   };
 
   plant::CuttingCoefficients K_;
+  bool regeneration_;
   std::vector<Engagement> engagements_;
   std::vector<plant::EdgeSlice> slices_;
-  std::vector<plant::ToothChips> chips_;  // of the tools
-  std::map<int, std::size_t> tools_;      // by number, in chips_
-  double passing_frequency_ = 0.0;
+  std::vector<plant::ToothChips> chips_;      // of the tools
+  std::vector<std::vector<double>> offsets_;  // of their teeth, m
+  std::map<int, std::size_t> tools_;          // by number, in chips_
+  double passing_frequency_ = 0.0, longest_passage_ = 0.0;
 };
 
 }  // namespace servomill::sim::engine

@@ -55,6 +55,10 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_) cut(n, set);
+    if (cut_ && !cut_->fault().empty()) {
+      result.outcome = failed(cut_->fault(), t, in_.path.line(in_.pieces[sample.move]));
+      break;
+    }
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
     const bool is_recorded = n % in_.record_period == 0;
     if (!is_recorded && !travel_.matters() && !structure_) continue;
@@ -68,6 +72,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   result.left_out = recorder_.left_out();
   result.saturations = std::move(saturations_);
   if (heat_) result.heat = std::move(*heat_).course();
+  if (cut_) result.beside = cut_->beside();
   return result;
 }
 

@@ -36,6 +36,7 @@ struct PartSource {
   const plant::VolumetricModel* imposed = nullptr;  // or none
   const plant::Stock* stock = nullptr;              // the stock; none: it is everywhere
   const model::HeatSettings* heat = nullptr;        // the part may grow with it
+  bool vibrates = false;                            // teeth have left marks of a vibration
 };
 
 const plant::Cutter* cutter_of(const PartSource& source, const engine::ProgramPath::Piece& piece);

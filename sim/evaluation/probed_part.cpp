@@ -61,6 +61,7 @@ double imposed_at(const PartSource& source, const model::PartFrame& frame,
 struct Probed {
   Meeting meeting;
   const engine::ProgramPath::Piece* feed = nullptr;
+  bool lacks_marks = false;  // those of teeth are asked for, and the surface is of none
 };
 
 // The surface of a part. A short path of the cutters is held as a whole; of a long one, what comes
@@ -68,7 +69,10 @@ struct Probed {
 class ProbedSurface {
  public:
   ProbedSurface(const PartSource& source, const metrology::Cmm& cmm, const PositionsHeld& held)
-      : path_(source), cmm_(cmm), held_(held) {
+      : path_(source),
+        cmm_(cmm),
+        held_(held),
+        swing_(cmm.tooth_marks && source.vibrates ? deflection_range(source.servo) : 0.0) {
     if (path_.positions() <= held.most) whole_.emplace(path_.all());
   }
 
@@ -106,20 +110,22 @@ class ProbedSurface {
       out.push_back({meeting, is_met ? cut.passes.feed_at(meeting.position) : nullptr});
       if (!is_met) continue;
       const plant::ProbeTarget& target = targets[out.size() - 1 - first];
-      if (cmm_.tooth_marks) add_tooth_mark(cut.passes, target, out.back().meeting);
+      if (cmm_.tooth_marks) add_tooth_mark(cut.passes, target, out.back());
       shrink(cut.passes, target, out.back().meeting);
     }
   }
 
   // In place of the surface of a body that turns, that of its teeth.
   void add_tooth_mark(const CutterPasses& cut, const plant::ProbeTarget& target,
-                      Meeting& meeting) const {
-    const auto [pass, position] = cut.place_of(meeting.position);
+                      Probed& probed) const {
+    const auto [pass, position] = cut.place_of(probed.meeting.position);
     if (cut.angles[pass].empty()) return;
     const auto mark = plant::tooth_mark(
-        cut.passes[pass].cutter, {cut.passes[pass].positions, cut.angles[pass], path_.frame().R_WG},
-        target, position);
-    if (mark) meeting.distance = *mark;
+        cut.passes[pass].cutter,
+        {cut.passes[pass].positions, cut.angles[pass], path_.frame().R_WG, swing_}, target,
+        position);
+    probed.lacks_marks = !mark;
+    if (mark) probed.meeting.distance = *mark;
   }
 
   // Tips are recorded where the cold part has them. From the tip to the contact the part shrinks,
@@ -158,6 +164,7 @@ class ProbedSurface {
   CutterPath path_;
   const metrology::Cmm& cmm_;
   const PositionsHeld& held_;
+  double swing_;  // m
   std::optional<Cut> whole_;
 };
 
@@ -220,6 +227,18 @@ double chord_error(const records::Series& servo) {
   return largest;
 }
 
+double deflection_range(const records::Series& servo) {
+  const auto first = servo.column("structural_deflection", 'X');
+  if (!first || servo.rows() == 0) return 0.0;
+  Vector3d low = vector_at(servo, 0, *first), high = low;
+  for (std::size_t row = 1; row < servo.rows(); ++row) {
+    const Vector3d deflection = vector_at(servo, row, *first);
+    low = low.cwiseMin(deflection);
+    high = high.cwiseMax(deflection);
+  }
+  return (high - low).norm() * um;
+}
+
 ProbedPart probe_part(const PartSource& source, const std::vector<metrology::ProbeSpec>& plan,
                       const metrology::Cmm& cmm, const PositionsHeld& held) {
   const model::PartFrame frame = model::work_frame(source.chain, source.work_offset);
@@ -231,9 +250,11 @@ ProbedPart probe_part(const PartSource& source, const std::vector<metrology::Pro
     ProbedFeature found{probe.name, probe.feature, {}, {}, {}};
     std::map<Miss, Misses> missed;
     const std::vector<Probed> probed = surface.probe(targets);
+    std::size_t unmarked = 0;
     for (std::size_t i = 0; i < probed.size(); ++i) {
       throw_if_interrupted();
-      const auto& [meeting, feed] = probed[i];
+      const auto& [meeting, feed, lacks_marks] = probed[i];
+      unmarked += lacks_marks ? 1 : 0;
       const std::optional<Miss> miss = miss_of(meeting, targets[i], source.stock);
       found.deviation.push_back(miss ? kNone : meeting.distance);
       met += miss ? 0 : 1;
@@ -246,6 +267,12 @@ ProbedPart probe_part(const PartSource& source, const std::vector<metrology::Pro
           "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
           to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
           model::program_words(targets[misses.first].point), why(miss, cmm)));
+    }
+    if (unmarked > 0) {
+      out.notes.push_back(fmt::format(
+          "{}: warning: case {}: {} of {} points of probe '{}' are not on a wall cut by a flank: "
+          "cmm.tooth_marks leaves out their marks",
+          to_string(probe.place), source.case_name, unmarked, targets.size(), probe.name));
     }
     found.measured = metrology::probe_all(cmm, source.case_name, probe.name, found.deviation);
     out.features.push_back(std::move(found));

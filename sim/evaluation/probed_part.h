@@ -33,6 +33,9 @@ struct ProbedPart {
 /// 1 ms), 0 where the tool moves evenly.
 double chord_error(const records::Series& servo);
 
+/// Range of the recorded deflection of the structure (m), over all axes: bound of a vibration.
+double deflection_range(const records::Series& servo);
+
 /// How many positions of the cutters are in memory, 200 bytes each.
 struct PositionsHeld {
   std::size_t most = 500'000;    // of a longer path only what comes near some points at a time

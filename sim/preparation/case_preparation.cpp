@@ -326,7 +326,9 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
                                     scenario_.program.cutters,
                                     scenario_.cutting->coefficients,
                                     scenario_.cutting->teeth,
+                                    scenario_.cutting->regeneration,
                                     scenario_.cutting->actual_depth,
+                                    machine_.tool_point_modes,
                                     scenario_.program.file,
                                     scenario_.cutting->place};
   system::MemoKey key;
@@ -337,7 +339,12 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
   add(key, inputs.stock);
   add(key, inputs.cutters);
   key.add(inputs.teeth);
+  key.add(inputs.regeneration);
   key.add(inputs.displaced);
+  for (const plant::ToolPointMode& mode : inputs.modes) {
+    key.add(mode.direction);
+    for (const double value : {mode.stiffness, mode.mode.w, mode.mode.zeta}) key.add(value);
+  }
   for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
     key.add(inputs.coefficients.*K.member);
   }

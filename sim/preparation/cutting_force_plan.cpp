@@ -12,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
+#include "sim/preparation/chatter_check.h"
 #include "sim/preparation/tool_passes.h"
 
 namespace servomill::sim::preparation {
@@ -44,6 +45,7 @@ class Planner {
     for (const Stage& stage : stages_) add_rows(stage);
     if (!touches_) refuse_untouched();
     warn_of_shanks();
+    for (Fault& warning : chatter_.warnings(in_.file)) plan_.warnings.push_back(std::move(warning));
     if (rapids_ > kMaxWarnings) {
       plan_.warnings.push_back(
           {{in_.file},
@@ -172,6 +174,11 @@ class Planner {
       row.teeth = teeth_.add(stage.tool, *stage.cutter, in_W, arcs, row.turns);
     }
     if (in_.displaced) row.displaced = add_displaced(stage, motion, row.turns, is_material);
+    if (!p.rapid) {
+      const Eigen::Matrix3d axes = passes_.frame().R_WG * frame.axes;
+      chatter_.add(p.line, stage.tool, *stage.cutter, {axes, frame.feed}, arcs, stage.turns,
+                   passes_.joints());
+    }
     touches_ = meets_ = true;
     return row;
   }
@@ -310,12 +317,13 @@ class Planner {
   const std::vector<Stage>& stages_;
   const plant::RemovedVolume* removed_ = nullptr;
   std::vector<engine::CuttingTable::Row> rows_;
-  engine::EngagedTeeth teeth_{in_.coefficients};
+  engine::EngagedTeeth teeth_{in_.coefficients, in_.regeneration};
   std::vector<engine::DisplacedCut> displaced_;
   bool cut_before_ = false, meets_ = false, touches_ = false;
   std::size_t rapids_ = 0;
   double rapid_depth_ = 0.0;     // m, of the present move
   std::map<int, Shank> shanks_;  // by tool
+  ChatterCheck chatter_{in_.modes, in_.coefficients, in_.chain};
   PlannedCutting plan_;
 };
 

@@ -5,10 +5,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plant/cutting/cutter.h"
 #include "plant/cutting/material.h"
 #include "plant/cutting/stock.h"
+#include "plant/structure/tool_point_mode.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/preparation/preparation_cache.h"
 
@@ -22,8 +24,11 @@ struct CuttingPlanInputs {
   const plant::Stock& stock;                          // in the work frame (sim/model/work_frame.h)
   const std::map<int, plant::Cutter>& cutters;        // by number of tool
   plant::CuttingCoefficients coefficients;
-  bool teeth;        // engagements of single teeth are planned
-  bool displaced;    // cuts beside the path are planned
+  bool teeth;         // engagements of single teeth are planned
+  bool regeneration;  // of teeth that vibrate
+  bool displaced;     // cuts beside the path are planned
+  // of the tool point: cuts that chatter are reported
+  const std::vector<plant::ToolPointMode>& modes;
   std::string file;  // of the program, for messages
   Place place;       // of [cutting]
 };

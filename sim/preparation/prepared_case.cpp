@@ -1,4 +1,5 @@
 #include "sim/preparation/prepared_case.h"
+#include "sim/preparation/chatter_check.h"
 
 #include <fmt/format.h>
 
@@ -67,7 +68,24 @@ struct PreparedCase::Parts {
 
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
+  void plan_cut(const CasePreparation& prepare);
 };
+
+// The cut and, of single teeth, their steps. A mode that the tick does not resolve is refused
+// before anything is planned.
+void PreparedCase::Parts::plan_cut(const CasePreparation& prepare) {
+  refuse_regeneration(scenario, spec, prepare.start());
+  const bool vibrates = spec.cutting && scenario.cutting->regeneration;
+  const double mode = vibrates ? highest_mode(machine()) : 0.0;
+  const auto step = [&](double passing_frequency) {
+    return preparation::tooth_step(*scenario.cutting, passing_frequency, mode, machine().nc.periods,
+                                   spec.servo);
+  };
+  constexpr double kHardly = 1e-6;  // 1/s
+  if (vibrates) step(kHardly);
+  cutting = prepare.cutting(program);
+  if (cutting && cutting->teeth) tooth_step = step(cutting->teeth->passing_frequency());
+}
 
 // Makes the strategies, each of which may rewrite the moves of the one before. Returns the moves
 // that run.
@@ -131,11 +149,7 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   parts.machine_errors = prepare.model(machine_errors);
   parts.component_errors = &prepare.errors(machine_errors);
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
-  parts.cutting = prepare.cutting(parts.program);
-  if (parts.cutting && parts.cutting->teeth) {
-    parts.tooth_step = tooth_step(*scenario.cutting, parts.cutting->teeth->passing_frequency(),
-                                  parts.machine().nc.periods, spec.servo);
-  }
+  parts.plan_cut(prepare);
 }
 
 void PreparedCase::thin(double bytes) {
@@ -192,6 +206,7 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
     inputs.cutting = &p.cutting->table;
     inputs.teeth = p.cutting->teeth.get();
     inputs.tooth_step = p.tooth_step;
+    inputs.regeneration = p.scenario.cutting->regeneration;
     inputs.displaced_cuts = p.cutting->displaced.get();
     inputs.wear = p.spec.wear;
   }

@@ -46,6 +46,9 @@ class ToolPasses {
   /// The tool at a share of a stage.
   plant::CutterPosition position(const Stage& stage, double share);
 
+  /// Joints of the last position.
+  const Joints& joints() const { return Q_near_; }
+
   /// Positions of all passes up to the last one that lies well behind a share of a stage.
   /// @pre remove() was called
   std::size_t positions_before(const Stage& stage, double share) const;

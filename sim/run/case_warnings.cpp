@@ -8,6 +8,7 @@
 #include "plant/geometry/grid_overshoot.h"
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/units.h"
+#include "sim/engine/depth_of_cut.h"
 #include "sim/evaluation/nominal_part.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/input/implausible.h"
@@ -153,10 +154,20 @@ std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
                      one.spec.name);
 }
 
+// Forces at the actual depth of cut are known next to the path alone.
+std::optional<std::string> cut_beside_path(const preparation::PreparedParts& one, double beside) {
+  if (beside <= engine::DisplacedCut::kLargest) return std::nullopt;
+  return fmt::format(
+      "warning: case {}: the tool was up to {:.3g} mm beside its nominal path while it cut: forces "
+      "at the actual depth of cut are extended linearly from {:g} mm to {:g} mm, and held beyond",
+      one.spec.name, beside / mm, engine::DisplacedCut::kStep / mm,
+      engine::DisplacedCut::kLargest / mm);
+}
+
 }  // namespace
 
 std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
-                                      std::span<const strategies::Saturation> held) {
+                                      const engine::CaseResult& result) {
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
   out.insert(out.end(), one.warnings.begin(), one.warnings.end());
@@ -176,7 +187,9 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   add_overshoots(one, out);
   if (auto cold = cold_drives(one)) out.push_back(std::move(*cold));
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
-  for (const strategies::Saturation& saturation : held) out.push_back(note_of(one, saturation));
+  if (auto beside = cut_beside_path(one, result.beside)) out.push_back(std::move(*beside));
+  for (const strategies::Saturation& saturation : result.saturations)
+    out.push_back(note_of(one, saturation));
   return out;
 }
 

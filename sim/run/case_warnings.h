@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "sim/engine/case_result.h"
 #include "sim/evaluation/part_fit.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
-#include "strategies/strategy.h"
 
 namespace servomill::sim::run {
 
 /// Notes on what the NC corrected or could not do as programmed.
-/// @param held  displacements that strategies could not make in full
+/// @param result  displacements that strategies could not make in full, distance from the path
 std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
-                                      std::span<const strategies::Saturation> held);
+                                      const engine::CaseResult& result);
 
 /// Errors that the strategies of this case cannot correct, one line for each
 /// (sim/run/residual_errors.h).

@@ -18,7 +18,8 @@ void probe(const preparation::PreparedParts& p, CaseOutput& out) {
       {p.spec.name, out.result.servo, p.program.path, p.scenario.program.cutters, p.program.tips,
        out.chain, p.scenario.program.work_offset + p.spec.work_offset, p.imposed,
        p.scenario.stock.empty() ? nullptr : &p.scenario.stock,
-       p.scenario.machine_of(p.spec).heat.get()},
+       p.scenario.machine_of(p.spec).heat.get(),
+       p.spec.cutting && p.scenario.cutting->regeneration},
       p.scenario.probes, p.scenario.cmm);
   out.probes = std::move(part.features);
   out.notes = std::move(part.notes);
@@ -62,7 +63,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   if (p.scenario.day && out.result.outcome.finished && out.result.heat.step > 0.0) {
     out.day = std::make_shared<const DayCourse>(course_of_day(p, out.result.heat, out.duration));
   }
-  for (std::string& note : notes_of_run(p, out.result.saturations)) {
+  for (std::string& note : notes_of_run(p, out.result)) {
     out.notes.push_back(std::move(note));
   }
   return out;

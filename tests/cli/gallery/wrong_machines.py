@@ -47,6 +47,11 @@ def structure(title, text):
     return machine(title, "[axis.X]\n", "[inertial_deflection]\n" + text + "\n[axis.X]\n")
 
 
+def mode(title, text):
+    """A machine whose tool point vibrates."""
+    return machine(title, "[axis.X]\n", "[[tool_point_mode]]\n" + text + "\n[axis.X]\n")
+
+
 def heat(title, text):
     """A machine that warms up."""
     return machine(title, "[axis.X]\n", "[heat]\n" + text + "\n[axis.X]\n")
@@ -70,6 +75,7 @@ STRUCTURE = [
     table_of_axis("bed: a mode above what the base period resolves", '[axis.X.machine_bed]\nmass = 5500.0\nfrequency_Hz = 6000.0\ndamping = 0.04'),
     machine("bed: under a slide of unknown mass", 'moving_mass = "750 kg"', 'machine_bed = { mass = 5500.0, frequency_Hz = 18.0, damping = 0.04 }'),
     machine("structural mode: nothing is as it must be", "[axis.X]\n", '[[structural_mode]]\ndirection = [0.0, 0.0, 0.0]\nstiffness = -5e7\ndamping = 0.05\n[[structural_mode]]\ndirection = "X"\nfrequency_Hz = 60.0\n\n[axis.X]\n'),
+    mode("a mode of the tool point that does not vibrate", "direction = [0, 0, 0]\nstiffness = 2e7\nfrequency_Hz = 0.0\ndamping = 1.0"),
     structure("inertia: axes that the machine does not have", "BX = { gain_um_per_m_s2 = 1.0 }\nXC = { gain_um_per_rad_s2 = 1.0 }"),
     structure("inertia: a mode above what the loops resolve", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 800.0, damping = 0.05 }"),
     structure("inertia: neither a mode nor static", "XX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 60.0 }\nYY = { gain_um_per_m_s2 = 1.0, damping = 0.05 }"),

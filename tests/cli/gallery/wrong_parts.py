@@ -32,6 +32,11 @@ CUTTING = [
         tool="diameter_mm = 8.0\nrunout_um = 500.0"),
     cut("forces of teeth that pass faster than the tick resolves", BLOCK + STEEL + 'force = "instantaneous"',
         tool="diameter_mm = 8.0\nteeth = 4", program=[("G43 H1", "G43 H1\nS80000 M3")]),
+    cut("regeneration of an average force", BLOCK + STEEL + "regeneration = true"),
+    cut("regeneration at the actual depth of cut", BLOCK + STEEL + 'force = "instantaneous"\nregeneration = true\ndepth_of_cut = "actual"',
+        tool="diameter_mm = 8.0\nteeth = 4"),
+    cut("regeneration of a tool point that does not vibrate", BLOCK + STEEL + 'force = "instantaneous"\nregeneration = true',
+        tool="diameter_mm = 8.0\nteeth = 4", program=[("G43 H1", "G43 H1\nS4775 M3")]),
     axis("a structure that gives way to nothing", "structural_stiffness = 0.0"),
 ]
 

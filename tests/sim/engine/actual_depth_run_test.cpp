@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -88,6 +89,47 @@ TEST(ActualDepth, of_single_teeth_has_the_mean_of_the_average_model) {
   const Vector3d F = mean_force(off(20.0) + fine, kActual + "force = \"instantaneous\"\n", kErrors);
   const Vector3d expected = wall_force(kWide + 20 * um);
   EXPECT_LE((F - expected).norm(), 2.0 * kShare * expected.norm()) << F.transpose();
+}
+
+// 0.1 mm beside the path are what is known.
+TEST(ActualDepth, beyond_its_range_is_reported) {
+  const auto notes = [](double um) {
+    return run_named_case(small_scenario(kWall, kErrors + kTool + kBlock + kSteel + kActual +
+                                                    off(um) + one_case("cut")),
+                          "cut")
+        .notes;
+  };
+  const auto warns = [](const std::vector<std::string>& all) {
+    return std::any_of(all.begin(), all.end(), [](const std::string& note) {
+      return note.find(
+                 "mm beside its nominal path while it cut: forces at the actual depth of cut "
+                 "are extended linearly from 0.02 mm to 0.1 mm, and held beyond") !=
+             std::string::npos;
+    });
+  };
+  EXPECT_FALSE(warns(notes(80.0)));
+  EXPECT_TRUE(warns(notes(130.0)));
+}
+
+// The helix draws the tool into its slot.
+TEST(ActualDepth, stops_a_tool_that_digs_in) {
+  const auto outcome = [](double stiffness) {
+    const model::Scenario scenario = small_scenario(
+        kSlot, kTool + kBlock + kSteel + kActual +
+                   fmt::format("[machine_override.axis.Z]\nstructural_stiffness = \"{} N/um\"\n",
+                               stiffness) +
+                   one_case("cut"));
+    static const StopFlag kNever = false;
+    std::atomic<float> progress = 0.0F;
+    return run::run_case(preparation::PreparedCase(scenario, scenario.cases.front()), kNever,
+                         progress)
+        .result.outcome;
+  };
+  EXPECT_TRUE(outcome(1.0).finished);
+  const Outcome stopped = outcome(0.01);
+  EXPECT_FALSE(stopped.finished);
+  EXPECT_EQ(stopped.reason.substr(0, 70),
+            "the tool digs in: the cut draws it in faster than the structure resist");
 }
 
 }  // namespace

@@ -11,18 +11,19 @@ namespace {
 // Base period 10 us, velocity loop 0.6 ms, position loop 1.8 ms.
 const model::LoopPeriods kPeriods{.base = 10 * us, .position = 180, .velocity = 60, .current = 20};
 
-Tick step(double passing_frequency, int steps,
-          model::ServoModel servo = model::ServoModel::cascade) {
+Tick step(double passing_frequency, int steps, model::ServoModel servo = model::ServoModel::cascade,
+          double highest_mode = 0.0) {
   model::CuttingSpec cutting;
   cutting.steps_per_tooth = steps;
   cutting.place = {"cut.toml", 7, 1};
-  return tooth_step(cutting, passing_frequency, kPeriods, servo);
+  return tooth_step(cutting, passing_frequency, highest_mode, kPeriods, servo);
 }
 
 std::string refusal(double passing_frequency, int steps,
-                    model::ServoModel servo = model::ServoModel::cascade) {
+                    model::ServoModel servo = model::ServoModel::cascade,
+                    double highest_mode = 0.0) {
   try {
-    step(passing_frequency, steps, servo);
+    step(passing_frequency, steps, servo, highest_mode);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -42,6 +43,16 @@ TEST(ToothStep, is_refused_below_the_base_period) {
       refusal(5001.0, 20),
       "cut.toml:7:1: error: teeth pass every 200 us; 20 steps of force for each need a base period "
       "of at most 9.998 us; it is 10 us (lower the speed or steps_per_tooth)");
+}
+
+TEST(ToothStep, resolves_a_mode_that_vibrates) {
+  constexpr auto kCascade = model::ServoModel::cascade;
+  EXPECT_EQ(step(50.0, 20, kCascade, 500.0), 10) << "20 steps of 2 ms";
+  EXPECT_EQ(step(4775.0 / 60.0 * 4.0, 20, kCascade, 100.0), 15) << "the teeth need more";
+  EXPECT_EQ(step(50.0, 20, kCascade, 5000.0), 1) << "10 us are still a tick";
+  EXPECT_EQ(refusal(50.0, 20, kCascade, 5001.0),
+            "cut.toml:7:1: error: 20 steps in each period of the mode of 5001 Hz need a base "
+            "period of at most 9.998 us; it is 10 us");
 }
 
 TEST(ToothStep, of_ideal_axes_is_their_position_period) {
