@@ -7,6 +7,7 @@
 #include "strategies/feedback.h"
 #include "strategies/gcode.h"
 #include "strategies/harmonic.h"
+#include "strategies/inertia.h"
 #include "strategies/none.h"
 #include "strategies/parabolic.h"
 #include "strategies/plugin_file.h"
@@ -15,9 +16,9 @@
 namespace servomill::strategies {
 
 std::span<const Entry> entries() {
-  static const std::array kEntries = {contour_entry(),   exact_entry(),    feedback_entry(),
-                                      gcode_entry(),     harmonic_entry(), none_entry(),
-                                      parabolic_entry(), table_entry()};
+  static const std::array kEntries = {contour_entry(), exact_entry(),     feedback_entry(),
+                                      gcode_entry(),   harmonic_entry(),  inertia_entry(),
+                                      none_entry(),    parabolic_entry(), table_entry()};
   return kEntries;
 }
 

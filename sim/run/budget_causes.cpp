@@ -85,8 +85,18 @@ bool remove_friction(model::MachineSettings& machine) {
   return any;
 }
 
-// The structure is rigid under acceleration, and its bed stands still.
-bool remove_inertia(model::MachineSettings& machine) {
+// Tells if a strategy knows a deflection per acceleration.
+bool knows_inertia(const strategies::Entry& entry) {
+  return std::any_of(entry.parameters.begin(), entry.parameters.end(), [](const auto& spec) {
+    const config::ParsedUnit unit = config::parse_unit(spec.unit);
+    return unit.unit && unit.unit->quantity == config::Quantity{.s = 2};
+  });
+}
+
+// The structure is rigid under acceleration, its bed stands still, and nothing corrects for them.
+bool remove_inertia(model::Scenario& scenario, model::CaseSpec& one) {
+  std::erase_if(one.strategies, [](const auto& spec) { return knows_inertia(*spec.entry); });
+  model::MachineSettings& machine = own_machine(scenario, one);
   bool any = !std::exchange(machine.inertial_compliances, {}).empty();
   for (plant::FeedDriveParams& drive : machine.drives) {
     any |= std::exchange(drive.bed, {}).M > 0.0;
@@ -209,7 +219,7 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
     case Cause::cutting:
       return std::exchange(one.cutting, false);
     case Cause::inertia:
-      return remove_inertia(own_machine(scenario, one));
+      return remove_inertia(scenario, one);
     case Cause::heat:
       return std::exchange(own_machine(scenario, one).heat, nullptr) != nullptr;
     case Cause::interpolation:
@@ -226,10 +236,10 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
 // True if strategies of a case move the tool off the programmed path on purpose.
 bool moves_on_purpose(const model::CaseSpec& one) {
   return has_strategy(one, strategies::Action::impose) ||
-         std::any_of(one.strategies.begin(), one.strategies.end(),
-                     [](const model::StrategySpec& spec) {
-                       return !spec.entry->reads_errors && spec.entry->acts;
-                     });
+         std::any_of(
+             one.strategies.begin(), one.strategies.end(), [](const model::StrategySpec& spec) {
+               return !spec.entry->reads_errors && spec.entry->acts && !knows_inertia(*spec.entry);
+             });
 }
 
 }  // namespace

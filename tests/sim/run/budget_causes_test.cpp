@@ -216,6 +216,25 @@ TEST(BudgetCauses, OfInertiaAlone) {
   EXPECT_LE(budget.remainder.rms, 1e-3);
 }
 
+// A strategy that knows the structure leaves nothing of it; the part is what it leaves.
+TEST(BudgetCauses, OfInertiaThatIsCorrected) {
+  const auto budget = [](double gain) {
+    return budget_of(
+        fmt::format("[machine_override.inertial_deflection]\nXX = {{ gain_um_per_m_s2 = 1.0, "
+                    "frequency_Hz = 60.0, damping = 0.05 }}\n[[case]]\nname = \"one\"\nservo = "
+                    "\"ideal\"\n[[case.strategy]]\ntype = \"inertia\"\nXX_um_per_m_s2 = "
+                    "{}\nX_frequency_Hz = 60.0\nX_damping = 0.05\n",
+                    gain) +
+            quantity("tool_deviation", 'X'),
+        "G17 G21 G90 G94 G64 P0.0002\n(MSG, flank)\nG1 X20 F6000\nG2 X30 Y10 J10\nM30\n");
+  };
+  const double known = part(budget(1.0), Cause::inertia).rms,
+               half = part(budget(0.5), Cause::inertia).rms;
+  EXPECT_GT(half, 0.1);
+  EXPECT_LE(known, 0.02 * half);
+  EXPECT_FALSE(part(budget(1.0), Cause::imposed).present);
+}
+
 // A bed is in the loops: without it the following error is that of the lag.
 TEST(BudgetCauses, OfTheBed) {
   const auto budget = [](const std::string& bed) {
