@@ -130,8 +130,8 @@ class Contour final : public Strategy {
 
 std::optional<WantedMargins> wanted_margins(const Parameters& p) {
   if (!p.is_word("gain_per_s")) return std::nullopt;
-  const bool resets = p.is_word("reset_time_ms") || p.number("reset_time_ms") > 0.0;
-  return WantedMargins{.reset_ratio = resets ? kResetRatio : 0.0};
+  if (p.is_word("reset_time_ms")) return WantedMargins{.reset_ratio = kResetRatio};
+  return WantedMargins{.Ti = p.number("reset_time_ms")};
 }
 
 std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {

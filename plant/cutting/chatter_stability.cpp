@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include "plant/vocabulary/interrupt.h"
 
 namespace servomill::plant {
 namespace {
@@ -147,6 +148,7 @@ ChatterStability ChatterAnalysis::of(const PeriodicCut& cut) {
   Complex largest = 0.0;
   Eigen::VectorXcd state;
   for (int n = 0, calm = 0; n < kMaxPassages && calm < kCalm; ++n) {
+    throw_if_interrupted();
     const Eigen::MatrixXd V = Eigen::HouseholderQR<Eigen::MatrixXd>(vectors_).householderQ() *
                               Eigen::MatrixXd::Identity(vectors_.rows(), kVectors);
     vectors_ = over_passage(V, steps);

@@ -5,8 +5,9 @@
 namespace servomill::plant {
 
 // q'' + 2 zeta w q' + w^2 q = w^2 / k f: about its static deflection f / k it decays freely.
-ToolPointVibration::ToolPointVibration(const std::vector<ToolPointMode>& modes, double step) {
-  for (const ToolPointMode& mode : modes) {
+ToolPointVibration::ToolPointVibration(const std::vector<StructuralMode>& modes, double step) {
+  for (const StructuralMode& mode : modes) {
+    if (mode.is_static()) continue;
     const double w = mode.mode.w, z = mode.mode.zeta, wd = w * std::sqrt(1.0 - z * z);
     const double e = std::exp(-z * w * step), c = std::cos(wd * step), s = std::sin(wd * step);
     Oscillator one{.direction = mode.direction,
@@ -16,8 +17,8 @@ ToolPointVibration::ToolPointVibration(const std::vector<ToolPointMode>& modes, 
                    .dq_dq = e * (c - z * w / wd * s),
                    .q_f = 0.0,
                    .dq_f = 0.0};
-    one.q_f = (1.0 - one.q_q) / mode.stiffness;
-    one.dq_f = -one.dq_q / mode.stiffness;
+    one.q_f = (1.0 - one.q_q) * mode.compliance;
+    one.dq_f = -one.dq_q * mode.compliance;
     modes_.push_back(one);
   }
 }

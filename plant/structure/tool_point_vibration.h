@@ -4,12 +4,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "plant/structure/tool_point_mode.h"
+#include "plant/structure/inertial_compliance.h"
 
 namespace servomill::plant {
 
-/// All modes of a tool point in one run, from rest. A step is exact for a force that is constant
-/// over it.
+/// All modes of a tool point in one run, from rest; static ones are left out. A step is exact for a
+/// force that is constant over it.
 class ToolPointVibration {
  public:
   /// Displacement of the tool point along the linear axes (m) and its velocity (m/s).
@@ -18,7 +18,7 @@ class ToolPointVibration {
   };
 
   /// @param step  s
-  ToolPointVibration(const std::vector<ToolPointMode>& modes, double step);
+  ToolPointVibration(const std::vector<StructuralMode>& modes, double step);
 
   /// State at the begin of a step.
   State now() const;

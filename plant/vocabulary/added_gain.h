@@ -15,7 +15,8 @@ struct AddedGain {
 struct WantedMargins {
   double phase = 0.25 * std::numbers::pi;  // rad
   double gain = 2.0;                       // factor by which the gain may rise
-  // Ti (Kv + C): an integral part costs at most its inverse (rad) at the crossover; 0: none
+  double Ti = 0.0;                         // s, of an integral part; 0: none, or one with
+  // Ti (Kv + C), Kv the largest of the axes: it costs about its inverse (rad) at the crossover
   double reset_ratio = 0.0;
 };
 

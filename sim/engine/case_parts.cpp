@@ -45,7 +45,7 @@ Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-
 CutAlongPath::CutAlongPath(const CaseInputs& in)
     : in_(in),
       regeneration_(in.regeneration ? std::make_unique<ChipRegeneration>(
-                                          in.machine.tool_point_modes,
+                                          in.machine.structural_modes,
                                           in.machine.nc.periods.seconds(in.tooth_step),
                                           in.teeth->longest_passage())
                                     : nullptr),

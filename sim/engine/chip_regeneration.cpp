@@ -7,7 +7,7 @@ namespace servomill::sim::engine {
 
 using State = plant::ToolPointVibration::State;
 
-ChipRegeneration::ChipRegeneration(const std::vector<plant::ToolPointMode>& modes, double step,
+ChipRegeneration::ChipRegeneration(const std::vector<plant::StructuralMode>& modes, double step,
                                    double longest)
     : vibration_(modes, step), step_(step) {
   constexpr double kSpare = 4.0;  // steps

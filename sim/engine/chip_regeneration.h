@@ -21,7 +21,7 @@ class ChipRegeneration {
  public:
   /// @param step     s, of the teeth
   /// @param longest  s, largest time from tooth to tooth
-  ChipRegeneration(const std::vector<plant::ToolPointMode>& modes, double step, double longest);
+  ChipRegeneration(const std::vector<plant::StructuralMode>& modes, double step, double longest);
 
   /// A step with its force on the tool (3; N, in W). Neither allocates nor throws.
   /// @param J_pL      displacement of the tip in W by that along the linear axes (3 x 3)

@@ -54,6 +54,20 @@ double CuttingTable::power(double s, double speed, double wear, double wear_per_
   return 2.0 * std::numbers::pi * std::abs(at.after->turns) * torque;
 }
 
+namespace {
+
+// Modes that swing are part of the regeneration where chips regenerate.
+std::vector<plant::StructuralMode> modes_beside(const std::vector<plant::StructuralMode>& modes,
+                                                const ChipRegeneration* regeneration) {
+  std::vector<plant::StructuralMode> out = modes;
+  if (regeneration != nullptr) {
+    std::erase_if(out, [](const plant::StructuralMode& one) { return !one.is_static(); });
+  }
+  return out;
+}
+
+}  // namespace
+
 CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& wear,
                          const plant::MachineChain& chain, const Eigen::Vector3d& compliance,
                          const EngagedTeeth* teeth, const std::vector<DisplacedCut>* displaced,
@@ -66,7 +80,7 @@ CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& we
       teeth_(teeth),
       displaced_(displaced),
       regeneration_(regeneration),
-      modes_(modes) {}
+      modes_(modes_beside(modes, regeneration)) {}
 
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
   const double speed = std::max(0.0, (s - s_) / dt);

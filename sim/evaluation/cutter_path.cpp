@@ -15,6 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kSameStrain = 1e-6;     // 10 nm of a radius of 10 mm
 constexpr double kSameS = 1e-8;          // m; recorded arc lengths are rounded
 constexpr double kBoxMargin = 1.0 * um;  // more than the rounding of boxes
 
@@ -42,6 +43,15 @@ class PieceOfRow {
   std::size_t s_, line_;
   std::size_t piece_ = 0;
 };
+
+// The cutter as a part has it that has shrunk by a strain since it was cut.
+plant::Cutter shrunk(plant::Cutter cutter, double strain) {
+  const double factor = 1.0 / (1.0 + strain);
+  cutter.radius *= factor;
+  cutter.corner_radius *= factor;
+  cutter.length *= factor;
+  return cutter;
+}
 
 }  // namespace
 
@@ -126,17 +136,36 @@ Eigen::AlignedBox3f CutterPath::swept_box(const Pass& pass, std::size_t first,
 
 void CutterPath::add(std::size_t pass, std::size_t first, std::size_t end,
                      CutterPasses& out) const {
+  // positions are those on the cold part: a cutter in a warm one is smaller there
+  for (std::size_t from = first; from + 1 < end || from == first;) {
+    const double strain = strain_at(from);
+    std::size_t to = from + 1;
+    while (to < end && std::abs(strain_at(to) - strain) <= kSameStrain) ++to;
+    to = std::max(to, std::min(from + 2, end));
+    add_at_one_strain(pass, from, to, strain, out);
+    if (to == end) return;
+    from = to - 1;  // straight on from the last position
+  }
+}
+
+double CutterPath::strain_at(std::size_t row) const {
+  if (!temperature_column_) return 0.0;
+  return expansion_ * (servo_.at(row, *temperature_column_) - reference_);
+}
+
+void CutterPath::add_at_one_strain(std::size_t pass, std::size_t first, std::size_t end,
+                                   double strain, CutterPasses& out) const {
   const Pass& of = passes_[pass];
-  out.passes.push_back({*of.cutter, {}});
+  out.passes.push_back({strain == 0.0 ? *of.cutter : shrunk(*of.cutter, strain), {}});
   out.feeds.push_back(of.feed ? &*of.feed : nullptr);
   std::vector<plant::CutterPosition>& positions = out.passes.back().positions;
   positions.reserve(end - first);
   for (std::size_t row = first; row < end; ++row) positions.push_back(at(row));
-  std::vector<double>&angles = out.angles.emplace_back(), &strains = out.strains.emplace_back();
+  std::vector<double>& angles = out.angles.emplace_back();
+  if (!angle_column_) return;
+  angles.reserve(end - first);
   for (std::size_t row = first; row < end; ++row) {
-    if (angle_column_) angles.push_back(servo_.at(row, *angle_column_) * deg);
-    if (!temperature_column_) continue;
-    strains.push_back(expansion_ * (servo_.at(row, *temperature_column_) - reference_));
+    angles.push_back(servo_.at(row, *angle_column_) * deg);
   }
 }
 

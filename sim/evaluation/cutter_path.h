@@ -48,7 +48,6 @@ struct CutterPasses {
   std::vector<const engine::ProgramPath::Piece*> feeds;  // of each pass; nullptr: only rapid
   std::vector<std::vector<double>> angles;               // rad, of the spindle at each position, of
                                                          // each pass; empty: not recorded
-  std::vector<std::vector<double>> strains;              // of the part, likewise
 
   /// The pass that a position (counted through all of them) belongs to, and its place in it;
   /// pass == passes.size(): none.
@@ -100,6 +99,9 @@ class CutterPath {
   void add_blocks(std::size_t pass);
   Eigen::AlignedBox3f swept_box(const Pass& pass, std::size_t first, std::size_t end) const;
   void add(std::size_t pass, std::size_t first, std::size_t end, CutterPasses& out) const;
+  double strain_at(std::size_t row) const;
+  void add_at_one_strain(std::size_t pass, std::size_t first, std::size_t end, double strain,
+                         CutterPasses& out) const;
 
   const records::Series& servo_;
   model::PartFrame frame_;

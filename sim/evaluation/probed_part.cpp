@@ -108,10 +108,9 @@ class ProbedSurface {
     for (const Meeting& meeting : meetings) {
       const bool is_met = meeting.kind == Meeting::Kind::met;
       out.push_back({meeting, is_met ? cut.passes.feed_at(meeting.position) : nullptr});
-      if (!is_met) continue;
-      const plant::ProbeTarget& target = targets[out.size() - 1 - first];
-      if (cmm_.tooth_marks) add_tooth_mark(cut.passes, target, out.back());
-      shrink(cut.passes, target, out.back().meeting);
+      if (is_met && cmm_.tooth_marks) {
+        add_tooth_mark(cut.passes, targets[out.size() - 1 - first], out.back());
+      }
     }
   }
 
@@ -126,17 +125,6 @@ class ProbedSurface {
         position);
     probed.lacks_marks = !mark;
     if (mark) probed.meeting.distance = *mark;
-  }
-
-  // Tips are recorded where the cold part has them. From the tip to the contact the part shrinks,
-  // too, and the cutter does not.
-  static void shrink(const CutterPasses& cut, const plant::ProbeTarget& target, Meeting& meeting) {
-    const auto [pass, position] = cut.place_of(meeting.position);
-    if (cut.strains[pass].empty()) return;
-    const Vector3d contact = target.point + meeting.distance * target.normal;
-    const Vector3d to_tip = cut.passes[pass].positions[position].tip - contact;
-    const double strain = cut.strains[pass][position];
-    meeting.distance += strain / (1.0 + strain) * to_tip.dot(target.normal);
   }
 
   // Boxes of the first targets, as many as may be held together.

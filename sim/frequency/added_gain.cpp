@@ -50,9 +50,10 @@ Margins margins_with(const Curve& open_loop, double Kv, const AddedGain& added) 
   return margins_of(with);
 }
 
-double largest_added_gain(const Curve& open_loop, double Kv, const WantedMargins& wanted) {
+double largest_added_gain(const Curve& open_loop, double Kv, double largest_Kv,
+                          const WantedMargins& wanted) {
   const auto is_good = [&](double C) {
-    const double Ti = wanted.reset_ratio / (Kv + C);
+    const double Ti = wanted.Ti > 0.0 ? wanted.Ti : wanted.reset_ratio / (largest_Kv + C);
     return leaves(margins_with(open_loop, Kv, {C, Ti}), wanted);
   };
   double good = 0.0, bad = 0.0;

@@ -37,6 +37,8 @@ Margins margins_with(const Curve& open_loop, double Kv, const AddedGain& added);
 
 /// The largest C (1/s) such that it and every smaller one leave the margins; 0: there is none. To
 /// 1e-4 of Kv.
-double largest_added_gain(const Curve& open_loop, double Kv, const WantedMargins& wanted);
+/// @param largest_Kv  1/s, of all axes that share the integral part; Kv: this is the only one
+double largest_added_gain(const Curve& open_loop, double Kv, double largest_Kv,
+                          const WantedMargins& wanted);
 
 }  // namespace servomill::sim::frequency

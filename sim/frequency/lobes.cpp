@@ -8,16 +8,16 @@
 
 namespace servomill::sim::frequency {
 
-std::vector<plant::ChatterMode> modes_across(std::span<const plant::ToolPointMode> modes,
+std::vector<plant::ChatterMode> modes_across(std::span<const plant::StructuralMode> modes,
                                              const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
   constexpr double kAlong = 1e-6;  // share across the axis of a mode along it
   std::vector<plant::ChatterMode> out;
-  for (const plant::ToolPointMode& mode : modes) {
+  for (const plant::StructuralMode& mode : modes) {
     const Eigen::Vector2d across(mode.direction.dot(e1), mode.direction.dot(e2));
     const double share = across.norm();
-    if (share < kAlong) continue;
+    if (share < kAlong || mode.is_static()) continue;
     // q is displaced by share q, and driven by the share of the force
-    out.push_back({.stiffness = mode.stiffness / (share * share),
+    out.push_back({.stiffness = 1.0 / (mode.compliance * share * share),
                    .frequency = mode.mode.w,
                    .damping = mode.mode.zeta,
                    .direction = across / share});

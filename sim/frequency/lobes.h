@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plant/cutting/stability_lobes.h"
-#include "plant/structure/tool_point_mode.h"
+#include "plant/structure/inertial_compliance.h"
 
 namespace servomill::sim::frequency {
 
@@ -14,7 +14,7 @@ namespace servomill::sim::frequency {
 /// across the axis k counts. Modes along the axis are left out.
 /// @param e1  unit, along the linear axes of the machine
 /// @param e2  likewise
-std::vector<plant::ChatterMode> modes_across(std::span<const plant::ToolPointMode> modes,
+std::vector<plant::ChatterMode> modes_across(std::span<const plant::StructuralMode> modes,
                                              const Eigen::Vector3d& e1, const Eigen::Vector3d& e2);
 
 struct LobesRequest {

@@ -9,7 +9,6 @@ machine_errors = "NAME"
 imposed = "NAME"
 
 [machine]
-tool_point_mode = [{ direction = [0, 1, 0], stiffness = 2e7, frequency_Hz = 500, damping = 0.03 }]
 name = "first"
 structure = "[w C' b X Y Z t]"
 structural_mode = [{ direction = [1.0, 0.0, 1.0], stiffness = 5e7, frequency_Hz = 60.0, damping = 0.05 }]

@@ -81,7 +81,7 @@ void read_slope(config::Reader& table, const JointLayout& layout, bool linear,
 
 }  // namespace
 
-void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::Mode& mode) {
+void read_mode(config::Reader& table, double step, std::string_view name, plant::Mode& mode) {
   const bool has_damping = table.has("damping");
   if (!table.has("frequency_Hz")) {
     if (!has_damping) return;
@@ -94,12 +94,12 @@ void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::
   const double zeta =
       table.real("damping", config::kNumber, {config::above(0.0), config::below(1.0)});
   if (table.faults() > before) return;
-  const double step = shortest_step(periods), most = 1.0 / (kStepsPerPeriod * step);
-  if (f > most) {
+  const double most = 1.0 / (kStepsPerPeriod * step);
+  if (step > 0.0 && f > most) {
     table.fault("frequency_Hz",
-                fmt::format("must be <= {:g} Hz: {:g} of the shortest loop period of {:g} us in "
-                            "each period of the mode; without frequency_Hz it is static",
-                            most, kStepsPerPeriod, step / us));
+                fmt::format("must be <= {:g} Hz: {:g} of the {} of {:g} us in each period of the "
+                            "mode; without frequency_Hz it is static",
+                            most, kStepsPerPeriod, name, step / us));
   }
   mode = {2.0 * std::numbers::pi * f, zeta};
 }
@@ -117,7 +117,7 @@ std::vector<plant::InertialCompliance> read_inertial_deflection(
     pair.gain = linear ? table.real("gain_um_per_m_s2", kPerLinear)
                        : table.real("gain_um_per_rad_s2", kPerRotary);
     read_slope(table, machine.chain.layout, linear, pair);
-    read_mode(table, machine.nc.periods, pair.mode);
+    read_mode(table, shortest_step(machine.nc.periods), "shortest loop period", pair.mode);
     out.push_back(pair);
   }
   return out;

@@ -1,6 +1,7 @@
 /// Reads how the structure gives way to the acceleration of the axes.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "plant/structure/inertial_compliance.h"
@@ -16,6 +17,8 @@ std::vector<plant::InertialCompliance> read_inertial_deflection(
     config::Reader& table, const model::MachineSettings& machine);
 
 /// Reads frequency_Hz and damping of a mode; without them it is static.
-void read_mode(config::Reader& table, const model::LoopPeriods& periods, plant::Mode& mode);
+/// @param step  s, of which there must be 20 in each period of the mode; 0: it may be any
+/// @param name  of the step, for messages
+void read_mode(config::Reader& table, double step, std::string_view name, plant::Mode& mode);
 
 }  // namespace servomill::sim::input

@@ -23,7 +23,6 @@
 #include "sim/input/read_program.h"
 #include "sim/input/read_servo.h"
 #include "sim/input/read_structural_modes.h"
-#include "sim/input/read_tool_point_modes.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -227,7 +226,7 @@ bool describes_drives(const config::Document& machine) {
 
 // For machines whose axes are not known, and for those without drives.
 void skip_structure(config::Reader& table) {
-  for (const char* key : {"structural_mode", "inertial_deflection", "heat"}) table.raw(key);
+  for (const char* key : {"inertial_deflection", "heat"}) table.raw(key);
 }
 
 // A machine file without drives: structure, travel, limits, errors.
@@ -238,7 +237,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
   machine.chain = read_chain(table);
   table.raw("nc");
   skip_structure(table);
-  machine.tool_point_modes = read_tool_point_modes(table);
+  machine.structural_modes = read_structural_modes(table);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
@@ -326,7 +325,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   machine.scale_delay = read_scale_delay(nc, machine.nc.periods.base);
 
-  machine.tool_point_modes = read_tool_point_modes(table);
+  machine.structural_modes = read_structural_modes(table);
   machine.integrator =
       static_cast<model::Integrator>(table.choice_or("integrator", 0, kIntegrators));
   const double solver_tolerance =
@@ -352,7 +351,6 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
     read_axis(axis, common, j, machine);
     machine.drives[static_cast<std::size_t>(j)].solver_tolerance = solver_tolerance;
   }
-  machine.structural_modes = read_structural_modes(table, machine);
   machine.inertial_compliances = read_inertial_deflection(table, machine);
   machine.heat = read_heat(table, machine);
   read_models(table, machine, errors);

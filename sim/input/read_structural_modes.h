@@ -5,13 +5,12 @@
 
 #include "plant/structure/inertial_compliance.h"
 #include "sim/config/reader.h"
-#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 
 /// Reads the list `structural_mode` of a machine, where there is one.
-/// @param machine  chain and periods are read
+/// @param step  s, that has to resolve the modes; 0: none has to
 std::vector<plant::StructuralMode> read_structural_modes(config::Reader& machine_table,
-                                                         const model::MachineSettings& machine);
+                                                         double step);
 
 }  // namespace servomill::sim::input

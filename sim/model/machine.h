@@ -22,7 +22,6 @@
 #include "plant/sensing/encoder.h"
 #include "plant/sensing/reference_marks.h"
 #include "plant/structure/inertial_compliance.h"
-#include "plant/structure/tool_point_mode.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/ticks.h"
@@ -114,7 +113,6 @@ struct MachineSettings {
   Eigen::Vector3d structural_compliance = Eigen::Vector3d::Zero();
   std::vector<plant::StructuralMode> structural_modes;          // in addition to it
   std::vector<plant::InertialCompliance> inertial_compliances;  // none: rigid under acceleration
-  std::vector<plant::ToolPointMode> tool_point_modes;           // under cutting forces: chatter
   std::shared_ptr<const HeatSettings> heat;  // nullptr: at its reference temperature, always
   Tick scale_delay = 0;
   NcSettings nc;

@@ -36,6 +36,13 @@ class LinearLoops {
   char letter(int joint) const { return machine_.chain.layout.letter_of(joint); }
   bool is_checked() const { return machine_.nc.check_stability; }
 
+  /// True if the sampled loop settles with a proportional gain C (1/s) beside Kv.
+  bool is_stable(int joint, double C) const {
+    model::MachineSettings with = machine_;
+    with.nc.cascade[static_cast<std::size_t>(joint)].Kv += C;
+    return frequency::spectral_radius(frequency::linearised(with), joint, delay_) < 1.0;
+  }
+
   std::shared_ptr<const frequency::Curve> open(int joint) const {
     system::MemoKey key;
     key.add(delay_);
@@ -57,9 +64,11 @@ double decibels(double factor) { return 20.0 * std::log10(factor); }
 double largest_added_gain(const model::Scenario& scenario, const model::CaseSpec& spec,
                           const WantedMargins& wanted, PreparationCache& cache) {
   const LinearLoops loops(scenario, spec, cache);
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), largest_Kv = 0.0;
+  for (const int j : loops.joints()) largest_Kv = std::max(largest_Kv, loops.Kv(j));
   for (const int j : loops.joints()) {
-    least = std::min(least, frequency::largest_added_gain(*loops.open(j), loops.Kv(j), wanted));
+    least = std::min(
+        least, frequency::largest_added_gain(*loops.open(j), loops.Kv(j), largest_Kv, wanted));
   }
   return least;
 }
@@ -72,13 +81,21 @@ std::vector<std::string> check_added_gain(const model::Scenario& scenario,
   const WantedMargins usual;
   const LinearLoops loops(scenario, spec, cache);
   std::vector<std::string> notes;
+  if (added.C == 0.0) return notes;
+  if (spec.servo == model::ServoModel::ideal) {
+    return {
+        fmt::format("warning: case {}: strategy {} acts in the position loops, which an ideal "
+                    "servo does not have",
+                    spec.name, strategy.entry->name)};
+  }
   for (const int j : loops.joints()) {
     const auto margins = frequency::margins_with(*loops.open(j), loops.Kv(j), added);
     const std::string what = fmt::format(
         "case {}: strategy {}: with {:.4g} 1/s beside Kv = {:.4g} 1/s the position loop "
         "of {}",
         spec.name, strategy.entry->name, added.C, loops.Kv(j), loops.letter(j));
-    if (loops.is_checked() && (margins.gain <= 1.0 || margins.phase <= 0.0)) {
+    // of an integral part the margins tell, as far as there is a crossover
+    if (loops.is_checked() && (!loops.is_stable(j, added.C) || margins.phase <= 0.0)) {
       throw InputError(strategy.place,
                        what +
                            " is unstable; lower the gain, or set nc.check_stability = false to "

@@ -328,7 +328,7 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
                                     scenario_.cutting->teeth,
                                     scenario_.cutting->regeneration,
                                     scenario_.cutting->actual_depth,
-                                    machine_.tool_point_modes,
+                                    machine_.structural_modes,
                                     scenario_.program.file,
                                     scenario_.cutting->place};
   system::MemoKey key;
@@ -341,9 +341,9 @@ SharedCutting CasePreparation::cutting(const SharedProgram& program) const {
   key.add(inputs.teeth);
   key.add(inputs.regeneration);
   key.add(inputs.displaced);
-  for (const plant::ToolPointMode& mode : inputs.modes) {
+  for (const plant::StructuralMode& mode : inputs.modes) {
     key.add(mode.direction);
-    for (const double value : {mode.stiffness, mode.mode.w, mode.mode.zeta}) key.add(value);
+    for (const double value : {mode.compliance, mode.mode.w, mode.mode.zeta}) key.add(value);
   }
   for (const plant::NamedCoefficient& K : plant::kCuttingCoefficients) {
     key.add(inputs.coefficients.*K.member);

@@ -13,7 +13,7 @@ namespace servomill::sim::preparation {
 
 double highest_mode(const model::MachineSettings& machine) {
   double highest = 0.0;
-  for (const plant::ToolPointMode& mode : machine.tool_point_modes) {
+  for (const plant::StructuralMode& mode : machine.structural_modes) {
     highest = std::max(highest, mode.mode.w / (2.0 * std::numbers::pi));
   }
   return highest;
@@ -25,18 +25,21 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
   const auto refuse = [&](std::string_view why) {
     throw InputError(scenario.cutting->place,
                      fmt::format("case {}: regeneration = true needs a mode of the tool point "
-                                 "across the tool ([[tool_point_mode]] of the machine); {}",
+                                 "across the tool ([[structural_mode]] of the machine); {}",
                                  spec.name, why));
   };
   const model::MachineSettings& machine = scenario.machine_of(spec);
-  if (machine.tool_point_modes.empty()) refuse("it has none");
+  const auto swings = [](const plant::StructuralMode& mode) { return !mode.is_static(); };
+  if (std::none_of(machine.structural_modes.begin(), machine.structural_modes.end(), swings)) {
+    refuse("it has none with frequency_Hz");
+  }
   constexpr double kAlong = 1e-6;  // share across the tool of a mode along it
   const Eigen::Vector3d k = plant::forward(machine.chain, start, Eigen::Vector3d::Zero()).k_W;
   const Eigen::Matrix3d J = plant::linear_jacobian(machine.chain, start);
-  const auto vibrates = [&](const plant::ToolPointMode& mode) {
-    return (J * mode.direction).cross(k).norm() > kAlong;
+  const auto vibrates = [&](const plant::StructuralMode& mode) {
+    return !mode.is_static() && (J * mode.direction).cross(k).norm() > kAlong;
   };
-  if (std::none_of(machine.tool_point_modes.begin(), machine.tool_point_modes.end(), vibrates)) {
+  if (std::none_of(machine.structural_modes.begin(), machine.structural_modes.end(), vibrates)) {
     refuse("all of its modes are along the tool");
   }
 }
@@ -61,6 +64,15 @@ std::vector<int> rounded(const std::vector<plant::EdgeSlice>& slices,
     out.push_back(whole(100.0 * std::log(std::max(slice.width * slice.sine, 1 * nm))));
   }
   return out;
+}
+
+// From tooth to tooth, of the fastest mode: effort and memory of the analysis grow with it.
+constexpr double kMaxPeriods = 50.0;
+
+double periods_in(double passage, std::span<const plant::ChatterMode> modes) {
+  double fastest = 0.0;
+  for (const plant::ChatterMode& mode : modes) fastest = std::max(fastest, mode.frequency);
+  return fastest / (2.0 * std::numbers::pi) * passage;
 }
 
 }  // namespace
@@ -93,13 +105,17 @@ void ChatterCheck::add(int line, int tool, const plant::Cutter& cutter,
                        const plant::CutterFrame& frame, std::span<const plant::EngagedArc> arcs,
                        double turns, const Joints& Q) {
   if (modes_.empty()) return;
-  std::vector<plant::ToolPointMode> in_W = modes_;
+  std::vector<plant::StructuralMode> in_W = modes_;
   const Eigen::Matrix3d J = plant::linear_jacobian(chain_, Q);
-  for (plant::ToolPointMode& mode : in_W) mode.direction = J * mode.direction;
+  for (plant::StructuralMode& mode : in_W) mode.direction = J * mode.direction;
   const auto modes = frequency::modes_across(in_W, frame.axes.col(0), frame.axes.col(1));
   const plant::PeriodicCut cut{K_, cutter.teeth, turns,
                                plant::edge_slices(cutter, frame.feed, arcs)};
   if (modes.empty() || cut.slices.empty()) return;
+  if (periods_in(cut.passage(), modes) > kMaxPeriods) {
+    slowest_left_out_ = std::max(slowest_left_out_, turns);
+    return;
+  }
   const auto [known, is_new] = known_.try_emplace({tool, turns, rounded(cut.slices, modes)});
   if (is_new) known->second = stability_of(cut, modes);
   Unstable& worst = lines_[line];
@@ -122,6 +138,13 @@ std::vector<Fault> ChatterCheck::warnings(const std::string& file) const {
                                "stability: it chatters at {:.0f} Hz{}",
                                worst.tool, 60.0 * worst.turns, worst.excess, worst.frequency,
                                worst.is_flip ? " (flip)" : "")});
+  }
+  if (slowest_left_out_ > 0.0) {
+    out.push_back(
+        {{file},
+         fmt::format("cuts at {:.0f} 1/min and slower were not examined for chatter: more "
+                     "than {:g} periods of a mode from tooth to tooth",
+                     60.0 * slowest_left_out_, kMaxPeriods)});
   }
   if (others > 0) {
     out.push_back({{file}, fmt::format("{} more lines with cuts that chatter", others)});

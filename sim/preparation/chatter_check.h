@@ -11,7 +11,7 @@
 #include "plant/cutting/chatter_stability.h"
 #include "plant/cutting/engagement.h"
 #include "plant/kinematics/chain.h"
-#include "plant/structure/tool_point_mode.h"
+#include "plant/structure/inertial_compliance.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/model/scenario.h"
 
@@ -33,7 +33,7 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
 class ChatterCheck {
  public:
   /// @param modes  of the tool point; none: nothing is checked. All arguments must outlive this
-  ChatterCheck(const std::vector<plant::ToolPointMode>& modes,
+  ChatterCheck(const std::vector<plant::StructuralMode>& modes,
                const plant::CuttingCoefficients& coefficients, const plant::MachineChain& chain)
       : modes_(modes), K_(coefficients), chain_(chain) {}
 
@@ -60,7 +60,8 @@ class ChatterCheck {
   Unstable stability_of(const plant::PeriodicCut& cut,
                         std::span<const plant::ChatterMode> modes) const;
 
-  const std::vector<plant::ToolPointMode>& modes_;
+  double slowest_left_out_ = 0.0;  // 1/s, the fastest speed that was not examined
+  const std::vector<plant::StructuralMode>& modes_;
   const plant::CuttingCoefficients& K_;
   const plant::MachineChain& chain_;
   std::map<Key, Unstable> known_;

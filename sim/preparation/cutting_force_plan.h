@@ -10,7 +10,7 @@
 #include "plant/cutting/cutter.h"
 #include "plant/cutting/material.h"
 #include "plant/cutting/stock.h"
-#include "plant/structure/tool_point_mode.h"
+#include "plant/structure/inertial_compliance.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/preparation/preparation_cache.h"
 
@@ -28,7 +28,7 @@ struct CuttingPlanInputs {
   bool regeneration;  // of teeth that vibrate
   bool displaced;     // cuts beside the path are planned
   // of the tool point: cuts that chatter are reported
-  const std::vector<plant::ToolPointMode>& modes;
+  const std::vector<plant::StructuralMode>& modes;
   std::string file;  // of the program, for messages
   Place place;       // of [cutting]
 };

@@ -69,7 +69,20 @@ struct PreparedCase::Parts {
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
   void plan_cut(const CasePreparation& prepare);
+  void check_added_gain(const CasePreparation& prepare, const model::StrategySpec& strategy);
 };
+
+// Of the last strategy.
+void PreparedCase::Parts::check_added_gain(const CasePreparation& prepare,
+                                           const model::StrategySpec& strategy) {
+  const auto added = strategies.back()->added_gain();
+  if (!added) return;
+  refuse_second_gain(strategy, strategies, spec.name);
+  refuse_other_tip(strategy, *program, scenario.program.file, spec.name);
+  for (std::string& note : prepare.check_added_gain(strategy, *added)) {
+    warnings.push_back(std::move(note));
+  }
+}
 
 // The cut and, of single teeth, their steps. A mode that the tick does not resolve is refused
 // before anything is planned.
@@ -95,12 +108,7 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
     strategies.push_back(prepare.strategy(strategy, program->first_tip));
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
-    if (const auto added = strategies.back()->added_gain();
-        added && spec.servo != model::ServoModel::ideal) {
-      for (std::string& note : prepare.check_added_gain(strategy, *added)) {
-        warnings.push_back(std::move(note));
-      }
-    }
+    check_added_gain(prepare, strategy);
     if (!strategies.back()->rewrites()) continue;
     refuse_rewritten_probing(strategy, *program, spec.name);
     refuse_tip_moves(strategy, *strategies.back(), *program, scenario.program.file, spec.name);

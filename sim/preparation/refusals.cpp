@@ -132,6 +132,34 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
   }
 }
 
+void refuse_second_gain(const model::StrategySpec& spec,
+                        std::span<const std::shared_ptr<const strategies::Strategy>> strategies,
+                        const std::string& case_name) {
+  const auto adds = [](const auto& one) { return one->added_gain().has_value(); };
+  if (std::count_if(strategies.begin(), strategies.end(), adds) < 2) return;
+  throw InputError(spec.place,
+                   fmt::format("case {}: strategy {}: another strategy of the case adds a gain to "
+                               "the position loops, too; a case may have one",
+                               case_name, spec.entry->name));
+}
+
+void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram& program,
+                      const std::string& file, const std::string& case_name) {
+  std::optional<AxisWords> before;
+  for (const Move& move : program.moves) {
+    if (!is_motion(move.kind)) continue;
+    const auto tip = program.tips.find(move.tool_offset);
+    const bool other = tip != program.tips.end() && tip->second != program.first_tip;
+    const bool turns = before && move.end_machine.segment<3>(3) != before->segment<3>(3);
+    before = move.end_machine;
+    if (!other || !turns) continue;
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {}: follows the tip of the first tool of the "
+                                 "program; here rotary axes move with another one ({}:{})",
+                                 case_name, spec.entry->name, file, move.line));
+  }
+}
+
 void refuse_endless(const model::Scenario& scenario, double duration) {
   constexpr double kHour = 3600.0;
   if (duration > scenario.record.max_duration) {

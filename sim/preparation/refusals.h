@@ -68,6 +68,20 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
                       const InterpretedProgram& program, const std::string& file,
                       const std::string& case_name);
 
+/// Gains in the position loops add up, and each is checked alone.
+/// @param spec        of the last strategy, which adds a gain
+/// @param strategies  of the case until there
+/// @throws InputError at the strategy, if one before it adds a gain, too
+void refuse_second_gain(const model::StrategySpec& spec,
+                        std::span<const std::shared_ptr<const strategies::Strategy>> strategies,
+                        const std::string& case_name);
+
+/// A strategy in the position loops follows the tip of the first tool; while rotary axes stand
+/// still, those of other tools move alike.
+/// @throws InputError at the strategy, where rotary axes move with another one
+void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram& program,
+                      const std::string& file, const std::string& case_name);
+
 /// A slip of the unit can make a program last for years.
 /// @param duration  s; of the planned motion, or less: way over feed, which is known before
 /// @throws InputError at the program

@@ -96,8 +96,7 @@ class Day {
         duration_(duration),
         long_step_(long_step(heat_)),
         power_(VectorXd::Zero(static_cast<Index>(heat_.network.bodies.size()))),
-        at_start_(errors_now()),
-        rise_at_start_(rise_of_part()) {
+        at_start_(errors_now()) {
     for (const auto& body : heat_.network.bodies) out_.bodies.push_back(body.name);
     for (const auto& place : day_.places) out_.places.push_back(place.name);
     for (const auto& sensor : heat_.sensors) out_.sensors.push_back(sensor.name);
@@ -203,32 +202,15 @@ class Day {
   plant::VolumetricError drift_of(const model::DayPlace& place) const {
     const plant::VolumetricError a = now_->error(place.Q, place.p_ST);
     const plant::VolumetricError b = at_start_.error(place.Q, place.p_ST);
-    return {shift_of(*now_, place.Q, place.p_ST, rise_of_part()) -
-                shift_of(at_start_, place.Q, place.p_ST, rise_at_start_),
-            a.dk_W - b.dk_W};
-  }
-
-  // K, of the part above the reference; 0 without one.
-  double rise_of_part() const {
-    if (!heat_.part) return 0.0;
-    return network_.temperatures()[heat_.part->body] - heat_.reference;
-  }
-
-  // By which heat displaces the tip from its place on the part (3; m, in W).
-  Vector3d shift_of(const plant::VolumetricModel& errors, const Joints& Q, const Vector3d& p_ST,
-                    double rise) const {
-    const Vector3d shift = errors.error(Q, p_ST).dp_W;
-    if (!heat_.part) return shift;
-    const Vector3d p = plant::forward(machine_.chain, Q, p_ST).p_WT;
-    return heat_.part->measured(p + shift, rise) - p;
+    return {a.dp_W - b.dp_W, a.dk_W - b.dk_W};
   }
 
   void judge_cycle() {
     const plant::VolumetricModel errors = errors_now();
     DayCycle cycle{t_, 0.0, 0.0};
     for (const PathPlace& place : path_) {
-      const Vector3d d = shift_of(errors, place.Q, place.p_ST, rise_of_part()) -
-                         shift_of(at_start_, place.Q, place.p_ST, rise_at_start_) - datum_;
+      const Vector3d d = errors.error(place.Q, place.p_ST).dp_W -
+                         at_start_.error(place.Q, place.p_ST).dp_W - datum_;
       cycle.rms += d.squaredNorm() / kPathPlaces;
       cycle.most = std::max(cycle.most, d.norm());
     }
@@ -268,7 +250,6 @@ class Day {
   double duration_, long_step_;
   VectorXd power_;
   plant::VolumetricModel at_start_;
-  double rise_at_start_;  // K, of the part
   std::unique_ptr<plant::VolumetricModel> now_;
   Vector3d datum_ = Vector3d::Zero();
   double t_ = 0.0, next_reading_ = 0.0;

@@ -86,7 +86,7 @@ class Lobes(unittest.TestCase):
 
     def test_wrong_input_is_refused_with_what_is_missing(self):
         for arguments, message in (
-                ((*SLOT,), "servomill lobes: error: needs modes of the tool point: [[tool_point_mode]] of the machine, or --stiffness, --frequency and --damping"),
+                ((*SLOT,), "servomill lobes: error: needs modes of the tool point: [[structural_mode]] of the machine with frequency_Hz, or --stiffness, --frequency and --damping"),
                 ((*SLOT, "--stiffness", "20"), "--frequency: error: is missing; a mode has --stiffness, --frequency and --damping"),
                 ((*SLOT, "--mode-angle", "20"), "--mode-angle: error: needs --stiffness, --frequency and --damping"),
                 ((*MODE, "--material", "42CrMo4"), "--teeth: error: is missing; the file gives no tool"),

@@ -158,19 +158,53 @@ TEST(Contour, WarnsOfAGainThatLeavesLittleMargin) {
   EXPECT_TRUE(run_of(kCircle, contour(""), kLag).notes.empty()) << "auto keeps them";
 }
 
-TEST(Contour, RefusesAGainThatIsUnstable) {
-  const sim::model::Scenario scenario =
-      sim::small_scenario(kCircle, contour("gain_per_s = 2000.0\n") + kLag);
+std::string refusal(const std::string& strategies, const std::string& program = kCircle,
+                    const std::string& more = kLag) {
+  const sim::model::Scenario scenario = sim::small_scenario(program, strategies + more);
   try {
     const sim::preparation::PreparedCase prepared(scenario, scenario.cases.front());
-    FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(
-        error.faults().front().message,
-        "case one: strategy contour: with 2000 1/s beside Kv = 83.33 1/s the position loop of "
-        "X is unstable; lower the gain, or set nc.check_stability = false to simulate it "
-        "anyway");
+    return error.faults().front().message;
   }
+  return "none";
+}
+
+TEST(Contour, RefusesAGainThatIsUnstable) {
+  for (const char* gain : {"500", "2000", "20000", "1e5"}) {
+    EXPECT_NE(refusal(contour(fmt::format("gain_per_s = {}\n", gain)))
+                  .find("the position loop of X is unstable; lower the gain, or set "
+                        "nc.check_stability = false to simulate it anyway"),
+              std::string::npos)
+        << gain;
+  }
+}
+
+TEST(Contour, RefusesASecondOne) {
+  EXPECT_EQ(refusal(contour("") + "[[case.strategy]]\ntype = \"contour\"\n"),
+            "case one: strategy contour: another strategy of the case adds a gain to the position "
+            "loops, too; a case may have one");
+}
+
+// Tips of two tools move alike as long as the rotary axes stand still.
+TEST(Contour, RefusesToTurnWithAnotherTool) {
+  const std::string tools =
+      "[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n[[program.tool]]\nnumber = 2\nlength_mm = "
+      "60.0\n";
+  const std::string change = "T1 M6\nG43 H1\nG1 X10 F1000\nT2 M6\nG43 H2\nG1 X20\n";
+  EXPECT_EQ(refusal(tools + contour(""), change + "M2\n"), "none");
+  EXPECT_EQ(refusal(tools + contour(""), change + "G1 C10\nM2\n"),
+            "case one: strategy contour: follows the tip of the first tool of the program; here "
+            "rotary axes move with another one (small.ngc:7)");
+}
+
+TEST(Contour, WarnsWithAnIdealServo) {
+  const std::string ideal =
+      "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case.strategy]]\ntype = \"contour\"\n";
+  const CaseOutput out = run_of(kCircle, ideal, kLag);
+  ASSERT_EQ(out.notes.size(), 1U);
+  EXPECT_EQ(out.notes[0],
+            "warning: case one: strategy contour acts in the position loops, which an ideal servo "
+            "does not have");
 }
 
 Parameters of_fifty() {

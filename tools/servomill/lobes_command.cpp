@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 3> kMillings = {"slot", "up", "down"};
 
 // Data of a machine or a scenario; options override them.
 struct Given {
-  std::vector<plant::ToolPointMode> modes;
+  std::vector<plant::StructuralMode> modes;
   std::optional<plant::CuttingCoefficients> coefficients;
   plant::Cutter cutter = {.teeth = 0};  // radius 0, teeth 0: none
 };
@@ -59,28 +59,30 @@ Given read_files(const Options& options) {
   if (sim::input::is_machine_file(path)) {
     if (options.has("tool")) throw InputError({"--tool"}, "needs a scenario, which has tools");
     out.modes =
-        sim::input::read_machine_description(path, options.list("set")).machine.tool_point_modes;
+        sim::input::read_machine_description(path, options.list("set")).machine.structural_modes;
     return out;
   }
   const sim::model::Scenario scenario = scenario_for_axes(options);
-  out.modes = scenario.machine.tool_point_modes;
+  out.modes = scenario.machine.structural_modes;
   if (scenario.cutting) out.coefficients = scenario.cutting->coefficients;
   out.cutter = tool_of(options, scenario.program);
   return out;
 }
 
 // The mode of --stiffness, --frequency, --damping and --mode-angle, or those of the file.
-std::vector<plant::ToolPointMode> modes_of(const Options& options, const Given& given) {
+std::vector<plant::StructuralMode> modes_of(const Options& options, const Given& given) {
   constexpr std::array<const char*, 3> kNeeded = {"stiffness", "frequency", "damping"};
   const auto has = [&](const char* name) { return options.has(name); };
   if (std::none_of(kNeeded.begin(), kNeeded.end(), has)) {
     if (options.has("mode-angle")) {
       throw InputError({"--mode-angle"}, "needs --stiffness, --frequency and --damping");
     }
-    if (!given.modes.empty()) return given.modes;
-    throw InputError({"servomill lobes"},
-                     "needs modes of the tool point: [[tool_point_mode]] of the machine, or "
-                     "--stiffness, --frequency and --damping");
+    const auto swings = [](const plant::StructuralMode& mode) { return !mode.is_static(); };
+    if (std::any_of(given.modes.begin(), given.modes.end(), swings)) return given.modes;
+    throw InputError(
+        {"servomill lobes"},
+        "needs modes of the tool point: [[structural_mode]] of the machine with frequency_Hz, or "
+        "--stiffness, --frequency and --damping");
   }
   for (const char* name : kNeeded) {
     if (!has(name)) {
@@ -88,8 +90,8 @@ std::vector<plant::ToolPointMode> modes_of(const Options& options, const Given& 
                        "is missing; a mode has --stiffness, --frequency and --damping");
     }
   }
-  plant::ToolPointMode mode;
-  mode.stiffness = *positive_option(options, "stiffness", sim::config::kStiffness, "N/um");
+  plant::StructuralMode mode;
+  mode.compliance = 1.0 / *positive_option(options, "stiffness", sim::config::kStiffness, "N/um");
   mode.mode.w = 2.0 * kPi * *positive_option(options, "frequency", sim::config::kRate, "Hz");
   mode.mode.zeta = *positive_option(options, "damping", sim::config::kNumber, "1");
   if (mode.mode.zeta >= 1.0) {
@@ -331,7 +333,7 @@ int lobes_command(const Arguments& arguments) {
   Options options(
       "lobes", "[MACHINE.toml|SCENARIO.toml] [--teeth N] [--material NAME] [-o OUT.csv]",
       "Prints stability lobes: the depth of cut at which a milling cutter begins to chatter, over "
-      "the\nspeed of its spindle. Modes are those of [[tool_point_mode]] of the machine or one of "
+      "the\nspeed of its spindle. Modes are those of [[structural_mode]] of the machine or one of "
       "the options;\ntool and material those of the scenario or of the options. Limits are found "
       "by semi-discretisation\nfor the engagement as it is, with helix; Hopf: a second frequency, "
       "flip: the vibration repeats\nafter two teeth. The last column is the closed form with mean "

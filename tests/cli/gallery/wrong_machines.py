@@ -49,7 +49,7 @@ def structure(title, text):
 
 def mode(title, text):
     """A machine whose tool point vibrates."""
-    return machine(title, "[axis.X]\n", "[[tool_point_mode]]\n" + text + "\n[axis.X]\n")
+    return machine(title, "[axis.X]\n", "[[structural_mode]]\n" + text + "\n[axis.X]\n")
 
 
 def heat(title, text):

@@ -13,14 +13,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep = 50 * us;
-const ToolPointMode kY{.direction = Vector3d::UnitY(),
-                       .stiffness = 20e6,
-                       .mode = {2.0 * std::numbers::pi * 500.0, 0.03}};
+const StructuralMode kY{.direction = Vector3d::UnitY(),
+                        .compliance = 1.0 / 20e6,
+                        .mode = {2.0 * std::numbers::pi * 500.0, 0.03}};
 
 // q of a mode at rest whose force begins at t = 0.
-double step_response(const ToolPointMode& mode, double force, double t) {
+double step_response(const StructuralMode& mode, double force, double t) {
   const double w = mode.mode.w, z = mode.mode.zeta, wd = w * std::sqrt(1.0 - z * z);
-  return force / mode.stiffness *
+  return force * mode.compliance *
          (1.0 - std::exp(-z * w * t) * (std::cos(wd * t) + z * w / wd * std::sin(wd * t)));
 }
 
@@ -35,7 +35,7 @@ TEST(ToolPointVibration, under_a_constant_force_is_the_step_response) {
 }
 
 TEST(ToolPointVibration, ends_a_step_where_it_was_predicted) {
-  ToolPointMode oblique = kY;
+  StructuralMode oblique = kY;
   oblique.direction = Vector3d(0.6, 0.0, 0.8);
   oblique.mode.w *= 1.7;
   ToolPointVibration vibration({kY, oblique}, kStep);

@@ -22,7 +22,7 @@ const std::string kStraightTool = kTool + "helix_deg = 0.0\n";
 const std::string kTeeth = kSteel + "force = \"instantaneous\"\n";
 const std::string kFine = "[record]\nperiod_ms = 0.05\n";
 const std::string kMode =
-    "[machine_override]\ntool_point_mode = [{ direction = [0, 1, 0], stiffness = \"20 N/um\", "
+    "[machine_override]\nstructural_mode = [{ direction = [0, 1, 0], stiffness = \"20 N/um\", "
     "frequency_Hz = 500.0, damping = 0.03 }]\n";
 
 plant::StabilityLimit slot_limit() {

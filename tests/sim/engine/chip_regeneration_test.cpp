@@ -26,10 +26,10 @@ constexpr double kFeed = 50 * um;  // per tooth
 
 const plant::CuttingCoefficients& steel() { return plant::find_material("42CrMo4")->typical; }
 
-const std::vector<plant::ToolPointMode> kNormal = {
-    {.direction = Vector3d::UnitY(), .stiffness = 20e6, .mode = {2.0 * kPi * 500.0, 0.03}}};
-const std::vector<plant::ToolPointMode> kTwo = {
-    {.direction = Vector3d::UnitX(), .stiffness = 24e6, .mode = {2.0 * kPi * 620.0, 0.035}},
+const std::vector<plant::StructuralMode> kNormal = {
+    {.direction = Vector3d::UnitY(), .compliance = 1.0 / 20e6, .mode = {2.0 * kPi * 500.0, 0.03}}};
+const std::vector<plant::StructuralMode> kTwo = {
+    {.direction = Vector3d::UnitX(), .compliance = 1.0 / 24e6, .mode = {2.0 * kPi * 620.0, 0.035}},
     kNormal.front()};
 
 const std::vector<plant::StructuralMode> kRigid;
@@ -45,7 +45,7 @@ class Cut {
   static constexpr int kRamp = 500;
 
   // @param step  of the teeth, as a share of a tooth passage
-  Cut(const plant::FlankEngagement& cut, const std::vector<plant::ToolPointMode>& modes,
+  Cut(const plant::FlankEngagement& cut, const std::vector<plant::StructuralMode>& modes,
       double depth, double turns, double step)
       : passage_(1.0 / (turns * cut.teeth)),
         dt_(step * passage_),
@@ -120,13 +120,13 @@ Complex multiplier(const std::vector<Eigen::Vector2d>& x, int samples, int first
   return std::abs(a) >= std::abs(b) ? a : b;
 }
 
-std::vector<plant::ChatterMode> across(const std::vector<plant::ToolPointMode>& modes) {
+std::vector<plant::ChatterMode> across(const std::vector<plant::StructuralMode>& modes) {
   return frequency::modes_across(modes, Vector3d::UnitX(), Vector3d::UnitY());
 }
 
 // Steps of a tooth passage that are as coarse as a run may have them, 20 in a period of the fastest
 // mode.
-int coarsest_steps(const std::vector<plant::ToolPointMode>& modes, double passage) {
+int coarsest_steps(const std::vector<plant::StructuralMode>& modes, double passage) {
   double fastest = 0.0;
   for (const auto& mode : modes) fastest = std::max(fastest, mode.mode.w / (2.0 * kPi));
   return static_cast<int>(std::ceil(20.0 * fastest * passage));

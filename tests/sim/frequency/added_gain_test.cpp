@@ -27,12 +27,13 @@ Curve with_delay(double Kv, double T) {
 // Phase margin 90 deg - K T, gain margin pi / (2 K T): 45 deg binds, K = pi / (4 T).
 TEST(AddedGain, OfAPureDelayIsThatOfTheClosedForm) {
   const double Kv = 40.0, T = 4 * ms;
-  const double C = largest_added_gain(with_delay(Kv, T), Kv, {});
+  const double C = largest_added_gain(with_delay(Kv, T), Kv, Kv, {});
   EXPECT_NEAR(Kv + C, kPi / (4.0 * T), 2e-3 * Kv);
   // 12 dB bind: K = pi / (2 T) / 4
-  EXPECT_NEAR(Kv + largest_added_gain(with_delay(Kv, T), Kv, {.gain = 4.0}), kPi / (8.0 * T),
+  EXPECT_NEAR(Kv + largest_added_gain(with_delay(Kv, T), Kv, Kv, {.gain = 4.0}), kPi / (8.0 * T),
               2e-3 * Kv);
-  EXPECT_EQ(largest_added_gain(with_delay(Kv, 30 * ms), Kv, {}), 0.0) << "Kv itself is too high";
+  EXPECT_EQ(largest_added_gain(with_delay(Kv, 30 * ms), Kv, Kv, {}), 0.0)
+      << "Kv itself is too high";
 }
 
 // An integral costs atan(C / (Kv + C) / (w Ti)) at the crossover.
@@ -41,6 +42,24 @@ TEST(AddedGain, WithAnIntegralHasLessPhase) {
   const Margins with = margins_with(with_delay(Kv, T), Kv, {C, Ti});
   const double w = 2.0 * kPi * with.crossover;
   EXPECT_NEAR(with.phase, 0.5 * kPi - w * T - std::atan(C / (Kv + C) / (w * Ti)), 1e-4);
+}
+
+// With the integral that the run will have, the gain that is found has the margin, 1 % more has
+// not.
+TEST(AddedGain, KeepsItsMarginsWithAnIntegral) {
+  const double Kv = 40.0, T = 4 * ms;
+  for (const WantedMargins& wanted :
+       {WantedMargins{.Ti = 20 * ms}, WantedMargins{.reset_ratio = 8.0}}) {
+    const Curve open = with_delay(Kv, T);
+    const double C = largest_added_gain(open, Kv, 83.0, wanted);
+    ASSERT_GT(C, 10.0);
+    const auto phase = [&](double gain) {
+      const double Ti = wanted.Ti > 0.0 ? wanted.Ti : wanted.reset_ratio / (83.0 + gain);
+      return margins_with(open, Kv, {gain, Ti}).phase;
+    };
+    EXPECT_GE(phase(C), 45 * deg);
+    EXPECT_LT(phase(C + 0.01 * Kv), 45 * deg);
+  }
 }
 
 // A proportional gain is a larger Kv, on the exact multirate model of every axis.
@@ -56,7 +75,7 @@ TEST(AddedGain, ThatIsProportionalIsALargerKv) {
     const Margins found = margins_with(open, gains.Kv, {50.0, 0.0});
     EXPECT_NEAR(found.phase, exact.phase, 2e-3);
     EXPECT_NEAR(found.gain, exact.gain, 5e-3 * exact.gain);
-    const double C = largest_added_gain(open, gains.Kv, {});
+    const double C = largest_added_gain(open, gains.Kv, gains.Kv, {});
     higher.Kv = gains.Kv + 0.99 * C;
     TuneSettings wanted;
     wanted.phase_margin = 45 * deg;

@@ -12,15 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-const plant::ToolPointMode kMode{
-    .direction = Vector3d::UnitY(), .stiffness = 20e6, .mode = {3000.0, 0.03}};
+const plant::StructuralMode kMode{
+    .direction = Vector3d::UnitY(), .compliance = 1.0 / 20e6, .mode = {3000.0, 0.03}};
 
 TEST(Lobes, modes_are_seen_from_the_feed) {
-  const plant::ToolPointMode oblique{
-      .direction = Vector3d(0.0, 0.6, 0.8), .stiffness = 9e6, .mode = {4000.0, 0.02}};
-  const plant::ToolPointMode along{
-      .direction = Vector3d::UnitZ(), .stiffness = 9e6, .mode = {4000.0, 0.02}};
-  const plant::ToolPointMode all[] = {kMode, oblique, along};
+  const plant::StructuralMode oblique{
+      .direction = Vector3d(0.0, 0.6, 0.8), .compliance = 1.0 / 9e6, .mode = {4000.0, 0.02}};
+  const plant::StructuralMode along{
+      .direction = Vector3d::UnitZ(), .compliance = 1.0 / 9e6, .mode = {4000.0, 0.02}};
+  const plant::StructuralMode all[] = {kMode, oblique, along};
   // feed along Y: e2 = k x e1 = -X
   const auto modes = modes_across(all, Vector3d::UnitY(), -Vector3d::UnitX());
   ASSERT_EQ(modes.size(), 2U) << "that along the tool is left out";

@@ -56,11 +56,12 @@ TEST(ReadStructuralModes, refuses_directions_and_stiffnesses_of_none) {
 
 TEST(ReadStructuralModes, refuses_modes_that_the_loops_do_not_resolve) {
   EXPECT_EQ(
-      refusal("{ direction = [1.0, 0.0, 0.0], stiffness = 5e7, frequency_Hz = 501.0, damping = "
+      refusal("{ direction = [1.0, 0.0, 0.0], stiffness = 5e7, frequency_Hz = 5001.0, damping = "
               "0.05 }"),
       std::string(kPath) +
-          "frequency_Hz = 501.0; must be <= 500 Hz: 20 of the shortest loop period of 100 us in "
-          "each period of the mode; without frequency_Hz it is static");
+          "frequency_Hz = 5001.0; must be <= 5000 Hz: 20 of the base period of 10 us in each "
+          "period "
+          "of the mode; without frequency_Hz it is static");
   EXPECT_EQ(refusal("{ direction = [1.0, 0.0, 0.0], stiffness = 5e7, damping = 0.05 }"),
             std::string(kPath) +
                 "damping = 0.05; needs frequency_Hz: without it the deflection is static");

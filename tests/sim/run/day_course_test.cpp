@@ -66,23 +66,6 @@ TEST(DayCourse, DriftsByTheClosedForm) {
   }
 }
 
-// A part of steel that takes the heat, held at the centre: 200 mm beside it the tip drifts by
-// 0.2 m times its strain towards the centre, and the tip at the centre by nothing more.
-TEST(DayCourse, DriftsOnAPartThatGrows) {
-  const std::string idle = phase("activity = \"idle\"\nduration_min = 180");
-  const DayCourse rigid = day_of(idle);
-  const DayCourse day =
-      day_of(idle, kPump +
-                       "[machine_override.heat.part]\nbody = \"head\"\nexpansion = \"11.5 "
-                       "um/m/K\"\nfixed_at_mm = [0.0, 0.0, 100.0]\n");
-  for (std::size_t n = 0; n < day.time.size(); ++n) {
-    const double strain = 11.5e-6 * rise(day.time[n]);
-    const double x = 0.2 + rigid.drift[1][n][0];
-    EXPECT_NEAR(day.drift[1][n][0] - rigid.drift[1][n][0], x / (1.0 + strain) - x, 1e-12);
-    EXPECT_NEAR(day.drift[0][n][0], rigid.drift[0][n][0], 1e-12);
-  }
-}
-
 // ISO 230-3: range of the first 60 min, of the whole test, and when it is reached.
 TEST(DayCourse, StatesTheRangesOfIso230Part3) {
   const DayCourse day = day_of(phase("activity = \"idle\"\nduration_min = 180"));
