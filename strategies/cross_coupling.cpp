@@ -159,6 +159,7 @@ Entry contour_entry() {
   Entry entry = {"contour",
                  "adds the contour error to the velocity commands: cross-coupled control", specs(),
                  make};
+  entry.once = true;
   entry.reads_gains = true;
   entry.reads_errors = false;
   entry.wanted_margins = wanted_margins;

@@ -24,6 +24,7 @@ struct Entry {
   bool acts = true;          ///< false: leaves everything as it is
   /// Margins from which its gain follows (IdentifiedMachine::added_gain); nullptr or nullopt: none.
   std::optional<WantedMargins> (*wanted_margins)(const Parameters&) = nullptr;
+  bool once = false;  ///< true: a second one in a case would correct the same again
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;

@@ -1,5 +1,7 @@
 #include "strategies/inertia.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -59,6 +61,9 @@ constexpr std::array<ParameterSpec, 15> kSpecs = {{
 
 // Filter for static gains: the offset needs an acceleration that is smooth.
 constexpr plant::Mode kSmoothing = {2.0 * std::numbers::pi * 100.0, 0.7};
+
+// rad/s, of a mode with its offset: 20 periods of 0.2 ms in each of its own
+constexpr double kFastest = 2.0 * std::numbers::pi * 250.0;
 
 // Knowledge of the structure.
 struct Identified {
@@ -130,14 +135,46 @@ class Inertia final : public Strategy {
 
 // Mode of the path with its own offset.
 plant::Mode mode_of(double frequency, double zeta, double k, const std::string& axis) {
-  if (frequency == 0.0) return kSmoothing;
+  if (frequency == 0.0) {
+    // the offset itself accelerates, and the filter lets half of that pass
+    const double largest = 0.5 / (kSmoothing.w * kSmoothing.w);
+    if (std::abs(k) <= largest) return kSmoothing;
+    throw InputError({},
+                     fmt::format("{0}{0}_um_per_m_s2 must be within {1:.2f} um per m/s2 without "
+                                 "{0}_frequency_Hz: a static offset would move the tip more "
+                                 "than it corrects",
+                                 axis, largest * 1e6));
+  }
   const double w = 2.0 * std::numbers::pi * frequency;
   const double free = 1.0 - k * w * w;
   if (!(free > zeta * zeta)) {
     throw InputError({}, axis + axis + "_um_per_m_s2 is beyond what a mode of " + axis +
                              "_frequency_Hz can have, (1 - damping^2) / w^2");
   }
-  return {w / std::sqrt(free), zeta / std::sqrt(free)};
+  const double own = w / std::sqrt(free);
+  if (own > kFastest) {
+    throw InputError(
+        {}, fmt::format("{0}{0}_um_per_m_s2 with {0}_frequency_Hz moves with its offset "
+                        "at {1:.0f} Hz; must be at most {2:.0f} Hz, which setpoints "
+                        "resolve",
+                        axis, own / (2.0 * std::numbers::pi), kFastest / (2.0 * std::numbers::pi)));
+  }
+  return {own, zeta / std::sqrt(free)};
+}
+
+// An axis may bend others that bend none of the axes before: else offsets excite one another in a
+// circle, which is not solved for.
+void refuse_circles(const Eigen::Matrix3d& K) {
+  const auto bends = [&](int i, int j) { return K(i, j) != 0.0; };
+  const bool pair =
+      (bends(0, 1) && bends(1, 0)) || (bends(0, 2) && bends(2, 0)) || (bends(1, 2) && bends(2, 1));
+  const bool ring =
+      (bends(0, 1) && bends(1, 2) && bends(2, 0)) || (bends(1, 0) && bends(2, 1) && bends(0, 2));
+  if (pair || ring) {
+    throw InputError({},
+                     "gains across axes lead back to the axis where they begin (XY and YX, for "
+                     "example); leave one of them out");
+  }
 }
 
 std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine&) {
@@ -150,6 +187,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
     identified.modes[static_cast<std::size_t>(j)] = mode_of(
         p.number(axis + "_frequency_Hz"), p.number(axis + "_damping"), identified.K(j, j), axis);
   }
+  refuse_circles(identified.K);
   return std::make_unique<Inertia>(identified);
 }
 
@@ -159,6 +197,7 @@ Entry inertia_entry() {
   Entry entry = {"inertia",
                  "offsets the setpoint so that the tip follows under acceleration, as CTC does",
                  kSpecs, make};
+  entry.once = true;
   entry.reads_errors = false;
   return entry;
 }

@@ -292,16 +292,26 @@ void ExactStep::move_bed(const BedPropagator& P, const double (&start)[5], const
   }
 }
 
+// Finds the mode of friction that states are set to.
+void ExactStep::find_slide_mode(LaneState& s, double F) const {
+  if (params_.friction.kind != FrictionKind::set_valued) return;
+  if (s.v == 0.0) {
+    from_rest(s, F);
+  } else {
+    s.slide = s.v > 0.0 ? SlideMode::positive : SlideMode::negative;
+  }
+}
+
+// Level after a sub-step of the wanted level: a longer one where the error leaves room.
+int ExactStep::lengthened(int wanted, int coarsest, double error) const {
+  if (!(error * 64.0 <= resolution_.tolerance)) return wanted;
+  return std::min(wanted + (error * 4096.0 <= resolution_.tolerance ? 2 : 1), coarsest);
+}
+
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {
   assert(step > 0);
   if (params_.current_is_command()) s.i = command;
-  if (params_.friction.kind == FrictionKind::set_valued) {
-    if (s.v == 0.0) {
-      from_rest(s, F);
-    } else {
-      s.slide = s.v > 0.0 ? SlideMode::positive : SlideMode::negative;
-    }
-  }
+  find_slide_mode(s, F);
   const int coarsest = static_cast<int>(linear_.front().ladder.size()) - 1;
   int wanted = std::clamp(coarsest - s.control.halvings, 0, coarsest);
   for (std::int64_t rest = step << sub_ticks_; rest > 0;) {
@@ -324,10 +334,7 @@ void ExactStep::advance(LaneState& s, double command, double F, Tick step) const
     }
     s.control = control;
     if (!resolved) ++s.control.unresolved;
-    if (level == wanted && wanted < coarsest && trial.error * 64.0 <= resolution_.tolerance) {
-      wanted += trial.error * 4096.0 <= resolution_.tolerance ? 2 : 1;
-      wanted = std::min(wanted, coarsest);
-    }
+    if (level == wanted) wanted = lengthened(wanted, coarsest, trial.error);
   }
   s.control.halvings = coarsest - wanted;
 }

@@ -83,6 +83,8 @@ class ExactStep {
   void prepare(bool sticking, bool gap, int coarsest);
   bool sticks(const LaneState& s) const;
   const Linear& linear_of(const LaneState& s) const;
+  void find_slide_mode(LaneState& s, double F) const;
+  int lengthened(int wanted, int coarsest, double error) const;
   double friction_force(const LaneState& s) const;
   double force(const LaneState& s, double F) const;
   BristleForces<double> friction_at(const LaneState& s, double h, const double (&v)[2]) const;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -118,15 +117,6 @@ std::shared_ptr<const model::WorkingDay> read_day(config::Reader& root,
     day.fault("needs [heat] in the machine of the scenario; that of a case alone is not enough");
     day.skip_rest();
     return nullptr;
-  }
-  const auto grows = [](const auto& machine) { return machine.heat && machine.heat->part; };
-  const bool any =
-      std::any_of(scenario.cases.begin(), scenario.cases.end(),
-                  [&](const model::CaseSpec& one) { return grows(scenario.machine_of(one)); });
-  if (any) {
-    day.fault(
-        "needs a part that does not grow (no heat.part): each cycle is another part, whose "
-        "temperature the day does not follow");
   }
   return std::make_shared<const model::WorkingDay>(DayReader(day, scenario).read());
 }

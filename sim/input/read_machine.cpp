@@ -237,7 +237,7 @@ model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors)
   machine.chain = read_chain(table);
   table.raw("nc");
   skip_structure(table);
-  machine.structural_modes = read_structural_modes(table);
+  machine.structural_modes = read_structural_modes(table, 0.0);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
     table.raw("axis");
     table.raw("errors");
@@ -325,7 +325,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   machine.scale_delay = read_scale_delay(nc, machine.nc.periods.base);
 
-  machine.structural_modes = read_structural_modes(table);
+  machine.structural_modes = read_structural_modes(table, machine.nc.periods.base);
   machine.integrator =
       static_cast<model::Integrator>(table.choice_or("integrator", 0, kIntegrators));
   const double solver_tolerance =

@@ -55,7 +55,9 @@ std::vector<int> rounded(const std::vector<plant::EdgeSlice>& slices,
   std::vector<int> out;
   for (const plant::ChatterMode& mode : modes) {
     out.push_back(whole(std::atan2(mode.direction.y(), mode.direction.x()) / deg));
-    out.push_back(whole(100.0 * std::log(mode.stiffness)));
+    for (const double value : {mode.stiffness, mode.frequency, mode.damping}) {
+      out.push_back(whole(100.0 * std::log(value)));
+    }
   }
   for (const plant::EdgeSlice& slice : slices) {
     for (const double angle : {slice.from, slice.to, slice.lag, slice.lag_span}) {
@@ -79,7 +81,7 @@ double periods_in(double passage, std::span<const plant::ChatterMode> modes) {
 
 ChatterCheck::Unstable ChatterCheck::stability_of(const plant::PeriodicCut& cut,
                                                   std::span<const plant::ChatterMode> modes) const {
-  constexpr double kShareTol = 5e-3;
+  constexpr double kShareTol = 5e-3, kLowestShare = 1e-3;
   plant::ChatterAnalysis analysis(modes);
   const plant::ChatterStability full = analysis.of(cut);
   if (full.is_stable()) return {};
@@ -87,7 +89,7 @@ ChatterCheck::Unstable ChatterCheck::stability_of(const plant::PeriodicCut& cut,
                .frequency = full.frequency,
                .is_flip = full.kind() == plant::Chatter::flip};
   double low = 0.0, high = 1.0;  // of the width of all edges: the limit
-  while (high - low > kShareTol * high) {
+  while (high - low > kShareTol * high && high > kLowestShare) {
     const double middle = 0.5 * (low + high);
     plant::PeriodicCut part = cut;
     for (plant::EdgeSlice& slice : part.slices) {

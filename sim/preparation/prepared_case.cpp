@@ -72,12 +72,11 @@ struct PreparedCase::Parts {
   void check_added_gain(const CasePreparation& prepare, const model::StrategySpec& strategy);
 };
 
-// Of the last strategy.
+// Checks the gain of the last strategy.
 void PreparedCase::Parts::check_added_gain(const CasePreparation& prepare,
                                            const model::StrategySpec& strategy) {
   const auto added = strategies.back()->added_gain();
   if (!added) return;
-  refuse_second_gain(strategy, strategies, spec.name);
   refuse_other_tip(strategy, *program, scenario.program.file, spec.name);
   for (std::string& note : prepare.check_added_gain(strategy, *added)) {
     warnings.push_back(std::move(note));
@@ -105,6 +104,7 @@ void PreparedCase::Parts::plan_cut(const CasePreparation& prepare) {
 SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare) {
   SharedMoves moves(program, &program->moves);
   for (const model::StrategySpec& strategy : spec.strategies) {
+    refuse_second(strategy, spec);
     strategies.push_back(prepare.strategy(strategy, program->first_tip));
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
@@ -137,6 +137,7 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   parts.distance_of_plan = prepare.distance_of_plan();
   if (parts.program->path.size() == 0) throw InputError({scenario.program.file}, "moves no axis");
   refuse_absent_axes(*parts.program, scenario);
+  refuse_growing_part(scenario, spec);
   refuse_standing_spindle(*parts.program, scenario);
   refuse_turned_tip(*parts.program, scenario, spec);
   const double least_time = prepare.least_time(*parts.program);

@@ -8,6 +8,7 @@
 #include "controllers/gcode/modal_state.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/heat.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim::preparation {
@@ -132,15 +133,13 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
   }
 }
 
-void refuse_second_gain(const model::StrategySpec& spec,
-                        std::span<const std::shared_ptr<const strategies::Strategy>> strategies,
-                        const std::string& case_name) {
-  const auto adds = [](const auto& one) { return one->added_gain().has_value(); };
-  if (std::count_if(strategies.begin(), strategies.end(), adds) < 2) return;
+void refuse_second(const model::StrategySpec& spec, const model::CaseSpec& one) {
+  if (!spec.entry->once) return;
+  const auto is_same = [&](const model::StrategySpec& other) { return other.entry == spec.entry; };
+  if (std::count_if(one.strategies.begin(), one.strategies.end(), is_same) < 2) return;
   throw InputError(spec.place,
-                   fmt::format("case {}: strategy {}: another strategy of the case adds a gain to "
-                               "the position loops, too; a case may have one",
-                               case_name, spec.entry->name));
+                   fmt::format("case {}: strategy {} appears twice; each would correct the whole",
+                               one.name, spec.entry->name));
 }
 
 void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram& program,
@@ -158,6 +157,15 @@ void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram&
                                  "program; here rotary axes move with another one ({}:{})",
                                  case_name, spec.entry->name, file, move.line));
   }
+}
+
+void refuse_growing_part(const model::Scenario& scenario, const model::CaseSpec& spec) {
+  const auto& heat = scenario.machine_of(spec).heat;
+  if (!scenario.day || !heat || !heat->part) return;
+  throw InputError(
+      Place{}, fmt::format("case {}: [day] needs a part that does not grow (no heat.part): each "
+                           "cycle is another part, whose temperature the day does not follow",
+                           spec.name));
 }
 
 void refuse_endless(const model::Scenario& scenario, double duration) {

@@ -68,19 +68,19 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
                       const InterpretedProgram& program, const std::string& file,
                       const std::string& case_name);
 
-/// Gains in the position loops add up, and each is checked alone.
-/// @param spec        of the last strategy, which adds a gain
-/// @param strategies  of the case until there
-/// @throws InputError at the strategy, if one before it adds a gain, too
-void refuse_second_gain(const model::StrategySpec& spec,
-                        std::span<const std::shared_ptr<const strategies::Strategy>> strategies,
-                        const std::string& case_name);
+/// Two of a kind would correct twice.
+/// @throws InputError at the strategy, if a case may have one and has two
+void refuse_second(const model::StrategySpec& spec, const model::CaseSpec& one);
 
 /// A strategy in the position loops follows the tip of the first tool; while rotary axes stand
 /// still, those of other tools move alike.
 /// @throws InputError at the strategy, where rotary axes move with another one
 void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram& program,
                       const std::string& file, const std::string& case_name);
+
+/// Each cycle of a day is another part, whose temperature no day follows.
+/// @throws InputError if the part of the case grows and the scenario has a day
+void refuse_growing_part(const model::Scenario& scenario, const model::CaseSpec& spec);
 
 /// A slip of the unit can make a program last for years.
 /// @param duration  s; of the planned motion, or less: way over feed, which is known before

@@ -95,9 +95,10 @@ bool knows_inertia(const strategies::Entry& entry) {
 
 // The structure is rigid under acceleration, its bed stands still, and nothing corrects for them.
 bool remove_inertia(model::Scenario& scenario, model::CaseSpec& one) {
-  std::erase_if(one.strategies, [](const auto& spec) { return knows_inertia(*spec.entry); });
+  bool any = std::erase_if(one.strategies,
+                           [](const auto& spec) { return knows_inertia(*spec.entry); }) > 0;
   model::MachineSettings& machine = own_machine(scenario, one);
-  bool any = !std::exchange(machine.inertial_compliances, {}).empty();
+  any |= !std::exchange(machine.inertial_compliances, {}).empty();
   for (plant::FeedDriveParams& drive : machine.drives) {
     any |= std::exchange(drive.bed, {}).M > 0.0;
   }

@@ -186,7 +186,7 @@ class Plugins(unittest.TestCase):
 
     def test_without_it_the_strategy_is_unknown(self):
         self.write(scenario_text(("smooth_ramp", "")))
-        self.assertIn("must be one of exact, feedback", self.servomill("check", "s.toml", status=2).stderr)
+        self.assertIn("must be one of contour, exact, feedback", self.servomill("check", "s.toml", status=2).stderr)
 
     def test_refusals(self):
         for name, why in (

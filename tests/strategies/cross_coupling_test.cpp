@@ -181,8 +181,7 @@ TEST(Contour, RefusesAGainThatIsUnstable) {
 
 TEST(Contour, RefusesASecondOne) {
   EXPECT_EQ(refusal(contour("") + "[[case.strategy]]\ntype = \"contour\"\n"),
-            "case one: strategy contour: another strategy of the case adds a gain to the position "
-            "loops, too; a case may have one");
+            "case one: strategy contour appears twice; each would correct the whole");
 }
 
 // Tips of two tools move alike as long as the rotary axes stand still.

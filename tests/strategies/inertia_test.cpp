@@ -184,7 +184,7 @@ TEST(Inertia, refuses_gains_beyond_full_participation) {
   const auto gain = [](double k) {
     return part_with({{"XX_um_per_m_s2", k * um}, {"X_frequency_Hz", 55.0}, {"X_damping", 0.05}});
   };
-  EXPECT_NE(gain(8.3), nullptr);
+  EXPECT_NE(gain(7.9), nullptr);
   try {
     gain(8.4);
     FAIL();
@@ -194,6 +194,30 @@ TEST(Inertia, refuses_gains_beyond_full_participation) {
         "<input>: error: XX_um_per_m_s2 is beyond what a mode of X_frequency_Hz can have, (1 - "
         "damping^2) / w^2");
   }
+}
+
+std::string refusal_of(const std::vector<std::pair<const char*, double>>& keys) {
+  try {
+    part_with(keys);
+  } catch (const InputError& error) {
+    return error.faults().front().message;
+  }
+  return "none";
+}
+
+// k w_f^2 = 0.5 with the filter of 100 Hz; w / sqrt(1 - k w^2) = 250 Hz; XY and YX.
+TEST(Inertia, refuses_offsets_that_move_the_tip_themselves) {
+  EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 1.26 * um}}), "none");
+  EXPECT_EQ(
+      refusal_of({{"XX_um_per_m_s2", 1.27 * um}}),
+      "XX_um_per_m_s2 must be within 1.27 um per m/s2 without X_frequency_Hz: a static offset "
+      "would move the tip more than it corrects");
+  EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 8.3 * um}, {"X_frequency_Hz", 55.0}}).substr(0, 61),
+            "XX_um_per_m_s2 with X_frequency_Hz moves with its offset at 5");
+  EXPECT_EQ(refusal_of({{"XY_um_per_m_s2", 0.1 * um}, {"YX_um_per_m_s2", 0.1 * um}}),
+            "gains across axes lead back to the axis where they begin (XY and YX, for example); "
+            "leave one of them out");
+  EXPECT_EQ(refusal_of({{"XY_um_per_m_s2", 0.1 * um}, {"XZ_um_per_m_s2", 0.1 * um}}), "none");
 }
 
 TEST(Inertia, refuses_gains_and_modes_that_no_structure_has) {

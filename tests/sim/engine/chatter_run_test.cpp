@@ -81,10 +81,13 @@ TEST(ChatterRun, beyond_the_limit_vibrates_at_the_frequency_of_the_lobe) {
   EXPECT_NEAR(frequency(d), limit.frequency, 0.03 * limit.frequency);
 }
 
-TEST(ChatterRun, without_regeneration_has_no_vibration_whatever_the_modes) {
+// Modes follow the force of the teeth, and chips do not follow the modes.
+TEST(ChatterRun, without_regeneration_is_quiet_at_any_depth) {
   const auto out = slot(1.3 * slot_limit().depth, "");
-  const records::Series& servo = out.result.servo;
-  EXPECT_EQ(largest_of(servo, "structural_deflection", 'Y', rows_within(servo, 0.0, 10.0)), 0.0);
+  EXPECT_LT(rms(vibration(out, 0.0, 10.0)), 1e-2 * kFeed);
+  EXPECT_GT(largest_of(out.result.servo, "structural_deflection", 'Y',
+                       rows_within(out.result.servo, 0.0, 10.0)),
+            1.0);
 }
 
 }  // namespace

@@ -339,14 +339,15 @@ TEST(ProbedPart, OfAWarmPartShrinksUntilItIsMeasured) {
   EXPECT_NEAR(found.at(2), -100e3 * shrinks, kPerfect);
 }
 
-// A warm pass over a wall that was finished cold meets nothing: the wall has grown away from it.
+// A warm pass over a wall that was finished cold meets nothing: the part is held before the tool,
+// so that its wall has grown away from it.
 TEST(ProbedPart, IsNotChangedByAWarmPassBesideIt) {
   const std::string program =
       "G17 G21 G40 G90 G94 G64 P0.0001\nT1 M6\nG43 H1\nG0 X104 Y-10 Z20\nG1 Z-10 F3000\nG1 Y60\n";
   const std::string again = "G0 Z20\nG4 P200\nG0 Y-10\nG1 Z-10\nG1 Y60\n";
   const std::string heat =
       "[machine_override.heat]\nstart_degC = 20.0\n"
-      "part = { body = \"part\", expansion = \"23.5 um/m/K\", fixed_at_mm = [0.0, 0.0, 0.0] }\n"
+      "part = { body = \"part\", expansion = \"23.5 um/m/K\", fixed_at_mm = [200.0, 0.0, 0.0] }\n"
       "[machine_override.heat.surroundings.room]\nmean_degC = 20.0\n"
       "[machine_override.heat.body.part]\ncapacity_J_per_K = 500.0\n"
       "conductance_W_per_K = { room = 0.1 }\n[machine_override.heat.source]\n"

@@ -57,15 +57,6 @@ TEST(ReadDay, WantsAMachineWithHeat) {
       "day: needs [heat] in the machine of the scenario; that of a case alone is not enough\n");
 }
 
-TEST(ReadDay, RefusesAPartThatGrows) {
-  const std::string part =
-      "[machine_override.heat.part]\nbody = \"head\"\nexpansion = 1e-5\nfixed_at_mm = [0, 0, 0]\n";
-  EXPECT_EQ(
-      fault_of(kPlace + phase("activity = \"idle\"\nduration_min = 1"), kHeat + part),
-      "day: needs a part that does not grow (no heat.part): each cycle is another part, whose "
-      "temperature the day does not follow\n");
-}
-
 // Every axis: where one of them is, nobody may guess.
 TEST(ReadDay, WantsPlacesWithinTheTravelOfEveryAxis) {
   const std::string idle = phase("activity = \"idle\"\nduration_min = 1");

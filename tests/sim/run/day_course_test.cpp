@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/heat/temperature.h"
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
@@ -63,6 +64,21 @@ TEST(DayCourse, DriftsByTheClosedForm) {
     EXPECT_NEAR(celsius(day.temperatures[0][n]), 20.0 + rise(day.time[n]), 1e-9);
     EXPECT_NEAR(day.drift[0][n][2], kGrowth * um * rise(day.time[n]), 1e-12);
     EXPECT_NEAR(day.drift[1][n][0], 0.2 * 10e-6 * rise(day.time[n]), 1e-12);
+  }
+}
+
+TEST(DayCourse, RefusesAPartThatGrows) {
+  try {
+    day_of(phase("activity = \"idle\"\nduration_min = 1"),
+           kPump +
+               "[machine_override.heat.part]\nbody = \"head\"\nexpansion = 1e-5\nfixed_at_mm = "
+               "[0.0, 0.0, 0.0]\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(
+        error.faults().front().message,
+        "case one: [day] needs a part that does not grow (no heat.part): each cycle is another "
+        "part, whose temperature the day does not follow");
   }
 }
 
