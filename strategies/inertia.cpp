@@ -136,13 +136,13 @@ class Inertia final : public Strategy {
 // Mode of the path with its own offset.
 plant::Mode mode_of(double frequency, double zeta, double k, const std::string& axis) {
   if (frequency == 0.0) {
-    // the offset itself accelerates, and the filter lets half of that pass
-    const double largest = 0.5 / (kSmoothing.w * kSmoothing.w);
+    // the offset itself accelerates the tip, which it does not know
+    const double largest = 1.0 / (kSmoothing.w * kSmoothing.w);
     if (std::abs(k) <= largest) return kSmoothing;
     throw InputError({},
                      fmt::format("{0}{0}_um_per_m_s2 must be within {1:.2f} um per m/s2 without "
-                                 "{0}_frequency_Hz: a static offset would move the tip more "
-                                 "than it corrects",
+                                 "{0}_frequency_Hz: larger static offsets move the tip by their "
+                                 "own acceleration",
                                  axis, largest * 1e6));
   }
   const double w = 2.0 * std::numbers::pi * frequency;

@@ -165,7 +165,7 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
     all.push_back(
         {"window", "1", "number of the window; rows between windows are not recorded", "", ""});
     all.push_back(
-        {"in_window", "1", "1 in a window, 0 in the row before and the row behind it", "", ""});
+        {"in_window", "1", "1 in a window, 0 in the row before and the row after it", "", ""});
   }
   return all;
 }

@@ -311,7 +311,7 @@ void Recorder::record(const Snapshot& now, std::span<const double> directions) {
   if (!windows_.limited()) return add(now, directions);
   const bool inside = windows_.contains(now.piece, now.time);
   if (!inside) count_outside(now.piece);
-  if (inside || was_inside_) {  // or it is the first row, or the one behind a window
+  if (inside || was_inside_) {  // or it is the first row, or the one after a window
     if (!held_.snapshots.empty()) add_held();
     add(now, directions, inside);
   } else {

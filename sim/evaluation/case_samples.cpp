@@ -68,7 +68,7 @@ RowRanges rows_with_counterpart(const CaseData& one, const CaseData& base, const
   if (!window || theirs.rows() == 0) return rows;
   const std::size_t s = *mine.column("s"), s_base = *theirs.column("s");
   RowRanges out;
-  std::size_t next = 0;  // of theirs, behind s
+  std::size_t next = 0;  // of theirs, after s
   rows.for_each([&](std::size_t row) {
     while (next < theirs.rows() && theirs.at(next, s_base) <= mine.at(row, s)) ++next;
     if (next == theirs.rows() || (next > 0 && follows(theirs, window, next))) out.add(row);

@@ -36,7 +36,7 @@ class LinearLoops {
   char letter(int joint) const { return machine_.chain.layout.letter_of(joint); }
   bool is_checked() const { return machine_.nc.check_stability; }
 
-  /// True if the sampled loop settles with a proportional gain C (1/s) beside Kv.
+  /// True if the sampled loop settles with C (1/s) added to Kv.
   bool is_stable(int joint, double C) const {
     model::MachineSettings with = machine_;
     with.nc.cascade[static_cast<std::size_t>(joint)].Kv += C;
@@ -91,7 +91,7 @@ std::vector<std::string> check_added_gain(const model::Scenario& scenario,
   for (const int j : loops.joints()) {
     const auto margins = frequency::margins_with(*loops.open(j), loops.Kv(j), added);
     const std::string what = fmt::format(
-        "case {}: strategy {}: with {:.4g} 1/s beside Kv = {:.4g} 1/s the position loop "
+        "case {}: strategy {}: with {:.4g} 1/s added to Kv = {:.4g} 1/s the position loop "
         "of {}",
         spec.name, strategy.entry->name, added.C, loops.Kv(j), loops.letter(j));
     // of an integral part the margins tell, as far as there is a crossover

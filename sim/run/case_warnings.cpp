@@ -158,7 +158,7 @@ std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
 std::optional<std::string> cut_beside_path(const preparation::PreparedParts& one, double beside) {
   if (beside <= engine::DisplacedCut::kLargest) return std::nullopt;
   return fmt::format(
-      "warning: case {}: the tool was up to {:.3g} mm beside its nominal path while it cut: forces "
+      "warning: case {}: the tool was up to {:.3g} mm off its nominal path while it cut: forces "
       "at the actual depth of cut are extended linearly from {:g} mm to {:g} mm, and held beyond",
       one.spec.name, beside / mm, engine::DisplacedCut::kStep / mm,
       engine::DisplacedCut::kLargest / mm);

@@ -151,9 +151,10 @@ TEST(Contour, CorrectsTheTipForTheLagOfARotaryAxis) {
 TEST(Contour, WarnsOfAGainThatLeavesLittleMargin) {
   const CaseOutput out = run_of(kCircle, contour("gain_per_s = 120.0\n"), kLag);
   ASSERT_EQ(out.notes.size(), 3U);
-  EXPECT_NE(out.notes[0].find("warning: case one: strategy contour: with 120 1/s beside Kv = 83.33 "
-                              "1/s the position loop of X has a phase margin of 33"),
-            std::string::npos)
+  EXPECT_NE(
+      out.notes[0].find("warning: case one: strategy contour: with 120 1/s added to Kv = 83.33 "
+                        "1/s the position loop of X has a phase margin of 33"),
+      std::string::npos)
       << out.notes[0];
   EXPECT_TRUE(run_of(kCircle, contour(""), kLag).notes.empty()) << "auto keeps them";
 }

@@ -205,13 +205,12 @@ std::string refusal_of(const std::vector<std::pair<const char*, double>>& keys) 
   return "none";
 }
 
-// k w_f^2 = 0.5 with the filter of 100 Hz; w / sqrt(1 - k w^2) = 250 Hz; XY and YX.
+// k w_f^2 = 1 with the filter of 100 Hz; w / sqrt(1 - k w^2) = 250 Hz; XY and YX.
 TEST(Inertia, refuses_offsets_that_move_the_tip_themselves) {
-  EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 1.26 * um}}), "none");
-  EXPECT_EQ(
-      refusal_of({{"XX_um_per_m_s2", 1.27 * um}}),
-      "XX_um_per_m_s2 must be within 1.27 um per m/s2 without X_frequency_Hz: a static offset "
-      "would move the tip more than it corrects");
+  EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 2.53 * um}}), "none");
+  EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 2.54 * um}}),
+            "XX_um_per_m_s2 must be within 2.53 um per m/s2 without X_frequency_Hz: larger "
+            "static offsets move the tip by their own acceleration");
   EXPECT_EQ(refusal_of({{"XX_um_per_m_s2", 8.3 * um}, {"X_frequency_Hz", 55.0}}).substr(0, 61),
             "XX_um_per_m_s2 with X_frequency_Hz moves with its offset at 5");
   EXPECT_EQ(refusal_of({{"XY_um_per_m_s2", 0.1 * um}, {"YX_um_per_m_s2", 0.1 * um}}),

@@ -274,7 +274,7 @@ TEST(WindowsOfALongProgram, KeepTheRecordingOfOneCycle) {
   };
   const std::size_t of_one = rows(1, "1");
   for (const int parts : {10, 40}) {
-    // one cycle without its settling, a row behind it and the last one
+    // one cycle without its settling, a row after it and the last one
     EXPECT_NEAR(static_cast<double>(rows(parts, std::to_string(parts))),
                 static_cast<double>(of_one) - 100.0, 3.0);
   }
