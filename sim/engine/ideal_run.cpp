@@ -54,11 +54,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     set = setpoint_.advance(sample, t, set.Q_cmd);
     now_ = {t, sample.s, set.Q_ref, set.dQ_ff, set.ddQ_ff, Joints::Zero(), set.Q_cmd};
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
-    if (cut_) cut(n, set);
-    if (cut_ && !cut_->fault().empty()) {
-      result.outcome = failed(cut_->fault(), t, in_.path.line(in_.pieces[sample.move]));
-      break;
-    }
+    if (cut_ && !cut(n, set, in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
     const bool is_recorded = n % in_.record_period == 0;
     if (!is_recorded && !travel_.matters() && !structure_) continue;
@@ -119,13 +115,17 @@ void IdealRun::record(Tick n, const AxisSetpoint& set, const Joints& Q_true) {
   add_saturations(now.time);
 }
 
-void IdealRun::cut(Tick n, const AxisSetpoint& set) {
+// False if the tool cannot go on.
+bool IdealRun::cut(Tick n, const AxisSetpoint& set, int line, Outcome& outcome) {
   if (in_.displaced_cuts != nullptr) {
     cut_->deviate(reference_at(n), Q_true_of(set),
                   structure_ ? structure_->at(motion_.ddQ()) : Eigen::Vector3d::Zero().eval());
   }
   cut_->advance(reference_at(n), periods_.seconds(n));
   if (in_.teeth != nullptr) cut_->turn(n);
+  const std::string_view fault = cut_->fault();
+  if (!fault.empty()) outcome = failed(fault, now_.t, line);
+  return fault.empty();
 }
 
 // Ideal axes need no current: the spindle, the cut and constant sources heat. False if the machine

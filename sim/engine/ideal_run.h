@@ -31,7 +31,7 @@ class IdealRun {
   void add_saturations(double time);
   void record(Tick n, const AxisSetpoint& set, const Joints& Q_true);
   void bend(const Joints& Q_true);
-  void cut(Tick n, const AxisSetpoint& set);
+  bool cut(Tick n, const AxisSetpoint& set, int line, Outcome& outcome);
   bool heat(const controllers::Trajectory::Sample& sample, Outcome& outcome);
   Joints Q_true_of(const AxisSetpoint& set);
 

@@ -199,6 +199,25 @@ std::string why(Miss miss, const metrology::Cmm& cmm) {
   return "";
 }
 
+// @param unmarked  points without the marks of teeth that are asked for
+void add_notes(const PartSource& source, const metrology::ProbeSpec& probe,
+               const std::map<Miss, Misses>& missed, std::size_t unmarked,
+               const metrology::Cmm& cmm, std::vector<std::string>& notes) {
+  const std::vector<plant::ProbeTarget>& targets = probe.feature.targets;
+  for (const auto& [miss, misses] : missed) {
+    notes.push_back(fmt::format(
+        "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
+        to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
+        model::program_words(targets[misses.first].point), why(miss, cmm)));
+  }
+  if (unmarked > 0) {
+    notes.push_back(fmt::format(
+        "{}: warning: case {}: {} of {} points of probe '{}' are not on a wall cut by a flank: "
+        "cmm.tooth_marks leaves out their marks",
+        to_string(probe.place), source.case_name, unmarked, targets.size(), probe.name));
+  }
+}
+
 }  // namespace
 
 double chord_error(const records::Series& servo) {
@@ -250,18 +269,7 @@ ProbedPart probe_part(const PartSource& source, const std::vector<metrology::Pro
       if (source.imposed == nullptr) continue;
       found.imposed.push_back(!miss && feed ? imposed_at(source, frame, *feed, targets[i]) : kNone);
     }
-    for (const auto& [miss, misses] : missed) {
-      out.notes.push_back(fmt::format(
-          "{}: warning: case {}: {} of {} points of probe '{}' met no cut surface, first at {}: {}",
-          to_string(probe.place), source.case_name, misses.count, targets.size(), probe.name,
-          model::program_words(targets[misses.first].point), why(miss, cmm)));
-    }
-    if (unmarked > 0) {
-      out.notes.push_back(fmt::format(
-          "{}: warning: case {}: {} of {} points of probe '{}' are not on a wall cut by a flank: "
-          "cmm.tooth_marks leaves out their marks",
-          to_string(probe.place), source.case_name, unmarked, targets.size(), probe.name));
-    }
+    add_notes(source, probe, missed, unmarked, cmm, out.notes);
     found.measured = metrology::probe_all(cmm, source.case_name, probe.name, found.deviation);
     out.features.push_back(std::move(found));
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/scenario.h"
 #include "sim/run/day_comparison.h"
 #include "sim/run/day_course.h"
 #include "sim/run/store.h"
