@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
+
 #include "plant/vocabulary/interrupt.h"
 
 namespace servomill::plant {
@@ -21,24 +23,6 @@ constexpr int kMaxPassages = 400;    // of its iteration
 constexpr double kConverged = 1e-6;  // of the largest multiplier, relative, three times in a row
 constexpr int kCalm = 3;
 constexpr double kReal = 1e-6;  // imaginary part of a real multiplier, relative
-
-// exp(M) of a matrix whose norm is about 1: halved until the series converges fast.
-Eigen::MatrixXd exponential(Eigen::MatrixXd M) {
-  constexpr double kSmall = 0.5;
-  constexpr int kTerms = 12;  // 0.5^13 / 13! is below the last bit
-  int squarings = 0;
-  for (double norm = M.cwiseAbs().rowwise().sum().maxCoeff(); norm > kSmall; norm *= 0.5) {
-    ++squarings;
-  }
-  M *= std::pow(0.5, squarings);
-  Eigen::MatrixXd term = Eigen::MatrixXd::Identity(M.rows(), M.cols()), sum = term;
-  for (int k = 1; k <= kTerms; ++k) {
-    term = (term * M / k).eval();
-    sum += term;
-  }
-  for (int k = 0; k < squarings; ++k) sum = (sum * sum).eval();
-  return sum;
-}
 
 }  // namespace
 
@@ -83,7 +67,7 @@ std::vector<Eigen::MatrixXd> ChatterAnalysis::steps_of(const PeriodicCut& cut) c
       M.block<1, 2>(modes + i, n) = pull;
     }
     M.block<2, 2>(n, n + 2).setIdentity();
-    const Eigen::MatrixXd E = exponential(M);
+    const Eigen::MatrixXd E = M.exp();
     Eigen::MatrixXd step(n, n + 4);
     step.leftCols(n) = E.topLeftCorner(n, n);
     step.middleCols(n, 2) = E.block(0, n, n, 2) - E.block(0, n + 2, n, 2);

@@ -17,9 +17,16 @@
 #include <vector>
 
 #include "plant/cutting/directional_factors.h"
-#include "plant/cutting/regeneration.h"
 
 namespace servomill::plant {
+
+/// A mode across the axis of the cutter, in the frame of cutting_force.h.
+struct ChatterMode {
+  double stiffness = 0.0;                                // k, N/m
+  double frequency = 0.0;                                // w, rad/s
+  double damping = 0.0;                                  // zeta
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitY();  // d, unit, along e1 and e2
+};
 
 /// A steady cut of any engagement, for small vibrations about its forced motion.
 struct PeriodicCut {

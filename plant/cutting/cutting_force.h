@@ -72,12 +72,10 @@ AngleRange contact_range(const FeedDirection& feed, double kappa);
 CuttingForce average_force(const CuttingCoefficients& K, int teeth, const FeedDirection& feed,
                            std::span<const EngagedArc> arcs);
 
-/// Average over a turn of the torque about the axis that turns the cutter, likewise.
+/// Average over a turn of the torque about the axis that turns the cutter: c shear + wear edge.
 struct CuttingTorque {
   double shear = 0.0;  // N, per m of feed per tooth
   double edge = 0.0;   // N m
-
-  double at(double c, double wear = 1.0) const { return c * shear + wear * edge; }
 };
 
 /// The same for the force along t times the radius at which it acts. Power at the edges is this

@@ -1,33 +1,27 @@
 #include "plant/structure/tool_point_vibration.h"
 
-#include <cmath>
-
 namespace servomill::plant {
 
-// q'' + 2 zeta w q' + w^2 q = w^2 / k f: about its static deflection f / k it decays freely.
 ToolPointVibration::ToolPointVibration(const std::vector<StructuralMode>& modes, double step) {
   for (const StructuralMode& mode : modes) {
     if (mode.is_static()) continue;
-    const double w = mode.mode.w, z = mode.mode.zeta, wd = w * std::sqrt(1.0 - z * z);
-    const double e = std::exp(-z * w * step), c = std::cos(wd * step), s = std::sin(wd * step);
-    Oscillator one{.direction = mode.direction,
-                   .q_q = e * (c + z * w / wd * s),
-                   .q_dq = e * s / wd,
-                   .dq_q = -e * w * w / wd * s,
-                   .dq_dq = e * (c - z * w / wd * s),
-                   .q_f = 0.0,
-                   .dq_f = 0.0};
-    one.q_f = (1.0 - one.q_q) * mode.compliance;
-    one.dq_f = -one.dq_q * mode.compliance;
-    modes_.push_back(one);
+    modes_.push_back({mode.direction, mode.compliance, mode_step(mode.mode, step), {}});
   }
+}
+
+// About the deflection that a constant force holds a mode decays freely.
+ModeState ToolPointVibration::Oscillator::after(double f) const {
+  const double held = compliance * f;
+  ModeState next = free.from({now.eta - held, now.deta}, {});
+  next.eta += held;
+  return next;
 }
 
 ToolPointVibration::State ToolPointVibration::now() const {
   State out;
   for (const Oscillator& one : modes_) {
-    out.x += one.q * one.direction;
-    out.dx += one.dq * one.direction;
+    out.x += one.now.eta * one.direction;
+    out.dx += one.now.deta * one.direction;
   }
   return out;
 }
@@ -35,19 +29,15 @@ ToolPointVibration::State ToolPointVibration::now() const {
 ToolPointVibration::State ToolPointVibration::after(const Eigen::Vector3d& force) const {
   State out;
   for (const Oscillator& one : modes_) {
-    const double f = force.dot(one.direction);
-    out.x += one.next_q(f) * one.direction;
-    out.dx += one.next_dq(f) * one.direction;
+    const ModeState next = one.after(force.dot(one.direction));
+    out.x += next.eta * one.direction;
+    out.dx += next.deta * one.direction;
   }
   return out;
 }
 
 void ToolPointVibration::advance(const Eigen::Vector3d& force) {
-  for (Oscillator& one : modes_) {
-    const double f = force.dot(one.direction), q = one.next_q(f);
-    one.dq = one.next_dq(f);
-    one.q = q;
-  }
+  for (Oscillator& one : modes_) one.now = one.after(force.dot(one.direction));
 }
 
 Eigen::Vector3d ToolPointVibration::between(const State& a, const State& b, double step,

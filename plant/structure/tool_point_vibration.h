@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plant/structure/inertial_compliance.h"
+#include "plant/structure/mode_step.h"
 
 namespace servomill::plant {
 
@@ -33,12 +34,10 @@ class ToolPointVibration {
  private:
   struct Oscillator {
     Eigen::Vector3d direction;
-    double q_q, q_dq, dq_q, dq_dq;  // free motion over a step
-    double q_f, dq_f;               // m/N, m/(N s), of a force along the direction
-    double q = 0.0, dq = 0.0;       // m, m/s
-
-    double next_q(double f) const { return q_q * q + q_dq * dq + q_f * f; }
-    double next_dq(double f) const { return dq_q * q + dq_dq * dq + dq_f * f; }
+    double compliance;                // m/N
+    ModeStep free;                    // motion without a force over a step
+    ModeState now;                    // eta: displacement (m) along the direction
+    ModeState after(double f) const;  // f: N, along the direction
   };
   std::vector<Oscillator> modes_;
 };

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "tests/plant/cutting/regenerative_cut.h"
 
 namespace servomill::plant::chatter_stability_test {
 namespace {

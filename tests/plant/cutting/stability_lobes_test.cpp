@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "tests/plant/cutting/regenerative_cut.h"
 
 namespace servomill::plant::stability_lobes_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "plant/cutting/regeneration.h"
+#include "tests/plant/cutting/regenerative_cut.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,5 @@
-/// Milling with a structure of one mode that meets what its last tooth has left: regeneration.
+/// Reference for tests of chatter: milling with a structure of one mode that meets what its last
+/// tooth has left, simulated on its own.
 ///
 ///     q'' + 2 zeta w q' + w^2 q = w^2 / k  d . F(t),    F = sum over teeth of (1) of
 ///     cutting_force.h
@@ -21,17 +22,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "plant/cutting/chatter_stability.h"
 #include "plant/cutting/material.h"
 
 namespace servomill::plant {
-
-/// A mode across the axis of the cutter, in the frame of cutting_force.h.
-struct ChatterMode {
-  double stiffness = 0.0;                                // k, N/m
-  double frequency = 0.0;                                // w, rad/s
-  double damping = 0.0;                                  // zeta
-  Eigen::Vector2d direction = Eigen::Vector2d::UnitY();  // d, unit, along e1 and e2
-};
 
 /// A steady cut with the flank.
 struct SteadyCut {

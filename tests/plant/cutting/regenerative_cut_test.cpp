@@ -1,4 +1,4 @@
-#include "plant/cutting/regeneration.h"
+#include "tests/plant/cutting/regenerative_cut.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/units.h"
 
-namespace servomill::plant::regeneration_test {
+namespace servomill::plant::regenerative_cut_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -213,4 +213,4 @@ TEST(Regeneration, is_of_second_order_in_the_step) {
 }
 
 }  // namespace
-}  // namespace servomill::plant::regeneration_test
+}  // namespace servomill::plant::regenerative_cut_test
