@@ -25,6 +25,10 @@ struct Entry {
   /// Margins from which its gain follows (IdentifiedMachine::added_gain); nullptr or nullopt: none.
   std::optional<WantedMargins> (*wanted_margins)(const Parameters&) = nullptr;
   bool once = false;  ///< true: a second one in a case would correct the same again
+  /// True if it corrects how axes and structure follow the path: it moves nothing off it on
+  /// purpose.
+  bool corrects_following = false;
+  bool corrects_inertia = false;  ///< true: what it corrects is the structure under acceleration
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;

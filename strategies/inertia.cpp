@@ -9,6 +9,7 @@
 
 #include "plant/structure/mode_step.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
 
 namespace servomill::strategies {
 namespace {
@@ -62,8 +63,7 @@ constexpr std::array<ParameterSpec, 15> kSpecs = {{
 // Filter for static gains: the offset needs an acceleration that is smooth.
 constexpr plant::Mode kSmoothing = {2.0 * std::numbers::pi * 100.0, 0.7};
 
-// rad/s, of a mode with its offset: 20 periods of 0.2 ms in each of its own
-constexpr double kFastest = 2.0 * std::numbers::pi * 250.0;
+constexpr double kPeriodsPerSwing = 20.0;  // position periods in one of a mode with its offset
 
 // Knowledge of the structure.
 struct Identified {
@@ -134,7 +134,9 @@ class Inertia final : public Strategy {
 };
 
 // Mode of the path with its own offset.
-plant::Mode mode_of(double frequency, double zeta, double k, const std::string& axis) {
+// @param period  s, of the interpolation
+plant::Mode mode_of(double frequency, double zeta, double k, const std::string& axis,
+                    double period) {
   if (frequency == 0.0) {
     // the offset itself accelerates the tip, which it does not know
     const double largest = 1.0 / (kSmoothing.w * kSmoothing.w);
@@ -152,12 +154,13 @@ plant::Mode mode_of(double frequency, double zeta, double k, const std::string& 
                              "_frequency_Hz can have, (1 - damping^2) / w^2");
   }
   const double own = w / std::sqrt(free);
-  if (own > kFastest) {
-    throw InputError(
-        {}, fmt::format("{0}{0}_um_per_m_s2 with {0}_frequency_Hz moves with its offset "
-                        "at {1:.0f} Hz; must be at most {2:.0f} Hz, which setpoints "
-                        "resolve",
-                        axis, own / (2.0 * std::numbers::pi), kFastest / (2.0 * std::numbers::pi)));
+  const double swings = own / (2.0 * std::numbers::pi), largest = 1.0 / (kPeriodsPerSwing * period);
+  if (swings > largest) {
+    throw InputError({},
+                     fmt::format("{0}{0}_um_per_m_s2 with {0}_frequency_Hz moves with its offset "
+                                 "at {1:.0f} Hz; must be at most {2:.0f} Hz, 20 position periods "
+                                 "of {3:g} ms in each of its own",
+                                 axis, swings, largest, period / ms));
   }
   return {own, zeta / std::sqrt(free)};
 }
@@ -177,15 +180,16 @@ void refuse_circles(const Eigen::Matrix3d& K) {
   }
 }
 
-std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine&) {
+std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& machine) {
   Identified identified;
   for (int j = 0; j < kLinearJoints; ++j) {
     const std::string axis(1, "XYZ"[j]);
     for (int i = 0; i < kLinearJoints; ++i) {
       identified.K(i, j) = p.number("XYZ"[i] + axis + "_um_per_m_s2");
     }
-    identified.modes[static_cast<std::size_t>(j)] = mode_of(
-        p.number(axis + "_frequency_Hz"), p.number(axis + "_damping"), identified.K(j, j), axis);
+    identified.modes[static_cast<std::size_t>(j)] =
+        mode_of(p.number(axis + "_frequency_Hz"), p.number(axis + "_damping"), identified.K(j, j),
+                axis, machine.position_period);
   }
   refuse_circles(identified.K);
   return std::make_unique<Inertia>(identified);
@@ -198,6 +202,8 @@ Entry inertia_entry() {
                  "offsets the setpoint so that the tip follows under acceleration, as CTC does",
                  kSpecs, make};
   entry.once = true;
+  entry.corrects_following = true;
+  entry.corrects_inertia = true;
   entry.reads_errors = false;
   return entry;
 }

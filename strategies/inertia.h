@@ -12,7 +12,7 @@ namespace servomill::strategies {
 ///     o_i = sum_j k_ij G_j(s) a_j,   G_j = 1 or w^2 / (s^2 + 2 zeta w s + w^2)
 ///
 /// where a is that of the path with its offset, so that the tip of a known structure is on the path
-/// of axes that follow. Static gains know the acceleration behind a filter of 100 Hz. The offset
+/// of axes that follow. Static gains know the acceleration through a filter of 100 Hz. The offset
 /// enters before the nominal-position filter and is fed forward like the path.
 /// Source: Heidenhain, Technical Manual iTNC 530 HSCI (2013), pp. 688-689 (cross talk compensation,
 /// CTC: static, k linear in one position, which this has not).

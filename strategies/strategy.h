@@ -38,6 +38,7 @@ struct IdentifiedMachine {
   // 1/s, the largest gain that leaves the position loops of X, Y and Z the margins that the entry
   // wants, 0 if none does; NaN if it wants none
   double added_gain = std::numeric_limits<double>::quiet_NaN();
+  double position_period = 0.0;  // s, of the interpolation of setpoints
 };
 
 /// Reading of a run at one instant, as a strategy may see it.

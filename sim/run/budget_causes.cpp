@@ -85,18 +85,10 @@ bool remove_friction(model::MachineSettings& machine) {
   return any;
 }
 
-// Tells if a strategy knows a deflection per acceleration.
-bool knows_inertia(const strategies::Entry& entry) {
-  return std::any_of(entry.parameters.begin(), entry.parameters.end(), [](const auto& spec) {
-    const config::ParsedUnit unit = config::parse_unit(spec.unit);
-    return unit.unit && unit.unit->quantity == config::Quantity{.s = 2};
-  });
-}
-
 // The structure is rigid under acceleration, its bed stands still, and nothing corrects for them.
 bool remove_inertia(model::Scenario& scenario, model::CaseSpec& one) {
   bool any = std::erase_if(one.strategies,
-                           [](const auto& spec) { return knows_inertia(*spec.entry); }) > 0;
+                           [](const auto& spec) { return spec.entry->corrects_inertia; }) > 0;
   model::MachineSettings& machine = own_machine(scenario, one);
   any |= !std::exchange(machine.inertial_compliances, {}).empty();
   for (plant::FeedDriveParams& drive : machine.drives) {
@@ -237,10 +229,11 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
 // True if strategies of a case move the tool off the programmed path on purpose.
 bool moves_on_purpose(const model::CaseSpec& one) {
   return has_strategy(one, strategies::Action::impose) ||
-         std::any_of(
-             one.strategies.begin(), one.strategies.end(), [](const model::StrategySpec& spec) {
-               return !spec.entry->reads_errors && spec.entry->acts && !knows_inertia(*spec.entry);
-             });
+         std::any_of(one.strategies.begin(), one.strategies.end(),
+                     [](const model::StrategySpec& spec) {
+                       const strategies::Entry& entry = *spec.entry;
+                       return !entry.reads_errors && entry.acts && !entry.corrects_following;
+                     });
 }
 
 }  // namespace

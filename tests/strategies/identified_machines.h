@@ -26,6 +26,7 @@ inline IdentifiedMachine identified_with(const plant::ErrorModel& errors,
   identified.reference.head<3>().array() += 100 * 1.6384 * mm;
   identified.reference.tail<2>() << 20.0 * deg, 30.0 * deg;
   identified.Kv.setConstant(80.0);
+  identified.position_period = 0.2 * ms;
   return identified;
 }
 

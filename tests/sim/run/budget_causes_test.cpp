@@ -235,6 +235,17 @@ TEST(BudgetCauses, OfInertiaThatIsCorrected) {
   EXPECT_FALSE(part(budget(1.0), Cause::imposed).present);
 }
 
+// Contour control follows the path better; it imposes nothing.
+TEST(BudgetCauses, OfContourControlHaveNothingImposed) {
+  const Budget budget = budget_of(
+      "[machine_override.nc]\nvelocity_feed_forward = 0.0\n[[case]]\nname = "
+      "\"one\"\n[[case.strategy]]\ntype = \"contour\"\n" +
+          quantity("tool_deviation", 'X'),
+      "G17 G21 G90 G94 G64 P0.0002\n(MSG, flank)\nG1 X20 F3000\nG2 X30 Y10 J10\nM30\n");
+  EXPECT_TRUE(part(budget, Cause::lag).present);
+  EXPECT_FALSE(part(budget, Cause::imposed).present);
+}
+
 // A bed is in the loops: without it the following error is that of the lag.
 TEST(BudgetCauses, OfTheBed) {
   const auto budget = [](const std::string& bed) {
