@@ -1,11 +1,11 @@
-/// Gains that act in the position loops beside Kv, and the margins that they have to leave.
+/// Gains that are added to Kv in the position loops, and the margins that they have to leave.
 #pragma once
 
 #include <numbers>
 
 namespace servomill {
 
-/// C (1 + 1 / (Ti s)) beside the proportional gain of a position loop.
+/// C (1 + 1 / (Ti s)), added to the proportional gain of a position loop.
 struct AddedGain {
   double C = 0.0;   // 1/s
   double Ti = 0.0;  // s; 0: no integral part

@@ -199,10 +199,11 @@ BodeResult bode(const model::MachineSettings& machine, int joint, Tick reading_d
 }
 
 Tick reading_delay_of(const model::Scenario& scenario) {
-  const bool hardware =
-      std::any_of(scenario.cases.begin(), scenario.cases.end(),
-                  [](const model::CaseSpec& one) { return one.feedback_hardware; });
-  return scenario.machine.scale_delay + (hardware ? scenario.hardware.signal_delay : 0);
+  Tick longest = scenario.machine.scale_delay;
+  for (const model::CaseSpec& one : scenario.cases) {
+    longest = std::max(longest, scenario.reading_delay_of(one));
+  }
+  return longest;
 }
 
 }  // namespace servomill::sim::frequency

@@ -1,10 +1,8 @@
 #include "sim/frequency/lobes.h"
 
 #include <algorithm>
-#include <atomic>
-#include <thread>
 
-#include "plant/vocabulary/interrupt.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim::frequency {
 
@@ -31,20 +29,12 @@ std::vector<LobesPoint> stability_lobes(const LobesRequest& request, unsigned th
     const double share = static_cast<double>(i) / std::max(1, request.points - 1);
     out[i].turns = request.from + share * (request.to - request.from);
   }
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < out.size() && !interrupt_wanted; i = next++) {
-      LobesPoint& point = out[i];
-      point.zeroth_order = plant::zeroth_order_limit(request.cut, request.modes, point.turns);
-      point.limit =
-          plant::limit_of_stability(request.cut, request.modes, point.turns, request.deepest);
-    }
-  };
-  std::vector<std::thread> others;
-  for (unsigned n = 1; n < threads; ++n) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
-  throw_if_interrupted();
+  system::for_each_index(out.size(), threads, [&](std::size_t i) {
+    LobesPoint& point = out[i];
+    point.zeroth_order = plant::zeroth_order_limit(request.cut, request.modes, point.turns);
+    point.limit =
+        plant::limit_of_stability(request.cut, request.modes, point.turns, request.deepest);
+  });
   return out;
 }
 

@@ -177,6 +177,10 @@ struct Scenario {
   const MachineSettings& machine_of(const CaseSpec& one) const {
     return one.machine ? *one.machine : machine;
   }
+  /// Delay between the scales and what the position loops of a case read (ticks).
+  Tick reading_delay_of(const CaseSpec& one) const {
+    return machine.scale_delay + (one.feedback_hardware ? hardware.signal_delay : 0);
+  }
   /// Delay (s) of the readings of a case by the feedback hardware; none of an ideal servo,
   /// which has no loops to read them.
   std::optional<double> signal_delay_of(const CaseSpec& one) const;

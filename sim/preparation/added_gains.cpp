@@ -12,6 +12,7 @@
 #include "sim/frequency/added_gain.h"
 #include "sim/frequency/stability.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/stability_check.h"
 
 namespace servomill::sim::preparation {
 namespace {
@@ -20,39 +21,38 @@ namespace {
 class LinearLoops {
  public:
   LinearLoops(const model::Scenario& scenario, const model::CaseSpec& spec, PreparationCache& cache)
-      : machine_(scenario.machine_of(spec)),
-        delay_(machine_.scale_delay +
-               (spec.feedback_hardware ? scenario.hardware.signal_delay : 0)),
+      : linear_(frequency::linearised(scenario.machine_of(spec))),
+        delay_(scenario.reading_delay_of(spec)),
         cache_(cache) {}
 
   std::vector<int> joints() const {
     std::vector<int> out;
-    for (const int j : machine_.joints()) {
+    for (const int j : linear_.joints()) {
       if (j < kLinearJoints) out.push_back(j);
     }
     return out;
   }
-  double Kv(int joint) const { return machine_.nc.cascade[static_cast<std::size_t>(joint)].Kv; }
-  char letter(int joint) const { return machine_.chain.layout.letter_of(joint); }
-  bool is_checked() const { return machine_.nc.check_stability; }
+  double Kv(int joint) const { return linear_.nc.cascade[static_cast<std::size_t>(joint)].Kv; }
+  char letter(int joint) const { return linear_.chain.layout.letter_of(joint); }
+  bool is_checked() const { return linear_.nc.check_stability; }
 
   /// True if the sampled loop settles with C (1/s) added to Kv.
   bool is_stable(int joint, double C) const {
-    model::MachineSettings with = machine_;
+    model::MachineSettings with = linear_;
     with.nc.cascade[static_cast<std::size_t>(joint)].Kv += C;
-    return frequency::spectral_radius(frequency::linearised(with), joint, delay_) < 1.0;
+    return spectral_radius(with, joint, delay_, &cache_) < 1.0;
   }
 
   std::shared_ptr<const frequency::Curve> open(int joint) const {
     system::MemoKey key;
     key.add(delay_);
-    add_linear_axis(key, frequency::linearised(machine_), joint);
+    add_linear_axis(key, linear_, joint);
     return cache_.open_loops.get(
-        key, [&] { return frequency::open_position_loop(machine_, joint, delay_); });
+        key, [&] { return frequency::open_position_loop(linear_, joint, delay_); });
   }
 
  private:
-  const model::MachineSettings& machine_;
+  const model::MachineSettings linear_;
   Tick delay_;
   PreparationCache& cache_;
 };

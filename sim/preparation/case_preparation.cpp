@@ -205,9 +205,12 @@ SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
   key.add(shift);
   key.add(Kv);
   key.add(added);
+  const model::LoopPeriods& periods = machine_.nc.periods;
+  const double period = periods.seconds(periods.position);
+  key.add(period);
   return cache_.strategies.get(key, [&] {
     return make(spec, {machine_.chain.layout, *model(spec.model), tip, machine_.nc.lower,
-                       machine_.nc.upper, start_, shift, Kv, added});
+                       machine_.nc.upper, start_, shift, Kv, added, period});
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,6 +20,17 @@ double highest_mode(const model::MachineSettings& machine) {
   return highest;
 }
 
+namespace {
+
+std::vector<plant::StructuralMode> in_workpiece(std::vector<plant::StructuralMode> modes,
+                                                const plant::MachineChain& chain, const Joints& Q) {
+  const Eigen::Matrix3d J = plant::linear_jacobian(chain, Q);
+  for (plant::StructuralMode& mode : modes) mode.direction = J * mode.direction;
+  return modes;
+}
+
+}  // namespace
+
 void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec& spec,
                          const Joints& start) {
   if (!spec.cutting || !scenario.cutting->regeneration) return;
@@ -29,17 +41,11 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
                                  spec.name, why));
   };
   const model::MachineSettings& machine = scenario.machine_of(spec);
-  const auto swings = [](const plant::StructuralMode& mode) { return !mode.is_static(); };
-  if (std::none_of(machine.structural_modes.begin(), machine.structural_modes.end(), swings)) {
-    refuse("it has none with frequency_Hz");
-  }
-  constexpr double kAlong = 1e-6;  // share across the tool of a mode along it
+  if (highest_mode(machine) == 0.0) refuse("it has none with frequency_Hz");
   const Eigen::Vector3d k = plant::forward(machine.chain, start, Eigen::Vector3d::Zero()).k_W;
-  const Eigen::Matrix3d J = plant::linear_jacobian(machine.chain, start);
-  const auto vibrates = [&](const plant::StructuralMode& mode) {
-    return !mode.is_static() && (J * mode.direction).cross(k).norm() > kAlong;
-  };
-  if (std::none_of(machine.structural_modes.begin(), machine.structural_modes.end(), vibrates)) {
+  const Eigen::Vector3d across = k.unitOrthogonal();
+  const auto modes = in_workpiece(machine.structural_modes, machine.chain, start);
+  if (frequency::modes_across(modes, across, k.cross(across)).empty()) {
     refuse("all of its modes are along the tool");
   }
 }
@@ -107,15 +113,13 @@ void ChatterCheck::add(int line, int tool, const plant::Cutter& cutter,
                        const plant::CutterFrame& frame, std::span<const plant::EngagedArc> arcs,
                        double turns, const Joints& Q) {
   if (modes_.empty()) return;
-  std::vector<plant::StructuralMode> in_W = modes_;
-  const Eigen::Matrix3d J = plant::linear_jacobian(chain_, Q);
-  for (plant::StructuralMode& mode : in_W) mode.direction = J * mode.direction;
-  const auto modes = frequency::modes_across(in_W, frame.axes.col(0), frame.axes.col(1));
+  const auto modes = frequency::modes_across(in_workpiece(modes_, chain_, Q), frame.axes.col(0),
+                                             frame.axes.col(1));
   const plant::PeriodicCut cut{K_, cutter.teeth, turns,
                                plant::edge_slices(cutter, frame.feed, arcs)};
   if (modes.empty() || cut.slices.empty()) return;
   if (periods_in(cut.passage(), modes) > kMaxPeriods) {
-    slowest_left_out_ = std::max(slowest_left_out_, turns);
+    fastest_left_out_ = std::max(fastest_left_out_, turns);
     return;
   }
   const auto [known, is_new] = known_.try_emplace({tool, turns, rounded(cut.slices, modes)});
@@ -141,12 +145,12 @@ std::vector<Fault> ChatterCheck::warnings(const std::string& file) const {
                                worst.tool, 60.0 * worst.turns, worst.excess, worst.frequency,
                                worst.is_flip ? " (flip)" : "")});
   }
-  if (slowest_left_out_ > 0.0) {
+  if (fastest_left_out_ > 0.0) {
     out.push_back(
         {{file},
          fmt::format("cuts at {:.0f} 1/min and slower were not examined for chatter: more "
                      "than {:g} periods of a mode from tooth to tooth",
-                     60.0 * slowest_left_out_, kMaxPeriods)});
+                     60.0 * fastest_left_out_, kMaxPeriods)});
   }
   if (others > 0) {
     out.push_back({{file}, fmt::format("{} more lines with cuts that chatter", others)});

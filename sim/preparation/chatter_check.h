@@ -60,12 +60,12 @@ class ChatterCheck {
   Unstable stability_of(const plant::PeriodicCut& cut,
                         std::span<const plant::ChatterMode> modes) const;
 
-  double slowest_left_out_ = 0.0;  // 1/s, the fastest speed that was not examined
   const std::vector<plant::StructuralMode>& modes_;
   const plant::CuttingCoefficients& K_;
   const plant::MachineChain& chain_;
   std::map<Key, Unstable> known_;
   std::map<int, Unstable> lines_;  // the worst of each
+  double fastest_left_out_ = 0.0;  // 1/s, of the spindle, among cuts that were not examined
 };
 
 }  // namespace servomill::sim::preparation

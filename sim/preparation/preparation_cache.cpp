@@ -1,8 +1,8 @@
 #include "sim/preparation/preparation_cache.h"
 
-#include "sim/frequency/margins.h"
-
 #include <algorithm>
+
+#include "sim/frequency/margins.h"
 
 namespace servomill::sim::preparation {
 namespace {

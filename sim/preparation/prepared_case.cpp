@@ -1,5 +1,4 @@
 #include "sim/preparation/prepared_case.h"
-#include "sim/preparation/chatter_check.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +13,7 @@
 #include "sim/evaluation/nominal_part.h"
 #include "sim/model/machine_test.h"
 #include "sim/preparation/case_preparation.h"
+#include "sim/preparation/chatter_check.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
@@ -313,13 +313,9 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
 std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, PreparationCache* cache) {
   PreparationCache own;  // the cases of one scenario share much, too
   if (cache == nullptr) cache = &own;
-  const auto reading_delay = [&](const model::CaseSpec& spec) {
-    return scenario.machine.scale_delay +
-           (spec.feedback_hardware ? scenario.hardware.signal_delay : 0);
-  };
   Tick longest = scenario.machine.scale_delay;
   for (const model::CaseSpec& spec : scenario.cases) {
-    if (!spec.machine) longest = std::max(longest, reading_delay(spec));
+    if (!spec.machine) longest = std::max(longest, scenario.reading_delay_of(spec));
   }
   check_stability(scenario.machine, longest, cache);
   refuse_narrow_windows(scenario);
@@ -327,7 +323,7 @@ std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, Prepara
   CaseFaults faults;
   for (const model::CaseSpec& spec : scenario.cases) {
     try {
-      if (spec.machine) check_stability(*spec.machine, reading_delay(spec), cache);
+      if (spec.machine) check_stability(*spec.machine, scenario.reading_delay_of(spec), cache);
       prepared.emplace_back(scenario, spec, cache);
     } catch (const InputError& error) {
       faults.add(spec.name, error);

@@ -44,22 +44,23 @@ Fault instability(const model::MachineSettings& machine, int joint, double radiu
 
 }  // namespace
 
+double spectral_radius(const model::MachineSettings& linear, int joint, Tick reading_delay,
+                       PreparationCache* cache) {
+  const auto compute = [&] { return frequency::spectral_radius(linear, joint, reading_delay); };
+  if (cache == nullptr) return compute();
+  system::MemoKey key;
+  key.add(reading_delay);
+  add_linear_axis(key, linear, joint);
+  return *cache->spectral_radii.get(key, compute);
+}
+
 void check_stability(const model::MachineSettings& machine, Tick reading_delay,
                      PreparationCache* cache) {
   if (!machine.nc.check_stability) return;
   const model::MachineSettings linear = frequency::linearised(machine);
   std::vector<Fault> faults;
   for (const int j : machine.joints()) {
-    const auto compute = [&] { return frequency::spectral_radius(machine, j, reading_delay); };
-    double radius = 0.0;
-    if (cache == nullptr) {
-      radius = compute();
-    } else {
-      system::MemoKey key;
-      key.add(reading_delay);
-      add_linear_axis(key, linear, j);
-      radius = *cache->spectral_radii.get(key, compute);
-    }
+    const double radius = spectral_radius(linear, j, reading_delay, cache);
     if (radius < kMarginal) continue;
     faults.push_back(instability(machine, j, radius));
     for (const std::string& value : input::implausible_values(machine, j)) {

@@ -34,7 +34,7 @@ SIM_ROOMS = {
     "model": ["controllers", "strategies", "config", "metrology", "numerics", "records", "standards"],
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "tables": ["controllers", "strategies", "model"],
-    "frequency": ["engine", "model", "numerics", "records"],
+    "frequency": ["engine", "model", "numerics", "records", "system"],
     "evaluation": ["engine", "metrology", "model", "records", "system"],
     "input": ["controllers", "strategies", "config", "evaluation", "metrology", "model", "standards", "system"],
     "identification": ["controllers", "config", "engine", "input", "model", "numerics", "recordings", "records", "system"],

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -13,6 +12,7 @@
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/system/json.h"
+#include "sim/system/worker_thread.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
 
@@ -349,9 +349,8 @@ int lobes_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string output = output_of(options, "output", ".csv");
   const sim::frequency::LobesRequest request = request_of(options);
-  const unsigned threads = thread_count(options);
-  const auto points = sim::frequency::stability_lobes(
-      request, threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
+  const auto points =
+      sim::frequency::stability_lobes(request, sim::system::thread_count(thread_count(options)));
   if (options.has("json")) {
     fmt::print("{}\n", to_json(request, points));
   } else {
