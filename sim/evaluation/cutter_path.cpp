@@ -121,16 +121,17 @@ Eigen::AlignedBox3f CutterPath::swept_box(const Pass& pass, std::size_t first,
                                           std::size_t end) const {
   const plant::Envelope body = plant::envelope(*pass.cutter);
   Box box;
-  double bent = 0.0;
+  double bent = 0.0, grown = 0.0;  // m; the cutter in a part that was colder than it is measured
   plant::CutterPosition before = at(first > pass.first ? first - 1 : first);
   for (std::size_t row = first > pass.first ? first - 1 : first; row < end; ++row) {
     const plant::CutterPosition position = at(row);
     box.extend(position.tip);
     box.extend(Vector3d(position.tip + body.top * position.axis));
     bent = std::max(bent, plant::turn_deviation(before, position, body.reach()));
+    grown = std::max(grown, -strain_at(row) / (1.0 + strain_at(row)) * body.reach());
     before = position;
   }
-  const Vector3d around = Vector3d::Constant(body.radius() + bent + kBoxMargin);
+  const Vector3d around = Vector3d::Constant(body.radius() + bent + grown + kBoxMargin);
   return Box(box.min() - around, box.max() + around).cast<float>();
 }
 
