@@ -6,31 +6,21 @@
 A row of panels for each axis; the band is the expanded uncertainty (k = 2). Errors that the readings hold only in combination are
 drawn in grey. Location errors stand in the title of their axis. Exit status: 0 written, 2 a file cannot be read or written.
 """
-import argparse
-import csv
-import os
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
 
-from command_line import InputError, run
+from command_line import run
+from table_figure import draw_table, read_rows
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
+TOOL = "errors_figure.py"
 HEAD = ["error", "position", "position_unit", "value", "standard_uncertainty", "unit", "in_combination"]
 DIRECTIONS = "XYZABC"
 
 
 def read_table(name):
     """Functions as lists of rows by name, location errors as one row each."""
-    try:
-        with open(name, newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-    except OSError as error:
-        raise InputError(f"errors_figure.py: error: {name}: {error.strerror}") from error
-    if not rows or list(rows[0]) != HEAD:
-        raise InputError(f"errors_figure.py: error: {name} is not a table of errors; expected the columns {', '.join(HEAD)}")
+    rows = read_rows(TOOL, name, HEAD, "errors")
     functions, locations = {}, {}
     for row in rows:
         if row["position"]:
@@ -74,18 +64,7 @@ def draw(functions, locations):
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", metavar="TABLE.csv")
-    parser.add_argument("-o", "--output", metavar="FIGURE.png")
-    parser.add_argument("-f", "--force", action="store_true", help="replaces the figure if it exists")
-    options = parser.parse_args(arguments)
-    out = options.output or os.path.splitext(options.table)[0] + ".png"
-    if os.path.exists(out) and not options.force:
-        raise InputError(f"errors_figure.py: error: {out} exists; use --force to overwrite")
-    functions, locations = read_table(options.table)
-    figure = draw(functions, locations)
-    figure.savefig(out, dpi=110, metadata={"Software": None})
-    print(f"written to {out}")
+    draw_table(arguments, TOOL, __doc__, lambda name: draw(*read_table(name)))
 
 
 if __name__ == "__main__":

@@ -6,31 +6,21 @@
 Above: the limiting depth of cut over the speed of the spindle, flip lobes marked, dashed the closed form with mean directional
 factors. Below: the chatter frequency at the limit. Exit status: 0 written, 2 a file cannot be read or written.
 """
-import argparse
-import csv
 import math
-import os
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
 
-from command_line import InputError, run
+from command_line import run
+from table_figure import draw_table, read_rows
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
+TOOL = "lobes_figure.py"
 HEAD = ["speed_rpm", "limit_mm", "frequency_Hz", "kind", "zeroth_order_mm", "zeroth_order_frequency_Hz"]
 
 
 def read_table(name):
     """Rows with numbers; where a cell is empty, there is no limit: nan."""
-    try:
-        with open(name, newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-    except OSError as error:
-        raise InputError(f"lobes_figure.py: error: {name}: {error.strerror}") from error
-    if not rows or list(rows[0]) != HEAD:
-        raise InputError(f"lobes_figure.py: error: {name} is not a table of stability lobes; expected the columns {', '.join(HEAD)}")
+    rows = read_rows(TOOL, name, HEAD, "stability lobes")
     return [{key: text if key == "kind" else float(text) if text else math.nan for key, text in row.items()} for row in rows]
 
 
@@ -59,17 +49,7 @@ def draw(rows):
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", metavar="TABLE.csv")
-    parser.add_argument("-o", "--output", metavar="FIGURE.png")
-    parser.add_argument("-f", "--force", action="store_true", help="replaces the figure if it exists")
-    options = parser.parse_args(arguments)
-    out = options.output or os.path.splitext(options.table)[0] + ".png"
-    if os.path.exists(out) and not options.force:
-        raise InputError(f"lobes_figure.py: error: {out} exists; use --force to overwrite")
-    figure = draw(read_table(options.table))
-    figure.savefig(out, dpi=110, metadata={"Software": None})
-    print(f"written to {out}")
+    draw_table(arguments, TOOL, __doc__, lambda name: draw(read_table(name)))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 
 #include "sim/engine/simulate.h"
 #include "sim/preparation/prepared_case.h"
+#include "tests/sim/engine/circles.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::engine::bed_run_test {
@@ -26,16 +27,6 @@ std::string bed(const std::string& prefix, double mass = 3000.0, double f = 18.0
         prefix, axis, mass, f);
   }
   return out;
-}
-
-// Circles about the origin; the last of them is the section.
-std::string circles(double radius_mm, double feed, int turns) {
-  std::string out = fmt::format("G17 G21 G90 G94 G64 P0.001\nG0 X{0} Y0\nG2 X{0} Y0 I-{0} F{1}\n",
-                                radius_mm, feed);
-  for (int n = 1; n < turns; ++n) out += fmt::format("G2 X{0} Y0 I-{0}\n", radius_mm);
-  out += "(MSG, last)\n";
-  for (int n = 0; n < 2; ++n) out += fmt::format("G2 X{0} Y0 I-{0}\n", radius_mm);
-  return out + fmt::format("(MSG, leave)\nG2 X{0} Y0 I-{0}\nM30\n", radius_mm);
 }
 
 constexpr const char* kMoves = "G21 G90 G94\nG1 X12 F6000\nG1 X3 Y8\nG1 X0 Y0\nM30\n";

@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/run/store.h"
+#include "tests/sim/engine/circles.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::engine::inertial_run_test {
@@ -23,16 +24,6 @@ const std::string kRecord = "[record]\nperiod_ms = 0.2\n";
 
 std::string structure(const std::string& pairs) {
   return "[machine_override.inertial_deflection]\n" + pairs;
-}
-
-// Circles about the origin; the last of them is the section.
-std::string circles(double radius_mm, double feed, int turns) {
-  std::string out = fmt::format("G17 G21 G90 G94 G64 P0.001\nG0 X{0} Y0\nG2 X{0} Y0 I-{0} F{1}\n",
-                                radius_mm, feed);
-  for (int n = 1; n < turns; ++n) out += fmt::format("G2 X{0} Y0 I-{0}\n", radius_mm);
-  out += "(MSG, last)\n";
-  for (int n = 0; n < 2; ++n) out += fmt::format("G2 X{0} Y0 I-{0}\n", radius_mm);
-  return out + fmt::format("(MSG, leave)\nG2 X{0} Y0 I-{0}\nM30\n", radius_mm);
 }
 
 std::vector<std::size_t> rows_of(const records::Series& servo, double section) {

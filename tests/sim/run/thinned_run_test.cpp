@@ -7,6 +7,7 @@
 #include "sim/evaluation/quantity.h"
 #include "sim/preparation/estimate.h"
 #include "sim/records/row_thinning.h"
+#include "tests/sim/run/compared_cases.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::thinned_run_test {
@@ -16,18 +17,6 @@ constexpr double kSingle = 1e-6;  // relative: means and rms are kept as float32
 // um, of differences: the case that is compared with is linear from row to row, and the largest one
 // may lie between rows; 1 % of it
 constexpr double kBetween = 0.2;
-
-constexpr const char* kCases = R"([errors.measured]
-EYX = { harmonic = { amplitude_um = 20.0, period_mm = 25.0 } }
-EXY = { polynomial_um = [0.0, 0.3] }
-[[case]]
-name = "as_it_is"
-[[case]]
-name = "feedback"
-[[case.strategy]]
-type = "feedback"
-model = "measured"
-)";
 
 std::string program() {
   std::string text = "F1500\n";
@@ -55,8 +44,8 @@ model::Scenario scenario(const std::string& record) {
   const std::string baseline = "baseline = \"as_it_is\"\ncases = [\"feedback\"]\n";
   quantities += quantity("tool_difference", baseline);
   quantities += quantity("trajectory_difference", "axis = \"Y\"\n" + baseline);
-  return small_scenario(program(),
-                        "machine_errors = \"measured\"\n[record]\n" + record + kCases + quantities);
+  return small_scenario(program(), "machine_errors = \"measured\"\n[record]\n" + record +
+                                       kComparedCases + quantities);
 }
 
 class ThinnedRun : public testing::Test {

@@ -11,6 +11,7 @@
 #include "sim/preparation/estimate.h"
 #include "sim/records/row_thinning.h"
 #include "sim/run/store.h"
+#include "tests/sim/run/compared_cases.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::windows_run_test {
@@ -29,19 +30,6 @@ G1 X1
 G1 X0
 O1 ENDREPEAT
 M2
-)";
-
-constexpr const char* kCases = R"(
-[errors.measured]
-EYX = { harmonic = { amplitude_um = 20.0, period_mm = 25.0 } }
-EXY = { polynomial_um = [0.0, 0.3] }
-[[case]]
-name = "as_it_is"
-[[case]]
-name = "feedback"
-[[case.strategy]]
-type = "feedback"
-model = "measured"
 )";
 
 std::string quantity(const std::string& name, const std::string& keys) {
@@ -65,7 +53,7 @@ std::string line_quantities(const std::string& more) {
 model::Scenario scenario(const std::string& record, const std::string& quantities = "") {
   return small_scenario(
       kParts, "machine_errors = \"measured\"\nimposed = \"measured\"\n[record]\n" + record +
-                  kCases + quantities);
+                  kComparedCases + quantities);
 }
 
 // Compares every column of rows of one recording with those at the same time of another.
