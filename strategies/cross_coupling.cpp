@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr std::array<std::string_view, 1> kAuto = {"auto"};
 constexpr double kResetRatio = 8.0;  // Ti (Kv + C) of `auto`: costs at most 7 deg at the crossover
-// Time constants of the position loop for which the way is remembered: the tip follows by one.
+// Time constants of the position loop for which the path is remembered: the tip follows by one.
 constexpr double kRemembered = 8.0;
 constexpr double kLongest = 1e5;  // position periods
 
@@ -59,19 +59,19 @@ class ContourTerm final : public PositionLoopPart {
         gain_(gain),
         most_(most),
         period_(period),
-        way_(static_cast<std::size_t>(std::min(kRemembered / (slowest * period), kLongest))) {}
+        path_(static_cast<std::size_t>(std::min(kRemembered / (slowest * period), kLongest))) {}
 
   void settle(const Reading& now) override {
-    way_.start(tip(now.Q_cmd));
+    path_.start(tip(now.Q_cmd));
     integral_.setZero();
     tangent_.setZero();
   }
 
   Joints velocity(const Reading& now) override {
-    way_.add(tip(now.Q_cmd));
-    if (!way_.has_moved()) return Joints::Zero();
+    path_.add(tip(now.Q_cmd));
+    if (!path_.has_moved()) return Joints::Zero();
     const Vector3d a = tip(now.Q_fb);
-    const TracedPath::Place place = way_.nearest(a);
+    const TracedPath::Place place = path_.nearest(a);
     const Vector3d e = place.point - a;
     turn_integral(place.tangent);
     Vector3d v = gain_.C * e + integral_;
@@ -89,7 +89,7 @@ class ContourTerm final : public PositionLoopPart {
  private:
   Vector3d tip(const Joints& Q) const { return plant::forward(chain_, Q, p_ST_).p_WT; }
 
-  // From one tangent to the next by the smallest rotation; where the way turns back it stays.
+  // From one tangent to the next by the smallest rotation; where the path turns back it stays.
   void turn_integral(const Vector3d& tangent) {
     constexpr double kBack = -0.5;  // cosine
     if (tangent_.dot(tangent) > kBack && !tangent_.isZero(0.0)) {
@@ -106,7 +106,7 @@ class ContourTerm final : public PositionLoopPart {
   AddedGain gain_;
   double most_;  // m/s
   double period_;
-  TracedPath way_;
+  TracedPath path_;
   Vector3d integral_ = Vector3d::Zero();  // m/s
   Vector3d tangent_ = Vector3d::Zero();   // of the last place; 0: none yet
 };
@@ -160,6 +160,7 @@ Entry contour_entry() {
                  "adds the contour error to the velocity commands: cross-coupled control", specs(),
                  make};
   entry.once = true;
+  entry.corrects_following = true;
   entry.reads_gains = true;
   entry.reads_errors = false;
   entry.wanted_margins = wanted_margins;

@@ -1,13 +1,13 @@
 /// Cross-coupled control: the contour error of the tip is fed into the position loops.
 ///
-/// e is the vector from the tip as the position loops read it to the nearest point of the way that
-/// its command has taken, in the workpiece; across the way, so that following along it plays no
+/// e is the vector from the tip as the position loops read it to the nearest point of the path that
+/// its command has taken, in the workpiece; across the path, so that following along it plays no
 /// part. With a proportional gain C and the reset time Ti,
 ///
 ///     v = C (e + 1/Ti integral of e dt)                                                       (1)
 ///
 /// is added to the velocity commands of X, Y and Z, by the columns of the ideal kinematics. The
-/// integral turns with the way (parallel transport). Along the normal (1) acts like Kv -> Kv + C:
+/// integral turns with the path (parallel transport). Along the normal (1) acts like Kv -> Kv + C:
 /// on a circle the mean radial error falls by Kv / (Kv + C), with the integral to zero. Following
 /// errors of rotary axes displace the tip, too; they are corrected there, not in the tool axis.
 ///

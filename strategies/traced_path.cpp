@@ -18,7 +18,7 @@ void TracedPath::add(const Eigen::Vector3d& p) {
   const Point& last = point(count_ - 1);
   const double step = (p - last.p).norm();
   if (step < kShortest) return;
-  const Point next{p, last.way + step};
+  const Point next{p, last.length + step};
   if (count_ < points_.size()) {
     points_[(oldest_ + count_++) % points_.size()] = next;
     return;
@@ -34,7 +34,7 @@ TracedPath::Foot TracedPath::foot(std::size_t chord, const Eigen::Vector3d& a) c
   return {t, (from + t * along - a).squaredNorm()};
 }
 
-// A chord later on the way is nearer than d only if the way to it is longer than D - d, D the
+// A chord later on the path is nearer than d only if the path to it is longer than D - d, D the
 // distance of an earlier one.
 void TracedPath::look_ahead(const Eigen::Vector3d& a, Foot& now) {
   const std::size_t last = count_ - 2;
@@ -44,9 +44,9 @@ void TracedPath::look_ahead(const Eigen::Vector3d& a, Foot& now) {
       near_ = n;
       now = there;
     }
-    const double way = point(n).way + std::sqrt(there.square) - std::sqrt(now.square);
+    const double length = point(n).length + std::sqrt(there.square) - std::sqrt(now.square);
     ++n;
-    while (n <= last && point(n + 1).way < way) ++n;
+    while (n <= last && point(n + 1).length < length) ++n;
   }
 }
 

@@ -1,4 +1,4 @@
-/// The way of a commanded point in the recent past, and the place on it that is nearest to another
+/// The path of a commanded point in the recent past, and the place on it that is nearest to another
 /// point.
 #pragma once
 
@@ -16,16 +16,16 @@ class TracedPath {
   /// @param length  points that are held, at least 2
   explicit TracedPath(std::size_t length);
 
-  /// Forgets all, and stands at p.
+  /// Restarts at p.
   void start(const Eigen::Vector3d& p);
-  /// The point has gone on to p. A step of less than kShortest is none.
+  /// The point has moved to p. A step of less than kShortest is none.
   void add(const Eigen::Vector3d& p);
 
   struct Place {
     Eigen::Vector3d point;    // m
     Eigen::Vector3d tangent;  // unit, in the direction of travel
   };
-  /// The place nearest to a; before the oldest and after the last point the way goes on straight.
+  /// The place nearest to a; before the oldest and after the last point the path goes on straight.
   /// @pre has_moved()
   Place nearest(const Eigen::Vector3d& a);
   bool has_moved() const { return count_ > 1; }
@@ -35,7 +35,7 @@ class TracedPath {
  private:
   struct Point {
     Eigen::Vector3d p;
-    double way = 0.0;  // m, length of the way up to it
+    double length = 0.0;  // m, of the path up to it
   };
   const Point& point(std::size_t n) const {  // 0: the oldest
     return points_[(oldest_ + n) % points_.size()];

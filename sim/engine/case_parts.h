@@ -76,7 +76,7 @@ class CutAlongPath {
     load_.turn(in_.machine.nc.periods.seconds(in_.tooth_step));
   }
   const Joints& load() const { return load_.load(); }
-  double beside() const { return load_.beside(); }
+  double off_path() const { return load_.off_path(); }
   /// Why the cut cannot go on; empty if it can.
   std::string_view fault() const;
   /// W, at the edges: by the spindle and by the axes, which move at dQ (5; m/s, rad/s).

@@ -37,7 +37,7 @@ struct CaseResult {
   std::vector<strategies::Saturation> saturations;  // of the feedback
   HeatCourse heat;
   std::vector<std::size_t> left_out;  // rows of feed motion outside the windows, by section
-  double beside = 0.0;                // m, CuttingLoad::beside()
+  double off_path = 0.0;              // m, CuttingLoad::off_path()
   double simulated_time = 0.0;        // s
   double wall_time = 0.0;             // s, of all that ran in lockstep
 };

@@ -147,7 +147,7 @@ CaseResult CaseRun::finish(Tick n) {
   result_.servo = recorder_.take();
   result_.left_out = recorder_.left_out();
   if (heat_) result_.heat = std::move(*heat_).course();
-  if (cut_) result_.beside = cut_->beside();
+  if (cut_) result_.off_path = cut_->off_path();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
   return std::move(result_);
 }

@@ -57,8 +57,8 @@ double CuttingTable::power(double s, double speed, double wear, double wear_per_
 namespace {
 
 // Modes that swing are part of the regeneration where chips regenerate.
-std::vector<plant::StructuralMode> modes_beside(const std::vector<plant::StructuralMode>& modes,
-                                                const ChipRegeneration* regeneration) {
+std::vector<plant::StructuralMode> modes_not_regenerating(
+    const std::vector<plant::StructuralMode>& modes, const ChipRegeneration* regeneration) {
   std::vector<plant::StructuralMode> out = modes;
   if (regeneration != nullptr) {
     std::erase_if(out, [](const plant::StructuralMode& one) { return !one.is_static(); });
@@ -80,7 +80,7 @@ CuttingLoad::CuttingLoad(const CuttingTable& table, const model::CuttingWear& we
       teeth_(teeth),
       displaced_(displaced),
       regeneration_(regeneration),
-      modes_(modes_beside(modes, regeneration)) {}
+      modes_(modes_not_regenerating(modes, regeneration)) {}
 
 void CuttingLoad::advance(double s, double dt, const Joints& Q, const Eigen::Vector3d& p_ST) {
   const double speed = std::max(0.0, (s - s_) / dt);
@@ -144,7 +144,7 @@ Eigen::Vector3d CuttingLoad::force_at(const CuttingTable::Place& at, double spee
     found =
         force_at_actual_depth(places, deviation_ + J * modes_.of_modes(), J * C * J.transpose());
   }
-  beside_ = std::max(beside_, found.beside);
+  off_path_ = std::max(off_path_, found.off_path);
   digs_in_ |= found.digs_in;
   return found.force;
 }

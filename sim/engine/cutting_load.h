@@ -115,7 +115,7 @@ class CuttingLoad {
   Eigen::Vector3d deflection(double after) const;
   /// Largest distance of the cutter from its nominal path across the feed while it cut (m), where
   /// the depth of cut is the actual one.
-  double beside() const { return beside_; }
+  double off_path() const { return off_path_; }
   /// True once the cut has drawn the tool in faster than the structure resists.
   bool digs_in() const { return digs_in_; }
 
@@ -138,7 +138,7 @@ class CuttingLoad {
                          double rotation) const;
 
   CuttingTable::Cursor cursor_;
-  double beside_ = 0.0;  // m
+  double off_path_ = 0.0;  // m
   bool digs_in_ = false;
   Eigen::Vector3d deviation_ = Eigen::Vector3d::Zero();
   double s_ = 0.0, speed_ = 0.0;

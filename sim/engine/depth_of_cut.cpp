@@ -56,7 +56,7 @@ ForceAtDepth force_at_actual_depth(const std::array<ForcesNearby, 2>& places,
   if (out.digs_in || out.force.dot(nominal) <= 0.0) {
     out.force.setZero();
   } else {
-    out.beside = across(places, deviation + C * out.force);
+    out.off_path = across(places, deviation + C * out.force);
   }
   return out;
 }

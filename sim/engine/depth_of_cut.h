@@ -1,4 +1,4 @@
-/// Change of a cutting force where the cutter is beside its nominal path: the depth of cut follows
+/// Change of a cutting force where the cutter is off its nominal path: the depth of cut follows
 /// the actual position of the tool, the stock is what the nominal path has left of it.
 #pragma once
 
@@ -35,8 +35,8 @@ struct ForcesNearby {
 /// Force at the actual depth of cut, and how far from the nominal path it acts.
 struct ForceAtDepth {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in W
-  double beside = 0.0;   // m, of the cutter from its nominal path across the feed
-  bool digs_in = false;  // the cut draws the cutter in faster than the structure resists
+  double off_path = 0.0;  // m, of the cutter from its nominal path across the feed
+  bool digs_in = false;   // the cut draws the cutter in faster than the structure resists
 };
 
 /// Force at the actual depth of cut: linear in the displacement on each side, and in balance with

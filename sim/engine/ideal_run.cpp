@@ -68,7 +68,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   result.left_out = recorder_.left_out();
   result.saturations = std::move(saturations_);
   if (heat_) result.heat = std::move(*heat_).course();
-  if (cut_) result.beside = cut_->beside();
+  if (cut_) result.off_path = cut_->off_path();
   return result;
 }
 

@@ -6,7 +6,7 @@
 
 namespace servomill::sim::input {
 
-/// Reads the table `bed` of an axis, where there is one, into its drive.
+/// Reads the table `machine_bed` of an axis, where there is one, into its drive.
 /// @param base_period  s
 void read_bed(config::Reader& axis, bool linear, double base_period, plant::FeedDriveParams& drive);
 

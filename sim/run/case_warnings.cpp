@@ -155,12 +155,12 @@ std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
 }
 
 // Forces at the actual depth of cut are known next to the path alone.
-std::optional<std::string> cut_beside_path(const preparation::PreparedParts& one, double beside) {
-  if (beside <= engine::DisplacedCut::kLargest) return std::nullopt;
+std::optional<std::string> cut_off_path(const preparation::PreparedParts& one, double off_path) {
+  if (off_path <= engine::DisplacedCut::kLargest) return std::nullopt;
   return fmt::format(
       "warning: case {}: the tool was up to {:.3g} mm off its nominal path while it cut: forces "
       "at the actual depth of cut are extended linearly from {:g} mm to {:g} mm, and held beyond",
-      one.spec.name, beside / mm, engine::DisplacedCut::kStep / mm,
+      one.spec.name, off_path / mm, engine::DisplacedCut::kStep / mm,
       engine::DisplacedCut::kLargest / mm);
 }
 
@@ -187,7 +187,7 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   add_overshoots(one, out);
   if (auto cold = cold_drives(one)) out.push_back(std::move(*cold));
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
-  if (auto beside = cut_beside_path(one, result.beside)) out.push_back(std::move(*beside));
+  if (auto off_path = cut_off_path(one, result.off_path)) out.push_back(std::move(*off_path));
   for (const strategies::Saturation& saturation : result.saturations)
     out.push_back(note_of(one, saturation));
   return out;

@@ -96,7 +96,7 @@ void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   for (const double P : result.heat.power) write(to, P);
   write(to, result.left_out.size());
   for (const std::size_t rows : result.left_out) write(to, rows);
-  write(to, result.beside);
+  write(to, result.off_path);
   write(to, result.simulated_time);
 }
 
@@ -119,7 +119,7 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   for (double& P : result.heat.power) P = from.read<double>();
   result.left_out.resize(from.read<std::size_t>());
   for (std::size_t& rows : result.left_out) rows = from.read<std::size_t>();
-  result.beside = from.read<double>();
+  result.off_path = from.read<double>();
   result.simulated_time = from.read<double>();
   return result;
 }

@@ -228,7 +228,7 @@ TEST(Contour, AddsNoMoreThanItsLimit) {
   }
   now.Q_fb[1] = identified.reference[1] + 0.5 * mm;
   EXPECT_NEAR(term->velocity(now)[1], -20 * mm, 1e-12);
-  EXPECT_NEAR(term->velocity(now)[0], 0.0, 1e-12) << "nothing along the way";
+  EXPECT_NEAR(term->velocity(now)[0], 0.0, 1e-12) << "nothing along the path";
 }
 
 TEST(Contour, TakesNothingFromTheHeap) {

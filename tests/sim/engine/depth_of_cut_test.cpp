@@ -81,7 +81,7 @@ TEST(DepthOfCut, lag_along_the_feed_does_not_shorten_the_displacement) {
   const ForceAtDepth found =
       force_at_actual_depth(wall.places, Vector3d(400.0, 50.0, 0.0) * um, Matrix3d::Zero());
   EXPECT_NEAR(found.force.y(), -40.0 - kSlope * 50.0, kRounding);
-  EXPECT_NEAR(found.beside, 50 * um, 1e-15);
+  EXPECT_NEAR(found.off_path, 50 * um, 1e-15);
 }
 
 TEST(DepthOfCut, distance_from_the_path_includes_the_deflection) {
@@ -89,7 +89,7 @@ TEST(DepthOfCut, distance_from_the_path_includes_the_deflection) {
   Matrix3d C = Matrix3d::Zero();
   C(1, 1) = 1.0 / (1e6 * 20.0);  // 20 N/um
   const ForceAtDepth found = force_at_actual_depth(wall.places, Vector3d(0.0, 150.0, 0.0) * um, C);
-  EXPECT_NEAR(found.beside, std::abs(150 * um + found.force.y() / 20e6), 1e-15);
+  EXPECT_NEAR(found.off_path, std::abs(150 * um + found.force.y() / 20e6), 1e-15);
   EXPECT_FALSE(found.digs_in);
 }
 
