@@ -1,21 +1,11 @@
 #include "strategies/gcode.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <numbers>
 
-#include "plant/vocabulary/input_error.h"
-#include "plant/vocabulary/interrupt.h"
-#include "plant/vocabulary/units.h"
-#include "strategies/linearisation.h"
+#include "strategies/displaced_blocks.h"
 #include "strategies/pose_compensation.h"
-#include "strategies/programmed_way.h"
 #include "strategies/reversal_correction.h"
-#include "strategies/turning_points.h"
 
 namespace servomill::strategies {
 namespace {
@@ -24,30 +14,10 @@ constexpr std::array<std::string_view, 2> kOrigins = {"case", "program"};
 
 const std::array<ParameterSpec, 8>& specs() {
   static const std::array<ParameterSpec, 8> kSpecs = {{
-      {.name = "tolerance_um",
-       .help = "chord tolerance of the rewritten blocks",
-       .unit = "um",
-       .default_text = "0.1",
-       .min = 1e-3,
-       .shortcoming = Shortcoming::chord_tolerance},
-      {.name = "max_block_mm",
-       .help = "maximum length of a rewritten block",
-       .unit = "mm",
-       .default_text = "1",
-       .min = 1e-3,
-       .shortcoming = Shortcoming::block_length},
-      {.name = "tolerance_urad",
-       .help = "axes = all: chord tolerance of the rotary axes",
-       .unit = "urad",
-       .default_text = "0.5",
-       .min = 1e-3,
-       .shortcoming = Shortcoming::chord_tolerance},
-      {.name = "max_block_deg",
-       .help = "axes = all: maximum rotation of a rotary axis in a rewritten block",
-       .unit = "deg",
-       .default_text = "1",
-       .min = 1e-3,
-       .shortcoming = Shortcoming::block_length},
+      kBlockSpecs[0],
+      kBlockSpecs[1],
+      kBlockSpecs[2],
+      kBlockSpecs[3],
       {.name = "rewrite_origin",
        .help = "work origin for which the errors are evaluated: that of the case, or that of "
                "program.work_offset without the offset of the case",
@@ -66,233 +36,57 @@ const std::array<ParameterSpec, 8>& specs() {
 struct RewriteParams {
   Action action = Action::compensate;
   Iterations iterations = Iterations::one;
-  DisplacedAxes axes = DisplacedAxes::linear;
   double sigma_0 = 0.0;
-  double tolerance = 0.0;         // m
-  double max_block = 0.0;         // m
-  double tolerance_turn = 0.0;    // rad
-  double max_block_turn = 0.0;    // rad
+  BlockLimits limits;
   Joints shift = Joints::Zero();  // m, rad; of the part since the program was rewritten
 };
 
-// Displaces one programmed move after the other and appends the blocks that result.
-class Rewriter {
+// Displacement by the identified errors.
+class ErrorDisplacement final : public PointDisplacement {
  public:
-  Rewriter(const IdentifiedMachine& identified, const RewriteParams& params, std::vector<Move>& out)
+  ErrorDisplacement(const IdentifiedMachine& identified, const RewriteParams& params)
       : identified_(identified),
         params_(params),
-        inverse_(nominal_inverse(identified)),
         all_(identified, params.iterations, params.sigma_0),
-        out_(out),
-        Q_(identified.reference),
-        out_at_(identified.layout.words(identified.reference)),
         reversal_(identified, params.action, identified.reference - params.shift) {}
 
-  void rewrite(const Move& move) {
-    const ProgrammedWay way(inverse_, identified_.p_ST, Q_, move);
-    move_ = &move;
-    way_ = &way;
-    s_ = move.s_begin;
-    t_ = 0.0;
-    if (way.controls_tip()) {
-      cut();
-    } else if (move.kind == MoveKind::rapid) {
-      // displaced at its end only: nothing is cut on the way
-      reach(place(1.0, Q_));
-    } else if (way.length() == 0.0 && way.turn().any()) {
-      // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next
-      // move takes them to where they belong.
-      Place target = place(1.0, Q_);
-      if (!displaces_all()) target.words = move.end_machine;
-      target.words.head<3>() = out_at_.head<3>();
-      reach(target);
-    } else {
-      cut();
+  At at(const Joints& Q, double) const override {
+    const Joints Q_then = Q - params_.shift;
+    At out{mean(Q_then)};
+    if (reversal_.is_needed()) {
+      out.step = reversal_.displacement(Q_then, identified_.layout.joints(out.d));
+      out.d.head<3>() += out.step;
     }
-    Q_ = way.end();
-  }
-
- private:
-  static constexpr int kMaxSplits = 24;
-
-  struct Place {
-    double t = 0.0;                                      // of the move
-    Joints Q;                                            // as programmed
-    AxisWords words;                                     // displaced
-    Eigen::Vector3d reversal = Eigen::Vector3d::Zero();  // m; share of the directions of travel
-  };
-
-  bool displaces_all() const { return params_.axes == DisplacedAxes::all; }
-
-  void cut() {
-    const bool minds_turn = displaces_all() || way_->controls_tip();
-    const double turn = minds_turn ? way_->turn().cwiseAbs().maxCoeff() : 0.0;
-    const double blocks =
-        std::max(way_->length() / params_.max_block, turn / params_.max_block_turn);
-    const auto pieces = std::max<std::int64_t>(1, std::llround(std::ceil(blocks - 1e-9)));
-    const double dt = 1.0 / static_cast<double>(pieces);
-    Place a = place(0.0, Q_);
-    for (std::int64_t i = 0; i < pieces; ++i) {
-      throw_if_interrupted();
-      const double end = i + 1 == pieces ? 1.0 : static_cast<double>(i + 1) * dt;
-      for (const double t : ends_of_pieces(a, end)) {
-        const Place b = place(t, a.Q);
-        split(a, b, kMaxSplits);
-        travel(b);
-        a = b;
-      }
-    }
-  }
-
-  // Shares of the way at which an axis with hysteresis reverses, and the end. A straight move
-  // reverses an axis, too, where its correction does.
-  std::vector<double> ends_of_pieces(const Place& a, double end) const {
-    constexpr double kTurn = 0.25 * std::numbers::pi, kWave = 0.5 * mm;
-    const double share = end - a.t;
-    const double steps = std::max(way_->sweep() / kTurn, way_->length() / kWave) * share;
-    std::vector<double> out;
-    for (const plant::Play& play : identified_.model.plays()) {
-      const auto x = [&](double t) { return travelled(play.joint, t, a.Q); };
-      const auto turns = turning_points(x, a.t, end, std::max(4, static_cast<int>(steps)));
-      out.insert(out.end(), turns.begin(), turns.end());
-    }
-    std::sort(out.begin(), out.end());
-    constexpr double kSame = 1e-6;
-    double before = a.t;
-    std::erase_if(out, [&](double t) {
-      const bool is_same = std::min(t - before, end - t) < kSame * share;
-      if (!is_same) before = t;
-      return is_same;
-    });
-    out.push_back(end);
     return out;
   }
 
+  std::span<const plant::Play> plays() const override { return identified_.model.plays(); }
+
+  // The hysteresis of a compensated program follows its displaced positions.
+  double travelled(const Joints& Q, int joint) const override {
+    const Joints Q_then = Q - params_.shift;
+    if (params_.action == Action::impose) return Q_then[joint];
+    return Q_then[joint] + identified_.layout.joints(mean(Q_then))[joint];
+  }
+
+  void travel(const Joints& Q, const At& there) override {
+    if (!reversal_.is_needed()) return;
+    reversal_.travel(Q - params_.shift, identified_.layout.joints(there.d), there.step);
+  }
+
+ private:
   // By the mean of both directions of travel.
-  AxisWords mean_displacement(const Joints& Q) const {
-    if (displaces_all()) return identified_.layout.words(all_.of_setpoint(params_.action, Q));
+  AxisWords mean(const Joints& Q) const {
+    if (params_.limits.turns) return identified_.layout.words(all_.of_setpoint(params_.action, Q));
     AxisWords d = AxisWords::Zero();
     d.head<3>() = setpoint_displacement(identified_, params_.action, params_.iterations, Q);
     return d;
   }
 
-  // Coordinate of a joint that its hysteresis follows (reversal_correction.h).
-  double travelled(int joint, double t, const Joints& Q_near) const {
-    const Joints Q = way_->at(t, Q_near) - params_.shift;
-    if (params_.action == Action::impose) return Q[joint];
-    return Q[joint] + identified_.layout.joints(mean_displacement(Q))[joint];
-  }
-
-  Place place(double t, const Joints& Q_near) const {
-    Place out{t, way_->at(t, Q_near), {}};
-    out.words = identified_.layout.words(out.Q);
-    const Joints Q_then = out.Q - params_.shift;
-    AxisWords d = mean_displacement(Q_then);
-    if (reversal_.is_needed()) {
-      out.reversal = reversal_.displacement(Q_then, identified_.layout.joints(d));
-      d.head<3>() += out.reversal;
-    }
-    out.words += d;
-    return out;
-  }
-
-  void travel(const Place& target) {
-    if (!reversal_.is_needed()) return;
-    const AxisWords d = target.words - identified_.layout.words(target.Q);
-    reversal_.travel(target.Q - params_.shift, identified_.layout.joints(d), target.reversal);
-  }
-
-  void reach(const Place& target) {
-    travel(target);
-    emit(target);
-  }
-
-  // Halves the way from a to b until the chord is within tolerance at a quarter, the half and three
-  // quarters.
-  void split(const Place& a, const Place& b, int splits_left) {
-    const bool is_within = is_within_tolerance(a, b) || is_step(a, b);
-    if (splits_left == 0 || is_within) {
-      // a rapid may turn where it stands: it cuts nothing
-      if (!is_within && way_->controls_tip() && move_->kind != MoveKind::rapid) {
-        throw InputError({{}, move_->line, 0},
-                         "cannot be rewritten: the rotary axes jump within the move, in a singular "
-                         "direction of the tool axis");
-      }
-      emit(b);
-      return;
-    }
-    const Place middle = place(0.5 * (a.t + b.t), a.Q);
-    split(a, middle, splits_left - 1);
-    split(middle, b, splits_left - 1);
-  }
-
-  // Lost motion is taken up at once, where an axis reverses.
-  bool is_step(const Place& a, const Place& b) const {
-    return reversal_.is_needed() && (b.t - a.t) * way_->length() < params_.tolerance &&
-           (b.reversal - a.reversal).norm() > params_.tolerance;
-  }
-
-  bool is_within_tolerance(const Place& a, const Place& b) const {
-    const bool minds_turn = displaces_all() || way_->controls_tip();
-    for (const double f : {0.25, 0.5, 0.75}) {
-      const Joints Q_near = a.Q + f * (b.Q - a.Q);
-      const AxisWords off =
-          place(a.t + f * (b.t - a.t), Q_near).words - (a.words + f * (b.words - a.words));
-      if (off.head<3>().norm() > params_.tolerance) return false;
-      if (minds_turn && off.tail<3>().norm() > params_.tolerance_turn) return false;
-    }
-    return true;
-  }
-
-  void emit(const Place& target) {
-    Move block = *move_;
-    if (block.kind == MoveKind::arc) block.kind = MoveKind::feed;
-    // work offsets do not rotate here: what displaces the machine displaces the work coordinates
-    block.end += target.words - block.end_machine;
-    block.end_machine = target.words;
-    block.s_begin = s_;
-    block.s_end = move_->s_begin + target.t * (move_->s_end - move_->s_begin);
-    if (way_->controls_tip()) {
-      leave_tip_control(block, target.t - t_);
-    } else if (way_->length() == 0.0 && !way_->turn().any()) {
-      take_linear_feed(block);
-    }
-    out_at_ = target.words;
-    s_ = block.s_end;
-    t_ = target.t;
-    out_.push_back(block);
-  }
-
-  // A move that stands has F in degrees; displaced, X, Y and Z go where the one before left them.
-  static void take_linear_feed(Move& block) {
-    block.feed *= mm / deg;
-    if (block.feed_mode == FeedMode::units_per_revolution) block.value *= mm / deg;
-  }
-
-  // A block of the axes that takes the time of its share of the move.
-  void leave_tip_control(Move& block, double share) const {
-    block.tool_control = ToolControl::none;
-    block.tool_offset = 0;
-    block.plane.reset();
-    if (block.kind == MoveKind::rapid) return;
-    block.feed_mode = FeedMode::inverse_time;
-    // its feed is that of the tip along s, or nothing moves
-    if (block.s_end > block.s_begin || way_->angle() == 0.0) return;
-    const double turned = (block.end_machine - out_at_).tail<3>().norm();
-    block.feed = turned * move_->feed / (share * way_->angle());
-  }
-
   const IdentifiedMachine& identified_;
   const RewriteParams& params_;
-  plant::InverseKinematics inverse_;
   PoseCompensation all_;
-  std::vector<Move>& out_;
-  Joints Q_;  // as programmed, where the move begins
-  const Move* move_ = nullptr;
-  const ProgrammedWay* way_ = nullptr;
-  AxisWords out_at_;  // displaced end of the block before
   ReversalCorrection reversal_;
-  double s_ = 0.0, t_ = 0.0;
 };
 
 class RewrittenProgram final : public Strategy {
@@ -302,40 +96,20 @@ class RewrittenProgram final : public Strategy {
 
   bool rewrites() const override { return true; }
   bool rewrites_tip_moves() const override { return true; }
-  bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
+  bool displaces_rotary() const override { return params_.limits.turns; }
   std::optional<Residual> uncorrectable(const Joints& Q) const override {
-    return strategies::uncorrectable(identified_, params_.action, params_.axes, params_.sigma_0,
-                                     Joints(Q - params_.shift));
+    return strategies::uncorrectable(
+        identified_, params_.action,
+        params_.limits.turns ? DisplacedAxes::all : DisplacedAxes::linear, params_.sigma_0,
+        Joints(Q - params_.shift));
   }
 
   std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    refuse_too_many(moves);
-    std::vector<Move> out;
-    Rewriter rewriter(identified_, params_, out);
-    for (const Move& move : moves) {
-      throw_if_interrupted();
-      if (is_motion(move.kind)) {
-        rewriter.rewrite(move);
-      } else {
-        out.push_back(move);
-      }
-    }
-    return out;
+    ErrorDisplacement displacement(identified_, params_);
+    return displaced_blocks(moves, identified_, params_.limits, displacement);
   }
 
  private:
-  // Before the work: a program in blocks of a micrometre is larger than the memory.
-  void refuse_too_many(const std::vector<Move>& moves) const {
-    constexpr double kMaxBlocks = 5e6;
-    double blocks = 0.0;
-    for (const Move& move : moves) {
-      if (move.kind != MoveKind::rapid) blocks += (move.s_end - move.s_begin) / params_.max_block;
-    }
-    if (blocks <= kMaxBlocks) return;
-    throw TooManyBlocks(fmt::format("max_block_mm = {:g} gives {:.2g} blocks; must be <= {:.2g}",
-                                    params_.max_block / mm, blocks, kMaxBlocks));
-  }
-
   IdentifiedMachine identified_;
   RewriteParams params_;
 };
@@ -345,12 +119,9 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action action,
   RewriteParams params;
   params.action = action;
   params.iterations = iterations_of(p);
-  params.tolerance = p.number("tolerance_um");
-  params.max_block = p.number("max_block_mm");
-  params.axes = displaced_axes_of(p);
+  params.limits = block_limits_of(p);
+  params.limits.turns = displaced_axes_of(p) == DisplacedAxes::all;
   params.sigma_0 = std::sin(p.number("singular_deg"));
-  params.tolerance_turn = p.number("tolerance_urad");
-  params.max_block_turn = p.number("max_block_deg");
   if (p.word("rewrite_origin") == "program") params.shift = identified.part_shift;
   return std::make_unique<RewrittenProgram>(identified, params);
 }

@@ -15,7 +15,6 @@
 #include "sim/preparation/cutting_force_plan.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/rewritten_text.h"
-#include "strategies/gcode.h"
 
 namespace servomill::sim::preparation {
 namespace {

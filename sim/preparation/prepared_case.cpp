@@ -19,7 +19,7 @@
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/stability_check.h"
 #include "sim/preparation/tooth_step.h"
-#include "strategies/gcode.h"
+#include "strategies/displaced_blocks.h"
 #include "strategies/plugin_child.h"
 
 namespace servomill::sim::preparation {
