@@ -31,7 +31,7 @@ Eigen::MatrixXd monodromy_of(AxisTestBench& stand) {
 
 }  // namespace
 
-StandInput sinusoid(Entry entry, Complex u, double w, double h) {
+StandInput sinusoid(Entry entry, Complex u, double w, double h, double Tp) {
   StandInput in;
   switch (entry) {
     case Entry::setpoint_fed_forward:
@@ -41,6 +41,13 @@ StandInput sinusoid(Entry entry, Complex u, double w, double h) {
     case Entry::setpoint:
       in.q = u.real();
       break;
+    case Entry::offset: {
+      const Complex rate = (1.0 - std::polar(1.0, -w * Tp)) / Tp;
+      in.q = u.real();
+      in.dq = (rate * u).real();
+      in.ddq = (rate * rate * u).real();
+      break;
+    }
     case Entry::velocity_command:
       in.added.velocity = u.real();
       break;
@@ -66,10 +73,12 @@ FrequencyResponse::FrequencyResponse(const model::MachineSettings& machine, int 
 Response FrequencyResponse::at(Entry entry, double f) {
   assert(f > 0.0);
   const double w = 2.0 * std::numbers::pi * f, h = stand_.base();
+  const model::LoopPeriods& periods = stand_.machine().nc.periods;
+  const double Tp = periods.seconds(periods.position);
   const auto turn = [&](Tick n) { return std::polar(1.0, w * h * static_cast<double>(n)); };
   // exp(j w t) in two runs: its real part (phase 1), its imaginary part (phase -j)
   const auto feed = [&](Complex phase) {
-    return [&, phase](Tick n) { return sinusoid(entry, phase * turn(n), w, h); };
+    return [&, phase](Tick n) { return sinusoid(entry, phase * turn(n), w, h, Tp); };
   };
   const auto from = [&](const Eigen::VectorXd& x) {
     stand_.settle(0.0);

@@ -11,6 +11,7 @@ namespace servomill::sim::frequency {
 enum class Entry : std::uint8_t {
   setpoint,              // m, rad; its derivatives are not fed forward
   setpoint_fed_forward,  // the same with feed-forward as the NC has it
+  offset,                // the same, its derivatives differences over a position period
   velocity_command,      // m/s, rad/s
   current_command,       // A
   force,                 // N, N m: on the slide, along +x
@@ -21,7 +22,8 @@ enum class Entry : std::uint8_t {
 /// is held over the tick and given so that its fundamental is that of Re(u exp(j w t)).
 /// @param w  rad/s
 /// @param h  s, base period
-StandInput sinusoid(Entry entry, Complex u, double w, double h);
+/// @param Tp  s, position period: of differences
+StandInput sinusoid(Entry entry, Complex u, double w, double h, double Tp);
 
 /// The linear part of an axis (sim/frequency/stability.h) under sampled loops is a linear system
 /// whose coefficients repeat after one hyperperiod T: x(t + T) = Phi x(t) + f. A sinusoid exp(j w

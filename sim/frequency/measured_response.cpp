@@ -61,7 +61,10 @@ double frequency(const Window& window, std::size_t k, double T) {
 class Excitation {
  public:
   Excitation(const Window& window, const AxisTestBench& stand, const Measurement& how)
-      : how_(how), h_(stand.base()), ticks_(window.hyperperiods * stand.hyperperiod()) {
+      : how_(how),
+        h_(stand.base()),
+        Tp_(stand.machine().nc.periods.seconds(stand.machine().nc.periods.position)),
+        ticks_(window.hyperperiods * stand.hyperperiod()) {
     if (ticks_ <= kMaxKept) turn_.reserve(static_cast<std::size_t>(ticks_));
     for (Tick n = 0; n < ticks_ && ticks_ <= kMaxKept; ++n) turn_.push_back(turned(n));
     const double K = static_cast<double>(window.periods.size());
@@ -91,7 +94,7 @@ class Excitation {
     StandInput in;
     for (std::size_t k = 0; k < lines_.size(); ++k) {
       const StandInput one =
-          sinusoid(how_.entry, lines_[k].amplitude * turn(k, n), lines_[k].w, h_);
+          sinusoid(how_.entry, lines_[k].amplitude * turn(k, n), lines_[k].w, h_, Tp_);
       in.q += one.q;
       in.dq += one.dq;
       in.ddq += one.ddq;
@@ -120,7 +123,7 @@ class Excitation {
   }
 
   Measurement how_;
-  double h_;
+  double h_, Tp_;
   Tick ticks_;
   std::vector<Complex> turn_;  // of each tick; empty for a long window
   std::vector<Line> lines_;
@@ -263,6 +266,7 @@ double default_amplitude(const model::MachineSettings& machine, int joint, Entry
   switch (entry) {
     case Entry::setpoint:
     case Entry::setpoint_fed_forward:
+    case Entry::offset:
     case Entry::reading:
       return current * c.Kt * c.r / (c.Kp * c.Kv);
     case Entry::velocity_command:
