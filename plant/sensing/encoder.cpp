@@ -104,6 +104,13 @@ Encoder Encoder::with_step(double measuring_step) {
   return Encoder(params);
 }
 
+Encoder Encoder::in_run(std::uint64_t run) const {
+  constexpr std::uint64_t kFarApart = 0x9e3779b97f4a7c15;  // 2^64 by the golden ratio
+  Encoder out = *this;
+  out.key_.seed += run * kFarApart;
+  return out;
+}
+
 // With the turning part divided out, the pointer is 1 + ellipse exp(-2 i theta) + centre
 // exp(-i theta): its angle is the error itself, and no counter is needed to add whole periods.
 double Encoder::interpolation_error(double position, Complex noise) const {

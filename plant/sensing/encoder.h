@@ -103,6 +103,10 @@ class Encoder {
                                    : std::numeric_limits<double>::infinity();
   }
 
+  /// The same encoder with the noise of another run; run 0: its own.
+  Encoder in_run(std::uint64_t run) const;
+  std::uint64_t seed() const { return key_.seed; }
+
   double step() const { return step_; }
   double frequency_limit() const { return frequency_limit_; }
   bool is_noisy() const { return noisy_; }

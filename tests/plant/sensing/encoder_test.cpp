@@ -339,5 +339,15 @@ TEST(Encoder, DoesNotAllocate) {
   EXPECT_GT(sum, 0.0);
 }
 
+// Runs of one program have noise of their own, each the same whenever it is asked for.
+TEST(EncoderInARun, HasTheNoiseOfThatRun) {
+  const Encoder one(with(&EncoderParams::position_noise, 3 * nm), {.seed = 5, .stream = 2});
+  EXPECT_EQ(one.in_run(0).read(0.1, 9), one.read(0.1, 9));
+  EXPECT_EQ(one.in_run(3).read(0.1, 9), one.in_run(3).read(0.1, 9));
+  EXPECT_NE(one.in_run(3).read(0.1, 9), one.read(0.1, 9));
+  EXPECT_NE(one.in_run(3).read(0.1, 9), one.in_run(4).read(0.1, 9));
+  EXPECT_EQ(one.in_run(3).read(0.1), one.read(0.1));
+}
+
 }  // namespace
 }  // namespace servomill::plant::encoder_test
