@@ -29,17 +29,33 @@ constexpr std::array<std::string_view, 1> kTravel = {"travel"};
 constexpr double kGridStep =
     0.1 * um;  // spacing is 2^n times this (TNC 407/415/425 Technical Manual, 1998, p. 153)
 
-const std::array<ParameterSpec, 15>& specs() {
-  static const std::array<ParameterSpec, 15> kSpecs = {{
-      {.name = "layout",
-       .help = "axis_tables: the sum of one table per axis; grid: one table over all axes, "
-               "multilinear within each cell; continuous: the error itself, as an infinitely fine "
-               "table would give it",
-       .default_text = "axis_tables",
-       .is_number = false,
-       .words = kLayouts,
-       .shortcoming = Shortcoming::points,
-       .ideal = "continuous"},
+constexpr ParameterSpec kLayoutSpec = {
+    .name = "layout",
+    .help =
+        "axis_tables: the sum of one table per axis; grid: one table over all axes, "
+        "multilinear within each cell; continuous: the error itself, as an infinitely fine "
+        "table would give it",
+    .default_text = "axis_tables",
+    .is_number = false,
+    .words = kLayouts,
+    .shortcoming = Shortcoming::points,
+    .ideal = "continuous"};
+
+constexpr ParameterSpec kShiftSpec = {
+    .name = "shift_mm",
+    .help =
+        "each point holds the error so far ahead of it along its base axis: v times the delay "
+        "compensates the delay at the feed v, in one direction",
+    .unit = "mm",
+    .default_text = "0",
+    .min = -100.0,
+    .max = 100.0,
+    .shortcoming = Shortcoming::delay,
+    .ideal = "0"};
+
+const std::array<ParameterSpec, 16>& specs() {
+  static const std::array<ParameterSpec, 16> kSpecs = {{
+      kLayoutSpec,
       {.name = "base_axis",
        .help = "base axes of the tables; all: each linear axis",
        .default_text = "all",
@@ -114,6 +130,7 @@ const std::array<ParameterSpec, 15>& specs() {
        .max = 1e4,
        .shortcoming = Shortcoming::delay,
        .ideal = "0"},
+      kShiftSpec,
       kIterationsSpec,
   }};
   return kSpecs;
@@ -269,6 +286,9 @@ std::vector<GridLine> lines_of(const Tabulation& of) {
 
 std::vector<GridTable> tables_of(const Tabulation& of) {
   std::vector<GridLine> lines = lines_of(of);
+  if (of.p.number("shift_mm") != 0.0 && lines.size() > 1) {
+    throw InputError({}, "shift_mm requires one base_axis: on several, feeds and delays differ");
+  }
   const std::string& output = of.p.word("compensated_axis");
   Eigen::Vector3d from_reference = Eigen::Vector3d::Zero();
   if (of.p.word("zero_at_reference") == "true") from_reference.setOnes();
@@ -296,6 +316,9 @@ std::vector<GridTable> tables_of(const Tabulation& of) {
 std::unique_ptr<Strategy> make(const Parameters& p, Action action,
                                const IdentifiedMachine& identified) {
   if (p.word("layout") == "continuous") {
+    if (p.number("shift_mm") != 0.0) {
+      throw InputError({}, "shift_mm requires layout = \"axis_tables\"");
+    }
     return std::make_unique<ExactTable>(entry_of(p), action, iterations_of(p),
                                         p.word("zero_at_reference") == "true", identified);
   }

@@ -101,7 +101,7 @@ GridTable Tabulation::table(std::vector<GridLine> lines, const Eigen::Vector3d& 
   const Eigen::Vector3d base = from_reference.cwiseProduct(wanted(Q));
   for_all_points(table.lines, [&](const auto& point) {
     for (std::size_t a = 0; a < table.lines.size(); ++a) {
-      Q[table.lines[a].joint] = table.lines[a].at(point[a]);
+      Q[table.lines[a].joint] = table.lines[a].at(point[a]) + p.number("shift_mm");
     }
     table.value.push_back(moved.cwiseProduct(wanted(Q) - base));
   });

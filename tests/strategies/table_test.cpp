@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-15;  // m, of values of some 100 um
 struct Options {
   std::string layout = "grid", base_axis = "all", compensated_axis = "all",
               zero_at_reference = "false";
-  double spacing = 50.0 * mm, max_step_ratio = 1.0;
+  double spacing = 50.0 * mm, max_step_ratio = 1.0, shift = 0.0;
 };
 
 Parameters parameters(const Options& o) {
@@ -40,6 +40,7 @@ Parameters parameters(const Options& o) {
   p.set("time_constant_ms", 40.0 * ms);
   p.set("dead_time_ms", 0.0);
   p.set("update_period_ms", 0.0);
+  p.set("shift_mm", o.shift);
   p.set("iterations", "1");
   return p;
 }
@@ -211,6 +212,25 @@ TEST(Table, RefusesWhatTheNcWouldRefuse) {
             "base_axis = \"XY\"; the machine has no such axis");
   EXPECT_EQ(fault_of(plane, {.compensated_axis = "Y"}),
             "compensated_axis = \"Y\"; the machine has no such axis");
+}
+
+// At the feed v a delay T reads the table v T too late: each point holds the error v T ahead.
+TEST(Table, HoldsTheErrorAheadWhereItIsShifted) {
+  plant::ErrorModel errors;
+  errors.component("EYX"_err) = plant::harmonic(20.0 * um, 60.0 * mm, 0.4);
+  const IdentifiedMachine identified = three_axes(errors);
+  const Options plain = {.layout = "axis_tables", .base_axis = "X", .spacing = 2.0 * mm};
+  Options shifted = plain;
+  shifted.shift = 6.0 * mm;  // three points
+  const Made before(identified, plain), ahead(identified, shifted);
+  for (const double x : {-100.0, -3.1, 0.0, 77.7}) {
+    EXPECT_NEAR(ahead.at(x * mm, 0, 0)[1], before.at((x + 6.0) * mm, 0, 0)[1], kRounding) << x;
+    EXPECT_GT(std::abs(ahead.at(x * mm, 0, 0)[1] - before.at(x * mm, 0, 0)[1]), 1e-7);
+  }
+  EXPECT_EQ(fault_of(identified, {.layout = "axis_tables", .shift = 1.0 * mm}),
+            "shift_mm requires one base_axis: on several, feeds and delays differ");
+  EXPECT_EQ(fault_of(identified, {.layout = "continuous", .base_axis = "X", .shift = 1.0 * mm}),
+            "shift_mm requires layout = \"axis_tables\"");
 }
 
 TEST(Table, KnowsWhereItEnds) {
