@@ -106,6 +106,11 @@ Residual PoseCompensation::residual(const Joints& Q, const Joints& d) const {
   return {(got.p_WT - wanted.p_WT).norm(), angle_between(got.k_W, wanted.k_W)};
 }
 
+Joints displacement_for(const plant::MachineChain& chain, const Joints& Q, const Vector3d& p_ST,
+                        double sigma_0, const Vector3d& s_p, const Vector3d& s_k) {
+  return FirstOrder(chain, Q, p_ST, sigma_0).step(s_p, s_k, Vector2d::Zero());
+}
+
 Residual uncorrectable(const IdentifiedMachine& identified, DisplacedAxes axes, double sigma_0,
                        const Joints& Q) {
   const PoseCompensation all(identified, Iterations::converged, sigma_0);

@@ -58,6 +58,13 @@ class PoseCompensation {
   double sigma_0_;
 };
 
+/// Displacement of all joints (5; m, rad) that changes the pose of the ideal machine at Q by s_p
+/// (m) and s_k, to first order.
+/// @param sigma_0  of PoseCompensation
+Joints displacement_for(const plant::MachineChain& chain, const Joints& Q,
+                        const Eigen::Vector3d& p_ST, double sigma_0, const Eigen::Vector3d& s_p,
+                        const Eigen::Vector3d& s_k);
+
 /// Residual at the programmed position Q of identified errors that are corrected as well as the
 /// axes can, however many iterations that takes: on linear axes what turns the tool, on rotary ones
 /// what they cannot turn or, near a singular direction, give way to.

@@ -8,17 +8,20 @@
 #include "strategies/gcode.h"
 #include "strategies/harmonic.h"
 #include "strategies/inertia.h"
+#include "strategies/learning.h"
 #include "strategies/none.h"
 #include "strategies/parabolic.h"
 #include "strategies/plugin_file.h"
+#include "strategies/precompensation.h"
 #include "strategies/table.h"
 
 namespace servomill::strategies {
 
 std::span<const Entry> entries() {
-  static const std::array kEntries = {contour_entry(), exact_entry(),     feedback_entry(),
-                                      gcode_entry(),   harmonic_entry(),  inertia_entry(),
-                                      none_entry(),    parabolic_entry(), table_entry()};
+  static const std::array kEntries = {contour_entry(),         exact_entry(),    feedback_entry(),
+                                      gcode_entry(),           harmonic_entry(), inertia_entry(),
+                                      learning_entry(),        none_entry(),     parabolic_entry(),
+                                      precompensation_entry(), table_entry()};
   return kEntries;
 }
 

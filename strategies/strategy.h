@@ -154,6 +154,8 @@ struct BeyondTable {
   double end = 0.0;  // m, its first or last point
 };
 
+class LearningStrategy;  // strategies/trial_runs.h
+
 /// Up to four parts, each optional. A strategy is constant and may be shared by runs; the parts
 /// that it makes have the state of one run.
 class Strategy {
@@ -180,6 +182,9 @@ class Strategy {
     (void)Q;
     return {};
   }
+
+  /// Itself, if it learns from runs of the program; nullptr: it acts as it is.
+  virtual const LearningStrategy* learning() const { return nullptr; }
 
   /// True if it has a part that displaces the feedback.
   virtual bool displaces_feedback() const { return false; }

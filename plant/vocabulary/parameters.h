@@ -19,6 +19,7 @@ enum class Shortcoming : std::uint8_t {
   saturation,         // limits of what it displaces
   single_evaluation,  // errors evaluated where displacing changes them
   identification,     // knows less than the case has
+  measurement,        // of what it learns from
   chord_tolerance,    // of rewritten programs: the square of the length of blocks
   block_length,       // of rewritten programs
 };

@@ -226,7 +226,7 @@ points_mm = [[0, 0, 0, 0, 0, 1]]
 name = "nominal"
 work_offset = { C_deg = 0.0 }
 machine_errors = ""
-strategy = [{ type = "none" }]
+strategy = [{ type = "learning", machine = { nc = { Kv = 60.0 } } }]
 [[case]]
 name = "other"
 wear = 1.5

@@ -27,6 +27,29 @@ const strategies::Entry* user_of_hardware(const model::CaseSpec& spec) {
   return nullptr;
 }
 
+// The machine of a document, of which nothing else is read.
+model::MachineSettings machine_in(const config::Document& document) {
+  config::Reader root(document);
+  for (const std::string& key : root.keys()) {
+    if (key != "machine") root.raw(key);
+  }
+  config::Reader machine = root.table("machine");
+  model::MachineSettings out = read_machine(machine);
+  root.finish();
+  return out;
+}
+
+bool same_clock(const model::MachineSettings& a, const model::MachineSettings& b) {
+  return a.nc.periods == b.nc.periods && a.scale_delay == b.scale_delay;
+}
+
+bool same_axes(const model::MachineSettings& a, const model::MachineSettings& b) {
+  return std::equal(a.chain.axes.begin(), a.chain.axes.end(), b.chain.axes.begin(),
+                    b.chain.axes.end(), [](const auto& one, const auto& other) {
+                      return one.axis == other.axis && one.side == other.side;
+                    });
+}
+
 }  // namespace
 
 CaseReader::CaseReader(std::vector<std::string> error_models, bool hardware_is_chosen,
@@ -55,7 +78,8 @@ void CaseReader::read(config::Reader& table) {
     }
   }
   for (config::Reader& strategy : table.tables_or_none("strategy")) {
-    read_strategy(strategy, error_models_, spec);
+    const config::Value* known = read_strategy(strategy, error_models_, spec);
+    if (known != nullptr) known_[out_.cases.size()].emplace(spec.strategies.size() - 1, *known);
   }
   if (table.has("machine_override")) note_machine_override(table);
   give_hardware(table, says_hardware, spec);
@@ -120,30 +144,51 @@ void CaseReader::note_machine_override(config::Reader& table) {
 
 void CaseReader::read_machines(const config::Document& scenario) {
   std::vector<Fault> faults;
-  for (const auto& [index, override] : overrides_) {
+  for (std::size_t index = 0; index < out_.cases.size(); ++index) {
+    const auto override = overrides_.find(index);
     config::Document document = scenario;
-    document.merge(as_machine(override));
-    config::Reader root(document);
-    for (const std::string& key : root.keys()) {
-      if (key != "machine") root.raw(key);
-    }
     try {
-      config::Reader machine = root.table("machine");
-      model::CaseSpec& one = out_.cases[index];
-      one.machine = read_machine(machine);
-      root.finish();
-      if (one.machine->nc.periods != out_.machine.nc.periods ||
-          one.machine->scale_delay != out_.machine.scale_delay) {
-        faults.push_back({override.place,
-                          fmt::format("case {}: machine_override changes the periods of the "
-                                      "loops or nc.scale_delay_us, which are common to all cases",
-                                      one.name)});
+      if (override != overrides_.end()) {
+        document.merge(as_machine(override->second));
+        read_machine_of(index, document);
       }
+      if (known_.contains(index)) read_known_machines(index, document);
     } catch (const InputError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+void CaseReader::read_machine_of(std::size_t index, const config::Document& with_override) {
+  model::CaseSpec& one = out_.cases[index];
+  one.machine = machine_in(with_override);
+  if (!same_clock(*one.machine, out_.machine)) {
+    throw InputError(overrides_.at(index).place,
+                     fmt::format("case {}: machine_override changes the periods of the loops or "
+                                 "nc.scale_delay_us, which are common to all cases",
+                                 one.name));
+  }
+}
+
+void CaseReader::read_known_machines(std::size_t index, const config::Document& of_case) {
+  model::CaseSpec& one = out_.cases[index];
+  for (const auto& [number, keys] : known_.at(index)) {
+    const bool is_whole = keys.find("structure") != nullptr;
+    config::Document document = of_case;
+    if (is_whole) document = config::Document::from_text("", of_case.name());
+    document.merge(as_machine(keys));
+    auto known = std::make_shared<const model::MachineSettings>(machine_in(document));
+    model::StrategySpec& strategy = one.strategies[number];
+    if (!same_axes(*known, out_.machine) || !same_clock(*known, out_.machine)) {
+      throw InputError(keys.place,
+                       fmt::format("case {}: strategy {}: machine is another one: its structure, "
+                                   "the periods of its loops and nc.scale_delay_us must be those "
+                                   "of the scenario's machine",
+                                   one.name, strategy.entry->name));
+    }
+    strategy.machine = std::move(known);
+  }
 }
 
 }  // namespace servomill::sim::input

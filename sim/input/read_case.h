@@ -31,7 +31,8 @@ class CaseReader {
   /// otherwise, cases differ in their strategies alone.
   void connect_hardware();
 
-  /// Machines of cases with machine_override: that of the scenario with these keys replaced. To be
+  /// Machines of cases with machine_override: that of the scenario with these keys replaced; and
+  /// those that strategies know: that of their case with keys replaced, or another one. To be
   /// called when all else is known to be right: of a faulty machine no override can be judged.
   /// @throws InputError with the faults of all overrides
   void read_machines(const config::Document& scenario);
@@ -41,6 +42,8 @@ class CaseReader {
   void check_recording(config::Reader& table, const model::CaseSpec& spec) const;
   void give_hardware(config::Reader& table, bool says_hardware, model::CaseSpec& spec);
   void note_machine_override(config::Reader& table);
+  void read_machine_of(std::size_t index, const config::Document& with_override);
+  void read_known_machines(std::size_t index, const config::Document& of_case);
 
   std::vector<std::string> error_models_;
   bool hardware_is_chosen_;
@@ -48,6 +51,8 @@ class CaseReader {
   bool names_are_known_ = true;
   std::vector<std::size_t> follows_others_;         // cases that have the hardware if any needs it
   std::map<std::size_t, config::Value> overrides_;  // machine_override, by index of the case
+  // machines that strategies know, by index of the case and of the strategy
+  std::map<std::size_t, std::map<std::size_t, config::Value>> known_;
 };
 
 }  // namespace servomill::sim::input

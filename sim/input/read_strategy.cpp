@@ -22,6 +22,10 @@ void read_model(config::Reader& table, std::span<const std::string> error_models
                 model::StrategySpec& strategy) {
   strategy.action = table.choice_or("action", 1, kActions) == 0 ? strategies::Action::impose
                                                                 : strategies::Action::compensate;
+  if (strategy.action == strategies::Action::impose && !strategy.entry->imposes) {
+    table.fault("action", fmt::format("must be \"compensate\": the strategy {} imposes nothing",
+                                      strategy.entry->name));
+  }
   strategy.model = table.text("model");
   if (table.is("model", config::Value::Type::text)) {
     must_be_known(table, "model", strategy.model, "error model", error_models);
@@ -122,14 +126,14 @@ bool repeats_start(const model::StrategySpec& strategy,
 
 }  // namespace
 
-void read_strategy(config::Reader& table, std::span<const std::string> error_models,
-                   model::CaseSpec& spec) {
+const config::Value* read_strategy(config::Reader& table, std::span<const std::string> error_models,
+                                   model::CaseSpec& spec) {
   const auto names = strategies::names();
   const std::size_t before = table.faults();
   const std::size_t index = table.choice("type", names);
   if (table.faults() > before) {
     table.skip_rest();
-    return;
+    return nullptr;
   }
   model::StrategySpec strategy;
   strategy.entry = strategies::find(names[index]);
@@ -152,7 +156,14 @@ void read_strategy(config::Reader& table, std::span<const std::string> error_mod
                     "base_axis = \"all\", or zero_at_reference = true for all but one",
                     strategy.entry->name));
   }
+  const config::Value* machine = nullptr;
+  if (strategy.entry->runs_program && table.has("machine")) machine = table.raw("machine");
+  if (machine != nullptr && machine->type != config::Value::Type::table) {
+    table.fault("machine", "must be the name of a machine file, or a table of keys of the machine");
+    machine = nullptr;
+  }
   spec.strategies.push_back(std::move(strategy));
+  return machine;
 }
 
 }  // namespace servomill::sim::input

@@ -12,7 +12,8 @@ namespace servomill::sim::input {
 /// One [[case.strategy]], added to those of `spec`: type, sign, model and the parameters that the
 /// registry lists for that type. A strategy at fault in its type is left out.
 /// @param error_models  names of all models of the scenario
-void read_strategy(config::Reader& table, std::span<const std::string> error_models,
-                   model::CaseSpec& spec);
+/// @return its key `machine`, for a strategy that runs the program; nullptr: it has none
+const config::Value* read_strategy(config::Reader& table, std::span<const std::string> error_models,
+                                   model::CaseSpec& spec);
 
 }  // namespace servomill::sim::input

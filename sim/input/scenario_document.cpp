@@ -87,6 +87,34 @@ bool needs_covariance(const config::Document& document) {
       });
 }
 
+// Machine files that strategies know, in place of their names.
+void add_known_machines(config::Document& document, InputFiles& files) {
+  const config::Value* found = document.root().find("case");
+  if (found == nullptr || found->type != config::Value::Type::list) return;
+  config::Value cases = *found;
+  bool any = false;
+  for (config::Value& one : cases.children) {
+    config::Value* strategies = one.find("strategy");
+    if (strategies == nullptr) continue;
+    for (config::Value& strategy : strategies->children) {
+      config::Value* machine = strategy.find("machine");
+      if (machine == nullptr || machine->type != config::Value::Type::text) continue;
+      const std::string path = beside(machine->place, machine->text);
+      config::Value contents = machine_document(path, files, machine->place).document.root();
+      contents.key = machine->key;
+      contents.key_place = machine->key_place;
+      contents.place = machine->place;
+      *machine = std::move(contents);
+      any = true;
+    }
+  }
+  if (!any) return;
+  config::Value root;
+  root.place = cases.place;
+  root.children.push_back(std::move(cases));
+  document.merge(root);
+}
+
 }  // namespace
 
 std::string beside(const Place& place, const std::string& path) {
@@ -149,6 +177,7 @@ ScenarioDocument with_machine(config::Document scenario, std::span<const std::st
     if (!comes_before_machine(change)) document.set(change);
   }
   add_drawn_errors(document, files);  // where --set asks for it
+  add_known_machines(document, files);
   if (identified && needs_covariance(document)) {
     document.merge(
         config::Document::from_text("[machine.identified]\n" + table_lines(*identified), "")

@@ -310,6 +310,8 @@ constexpr KeyHelp kScenario[] = {
     {"case.strategy", "type", "name of the strategy"},
     {"case.strategy", "action", "compensate: removes the errors of the model; impose: adds them"},
     {"case.strategy", "model", "error model that the strategy knows"},
+    {"case.strategy", "machine",
+     "machine that the strategy knows: a machine file, or keys that override those of the case"},
     {"quantity", "name", "quantity; servomill list quantities defines them"},
     {"quantity", "axis", "axis of the quantity"},
     {"quantity", "statistic", "statistic over the sections"},

@@ -65,7 +65,9 @@ struct StrategySpec {
   const strategies::Entry* entry = nullptr;
   Parameters parameters;
   strategies::Action action = strategies::Action::compensate;
-  std::string model;                                     // name of the identified error model
+  std::string model;  // name of the identified error model
+  // that a strategy which runs the program knows; nullptr: that of the case
+  std::shared_ptr<const MachineSettings> machine;
   Place place;                                           // for what the strategy itself refuses
   std::map<std::string, Place, std::less<>> key_places;  // of the parameters that are given
 };

@@ -24,19 +24,6 @@ std::string header_of(const model::Scenario& scenario, const model::CaseSpec& sp
   return fmt::format("{}, case {}", scenario.title, spec.name);
 }
 
-// Place of the key that a strategy's fault names first; of the strategy if it is not given.
-Place place_in(const model::StrategySpec& spec, const std::string& complaint) {
-  Place place = spec.place;
-  std::size_t first = std::string::npos;
-  for (const auto& [key, at] : spec.key_places) {
-    const std::size_t found = complaint.find(key);
-    if (found >= first) continue;
-    first = found;
-    place = at;
-  }
-  return place;
-}
-
 const plant::ErrorModel& errors_of(const model::Scenario& scenario, const std::string& model) {
   static const plant::ErrorModel kNone;
   const auto found = scenario.errors.find(model);
@@ -176,11 +163,16 @@ const plant::ErrorModel& CasePreparation::errors(const std::string& name) const 
 }
 
 SharedModel CasePreparation::model(const std::string& name) const {
+  return model(name, machine_.chain);
+}
+
+SharedModel CasePreparation::model(const std::string& name,
+                                   const plant::MachineChain& chain) const {
   const plant::ErrorModel& errors = errors_of(scenario_, name);
   system::MemoKey key;
-  add(key, machine_.chain);
+  add(key, chain);
   add(key, errors);
-  return cache_.models.get(key, [&] { return plant::VolumetricModel(machine_.chain, errors); });
+  return cache_.models.get(key, [&] { return plant::VolumetricModel(chain, errors); });
 }
 
 SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
@@ -232,9 +224,7 @@ SharedStrategy CasePreparation::make(const model::StrategySpec& spec,
   try {
     return spec.entry->make(spec.parameters, spec.action, machine);
   } catch (const InputError& error) {
-    const std::string& why = error.faults().front().message;
-    throw InputError(place_in(spec, why),
-                     fmt::format("case {}: strategy {}: {}", spec_.name, spec.entry->name, why));
+    throw fault_of(spec, spec_.name, error);
   }
 }
 
@@ -284,9 +274,17 @@ std::vector<Move> CasePreparation::rewrite(const strategies::Strategy& strategy,
   }
 }
 
+controllers::JointLimits CasePreparation::limits() const {
+  return {machine_.nc.v_max, machine_.nc.a_max, machine_.nc.j_max};
+}
+
 SharedMotion CasePreparation::motion(const SharedMoves& moves,
                                      const InterpretedProgram& program) const {
-  const controllers::JointLimits limits = {machine_.nc.v_max, machine_.nc.a_max, machine_.nc.j_max};
+  return motion(moves, program, limits());
+}
+
+SharedMotion CasePreparation::motion(const SharedMoves& moves, const InterpretedProgram& program,
+                                     const controllers::JointLimits& limits) const {
   const controllers::PathOptions options = path_options(scenario_, machine_);
   system::MemoKey key;
   key.add_shared(moves.get());

@@ -39,6 +39,8 @@ class CasePreparation {
 
   /// Model of the errors of that name; without a name, of a machine without errors.
   SharedModel model(const std::string& name) const;
+  /// The same for the chain of another machine.
+  SharedModel model(const std::string& name, const plant::MachineChain& chain) const;
 
   const plant::ErrorModel& errors(const std::string& name) const;
 
@@ -55,6 +57,10 @@ class CasePreparation {
   /// The planned motion along `moves`.
   /// @param program  the original one
   SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program) const;
+  SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program,
+                      const controllers::JointLimits& limits) const;
+  /// Limits of the axes.
+  controllers::JointLimits limits() const;
 
   /// The cutting force along the original program; nullptr: this case runs in air.
   SharedCutting cutting(const SharedProgram& program) const;

@@ -18,6 +18,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/stability_check.h"
+#include "sim/preparation/teaching.h"
 #include "sim/preparation/tooth_step.h"
 #include "strategies/displaced_blocks.h"
 #include "strategies/plugin_child.h"
@@ -65,10 +66,16 @@ struct PreparedCase::Parts {
   double distance_of_plan = 0.0;                         // m, of nominal points from the part
   std::vector<std::string> warnings = {};                // of added gains
   std::string stops_with = {};  // why a plug-in could not rewrite the program
+  std::vector<std::vector<servomill::strategies::TrialFigures>> trials = {};  // of each strategy
 
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
   void plan_cut(const CasePreparation& prepare);
+  void teach(const CasePreparation& prepare);
+  engine::CaseInputs inputs_on(const model::MachineSettings& machine,
+                               const plant::VolumetricModel& errors,
+                               const plant::ErrorModel* components,
+                               const std::string& scratch_folder) const;
   void check_added_gain(const CasePreparation& prepare, const model::StrategySpec& strategy);
 };
 
@@ -126,6 +133,19 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
   return moves;
 }
 
+// Strategies that learn do so from runs with those before and behind them, one after the other.
+void PreparedCase::Parts::teach(const CasePreparation& prepare) {
+  LearningCase learning{prepare, scenario,   spec,      program, machine_errors, component_errors,
+                        {},      strategies, rewritten, motion,  warnings};
+  learning.inputs = [this](const auto& machine, const auto& errors, const auto* components) {
+    return inputs_on(machine, errors, components, {});
+  };
+  trials.resize(strategies.size());
+  for (std::size_t k = 0; k < strategies.size(); ++k) {
+    if (strategies[k]->learning() != nullptr) trials[k] = preparation::teach(learning, k);
+  }
+}
+
 PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpec& spec,
                            PreparationCache* cache)
     : parts_(new Parts{scenario, spec, {}, {}, {}, {}, {}, {}, nullptr, {}, 0, Joints::Zero()}) {
@@ -159,6 +179,7 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   parts.component_errors = &prepare.errors(machine_errors);
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.plan_cut(prepare);
+  parts.teach(prepare);
 }
 
 void PreparedCase::thin(double bytes) {
@@ -191,10 +212,18 @@ PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
 
 engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const {
   const Parts& p = *parts_;
+  return p.inputs_on(p.machine(), *p.machine_errors, p.component_errors, scratch_folder);
+}
+
+engine::CaseInputs PreparedCase::Parts::inputs_on(const model::MachineSettings& machine,
+                                                  const plant::VolumetricModel& errors,
+                                                  const plant::ErrorModel* components,
+                                                  const std::string& scratch_folder) const {
+  const Parts& p = *this;
   model::FeedbackHardware hardware = p.scenario.hardware;
   hardware.connected = p.spec.feedback_hardware;
-  engine::CaseInputs inputs{p.machine(),
-                            *p.machine_errors,
+  engine::CaseInputs inputs{machine,
+                            errors,
                             p.imposed.get(),
                             p.motion->trajectory,
                             p.program->path,
@@ -219,8 +248,8 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
     inputs.displaced_cuts = p.cutting->displaced.get();
     inputs.wear = p.spec.wear;
   }
-  if (p.machine().heat) {
-    inputs.component_errors = p.component_errors;
+  if (machine.heat) {
+    inputs.component_errors = components;
     inputs.spindle_speeds = spindle_speeds(*p.motion->moves);
   }
   inputs.records_orientation =
@@ -230,7 +259,7 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
   if (p.scenario.record.extremes) record_every_tick(inputs);
   inputs.stops_with = p.stops_with;
   if (!p.stops_with.empty()) return inputs;
-  const model::LoopPeriods& periods = p.machine().nc.periods;
+  const model::LoopPeriods& periods = machine.nc.periods;
   for (std::size_t k = 0; k < p.strategies.size(); ++k) {
     const auto& strategy = p.strategies[k];
     if (auto part = strategy->setpoint()) inputs.setpoints.push_back(std::move(part));
@@ -250,7 +279,8 @@ engine::CaseInputs PreparedCase::inputs(const std::string& scratch_folder) const
 PreparedParts PreparedCase::parts() const {
   const Parts& p = *parts_;
   return {p.scenario,        p.spec,          *p.program,      *p.motion,          p.strategies,
-          p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan, p.warnings};
+          p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan, p.warnings,
+          p.trials};
 }
 
 const std::string& PreparedCase::stops_with() const { return parts_->stops_with; }

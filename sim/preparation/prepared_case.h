@@ -11,6 +11,7 @@
 
 #include "sim/model/scenario.h"
 #include "strategies/strategy.h"
+#include "strategies/trial_runs.h"
 
 namespace servomill::sim::engine {
 struct CaseInputs;
@@ -36,6 +37,8 @@ struct PreparedParts {
   const plant::VolumetricModel* imposed;  // nullptr: no errors are imposed
   double distance_of_plan;                // m, of nominal points from the part
   std::span<const std::string> warnings;  // of margins that strategies leave
+  // of each strategy the runs that it has learnt from
+  std::span<const std::vector<strategies::TrialFigures>> trials;
 };
 
 /// A case ready to be simulated. Preparing it finds every fault of the input.

@@ -24,6 +24,21 @@ void add_once(std::vector<Fault>& faults, Fault fault) {
 
 }  // namespace
 
+InputError fault_of(const model::StrategySpec& spec, const std::string& case_name,
+                    const InputError& error) {
+  const std::string& why = error.faults().front().message;
+  Place place = spec.place;
+  std::size_t first = std::string::npos;
+  for (const auto& [key, at] : spec.key_places) {
+    const std::size_t found = why.find(key);
+    if (found >= first) continue;
+    first = found;
+    place = at;
+  }
+  return InputError(place,
+                    fmt::format("case {}: strategy {}: {}", case_name, spec.entry->name, why));
+}
+
 void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file) {
   const auto found = first_move(moves, [](const Move& move) {
     return is_motion(move.kind) && move.tool_offset == controllers::kOtherToolOffset;
@@ -133,7 +148,32 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
   }
 }
 
+namespace {
+
+// True if a strategy corrects all errors of its model, whatever others do.
+bool corrects_model(const model::StrategySpec& spec) {
+  return spec.entry->reads_errors && !spec.entry->runs_program && !spec.model.empty() &&
+         spec.action == strategies::Action::compensate;
+}
+
+}  // namespace
+
+void refuse_second_correction(const model::StrategySpec& spec, const model::CaseSpec& one) {
+  if (!corrects_model(spec)) return;
+  for (const model::StrategySpec& earlier : one.strategies) {
+    if (&earlier == &spec) return;
+    if (!corrects_model(earlier) || earlier.model != spec.model || earlier.entry == spec.entry) {
+      continue;
+    }
+    throw InputError(spec.place,
+                     fmt::format("case {}: strategy {} would correct the errors of model '{}' a "
+                                 "second time, after {}; give it a model of the rest (relative_to)",
+                                 one.name, spec.entry->name, spec.model, earlier.entry->name));
+  }
+}
+
 void refuse_second(const model::StrategySpec& spec, const model::CaseSpec& one) {
+  refuse_second_correction(spec, one);
   if (!spec.entry->once) return;
   const auto is_same = [&](const model::StrategySpec& other) { return other.entry == spec.entry; };
   if (std::count_if(one.strategies.begin(), one.strategies.end(), is_same) < 2) return;

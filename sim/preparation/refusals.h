@@ -15,6 +15,11 @@ namespace servomill::sim::preparation {
 
 struct InterpretedProgram;
 
+/// The fault that a strategy finds, at the key that it names first, or else where it stands.
+/// @param error  without a place
+InputError fault_of(const model::StrategySpec& spec, const std::string& case_name,
+                    const InputError& error);
+
 /// A simulation knows tools by their numbers: those of G43.1 and G43.2 have none.
 /// @param file  of the program
 /// @throws InputError at the first motion with such a tool offset
@@ -67,6 +72,12 @@ void refuse_undeclared_feedback(const model::StrategySpec& spec,
 void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strategy& strategy,
                       const InterpretedProgram& program, const std::string& file,
                       const std::string& case_name);
+
+/// Strategies of two kinds that compensate the errors of one model would correct them twice.
+/// Several of one kind may share them, such as tables over different axes; a strategy that has the
+/// program run corrects only what the others leave.
+/// @throws InputError at the second one
+void refuse_second_correction(const model::StrategySpec& spec, const model::CaseSpec& one);
 
 /// Two of a kind would correct twice.
 /// @throws InputError at the strategy, if a case may have one and has two

@@ -18,7 +18,7 @@ constexpr std::array<CauseInfo, kCauses> kInfos = {{
     {"delay", "response and update of tables, signal delay, model period", CauseGroup::servo},
     {"saturation", "limits of virtual displacements"},
     {"single_evaluation", "errors evaluated at a displaced position"},
-    {"identification", "identified errors or origin differ from the actual ones"},
+    {"identification", "identified errors, machine or origin differ from the actual ones"},
     {"friction", "dry friction, backlash, cogging, and their compensation", CauseGroup::servo},
     {"measurement", "encoders and, where the motor is read, screws", CauseGroup::servo},
     {"cutting", "cutting forces", CauseGroup::force},
@@ -38,6 +38,20 @@ constexpr double kFineBlocks = 0.1;  // of the length: the chord error is the sq
 model::MachineSettings& own_machine(const model::Scenario& scenario, model::CaseSpec& one) {
   if (!one.machine) one.machine = scenario.machine;
   return *one.machine;
+}
+
+// Takes a cause away from the machine of a case and from those that its strategies know; whether
+// the machine of the case had it.
+template <class Remove>
+bool remove_of_machines(const model::Scenario& scenario, model::CaseSpec& one,
+                        const Remove& remove) {
+  for (model::StrategySpec& strategy : one.strategies) {
+    if (!strategy.machine) continue;
+    auto known = std::make_shared<model::MachineSettings>(*strategy.machine);
+    remove(*known);
+    strategy.machine = std::move(known);
+  }
+  return remove(own_machine(scenario, one));
 }
 
 // Sets a parameter to its ideal; whether it had another value.
@@ -85,16 +99,21 @@ bool remove_friction(model::MachineSettings& machine) {
   return any;
 }
 
-// The structure is rigid under acceleration, its bed stands still, and nothing corrects for them.
-bool remove_inertia(model::Scenario& scenario, model::CaseSpec& one) {
-  bool any = std::erase_if(one.strategies,
-                           [](const auto& spec) { return spec.entry->corrects_inertia; }) > 0;
-  model::MachineSettings& machine = own_machine(scenario, one);
-  any |= !std::exchange(machine.inertial_compliances, {}).empty();
+bool remove_inertia(model::MachineSettings& machine) {
+  bool any = !std::exchange(machine.inertial_compliances, {}).empty();
   for (plant::FeedDriveParams& drive : machine.drives) {
     any |= std::exchange(drive.bed, {}).M > 0.0;
   }
   return any;
+}
+
+// The structure is rigid under acceleration, its bed stands still, and nothing corrects for them.
+bool remove_inertia(const model::Scenario& scenario, model::CaseSpec& one) {
+  const bool corrected = std::erase_if(one.strategies, [](const auto& spec) {
+                           return spec.entry->corrects_inertia;
+                         }) > 0;
+  const auto of_machine = [](model::MachineSettings& machine) { return remove_inertia(machine); };
+  return remove_of_machines(scenario, one, of_machine) || corrected;
 }
 
 bool remove_measurement(model::MachineSettings& machine) {
@@ -138,6 +157,9 @@ bool has_strategy(const model::CaseSpec& one, strategies::Action action) {
 
 bool remove_identification(const model::Scenario& scenario, model::CaseSpec& one) {
   bool any = idealise(one, Shortcoming::identification);
+  for (model::StrategySpec& strategy : one.strategies) {
+    any |= std::exchange(strategy.machine, nullptr) != nullptr;
+  }
   const std::string& machine_errors = machine_errors_of(scenario, one);
   for (model::StrategySpec& strategy : one.strategies) {
     if (!strategy.entry->reads_errors) continue;
@@ -206,15 +228,19 @@ bool remove(Cause cause, model::Scenario& scenario, model::CaseSpec& one) {
     case Cause::identification:
       return remove_identification(scenario, one);
     case Cause::friction:
-      return remove_friction(own_machine(scenario, one));
-    case Cause::measurement:
-      return remove_measurement(own_machine(scenario, one));
+      return remove_of_machines(scenario, one, remove_friction);
+    case Cause::measurement: {
+      const bool learnt = idealise(one, Shortcoming::measurement);
+      return remove_of_machines(scenario, one, remove_measurement) || learnt;
+    }
     case Cause::cutting:
       return std::exchange(one.cutting, false);
     case Cause::inertia:
       return remove_inertia(scenario, one);
     case Cause::heat:
-      return std::exchange(own_machine(scenario, one).heat, nullptr) != nullptr;
+      return remove_of_machines(scenario, one, [](model::MachineSettings& machine) {
+        return std::exchange(machine.heat, nullptr) != nullptr;
+      });
     case Cause::interpolation:
       return remove_interpolation(scenario, one);
     case Cause::uncorrected:

@@ -92,6 +92,25 @@ std::string note_of(const preparation::PreparedParts& one, const strategies::Sat
       linear ? held.of_rate ? "mm" : "um" : "mrad", held.of_rate ? "/s" : "", held.time);
 }
 
+// Deviations in the runs that a strategy has learnt from.
+std::string note_of_trials(const preparation::PreparedParts& one, std::size_t number) {
+  const std::vector<strategies::TrialFigures>& trials = one.trials[number];
+  std::vector<std::string> rms;
+  for (const strategies::TrialFigures& run : trials)
+    rms.push_back(fmt::format("{:.3g}", run.rms / um));
+  const auto best = std::min_element(trials.begin(), trials.end(),
+                                     [](const auto& a, const auto& b) { return a.rms < b.rms; });
+  const bool gets_better = trials.size() < 2 || trials.back().rms < trials.front().rms;
+  return fmt::format(
+      "case {}: strategy {}: {} run{} before it acts saw deviations from the interpolated path "
+      "of "
+      "rms {} um{}; largest {:.3g} um at first, {:.3g} um in the best",
+      one.spec.name, one.spec.strategies[number].entry->name, trials.size(),
+      trials.size() == 1 ? "" : "s", fmt::join(rms, ", "),
+      gets_better ? "" : ", which does not get better", trials.front().largest / um,
+      best->largest / um);
+}
+
 // "Z = 100 mm, X = 50 mm"
 std::string position_text(const std::vector<Axis>& axes, const std::vector<double>& at) {
   std::string text;
@@ -171,6 +190,9 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
   out.insert(out.end(), one.warnings.begin(), one.warnings.end());
+  for (std::size_t k = 0; k < one.trials.size(); ++k) {
+    if (!one.trials[k].empty()) out.push_back(note_of_trials(one, k));
+  }
   if (const auto shifted = shifted_program(one)) out.push_back(note_of(*shifted));
   if (one.cutting != nullptr) {
     for (const auto& [place, message] : one.cutting->warnings) {

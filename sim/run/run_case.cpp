@@ -52,6 +52,10 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.chain = p.scenario.machine_of(p.spec).chain;
   out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
+  for (std::size_t k = 0; k < p.trials.size(); ++k) {
+    if (p.trials[k].empty()) continue;
+    out.learnt.push_back({std::string(p.spec.strategies[k].entry->name), p.trials[k]});
+  }
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
   if (out.result.outcome.finished) {
     for (const auto& test : p.scenario.tests) {

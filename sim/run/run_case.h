@@ -13,6 +13,7 @@
 #include "sim/evaluation/probed_part.h"
 #include "sim/model/tip_uncertainty.h"
 #include "sim/preparation/touch.h"
+#include "strategies/trial_runs.h"
 namespace servomill::sim::preparation {
 class PreparedCase;
 }  // namespace servomill::sim::preparation
@@ -21,6 +22,12 @@ namespace servomill::sim::run {
 
 struct TestResult;  // sim/run/machine_tests.h
 struct DayCourse;   // sim/run/day_course.h
+
+/// Runs of the program that a strategy has learnt from before the case ran.
+struct LearntRuns {
+  std::string strategy;
+  std::vector<strategies::TrialFigures> figures;  // run after run
+};
 
 struct CaseOutput {
   std::string name;
@@ -36,6 +43,7 @@ struct CaseOutput {
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
   std::vector<preparation::Touch> touches;        // of the program's probing moves
+  std::vector<LearntRuns> learnt;
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   std::shared_ptr<const DayCourse> day;                  // likewise; or none
   evaluation::CaseData data() const;

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "plant/vocabulary/simd.h"
+#include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
 #include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
@@ -55,6 +56,18 @@ void write_row(records::Hdf5Group& group, const evaluation::ComparisonRow& row) 
   group.attribute("reference", row.reference);
   group.attribute("basis", row.basis);
   if (!row.note.empty()) group.attribute("note", row.note);
+}
+
+// Deviations in the runs that a strategy has learnt from.
+void write_learnt(records::Hdf5Group& of_case, const LearntRuns& learnt) {
+  std::vector<double> rms, largest;
+  for (const strategies::TrialFigures& run : learnt.figures) {
+    rms.push_back(run.rms / um);
+    largest.push_back(run.largest / um);
+  }
+  records::Hdf5Group group = of_case.group("learnt/" + learnt.strategy);
+  group.list("rms", rms, {"um", "deviation from the interpolated path in feed motion, rms"});
+  group.list("largest", largest, {"um", "the same, largest"});
 }
 
 // Recorded signals in a file, read when they are asked for.
@@ -280,6 +293,7 @@ void RunStore::add(const CaseOutput& one) {
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
   if (!one.tests.empty()) write_tests(group.group("tests"), one.tests);
+  for (const LearntRuns& learnt : one.learnt) write_learnt(group, learnt);
   if (one.day) write_day(group.group("day"), *one.day);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);

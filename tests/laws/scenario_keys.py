@@ -44,7 +44,7 @@ def listed_name(section, key):
 def below(section, key):
     """Section of the keys below a key."""
     path = f"{section}.{key}" if section else key
-    path = re.sub(r"^(case\.)?machine_override", "machine", path)
+    path = re.sub(r"^(case\.)?machine_override|^case\.strategy\.machine(?=\.|$)", "machine", path)
     path = path.replace("machine.axis.X.screw.lead_error", "errors.NAME.EXX")
     path = path.replace("machine.heat.body.NAME.errors_per_K", "errors.NAME")
     return re.sub(r"^machine\.errors", "errors", path)

@@ -1,0 +1,217 @@
+#include "sim/preparation/teaching.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/engine/simulate.h"
+#include "sim/preparation/offset_limits.h"
+#include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/refusals.h"
+#include "sim/preparation/stability_check.h"
+#include "sim/preparation/trial_runs.h"
+#include "strategies/displaced_blocks.h"
+
+namespace servomill::sim::preparation {
+namespace {
+
+constexpr int kPlans = 5;  // of a path whose limits an offset shares
+
+// One strategy while it learns.
+class Lessons {
+ public:
+  Lessons(LearningCase& one, std::size_t number)
+      : one_(one),
+        number_(number),
+        spec_(one.spec.strategies[number]),
+        untaught_(one.strategies[number]),
+        learner_(*untaught_->learning()),
+        setup_(learner_.trials()),
+        planned_(one.motion) {}
+
+  std::vector<strategies::TrialFigures> take() {
+    if (setup_.as_program) {
+      refuse_rewritten_probing(spec_, *one_.program, one_.spec.name);
+      refuse_tip_moves(spec_, *untaught_, *one_.program, one_.scenario.program.file,
+                       one_.spec.name);
+    }
+    refuse_others();
+    check_known_machine();
+    const SharedMotion unhindered = one_.motion;
+    controllers::JointLimits limits = one_.prepare.limits();
+    std::vector<strategies::TrialFigures> trials;
+    for (int plan = 1; learn(trials, limits, plan == kPlans); ++plan) {
+      planned_ = one_.motion = one_.prepare.motion(planned_->moves, *one_.program, limits);
+    }
+    if (one_.motion != unhindered) one_.warnings.push_back(other_duration(*unhindered));
+    return trials;
+  }
+
+ private:
+  const model::MachineSettings& machine() const { return one_.scenario.machine_of(one_.spec); }
+
+  // Learns on the path as it is planned.
+  // @param limits  with which; takes those with which to plan it anew
+  // @return true if it is to be planned anew
+  bool learn(std::vector<strategies::TrialFigures>& trials, controllers::JointLimits& limits,
+             bool is_last) {
+    const model::MachineSettings& known = spec_.machine ? *spec_.machine : machine();
+    const SharedModel errors =
+        setup_.on_actual ? one_.machine_errors : one_.prepare.model(spec_.model, known.chain);
+    const plant::ErrorModel* components =
+        setup_.on_actual ? one_.component_errors : &one_.prepare.errors(spec_.model);
+    const TrialSetting setting{setup_,
+                               one_.scenario,
+                               one_.spec,
+                               known,
+                               *one_.program,
+                               *planned_,
+                               original(),
+                               [&](const auto& runs_on, const auto& offset) {
+                                 act_with(offset);
+                                 return one_.inputs(runs_on, *errors, components);
+                               }};
+    CaseTrials runs(setting);
+    strategies::Lesson lesson = learner_.learn(runs);
+    act_with(lesson.offset);
+    trials = std::move(lesson.trials);
+    if (setup_.as_program) return false;  // its plan keeps the limits
+    refuse_beyond_travel(*lesson.offset);
+    const controllers::JointLimits demands = runs.limits().demands(lesson.offset->offset);
+    if (keeps(demands, one_.prepare.limits())) return false;
+    if (setup_.limit != strategies::OffsetLimit::slow || is_last) {
+      one_.warnings.push_back(beyond_limits(demands));
+      return false;
+    }
+    limits = lowered(limits, demands, one_.prepare.limits());
+    return true;
+  }
+
+  // The plan of the original program, where another strategy has rewritten it; else nullptr.
+  const PlannedMotion* original() {
+    if (one_.rewritten == nullptr || setup_.as_program) return nullptr;
+    original_ = one_.prepare.motion({one_.program, &one_.program->moves}, *one_.program);
+    return original_.get();
+  }
+
+  // Displacements that others make on purpose are no errors of the machine.
+  void refuse_others() const {
+    for (const model::StrategySpec& other : one_.spec.strategies) {
+      if (&other == &spec_ || !other.entry->acts) continue;
+      if (other.action == strategies::Action::impose && other.entry->reads_errors) {
+        throw InputError(
+            {}, fmt::format("would correct the errors that {} imposes", other.entry->name));
+      }
+      const bool displaces = other.entry->runs_program
+                                 ? &other < &spec_  // later ones have not learnt yet
+                                 : other.entry->reads_errors || other.entry->corrects_inertia ||
+                                       !other.entry->corrects_following;
+      if (setup_.sees_tip || !displaces) continue;
+      throw InputError({}, fmt::format("sees = \"scales\" would take back what {} displaces; use "
+                                       "\"tip\", or one of the two",
+                                       other.entry->name));
+    }
+  }
+
+  void check_known_machine() const {
+    if (!spec_.machine || one_.spec.servo == model::ServoModel::ideal) return;
+    const model::NominalFilter &known = spec_.machine->nc.filter, &actual = machine().nc.filter;
+    if (known.length != actual.length || known.triangle != actual.triangle) {
+      throw InputError({}, "machine has another nominal-position filter than the NC of the case");
+    }
+    try {
+      check_stability(*spec_.machine, one_.scenario.reading_delay_of(one_.spec), nullptr);
+    } catch (const InputError& error) {
+      throw InputError({}, "the machine that it knows: " + error.faults().front().message);
+    }
+  }
+
+  // An offset may leave the travel where the path does not.
+  void refuse_beyond_travel(const strategies::PathOffset& offset) const {
+    const model::NcSettings& nc = machine().nc;
+    controllers::Trajectory::Cursor cursor{};
+    for (std::size_t n = 0; n < offset.offset.size(); ++n) {
+      const double t = static_cast<double>(n) * offset.times->row_period();
+      const auto at = planned_->trajectory.at(t, cursor);
+      const Joints Q = at.Q_ref + offset.offset[n];
+      for (const int j : machine().joints()) {
+        const double beyond = std::max(nc.lower[j] - Q[j], Q[j] - nc.upper[j]);
+        if (beyond <= 1e-9 || nc.is_endless(j)) continue;
+        throw InputError({}, fmt::format("axis {} would leave its travel by {:.3g} {} at {}:{}",
+                                         machine().chain.layout.letter_of(j), beyond / 1e-6,
+                                         j < kLinearJoints ? "um" : "urad",
+                                         one_.scenario.program.file, at.line));
+      }
+    }
+  }
+
+  // Puts the strategy with an offset in place, and the program that it makes.
+  void act_with(const std::shared_ptr<const strategies::PathOffset>& offset) {
+    SharedStrategy& strategy = one_.strategies[number_];
+    strategy = learner_.with_offset(offset);
+    if (!strategy->rewrites()) return;
+    one_.rewritten = one_.prepare.rewritten(planned_->moves, strategy);
+    one_.motion = one_.prepare.motion({one_.rewritten, &one_.rewritten->moves}, *one_.program);
+  }
+
+  std::string note(const std::string& text) const {
+    return fmt::format("case {}: strategy {}: {}", one_.spec.name, spec_.entry->name, text);
+  }
+
+  std::string beyond_limits(const controllers::JointLimits& demands) const {
+    const controllers::JointLimits limits = one_.prepare.limits();
+    std::vector<std::string> beyond;
+    const auto look = [&](const Joints& asked, const Joints& limit, const char* what,
+                          const char* per) {
+      for (const int j : machine().joints()) {
+        const double excess = asked[j] / limit[j] - 1.0;
+        if (excess <= kLimitRounding) continue;
+        beyond.push_back(fmt::format("{} of {} by {:.2g} % of {:g} {}{}", what,
+                                     machine().chain.layout.letter_of(j), 100.0 * excess, limit[j],
+                                     j < kLinearJoints ? "m" : "rad", per));
+      }
+    };
+    look(demands.v, limits.v, "velocity", "/s");
+    look(demands.a, limits.a, "acceleration", "/s2");
+    look(demands.j, limits.j, "jerk", "/s3");
+    return "warning: " +
+           note(fmt::format("path and offset together exceed limits: {}", fmt::join(beyond, ", ")));
+  }
+
+  std::string other_duration(const PlannedMotion& unhindered) const {
+    const double before = unhindered.trajectory.duration();
+    const double now = one_.motion->trajectory.duration();
+    return note(fmt::format("the motion takes {:.4g} s, {:.2g} % {} than without it", now,
+                            100.0 * std::abs(now / before - 1.0), now < before ? "less" : "more"));
+  }
+
+  LearningCase& one_;
+  std::size_t number_;
+  const model::StrategySpec& spec_;
+  const SharedStrategy untaught_;
+  const strategies::LearningStrategy& learner_;
+  const strategies::TrialSetup setup_;
+  SharedMotion planned_;   // without the offset
+  SharedMotion original_;  // of the program before other strategies
+};
+
+}  // namespace
+
+std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number) {
+  try {
+    return Lessons(one, number).take();
+  } catch (const InputError& error) {
+    if (error.faults().front().place.file.empty()) {
+      throw fault_of(one.spec.strategies[number], one.spec.name, error);
+    }
+    throw;
+  } catch (const strategies::TooManyBlocks& error) {
+    throw fault_of(one.spec.strategies[number], one.spec.name, InputError({}, error.what()));
+  }
+}
+
+}  // namespace servomill::sim::preparation

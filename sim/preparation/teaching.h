@@ -1,0 +1,44 @@
+/// Lets strategies that learn have the program of a case run before the case itself does.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/model/scenario.h"
+#include "sim/preparation/case_preparation.h"
+#include "strategies/trial_runs.h"
+
+namespace servomill::sim::engine {
+struct CaseInputs;
+}  // namespace servomill::sim::engine
+
+namespace servomill::sim::preparation {
+
+/// A case all of whose strategies are made, and whose motion is planned. Lessons change its last
+/// members.
+struct LearningCase {
+  const CasePreparation& prepare;
+  const model::Scenario& scenario;
+  const model::CaseSpec& spec;
+  SharedProgram program;
+  SharedModel machine_errors;                 // the machine as it is
+  const plant::ErrorModel* component_errors;  // the same
+  /// Inputs of a run as the case is now, on a machine with errors.
+  std::function<engine::CaseInputs(const model::MachineSettings&, const plant::VolumetricModel&,
+                                   const plant::ErrorModel*)>
+      inputs;
+  std::vector<SharedStrategy>& strategies;
+  std::shared_ptr<const RewrittenProgram>& rewritten;
+  SharedMotion& motion;
+  std::vector<std::string>& warnings;
+};
+
+/// The strategy of that number learns, and then acts with its offset.
+/// @return its runs
+/// @throws InputError
+std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number);
+
+}  // namespace servomill::sim::preparation

@@ -1,0 +1,321 @@
+#include "sim/preparation/trial_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "plant/kinematics/chain.h"
+#include "plant/sensing/noise.h"
+#include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/units.h"
+#include "sim/engine/setpoint.h"
+#include "sim/engine/simulate.h"
+#include "strategies/pose_compensation.h"
+
+namespace servomill::sim::preparation {
+namespace {
+
+constexpr double kMaxRows = 1e6;              // some 0.5 GB
+constexpr std::uint32_t kNoiseStream = 1000;  // beyond those of the encoders
+
+// Columns of a recorded signal of all axes, joint by joint.
+class JointColumns {
+ public:
+  JointColumns(const records::Series& rows, const JointLayout& layout, const std::string& name)
+      : rows_(rows) {
+    for (int j = 0; j < kJoints; ++j) {
+      if (!layout.has(j)) continue;
+      columns_[static_cast<std::size_t>(j)] =
+          rows.column(name + (j < kLinearJoints ? "_linear" : "_rotary"), layout.letter_of(j));
+    }
+  }
+  Joints at(std::size_t row) const {
+    Joints out = Joints::Zero();
+    for (int j = 0; j < kJoints; ++j) {
+      const auto& column = columns_[static_cast<std::size_t>(j)];
+      if (column) out[j] = rows_.at(row, *column) * (j < kLinearJoints ? mm : deg);
+    }
+    return out;
+  }
+
+ private:
+  const records::Series& rows_;
+  std::array<std::optional<std::size_t>, kJoints> columns_;
+};
+
+// Three columns of a recorded signal.
+class VectorColumns {
+ public:
+  VectorColumns(const records::Series& rows, const char* name, const char* labels) : rows_(rows) {
+    for (std::size_t k = 0; k < 3; ++k) columns_[k] = *rows.column(name, labels[k]);
+  }
+  Eigen::Vector3d at(std::size_t row) const {
+    return {rows_.at(row, columns_[0]), rows_.at(row, columns_[1]), rows_.at(row, columns_[2])};
+  }
+
+ private:
+  const records::Series& rows_;
+  std::array<std::size_t, 3> columns_{};
+};
+
+// Value between two rows.
+template <class At>
+auto between_rows(double row, const At& at) {
+  const auto n = static_cast<std::size_t>(row);
+  const double f = row - static_cast<double>(n);
+  auto value = at(n);
+  if (f > 0.0) value += f * (at(n + 1) - value);
+  return value;
+}
+
+}  // namespace
+
+CaseTrials::CaseTrials(const TrialSetting& setting) : setting_(setting) {
+  for (const int j : actual().joints()) {
+    if (j < kLinearJoints || setting.setup.turns) joints_.push_back(j);
+  }
+  find_times();
+  const model::NcSettings& nc = actual().nc;
+  find_wanted(engine::Setpoint(nc, setting.motion.trajectory, {}).delay());
+  limits_.emplace(followed_path(), times_->row_period(),
+                  controllers::JointLimits{nc.v_max, nc.a_max, nc.j_max});
+  if (setting.spec.servo == model::ServoModel::ideal) return;
+  const Tick reading_delay = setting.scenario.reading_delay_of(setting.spec);
+  std::optional<Joints> tip_at;
+  if (setting.setup.sees_tip) tip_at = mean_position();
+  known_ = {setting.known, joints_, reading_delay, tip_at};
+  actual_ = &setting.known == &actual() ? known_
+                                        : OffsetResponses(actual(), joints_, reading_delay, tip_at);
+}
+
+CaseTrials::~CaseTrials() = default;
+
+void CaseTrials::find_times() {
+  const controllers::Trajectory& trajectory = setting_.motion.trajectory;
+  const model::LoopPeriods& periods = actual().nc.periods;
+  const double whole = trajectory.duration() + setting_.scenario.settle_time;
+  constexpr double kRowsPerSwing = 16.0, kFewestRows = 100.0;
+  const double interval =
+      std::min(1.0 / (kRowsPerSwing * setting_.setup.cutoff), whole / kFewestRows);
+  if (whole > kMaxRows * interval) {
+    throw InputError({},
+                     fmt::format("cutoff_Hz: a program of {:.4g} s is too long to learn from "
+                                 "with {:g} Hz; must be <= {:.2g} Hz",
+                                 whole, setting_.setup.cutoff, kMaxRows / (kRowsPerSwing * whole)));
+  }
+  times_ = std::make_shared<strategies::PathTimes>();
+  times_->h = periods.seconds(periods.position);
+  times_->every = static_cast<std::size_t>(std::max(1.0, std::floor(interval / times_->h + 1e-9)));
+  row_period_ = periods.position * static_cast<Tick>(times_->every);
+  controllers::Trajectory::Cursor cursor{};
+  for (std::size_t n = 0; static_cast<double>(n) * times_->h <= whole; ++n) {
+    times_->s.push_back(trajectory.at(static_cast<double>(n) * times_->h, cursor).s);
+  }
+}
+
+// Finds the joints on the interpolated path of the original program, row by row: at the same
+// instant or, where another program runs, at the same place.
+void CaseTrials::find_wanted(double delay) {
+  const controllers::Trajectory& trajectory = setting_.motion.trajectory;
+  const PlannedMotion& wanted = setting_.original != nullptr ? *setting_.original : setting_.motion;
+  const engine::ProgramPath& path = setting_.program.path;
+  const std::vector<std::size_t> pieces = path.pieces_of(*wanted.moves);
+  strategies::PathTimes of_wanted{times_->h, {}, 1};
+  controllers::Trajectory::Cursor cursor{}, found{}, sampled{};
+  if (setting_.original != nullptr) {
+    for (double t = 0.0; t <= wanted.trajectory.duration() + times_->h; t += times_->h) {
+      of_wanted.s.push_back(wanted.trajectory.at(t, sampled).s);
+    }
+  }
+  std::optional<strategies::PathPlace> place;
+  if (setting_.original != nullptr) place.emplace(of_wanted);
+  for (std::size_t n = 0; n < times_->s.size(); n += times_->every) {
+    const double t = static_cast<double>(n) * times_->h;
+    const auto now = trajectory.at(t - delay, cursor);
+    const double then = place ? place->advance(t, now.s) * times_->h : t - delay;
+    const auto at = wanted.trajectory.at(then, found);
+    wanted_.push_back({at.Q_ref, setting_.program.tips.at(path.tool_offset(pieces[at.move]))});
+    in_feed_.push_back(!now.rapid && !now.dQ_ref.isZero(0.0));
+  }
+}
+
+// Derivatives of the path behind the nominal-position filter, which the axes follow.
+std::vector<PathDerivatives> CaseTrials::followed_path() const {
+  const controllers::Trajectory& path = setting_.motion.trajectory;
+  const model::NcSettings& nc = actual().nc;
+  if (nc.filter.length == 0) return derivatives_of(path, *times_);
+  engine::Setpoint setpoint(nc, path, {});
+  setpoint.settle();
+  std::vector<PathDerivatives> out;
+  controllers::Trajectory::Cursor cursor{};
+  Joints ddQ = Joints::Zero();
+  for (std::size_t n = 0; n < times_->s.size(); ++n) {
+    const engine::AxisSetpoint& now =
+        setpoint.advance(path.at(static_cast<double>(n) * times_->h, cursor));
+    if (n % times_->every == 0) {
+      out.push_back({now.dQ_ff, now.ddQ_ff, (now.ddQ_ff - ddQ) / times_->h});
+    }
+    ddQ = now.ddQ_ff;
+  }
+  return out;
+}
+
+Joints CaseTrials::mean_position() const {
+  Joints sum = Joints::Zero();
+  double count = 0.0;
+  for (std::size_t n = 0; n < wanted_.size(); ++n) {
+    if (!in_feed_[n]) continue;
+    sum += wanted_[n].Q;
+    count += 1.0;
+  }
+  return count > 0.0 ? Joints(sum / count) : wanted_.front().Q;
+}
+
+std::complex<double> CaseTrials::known_response(int joint, double f) const {
+  return between_rows_at(f) * known_.at(joint, f);
+}
+
+std::complex<double> CaseTrials::response(int joint, double f) const {
+  return between_rows_at(f) * (setting_.setup.on_actual ? actual_ : known_).at(joint, f);
+}
+
+// Share of a frequency in the rows that the spline through them has.
+double CaseTrials::between_rows_at(double f) const {
+  const double x = std::numbers::pi * f * times_->row_period();
+  const double sinc = x > 0.0 ? std::sin(x) / x : 1.0;
+  return sinc * sinc * sinc * sinc;
+}
+
+std::vector<Joints> CaseTrials::admissible(std::vector<Joints> offset) const {
+  if (setting_.setup.as_program) {
+    strategies::rest_at_standstills(*times_, offset);
+    return offset;
+  }
+  // where the machine stands before and behind the program, no slower path helps
+  constexpr double kSoon = 0.006, kSoftly = 0.03, kEnds = 0.3;  // s
+  switch (setting_.setup.limit) {
+    case strategies::OffsetLimit::smooth:
+      limits_->rest_at_ends(offset, kSoon);
+      return limits_->nearest_within(std::move(offset));
+    case strategies::OffsetLimit::slow:
+      limits_->rest_at_ends(offset, kSoon);
+      return limits_->nearest_within(std::move(offset), kEnds);
+    case strategies::OffsetLimit::ignore:
+      break;
+  }
+  limits_->rest_at_ends(offset, kSoftly);
+  return offset;
+}
+
+strategies::TrialRun CaseTrials::run(const std::shared_ptr<const strategies::PathOffset>& offset) {
+  ++runs_;
+  model::MachineSettings machine = this->machine();
+  for (std::size_t j = 0; j < kJoints; ++j) {
+    machine.scale[j] = machine.scale[j].in_run(static_cast<std::uint64_t>(runs_));
+    machine.motor[j] = machine.motor[j].in_run(static_cast<std::uint64_t>(runs_));
+  }
+  engine::CaseInputs inputs = setting_.inputs(machine, offset);
+  inputs.record_period = row_period_;
+  inputs.windows = {};
+  inputs.keeping.thinning.reset();
+  inputs.format = {};
+  std::atomic<float> progress{};
+  const engine::CaseResult result = engine::simulate(inputs, interrupt_wanted, progress);
+  throw_if_interrupted();
+  if (!result.outcome.finished) return {{}, result.outcome.reason};
+  const std::vector<double> places = places_of(inputs.reference, result.servo.rows());
+  strategies::TrialRun out{setting_.setup.sees_tip ? seen_at_tip(result.servo, places)
+                                                   : seen_by_scales(result.servo, places),
+                           {}};
+  add_noise(out.deviation);
+  return out;
+}
+
+// Finds each row of the offset in the recording of a run, as a number with a fraction. A run of
+// another plan is at the same place at another time.
+std::vector<double> CaseTrials::places_of(const controllers::Trajectory& run,
+                                          std::size_t rows) const {
+  std::vector<double> out(wanted_.size());
+  if (&run == &setting_.motion.trajectory) {
+    for (std::size_t n = 0; n < out.size(); ++n) {
+      out[n] = static_cast<double>(std::min(n, rows - 1));
+    }
+    return out;
+  }
+  strategies::PathPlace place(*times_);
+  controllers::Trajectory::Cursor cursor{};
+  const double h = times_->row_period();
+  const auto row_of_plan = [&](double row) {
+    const double t = row * h;
+    return place.advance(t, run.at(t, cursor).s) / static_cast<double>(times_->every);
+  };
+  double before = 0.0, after = row_of_plan(0.0), r = 0.0;
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const auto wanted = static_cast<double>(n);
+    while (after < wanted && r + 1.0 < static_cast<double>(rows)) {
+      before = after;
+      after = row_of_plan(++r);
+    }
+    const bool between = after > wanted && after > before && r > 0.0;
+    out[n] = between ? r - (after - wanted) / (after - before) : r;
+  }
+  return out;
+}
+
+std::vector<Joints> CaseTrials::seen_by_scales(const records::Series& rows,
+                                               const std::vector<double>& places) const {
+  const JointColumns measured(rows, actual().chain.layout, "meas");
+  std::vector<Joints> out;
+  for (std::size_t n = 0; n < wanted_.size(); ++n) {
+    out.push_back(between_rows(places[n], [&](std::size_t row) { return measured.at(row); }) -
+                  wanted_[n].Q);
+  }
+  return out;
+}
+
+std::vector<Joints> CaseTrials::seen_at_tip(const records::Series& rows,
+                                            const std::vector<double>& places) const {
+  const VectorColumns tip(rows, "tool_position_true", "XYZ"), axis(rows, "tool_axis_true", "IJK");
+  std::vector<Joints> out;
+  for (std::size_t n = 0; n < wanted_.size(); ++n) {
+    const Eigen::Vector3d p = between_rows(places[n], [&](std::size_t row) { return tip.at(row); });
+    const Eigen::Vector3d k =
+        between_rows(places[n], [&](std::size_t row) { return axis.at(row); });
+    out.push_back(in_joints(wanted_[n], {p * mm, k.normalized()}));
+  }
+  return out;
+}
+
+// Displacement of the joints that would put the ideal machine where the tool was seen.
+Joints CaseTrials::in_joints(const Wanted& wanted, const ToolPose& seen) const {
+  const plant::MachineChain& chain = actual().chain;
+  const ToolPose ideal = plant::forward(chain, wanted.Q, wanted.p_ST);
+  const Eigen::Vector3d off = seen.p_WT - ideal.p_WT;
+  if (setting_.setup.turns) {
+    return strategies::displacement_for(chain, wanted.Q, wanted.p_ST, setting_.setup.sigma_0, off,
+                                        seen.k_W - ideal.k_W);
+  }
+  Joints out = Joints::Zero();
+  out.head<kLinearJoints>() = plant::least_squares(plant::linear_jacobian(chain, wanted.Q), off).x;
+  return out;
+}
+
+void CaseTrials::add_noise(std::vector<Joints>& deviation) const {
+  if (setting_.setup.noise == 0.0) return;
+  const std::uint64_t seed = actual().scale[0].in_run(static_cast<std::uint64_t>(runs_)).seed();
+  for (std::size_t n = 0; n < deviation.size(); ++n) {
+    for (const int j : joints_) {
+      if (j >= kLinearJoints) continue;
+      deviation[n][j] += setting_.setup.noise *
+                         plant::white_noise({seed, kNoiseStream + static_cast<std::uint32_t>(j)}, 0,
+                                            static_cast<Tick>(n))[0];
+    }
+  }
+}
+
+}  // namespace servomill::sim::preparation

@@ -1,0 +1,88 @@
+#include "strategies/learning.h"
+
+#include <array>
+#include <cmath>
+
+#include "strategies/axis_displacement.h"
+#include "strategies/iterative_learning.h"
+
+namespace servomill::strategies {
+namespace {
+
+constexpr std::array<std::string_view, 2> kSeen = {"tip", "scales"};
+
+const std::array<ParameterSpec, 9>& specs() {
+  static const std::array<ParameterSpec, 9> kSpecs = {{
+      {.name = "updates",
+       .help = "runs of the program that are learnt from",
+       .default_text = "5",
+       .min = 1,
+       .max = 100},
+      {.name = "sees",
+       .help = "tip: the tool centre point, by a grid encoder; scales: the readings of the axes",
+       .default_text = "tip",
+       .is_number = false,
+       .words = kSeen,
+       .shortcoming = Shortcoming::measurement,
+       .ideal = "tip"},
+      {.name = "noise_um",
+       .help = "standard deviation of what is seen of each linear axis, beside encoder noise",
+       .unit = "um",
+       .default_text = "0",
+       .min = 0.0,
+       .shortcoming = Shortcoming::measurement,
+       .ideal = "0"},
+      {.name = "gain",
+       .help = "share of the error that an update corrects where the axis follows as it is known",
+       .default_text = "1",
+       .min = 0.01,
+       .max = 2.0},
+      {.name = "forgetting",
+       .help = "share of the offset that an update forgets",
+       .default_text = "0",
+       .min = 0.0,
+       .max = 0.99},
+      {.name = "cutoff_Hz",
+       .help = "low-pass of the offset, forwards and backwards: half of it is left there",
+       .unit = "Hz",
+       .default_text = "100",
+       .min = 0.1,
+       .max = 1000.0},
+      kLimitsSpec,
+      kAxesSpec,
+      kSingularSpec,
+  }};
+  return kSpecs;
+}
+
+std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
+  LearningPlan plan;
+  plan.setup.on_actual = true;
+  plan.setup.sees_tip = p.word("sees") == "tip";
+  plan.setup.noise = p.number("noise_um");
+  plan.setup.turns = displaced_axes_of(p) == DisplacedAxes::all;
+  plan.setup.sigma_0 = std::sin(p.number("singular_deg"));
+  plan.filter.cutoff = p.number("cutoff_Hz");
+  plan.setup.cutoff = plan.filter.cutoff;
+  plan.setup.limit = offset_limit_of(p);
+  plan.filter.gain = p.number("gain");
+  plan.filter.remembering = 1.0 - p.number("forgetting");
+  plan.runs = static_cast<int>(std::lround(p.number("updates")));
+  plan.takes_best = false;
+  return iterative_learning(plan, identified);
+}
+
+}  // namespace
+
+Entry learning_entry() {
+  Entry entry = {"learning",
+                 "offsets the setpoints against what earlier runs of the program have shown",
+                 specs(), make};
+  entry.once = true;
+  entry.corrects_following = true;
+  entry.reads_errors = false;
+  entry.runs_program = true;
+  return entry;
+}
+
+}  // namespace servomill::strategies

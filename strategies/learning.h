@@ -1,0 +1,13 @@
+/// Iterative learning control: the setpoints are offset against what earlier runs of the program
+/// have shown.
+#pragma once
+
+#include "strategies/entry.h"
+
+namespace servomill::strategies {
+
+/// The machine of the case runs the program, each time with noise of its own; after each run the
+/// offset is updated (strategies/learning_filter.h). The case is the run after the last update.
+Entry learning_entry();
+
+}  // namespace servomill::strategies

@@ -1,0 +1,78 @@
+#include "strategies/precompensation.h"
+
+#include <array>
+#include <cmath>
+
+#include "strategies/axis_displacement.h"
+#include "strategies/iterative_learning.h"
+
+namespace servomill::strategies {
+namespace {
+
+constexpr std::array<std::string_view, 2> kForms = {"setpoint", "program"};
+
+const std::array<ParameterSpec, 11>& specs() {
+  static const std::array<ParameterSpec, 11> kSpecs = {{
+      {.name = "residual_um",
+       .help = "largest predicted deviation of the tip in feed motion that is good enough",
+       .unit = "um",
+       .default_text = "0.1",
+       .min = 0.0},
+      {.name = "max_runs",
+       .help = "runs of the model at most",
+       .default_text = "8",
+       .min = 2,
+       .max = 100},
+      {.name = "cutoff_Hz",
+       .help = "low-pass of the offset, forwards and backwards: half of it is left there",
+       .unit = "Hz",
+       .default_text = "100",
+       .min = 0.1,
+       .max = 1000.0},
+      {.name = "as",
+       .help =
+           "setpoint: the NC adds the offset; program: it is written into the program, in short "
+           "blocks that any NC reads",
+       .default_text = "setpoint",
+       .is_number = false,
+       .words = kForms},
+      kLimitsSpec,
+      kBlockSpecs[0],
+      kBlockSpecs[1],
+      kBlockSpecs[2],
+      kBlockSpecs[3],
+      kAxesSpec,
+      kSingularSpec,
+  }};
+  return kSpecs;
+}
+
+std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
+  LearningPlan plan;
+  plan.setup.turns = displaced_axes_of(p) == DisplacedAxes::all;
+  plan.setup.sigma_0 = std::sin(p.number("singular_deg"));
+  plan.setup.as_program = p.word("as") == "program";
+  plan.blocks = block_limits_of(p);
+  plan.blocks.turns = plan.setup.turns;
+  plan.filter.cutoff = p.number("cutoff_Hz");
+  plan.setup.cutoff = plan.filter.cutoff;
+  plan.setup.limit = offset_limit_of(p);
+  plan.runs = static_cast<int>(std::lround(p.number("max_runs")));
+  plan.tolerance = p.number("residual_um");
+  return iterative_learning(plan, identified);
+}
+
+}  // namespace
+
+Entry precompensation_entry() {
+  Entry entry = {"precompensation",
+                 "offsets the setpoints against what an identified model of the machine predicts",
+                 specs(), make};
+  entry.once = true;
+  entry.corrects_following = true;
+  entry.imposes = false;
+  entry.runs_program = true;
+  return entry;
+}
+
+}  // namespace servomill::strategies
