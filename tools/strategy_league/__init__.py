@@ -1,0 +1,1 @@
+"""The league of strategies: jobs of league.toml, run, measured and compared."""
