@@ -41,6 +41,35 @@ constexpr ParameterSpec kLayoutSpec = {
     .shortcoming = Shortcoming::points,
     .ideal = "continuous"};
 
+constexpr ParameterSpec kTimeConstantSpec = {
+    .name = "time_constant_ms",
+    .help = "time constant of the NC's first-order response to a value",
+    .unit = "ms",
+    .default_text = "0",
+    .min = 0.0,
+    .max = 1e4,
+    .shortcoming = Shortcoming::delay,
+    .ideal = "0"};
+
+constexpr ParameterSpec kDeadTimeSpec = {.name = "dead_time_ms",
+                                         .help = "dead time of the NC's response",
+                                         .unit = "ms",
+                                         .default_text = "0",
+                                         .min = 0.0,
+                                         .max = 1e4,
+                                         .shortcoming = Shortcoming::delay,
+                                         .ideal = "0"};
+
+constexpr ParameterSpec kUpdatePeriodSpec = {
+    .name = "update_period_ms",
+    .help = "interval at which the NC evaluates the table; 0: every position period",
+    .unit = "ms",
+    .default_text = "0",
+    .min = 0.0,
+    .max = 1e4,
+    .shortcoming = Shortcoming::delay,
+    .ideal = "0"};
+
 constexpr ParameterSpec kShiftSpec = {
     .name = "shift_mm",
     .help =
@@ -106,30 +135,9 @@ const std::array<ParameterSpec, 16>& specs() {
        .default_text = "position_command",
        .is_number = false,
        .words = kInjectionPoints},
-      {.name = "time_constant_ms",
-       .help = "time constant of the NC's first-order response to a value",
-       .unit = "ms",
-       .default_text = "0",
-       .min = 0.0,
-       .max = 1e4,
-       .shortcoming = Shortcoming::delay,
-       .ideal = "0"},
-      {.name = "dead_time_ms",
-       .help = "dead time of the NC's response",
-       .unit = "ms",
-       .default_text = "0",
-       .min = 0.0,
-       .max = 1e4,
-       .shortcoming = Shortcoming::delay,
-       .ideal = "0"},
-      {.name = "update_period_ms",
-       .help = "interval at which the NC evaluates the table; 0: every position period",
-       .unit = "ms",
-       .default_text = "0",
-       .min = 0.0,
-       .max = 1e4,
-       .shortcoming = Shortcoming::delay,
-       .ideal = "0"},
+      kTimeConstantSpec,
+      kDeadTimeSpec,
+      kUpdatePeriodSpec,
       kShiftSpec,
       kIterationsSpec,
   }};
