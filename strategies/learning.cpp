@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kSeen = {"tip", "scales"};
 
-const std::array<ParameterSpec, 9>& specs() {
-  static const std::array<ParameterSpec, 9> kSpecs = {{
+const std::array<ParameterSpec, 10>& specs() {
+  static const std::array<ParameterSpec, 10> kSpecs = {{
       {.name = "updates",
        .help = "runs of the program that are learnt from",
        .default_text = "5",
@@ -42,6 +42,11 @@ const std::array<ParameterSpec, 9>& specs() {
        .default_text = "0",
        .min = 0.0,
        .max = 0.99},
+      {.name = "feed_share",
+       .help = "feed of the runs that are learnt from, as a share of that of the case",
+       .default_text = "1",
+       .min = 0.1,
+       .max = 10.0},
       {.name = "cutoff_Hz",
        .help = "low-pass of the offset, forwards and backwards: half of it is left there",
        .unit = "Hz",
@@ -58,6 +63,7 @@ const std::array<ParameterSpec, 9>& specs() {
 std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
   LearningPlan plan;
   plan.setup.on_actual = true;
+  plan.setup.feed = p.number("feed_share");
   plan.setup.sees_tip = p.word("sees") == "tip";
   plan.setup.noise = p.number("noise_um");
   plan.setup.turns = displaced_axes_of(p) == DisplacedAxes::all;

@@ -26,6 +26,7 @@ struct TrialSetup {
   bool turns = false;       // rotary joints are offset, too, for the orientation of the tool
   double sigma_0 = 0.0;     // then: of PoseCompensation
   bool on_actual = false;   // the program runs on the machine of the case, else on the known one
+  double feed = 1.0;        // of the runs, as a share of that of the case
   bool as_program = false;  // the offset is written into the program, which is planned anew
   OffsetLimit limit = OffsetLimit::ignore;
   double cutoff = 100.0;  // Hz, of the offset

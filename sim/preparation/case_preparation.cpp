@@ -284,8 +284,9 @@ SharedMotion CasePreparation::motion(const SharedMoves& moves,
 }
 
 SharedMotion CasePreparation::motion(const SharedMoves& moves, const InterpretedProgram& program,
-                                     const controllers::JointLimits& limits) const {
-  const controllers::PathOptions options = path_options(scenario_, machine_);
+                                     const controllers::JointLimits& limits, double feed) const {
+  controllers::PathOptions options = path_options(scenario_, machine_);
+  options.feed_override *= feed;
   system::MemoKey key;
   key.add_shared(moves.get());
   add(key, machine_.chain.layout);

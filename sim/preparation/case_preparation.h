@@ -57,8 +57,9 @@ class CasePreparation {
   /// The planned motion along `moves`.
   /// @param program  the original one
   SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program) const;
+  /// @param feed  factor on all feeds
   SharedMotion motion(const SharedMoves& moves, const InterpretedProgram& program,
-                      const controllers::JointLimits& limits) const;
+                      const controllers::JointLimits& limits, double feed = 1.0) const;
   /// Limits of the axes.
   controllers::JointLimits limits() const;
 

@@ -44,15 +44,21 @@ class Lessons {
     const SharedMotion unhindered = one_.motion;
     controllers::JointLimits limits = one_.prepare.limits();
     std::vector<strategies::TrialFigures> trials;
-    for (int plan = 1; learn(trials, limits, plan == kPlans); ++plan) {
-      planned_ = one_.motion = one_.prepare.motion(planned_->moves, *one_.program, limits);
-    }
+    if (setup_.feed != 1.0) plan(limits);
+    for (int plans = 1; learn(trials, limits, plans == kPlans); ++plans) plan(limits);
+    if (setup_.feed != 1.0) one_.motion = unhindered;
     if (one_.motion != unhindered) one_.warnings.push_back(other_duration(*unhindered));
     return trials;
   }
 
  private:
   const model::MachineSettings& machine() const { return one_.scenario.machine_of(one_.spec); }
+
+  // Plans the path of the runs.
+  void plan(const controllers::JointLimits& limits) {
+    planned_ = one_.motion =
+        one_.prepare.motion(planned_->moves, *one_.program, limits, setup_.feed);
+  }
 
   // Learns on the path as it is planned.
   // @param limits  with which; takes those with which to plan it anew

@@ -339,5 +339,29 @@ TEST(Learning, RunsWithTheLowestCutoff) {
   EXPECT_TRUE(run_named_case(scenario, "one").result.outcome.finished);
 }
 
+// The lag v/Kv of half the feed is half of it; geometric errors are those of any feed.
+TEST(Learning, AtAnotherFeedKeepsWhatBelongsToThePlace) {
+  const auto scenario = [](double share) {
+    return small_scenario(
+        "G17 G21 G90 G94 G64 P0.01\nG4 P0.2\nG1 X90 F3000\nG4 P0.2\nM30\n",
+        "[machine_override]\naxis.X.velocity_feed_forward = 0.0\n"
+        "[errors.machine]\nEYX = { harmonic = { amplitude_um = 5.0, period_mm = 20.0 } }\n" +
+            one_case("one", learning(fmt::format("feed_share = {}\n", share))));
+  };
+  const double lag = 50e3 / (5e3 / 60.0);  // um
+  for (const double share : {0.5, 1.0}) {
+    const CaseOutput one = run_named_case(scenario(share), "one");
+    const auto rows = rows_within(one.result.servo, 30.0, 60.0);
+    EXPECT_NEAR(mean_of(one.result.servo, "tool_deviation", 'X', rows), -(1.0 - share) * lag,
+                0.002 * lag)
+        << share;
+    // Y is corrected where the setpoint of X is, which X has not reached by so much more
+    const double slope = 5.0 * 2.0 * std::numbers::pi / 20e3;  // um per um
+    EXPECT_NEAR(largest_of(one.result.servo, "tool_deviation", 'Y', rows),
+                slope * (1.0 - share) * lag, 0.05)
+        << share;
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim::run::learning_run_test
