@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
 #include "sim/engine/simulate.h"
 #include "sim/preparation/offset_limits.h"
 #include "sim/preparation/preparation_cache.h"
@@ -31,6 +32,7 @@ class Lessons {
         untaught_(one.strategies[number]),
         learner_(*untaught_->learning()),
         setup_(learner_.trials()),
+        is_rewritten_(one.rewritten != nullptr),
         planned_(one.motion) {}
 
   std::vector<strategies::TrialFigures> take() {
@@ -99,7 +101,7 @@ class Lessons {
 
   // The plan of the original program, where another strategy has rewritten it; else nullptr.
   const PlannedMotion* original() {
-    if (one_.rewritten == nullptr || setup_.as_program) return nullptr;
+    if (!is_rewritten_) return nullptr;
     original_ = one_.prepare.motion({one_.program, &one_.program->moves}, *one_.program);
     return original_.get();
   }
@@ -148,7 +150,7 @@ class Lessons {
         const double beyond = std::max(nc.lower[j] - Q[j], Q[j] - nc.upper[j]);
         if (beyond <= 1e-9 || nc.is_endless(j)) continue;
         throw InputError({}, fmt::format("axis {} would leave its travel by {:.3g} {} at {}:{}",
-                                         machine().chain.layout.letter_of(j), beyond / 1e-6,
+                                         machine().chain.layout.letter_of(j), beyond / um,
                                          j < kLinearJoints ? "um" : "urad",
                                          one_.scenario.program.file, at.line));
       }
@@ -201,8 +203,9 @@ class Lessons {
   const SharedStrategy untaught_;
   const strategies::LearningStrategy& learner_;
   const strategies::TrialSetup setup_;
-  SharedMotion planned_;   // without the offset
-  SharedMotion original_;  // of the program before other strategies
+  const bool is_rewritten_;  // by a strategy before
+  SharedMotion planned_;     // without the offset
+  SharedMotion original_;    // of the program before other strategies
 };
 
 }  // namespace

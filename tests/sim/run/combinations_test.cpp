@@ -63,7 +63,9 @@ TEST(Combinations, OfARewrittenProgramAndAStrategyThatLearnsKeepTheProgrammedPat
   const model::Scenario scenario =
       small_scenario("G21 G90 G94 G61\nG4 P0.2\nG1 X60 F3000\nG4 P0.2\nM30\n",
                      errors + one_case("plain", "") + one_case("gcode", strategy("gcode")) +
-                         one_case("both", strategy("gcode") + learning));
+                         one_case("both", strategy("gcode") + learning) +
+                         one_case("program", strategy("gcode") + strategy("precompensation") +
+                                                 "as = \"program\"\nmax_runs = 3\n"));
   const auto deviation = [&](const std::string& name) {
     const CaseOutput one = run_named_case(scenario, name);
     return largest_of(one.result.servo, "tool_deviation", 'Y',
@@ -72,6 +74,7 @@ TEST(Combinations, OfARewrittenProgramAndAStrategyThatLearnsKeepTheProgrammedPat
   EXPECT_NEAR(deviation("plain"), 25.0, 0.5);
   EXPECT_LT(deviation("gcode"), 0.2);
   EXPECT_LT(deviation("both"), 0.2);
+  EXPECT_LT(deviation("program"), 0.2);
 }
 
 TEST(Combinations, ThatALearningStrategyWouldTakeBackAreRefused) {
