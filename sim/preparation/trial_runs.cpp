@@ -89,8 +89,9 @@ CaseTrials::CaseTrials(const TrialSetting& setting) : setting_(setting) {
   std::optional<Joints> tip_at;
   if (setting.setup.sees_tip) tip_at = mean_position();
   known_ = {setting.known, joints_, reading_delay, tip_at};
-  actual_ = &setting.known == &actual() ? known_
-                                        : OffsetResponses(actual(), joints_, reading_delay, tip_at);
+  running_ = &machine() == &setting.known
+                 ? known_
+                 : OffsetResponses(machine(), joints_, reading_delay, tip_at);
 }
 
 CaseTrials::~CaseTrials() = default;
@@ -181,7 +182,7 @@ std::complex<double> CaseTrials::known_response(int joint, double f) const {
 }
 
 std::complex<double> CaseTrials::response(int joint, double f) const {
-  return between_rows_at(f) * (setting_.setup.on_actual ? actual_ : known_).at(joint, f);
+  return between_rows_at(f) * running_.at(joint, f);
 }
 
 // Share of a frequency in the rows that the spline through them has.

@@ -87,7 +87,7 @@ class CaseTrials final : public strategies::TrialRuns {
   std::vector<Wanted> wanted_;  // row by row
   std::vector<bool> in_feed_;
   std::vector<int> joints_;
-  OffsetResponses known_, actual_;
+  OffsetResponses known_, running_;
   std::optional<OffsetLimits> limits_;
   int runs_ = 0;
 };
