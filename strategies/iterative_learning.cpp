@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "strategies/axis_displacement.h"
 
 namespace servomill::strategies {
 namespace {
@@ -114,6 +115,12 @@ void refuse_growing(const LearningPlan& plan, const JointLayout& layout, const T
   }
 }
 
+OffsetLimit offset_limit_of(const Parameters& parameters) {
+  const std::string& word = parameters.word("limits");
+  if (word == "smooth") return OffsetLimit::smooth;
+  return word == "slow" ? OffsetLimit::slow : OffsetLimit::ignore;
+}
+
 }  // namespace
 
 const ParameterSpec kLimitsSpec = {
@@ -125,10 +132,21 @@ const ParameterSpec kLimitsSpec = {
     .is_number = false,
     .words = kLimits};
 
-OffsetLimit offset_limit_of(const Parameters& parameters) {
-  const std::string& word = parameters.word("limits");
-  if (word == "smooth") return OffsetLimit::smooth;
-  return word == "slow" ? OffsetLimit::slow : OffsetLimit::ignore;
+const ParameterSpec kCutoffSpec = {
+    .name = "cutoff_Hz",
+    .help = "low-pass of the offset, forwards and backwards: half of it is left there",
+    .unit = "Hz",
+    .default_text = "100",
+    .min = 0.1,
+    .max = 1000.0};
+
+LearningPlan learning_plan_of(const Parameters& parameters) {
+  LearningPlan plan;
+  plan.setup.turns = displaced_axes_of(parameters) == DisplacedAxes::all;
+  plan.setup.sigma_0 = std::sin(parameters.number("singular_deg"));
+  plan.setup.limit = offset_limit_of(parameters);
+  plan.setup.cutoff = plan.filter.cutoff = parameters.number("cutoff_Hz");
+  return plan;
 }
 
 Lesson learn(const LearningPlan& plan, const JointLayout& layout, TrialRuns& runs) {

@@ -12,7 +12,6 @@ namespace servomill::strategies {
 
 /// The parameter `limits` as every strategy declares it that offsets the setpoints along a path.
 extern const ParameterSpec kLimitsSpec;
-OffsetLimit offset_limit_of(const Parameters& parameters);
 
 struct LearningPlan {
   TrialSetup setup;
@@ -24,6 +23,11 @@ struct LearningPlan {
   // runs take place, and the offset is that after the last one
   bool takes_best = true;
 };
+
+/// The parameter `cutoff_Hz` as both strategies declare it.
+extern const ParameterSpec kCutoffSpec;
+/// The plan as far as both have the same parameters: axes, singular_deg, cutoff_Hz, limits.
+LearningPlan learning_plan_of(const Parameters& parameters);
 
 /// @throws InputError without a place if a run stops, or if the filter does not contract
 Lesson learn(const LearningPlan& plan, const JointLayout& layout, TrialRuns& runs);

@@ -47,12 +47,7 @@ const std::array<ParameterSpec, 10>& specs() {
        .default_text = "1",
        .min = 0.1,
        .max = 10.0},
-      {.name = "cutoff_Hz",
-       .help = "low-pass of the offset, forwards and backwards: half of it is left there",
-       .unit = "Hz",
-       .default_text = "100",
-       .min = 0.1,
-       .max = 1000.0},
+      kCutoffSpec,
       kLimitsSpec,
       kAxesSpec,
       kSingularSpec,
@@ -61,16 +56,11 @@ const std::array<ParameterSpec, 10>& specs() {
 }
 
 std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
-  LearningPlan plan;
+  LearningPlan plan = learning_plan_of(p);
   plan.setup.on_actual = true;
   plan.setup.feed = p.number("feed_share");
   plan.setup.sees_tip = p.word("sees") == "tip";
   plan.setup.noise = p.number("noise_um");
-  plan.setup.turns = displaced_axes_of(p) == DisplacedAxes::all;
-  plan.setup.sigma_0 = std::sin(p.number("singular_deg"));
-  plan.filter.cutoff = p.number("cutoff_Hz");
-  plan.setup.cutoff = plan.filter.cutoff;
-  plan.setup.limit = offset_limit_of(p);
   plan.filter.gain = p.number("gain");
   plan.filter.remembering = 1.0 - p.number("forgetting");
   plan.runs = static_cast<int>(std::lround(p.number("updates")));

@@ -45,7 +45,7 @@ std::vector<Standstill> standstills(const PathTimes& times, std::size_t rows) {
 
 }  // namespace
 
-// The first instant at s or behind it.
+// The first instant at s or after it.
 std::size_t PathPlace::arrival(double s) const {
   const auto& all = times_.s;
   std::size_t n = static_cast<std::size_t>(now_);
@@ -141,9 +141,8 @@ void rest_at_standstills(const PathTimes& times, std::vector<Joints>& offset) {
       const auto away =
           static_cast<double>(is_before ? first - n : std::max<std::ptrdiff_t>(0, n - last));
       const double x = away / static_cast<double>((is_before ? reach_before : reach) + 1);
-      const double share = x * x * x * (10.0 + x * (6.0 * x - 15.0));
       Joints& one = offset[static_cast<std::size_t>(n)];
-      one = mean + share * (one - mean);
+      one = mean + smooth_step(x) * (one - mean);
     }
   }
 }

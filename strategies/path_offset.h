@@ -57,6 +57,9 @@ struct PathOffset {
   Joints at_place(double s) const;
 };
 
+/// Smooth step from 0 at x = 0 to 1 at x = 1: first and second derivative are 0 at both ends.
+inline double smooth_step(double x) { return x * x * x * (10.0 + x * (6.0 * x - 15.0)); }
+
 /// Lets offsets rest where the path stands: the mean over the standstill there, and smoothly on to
 /// it within some hundredths of a second. A program has one offset for each place.
 void rest_at_standstills(const PathTimes& times, std::vector<Joints>& offset);

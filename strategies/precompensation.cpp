@@ -23,12 +23,7 @@ const std::array<ParameterSpec, 11>& specs() {
        .default_text = "8",
        .min = 2,
        .max = 100},
-      {.name = "cutoff_Hz",
-       .help = "low-pass of the offset, forwards and backwards: half of it is left there",
-       .unit = "Hz",
-       .default_text = "100",
-       .min = 0.1,
-       .max = 1000.0},
+      kCutoffSpec,
       {.name = "as",
        .help =
            "setpoint: the NC adds the offset; program: it is written into the program, in short "
@@ -48,15 +43,10 @@ const std::array<ParameterSpec, 11>& specs() {
 }
 
 std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMachine& identified) {
-  LearningPlan plan;
-  plan.setup.turns = displaced_axes_of(p) == DisplacedAxes::all;
-  plan.setup.sigma_0 = std::sin(p.number("singular_deg"));
+  LearningPlan plan = learning_plan_of(p);
   plan.setup.as_program = p.word("as") == "program";
   plan.blocks = block_limits_of(p);
   plan.blocks.turns = plan.setup.turns;
-  plan.filter.cutoff = p.number("cutoff_Hz");
-  plan.setup.cutoff = plan.filter.cutoff;
-  plan.setup.limit = offset_limit_of(p);
   plan.runs = static_cast<int>(std::lround(p.number("max_runs")));
   plan.tolerance = p.number("residual_um");
   return iterative_learning(plan, identified);

@@ -41,34 +41,17 @@ constexpr ParameterSpec kLayoutSpec = {
     .shortcoming = Shortcoming::points,
     .ideal = "continuous"};
 
-constexpr ParameterSpec kTimeConstantSpec = {
-    .name = "time_constant_ms",
-    .help = "time constant of the NC's first-order response to a value",
-    .unit = "ms",
-    .default_text = "0",
-    .min = 0.0,
-    .max = 1e4,
-    .shortcoming = Shortcoming::delay,
-    .ideal = "0"};
-
-constexpr ParameterSpec kDeadTimeSpec = {.name = "dead_time_ms",
-                                         .help = "dead time of the NC's response",
-                                         .unit = "ms",
-                                         .default_text = "0",
-                                         .min = 0.0,
-                                         .max = 1e4,
-                                         .shortcoming = Shortcoming::delay,
-                                         .ideal = "0"};
-
-constexpr ParameterSpec kUpdatePeriodSpec = {
-    .name = "update_period_ms",
-    .help = "interval at which the NC evaluates the table; 0: every position period",
-    .unit = "ms",
-    .default_text = "0",
-    .min = 0.0,
-    .max = 1e4,
-    .shortcoming = Shortcoming::delay,
-    .ideal = "0"};
+// A time of the NC's response; 0: it has none.
+constexpr ParameterSpec response_time(std::string_view name, std::string_view help) {
+  return {.name = name,
+          .help = help,
+          .unit = "ms",
+          .default_text = "0",
+          .min = 0.0,
+          .max = 1e4,
+          .shortcoming = Shortcoming::delay,
+          .ideal = "0"};
+}
 
 constexpr ParameterSpec kShiftSpec = {
     .name = "shift_mm",
@@ -135,9 +118,11 @@ const std::array<ParameterSpec, 16>& specs() {
        .default_text = "position_command",
        .is_number = false,
        .words = kInjectionPoints},
-      kTimeConstantSpec,
-      kDeadTimeSpec,
-      kUpdatePeriodSpec,
+      response_time("time_constant_ms",
+                    "time constant of the NC's first-order response to a value"),
+      response_time("dead_time_ms", "dead time of the NC's response"),
+      response_time("update_period_ms",
+                    "interval at which the NC evaluates the table; 0: every position period"),
       kShiftSpec,
       kIterationsSpec,
   }};

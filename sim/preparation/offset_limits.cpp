@@ -263,7 +263,7 @@ void OffsetLimits::rest_at_ends(std::vector<Joints>& u, double within) const {
   for (std::size_t n = 0; n < rows; ++n) {
     const double x = std::max(0.0, static_cast<double>(n) - static_cast<double>(kBand)) /
                      static_cast<double>(rows - kBand);
-    const double share = x * x * x * (10.0 + x * (6.0 * x - 15.0));  // smooth to the second
+    const double share = strategies::smooth_step(x);
     u[n] = first + share * (u[n] - first);
     u[u.size() - 1 - n] = last + share * (u[u.size() - 1 - n] - last);
   }

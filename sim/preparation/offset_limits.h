@@ -33,7 +33,7 @@ class OffsetLimits {
   /// @param u  row after row (5; m, rad)
   controllers::JointLimits demands(const std::vector<Joints>& u) const;
 
-  /// Lets an offset begin and end at rest, as the machine stands before and behind it.
+  /// Lets an offset begin and end at rest: the machine is at standstill before and after it.
   /// @param within  s
   void rest_at_ends(std::vector<Joints>& u, double within) const;
 

@@ -102,9 +102,8 @@ std::string note_of_trials(const preparation::PreparedParts& one, std::size_t nu
                                      [](const auto& a, const auto& b) { return a.rms < b.rms; });
   const bool gets_better = trials.size() < 2 || trials.back().rms < trials.front().rms;
   return fmt::format(
-      "case {}: strategy {}: {} run{} before it acts saw deviations from the interpolated path "
-      "of "
-      "rms {} um{}; largest {:.3g} um at first, {:.3g} um in the best",
+      "case {}: strategy {}: deviation from the interpolated path in {} run{} before the case: rms "
+      "{} um{}; largest {:.3g} um at first, {:.3g} um in the best",
       one.spec.name, one.spec.strategies[number].entry->name, trials.size(),
       trials.size() == 1 ? "" : "s", fmt::join(rms, ", "),
       gets_better ? "" : ", which does not get better", trials.front().largest / um,

@@ -94,7 +94,7 @@ inline Series burst(std::size_t rows, double A, double f, double middle, double 
   return out;
 }
 
-// Differences of order 1 to 3 of a series: those behind it, as they stand for a row.
+// Differences of order 1 to 3 of a series at a row.
 inline double difference(const Series& u, std::size_t order, std::size_t n) {
   switch (order) {
     case 1:
