@@ -29,9 +29,11 @@ struct Entry {
   /// purpose.
   bool corrects_following = false;
   bool corrects_inertia = false;  ///< true: what it corrects is the structure under acceleration
+  bool corrects_heat = false;     ///< true: errors by temperature, of a machine with heat
   bool imposes = true;            ///< false: its `action` can only be to compensate
-  /// True if it has the program run before it acts: it may know a machine of its own.
-  bool runs_program = false;
+  bool runs_program = false;      ///< true: it has the program run before it acts
+  /// True if it may know a machine of its own (key `machine`).
+  bool knows_machine() const { return runs_program || corrects_heat; }
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;

@@ -14,6 +14,7 @@
 #include "strategies/plugin_file.h"
 #include "strategies/precompensation.h"
 #include "strategies/table.h"
+#include "strategies/thermal.h"
 
 namespace servomill::strategies {
 
@@ -21,7 +22,7 @@ std::span<const Entry> entries() {
   static const std::array kEntries = {contour_entry(),         exact_entry(),    feedback_entry(),
                                       gcode_entry(),           harmonic_entry(), inertia_entry(),
                                       learning_entry(),        none_entry(),     parabolic_entry(),
-                                      precompensation_entry(), table_entry()};
+                                      precompensation_entry(), table_entry(),    thermal_entry()};
   return kEntries;
 }
 

@@ -23,6 +23,8 @@ namespace servomill::strategies {
 /// them.
 enum class Action : std::int8_t { impose = 1, compensate = -1 };
 
+struct IdentifiedHeat;  // strategies/identified_heat.h
+
 /// Knowledge of a strategy. Never the actual errors: its errors are an identified model.
 struct IdentifiedMachine {
   JointLayout layout;
@@ -39,6 +41,8 @@ struct IdentifiedMachine {
   // wants, 0 if none does; NaN if it wants none
   double added_gain = std::numeric_limits<double>::quiet_NaN();
   double position_period = 0.0;  // s, of the interpolation of setpoints
+  // errors by temperature; nullptr: the entry does not correct them, or the machine has no heat
+  std::shared_ptr<const IdentifiedHeat> heat = {};
 };
 
 /// Reading of a run at one instant, as a strategy may see it.
@@ -54,6 +58,14 @@ struct Reading {
                                     // all strategies in it
 };
 
+/// Temperatures at one instant, as a control knows them.
+struct TemperatureReading {
+  double period = 0.0;          // s, since the reading before; 0: the machine has been on for long
+  std::vector<double> sensors;  // K, of each sensor
+  std::vector<double> bodies;   // K, as the thermal network of the known machine has them; empty:
+                                // the strategy knows none
+};
+
 /// Offset of the setpoints, added in the NC where `entry` says.
 class SetpointPart {
  public:
@@ -64,6 +76,9 @@ class SetpointPart {
   virtual Joints offset(const Joints& Q_ref) const = 0;
   /// The same in a run, once per position period, with a state of its own if it has one.
   virtual Joints advance(const Reading& now) { return offset(now.Q_ref); }
+  /// New readings of a machine with heat: the first before anything else is asked for, with those
+  /// of a machine that has been on for long.
+  virtual void read_temperatures(const TemperatureReading& now) { (void)now; }
   /// Why it cannot go on, which ends the case; empty while it can.
   virtual std::string_view failure() const { return {}; }
 };

@@ -36,6 +36,7 @@ struct CaseResult {
   records::Series last_ticks;  // when stopped: what happened in the last position periods
   std::vector<strategies::Saturation> saturations;  // of the feedback
   HeatCourse heat;
+  HeatCourse known_heat;              // as a strategy computes it; empty: none does
   std::vector<std::size_t> left_out;  // rows of feed motion outside the windows, by section
   double off_path = 0.0;              // m, CuttingLoad::off_path()
   double simulated_time = 0.0;        // s

@@ -40,11 +40,12 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
   end_ =
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
-  initialise_at_rest();
   if (in.machine.heat) {
-    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors);
+    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors, in.known_heat);
+    setpoint_.read_temperatures(heat_->reading());
     recorder_.use(heat_->errors(), heat_->temperatures());
   }
+  initialise_at_rest();
   if (in.stops_with.empty()) return;
   result_.outcome = stopped_at_begin(in.stops_with);
   record(0);
@@ -146,7 +147,7 @@ CaseResult CaseRun::finish(Tick n) {
   result_.simulated_time = nc_.periods.seconds(n);
   result_.servo = recorder_.take();
   result_.left_out = recorder_.left_out();
-  if (heat_) result_.heat = std::move(*heat_).course();
+  if (heat_) std::move(*heat_).take_courses(result_);
   if (cut_) result_.off_path = cut_->off_path();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
   return std::move(result_);
@@ -180,6 +181,7 @@ bool CaseRun::heat(Tick n) {
   }
   now.spindle = in_.spindle_speeds[reference.move];
   if (!heat_->advance(now)) return true;
+  setpoint_.read_temperatures(heat_->reading());
   recorder_.use(heat_->errors(), heat_->temperatures());
   const std::string fault = heat_->fault();
   return fault.empty() || stop_with(fault, nc_.periods.seconds(n));

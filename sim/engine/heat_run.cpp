@@ -72,21 +72,17 @@ std::string fault_of(const model::HeatSettings& heat, const VectorXd& T) {
 }
 
 std::vector<double> readings_of(const model::HeatSettings& heat, const VectorXd& T, Tick step,
-                                std::uint32_t stream) {
+                                std::uint32_t stream, double noise) {
   std::vector<double> out;
   for (const model::HeatSensor& sensor : heat.sensors) {
-    const double noise = plant::white_noise({heat.noise_seed, stream++}, 0, step)[0];
-    out.push_back(T[sensor.body] + sensor.noise * noise);
+    const double white = plant::white_noise({heat.noise_seed, stream++}, 0, step)[0];
+    out.push_back(T[sensor.body] + noise * sensor.noise * white);
   }
   return out;
 }
 
-HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors)
-    : machine_(machine),
-      errors_(errors),
-      sources_(machine),
-      network_(network_at_start(machine)),
-      t_(machine.heat->clock) {
+HeatBalance::HeatBalance(const model::MachineSettings& machine)
+    : sources_(machine), network_(network_at_start(machine)), t_(machine.heat->clock) {
   const double period = machine.nc.periods.seconds(machine.nc.periods.position);
   periods_per_step_ = std::max(1, static_cast<int>(std::lround(kStep / period)));
   const auto n = static_cast<Index>(machine.heat->network.bodies.size());
@@ -94,18 +90,12 @@ HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel&
   sum_ = VectorXd::Zero(n);
   course_.step = period * periods_per_step_;
   course_.bodies = machine.heat->network.bodies.size();
-  at_ = errors_now();
 }
 
-bool HeatRun::advance(const HeatInputs& now) {
+bool HeatBalance::advance(const HeatInputs& now) {
   sources_.powers(now, power_);
   sum_ += power_;
   if (++periods_ < periods_per_step_) return false;
-  step();
-  return true;
-}
-
-void HeatRun::step() {
   sum_ /= periods_;
   course_.power.insert(course_.power.end(), sum_.begin(), sum_.end());
   network_.advance(t_, course_.step, sum_);
@@ -113,24 +103,51 @@ void HeatRun::step() {
   periods_ = 0;
   ++steps_;
   sum_.setZero();
+  return true;
+}
+
+HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors,
+                 const model::MachineSettings* known)
+    : machine_(machine),
+      errors_(errors),
+      balance_(machine),
+      known_(known != nullptr ? std::make_unique<HeatBalance>(*known) : nullptr),
+      at_(errors_now()) {
+  reading_.sensors = readings_of(*machine.heat, balance_.temperatures(), 0, 0, 0.0);
+  if (known_) reading_.bodies.assign(known_->temperatures().begin(), known_->temperatures().end());
+}
+
+// Both networks have steps of the same length: that of the position period, which they share.
+bool HeatRun::advance(const HeatInputs& now) {
+  if (known_) known_->advance(now);
+  if (!balance_.advance(now)) return false;
   at_ = errors_now();
+  reading_.period = balance_.step();
+  reading_.sensors = readings_of(*machine_.heat, balance_.temperatures(), balance_.steps());
+  if (known_) reading_.bodies.assign(known_->temperatures().begin(), known_->temperatures().end());
+  return true;
 }
 
 std::shared_ptr<const plant::VolumetricModel> HeatRun::errors_now() const {
   const model::HeatSettings& heat = *machine_.heat;
   return std::make_shared<const plant::VolumetricModel>(
       machine_.chain,
-      plant::at_temperatures(errors_, heat.errors, network_.temperatures(), heat.reference));
+      plant::at_temperatures(errors_, heat.errors, balance_.temperatures(), heat.reference));
 }
 
 std::vector<double> HeatRun::temperatures() const {
-  std::vector<double> out(network_.temperatures().begin(), network_.temperatures().end());
-  for (const double T : readings_of(*machine_.heat, network_.temperatures(), steps_)) {
+  std::vector<double> out(balance_.temperatures().begin(), balance_.temperatures().end());
+  for (const double T : readings_of(*machine_.heat, balance_.temperatures(), balance_.steps())) {
     out.push_back(T);
   }
   return out;
 }
 
-std::string HeatRun::fault() const { return fault_of(*machine_.heat, network_.temperatures()); }
+std::string HeatRun::fault() const { return fault_of(*machine_.heat, balance_.temperatures()); }
+
+void HeatRun::take_courses(CaseResult& out) && {
+  out.heat = std::move(balance_).course();
+  if (known_) out.known_heat = std::move(*known_).course();
+}
 
 }  // namespace servomill::sim::engine

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plant/geometry/volumetric.h"
@@ -13,6 +14,7 @@
 #include "sim/engine/case_result.h"
 #include "sim/model/heat.h"
 #include "sim/model/machine.h"
+#include "strategies/strategy.h"
 
 namespace servomill::sim::engine {
 
@@ -38,16 +40,44 @@ class HeatSources {
   Joints ratio_;  // m/rad or 1: travel of each joint per angle of its motor
 };
 
-/// The powers of the position periods are averaged over steps of the network, after each of which
-/// the machine has the errors of its new temperatures. Between two steps an error lags by at most
-/// its rate times kStep: 3 nm for 60 um in half an hour.
-class HeatRun {
+/// The thermal network of a machine. The powers of the position periods are averaged over its
+/// steps.
+class HeatBalance {
  public:
   static constexpr double kStep = 0.1;  // s
 
   /// @param machine  with heat; must outlive this
+  explicit HeatBalance(const model::MachineSettings& machine);
+
+  /// A position period has passed. True if the temperatures have changed.
+  bool advance(const HeatInputs& now);
+
+  const Eigen::VectorXd& temperatures() const { return network_.temperatures(); }  ///< K
+  double step() const { return course_.step; }                                     ///< s
+  Tick steps() const { return steps_; }
+  /// Powers of the run, step after step.
+  HeatCourse course() && { return std::move(course_); }
+
+ private:
+  HeatSources sources_;
+  plant::ThermalNetwork network_;
+  int periods_per_step_, periods_ = 0;
+  Tick steps_ = 0;
+  double t_;  // s, of the day
+  Eigen::VectorXd power_, sum_;
+  HeatCourse course_;
+};
+
+/// After each step of its network the machine has the errors of its new temperatures. Between two
+/// steps an error lags by at most its rate times HeatBalance::kStep: 3 nm for 60 um in half an
+/// hour.
+class HeatRun {
+ public:
+  /// @param machine  with heat; must outlive this
   /// @param errors   of the machine at its reference temperature
-  HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors);
+  /// @param known    whose network a strategy computes, likewise; nullptr: none does
+  HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors,
+          const model::MachineSettings* known);
 
   /// A position period has passed. True if temperatures and errors have changed.
   bool advance(const HeatInputs& now);
@@ -56,25 +86,22 @@ class HeatRun {
   const std::shared_ptr<const plant::VolumetricModel>& errors() const { return at_; }
   /// K, of each body, and the readings of each sensor.
   std::vector<double> temperatures() const;
+  /// As a strategy sees them; the first is that of a machine that has been on for long.
+  const strategies::TemperatureReading& reading() const { return reading_; }
   /// Empty, or why the machine stops: a body is beyond its limits.
   std::string fault() const;
   /// Powers of the run, step after step.
-  HeatCourse course() && { return std::move(course_); }
+  void take_courses(CaseResult& out) &&;
 
  private:
-  void step();
   std::shared_ptr<const plant::VolumetricModel> errors_now() const;
 
   const model::MachineSettings& machine_;
   const plant::ErrorModel& errors_;
-  HeatSources sources_;
-  plant::ThermalNetwork network_;
-  int periods_per_step_, periods_ = 0;
-  Tick steps_ = 0;
-  double t_;  // s, of the day
-  Eigen::VectorXd power_, sum_;
+  HeatBalance balance_;
+  std::unique_ptr<HeatBalance> known_;
   std::shared_ptr<const plant::VolumetricModel> at_;
-  HeatCourse course_;
+  strategies::TemperatureReading reading_;
 };
 
 /// Empty, or which body is colder or warmer than it may be.
@@ -85,8 +112,9 @@ std::string fault_of(const model::HeatSettings& heat, const Eigen::VectorXd& T);
 /// @param T     of each body (K)
 /// @param step  number of the reading; equal ones of a stream have equal noise
 /// @param stream  of the noise of the first sensor
+/// @param noise   of the reading, as a share of that of a single one
 std::vector<double> readings_of(const model::HeatSettings& heat, const Eigen::VectorXd& T,
-                                Tick step, std::uint32_t stream = 0);
+                                Tick step, std::uint32_t stream = 0, double noise = 1.0);
 
 /// A network at the temperatures at which runs begin.
 plant::ThermalNetwork network_at_start(const model::MachineSettings& machine);

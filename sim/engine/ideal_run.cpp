@@ -16,7 +16,8 @@ IdealRun::IdealRun(CaseInputs& in)
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)) {
   if (in.machine.heat) {
-    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors);
+    heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors, in.known_heat);
+    setpoint_.read_temperatures(heat_->reading());
     recorder_.use(heat_->errors(), heat_->temperatures());
   }
   if (in.machine.inertial_compliances.empty()) return;
@@ -67,7 +68,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   result.servo = recorder_.take();
   result.left_out = recorder_.left_out();
   result.saturations = std::move(saturations_);
-  if (heat_) result.heat = std::move(*heat_).course();
+  if (heat_) std::move(*heat_).take_courses(result);
   if (cut_) result.off_path = cut_->off_path();
   return result;
 }
@@ -135,6 +136,7 @@ bool IdealRun::heat(const controllers::Trajectory::Sample& sample, Outcome& outc
   now.spindle = in_.spindle_speeds[sample.move];
   if (cut_) now.cut = cut_->power(now_.dQ_ref);
   if (!heat_->advance(now)) return true;
+  setpoint_.read_temperatures(heat_->reading());
   recorder_.use(heat_->errors(), heat_->temperatures());
   const std::string fault = heat_->fault();
   if (!fault.empty()) outcome = failed(fault, now_.t, in_.path.line(in_.pieces[sample.move]));

@@ -40,6 +40,10 @@ Joints& Setpoint::Offsets::of(EntryPoint entry) {
   return feed_forward;
 }
 
+void Setpoint::read_temperatures(const strategies::TemperatureReading& now) {
+  for (Correction& correction : corrections_) correction.part->read_temperatures(now);
+}
+
 const AxisSetpoint& Setpoint::settle() {
   const Joints& Q = reference_.start();
   out_ = {Q, Q, Joints::Zero(), Joints::Zero()};

@@ -21,6 +21,8 @@ class Setpoint {
   Setpoint(const model::NcSettings& nc, const controllers::Trajectory& reference,
            std::vector<std::unique_ptr<strategies::SetpointPart>> parts);
 
+  /// New temperatures of a machine with heat, for strategies that read them.
+  void read_temperatures(const strategies::TemperatureReading& now);
   /// Standing at the start of the trajectory for long; corrections settled.
   const AxisSetpoint& settle();
   /// Time by which the filter delays the reference (s).

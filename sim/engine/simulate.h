@@ -61,6 +61,8 @@ struct CaseInputs {
   // (rad/s) during each move that the NC runs
   const plant::ErrorModel* component_errors = nullptr;
   std::vector<double> spindle_speeds = {};
+  // whose thermal network a strategy computes during the run; nullptr: none does
+  const model::MachineSettings* known_heat = nullptr;
   bool records_orientation = false;  // of the tool about its axis
   RecordingWindows windows = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not

@@ -21,6 +21,12 @@ namespace servomill::sim::evaluation {
 
 struct ProbedFeature;
 
+/// Errors by heat of the parts of a day.
+struct DayFigures {
+  double rms = 0.0, largest = 0.0;  // m, displacement of the tip along the path of every cycle
+  double measuring = 0.0;           // s, spent on datums in between
+};
+
 /// Data of one case that ran.
 struct CaseData {
   std::string name;
@@ -36,6 +42,7 @@ struct CaseData {
   std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
   // rows of feed motion outside the windows of the recording, by section; empty: none
   std::vector<std::size_t> left_out = {};
+  std::optional<DayFigures> day = {};  // none: no day, or one without parts
 };
 
 /// One line of the printed comparison.

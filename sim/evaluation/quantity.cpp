@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "sim/evaluation/circular_quantities.h"
+#include "sim/evaluation/day_quantities.h"
 #include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
@@ -15,7 +16,7 @@ std::span<const QuantityEntry> quantities() {
   static const std::vector<QuantityEntry> kQuantities = [] {
     std::vector<QuantityEntry> all;
     for (const auto family : {path_quantities(), uncertainty_quantities(), circular_quantities(),
-                              r_test_quantities(), probe_quantities()}) {
+                              r_test_quantities(), probe_quantities(), day_quantities()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

@@ -48,6 +48,7 @@ struct QuantityEntry {
   bool needs_baseline = false;    // another case to compare with
   bool needs_covariance = false;  // of the identified errors of the machine
   bool needs_imposed = false;     // the scenario's imposed error model, which it subtracts
+  bool needs_day = false;         // of the scenario
   int circles = 0;                // sections evaluated together, each one turn of a circle; 0: any
   bool is_r_test = false;  // in the spindle, seen by sensors on the table: r_test_quantities.h
   BallBars bars = BallBars::none;

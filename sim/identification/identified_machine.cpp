@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "sim/identification/report.h"
 
 namespace servomill::sim::identification {
@@ -15,12 +13,6 @@ struct MachineKey {
   std::size_t estimate;
 };
 
-std::string beside(const std::string& machine, const std::string& path) {
-  const std::filesystem::path folder =
-      std::filesystem::absolute(path).lexically_normal().parent_path();
-  return std::filesystem::absolute(machine).lexically_normal().lexically_relative(folder).string();
-}
-
 }  // namespace
 
 input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,
@@ -31,7 +23,7 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
                      "that the identified values can override it");
   }
   input::IdentifiedFile out;
-  out.based_on = beside(experiment.machine_path, path);
+  out.based_on = input::machine_seen_from(path, experiment.machine_path);
   out.comments.push_back(fmt::format("Identified from {}:", experiment.name));
   for (const RecordResult& one : result.estimation) {
     out.comments.push_back(fmt::format("  {}: position rms {:.3g} um", one.record->record.name,

@@ -41,7 +41,7 @@ std::string common_name(std::string name) {
       {std::regex(R"(\baxis\.[XYZABC]\b)"), "axis.X"},
       {std::regex(R"(\binertial_deflection\.[XYZ][XYZABC]\b)"), "inertial_deflection.XX"},
       {std::regex(R"(\bheat\.(surroundings|body|source|sensor)\.\w+)"), "heat.$1.NAME"},
-      {std::regex(R"(^machine\.heat\.body\.NAME\.errors_per_K)"), "errors.NAME"},
+      {std::regex(R"(^machine\.heat\.(body|sensor)\.NAME\.errors_per_K)"), "errors.NAME"},
       {std::regex(R"(\bE[XYZ]0[XYZABC]\b)"), "EX0C"},
       {std::regex(R"(\bE[ABC]0[XYZABC]\b)"), "EC0Y"},
       {std::regex(R"(\bE[XYZABC][XYZABC]\b)"), "EXX"},

@@ -85,6 +85,9 @@ constexpr KeyHelp kMachine[] = {
     {"machine.heat.sensor", "NAME", "one of them; the name of its recorded reading"},
     {"machine.heat.sensor.NAME", "body", "body that it is on"},
     {"machine.heat.sensor.NAME", "noise_K", "standard deviation of each reading"},
+    {"machine.heat.sensor.NAME", "errors_per_K",
+     "identified: errors per kelvin of its reading that the strategy thermal compensates, as "
+     "machine.errors"},
     {"machine.heat", "noise_seed", "seed of the noise of the sensors"},
     {"machine.heat", "source", "where heat comes from"},
     {"machine.heat.source", "NAME", "one of them"},

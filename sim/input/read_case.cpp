@@ -153,11 +153,24 @@ void CaseReader::read_machines(const config::Document& scenario) {
         read_machine_of(index, document);
       }
       if (known_.contains(index)) read_known_machines(index, document);
+      refuse_cold_machine(out_.cases[index]);
     } catch (const InputError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
   }
   if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+// Without heat there is no temperature that a strategy could follow.
+void CaseReader::refuse_cold_machine(const model::CaseSpec& one) const {
+  for (const model::StrategySpec& strategy : one.strategies) {
+    if (!strategy.entry->corrects_heat) continue;
+    const bool is_cold = out_.machine_of(one).heat == nullptr;
+    if (!is_cold && (!strategy.machine || strategy.machine->heat)) continue;
+    throw InputError(strategy.place,
+                     fmt::format("case {}: strategy {}: the machine {} has no [heat]", one.name,
+                                 strategy.entry->name, is_cold ? "of the case" : "that it knows"));
+  }
 }
 
 void CaseReader::read_machine_of(std::size_t index, const config::Document& with_override) {

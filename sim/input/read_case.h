@@ -43,6 +43,7 @@ class CaseReader {
   void give_hardware(config::Reader& table, bool says_hardware, model::CaseSpec& spec);
   void note_machine_override(config::Reader& table);
   void read_machine_of(std::size_t index, const config::Document& with_override);
+  void refuse_cold_machine(const model::CaseSpec& one) const;
   void read_known_machines(std::size_t index, const config::Document& of_case);
 
   std::vector<std::string> error_models_;

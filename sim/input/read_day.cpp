@@ -45,7 +45,12 @@ class DayReader {
   model::WorkingDay read() {
     out_.sample = day_.real_or("sample_min", out_.sample, config::kTime,
                                {config::at_least(1.0), config::at_most(86400.0)});
+    out_.probe_noise =
+        day_.real_or("probe_noise_um", 0.0, config::kLength, {config::at_least(0.0)});
+    out_.noise_seed =
+        static_cast<std::uint64_t>(day_.integer_or("noise_seed", 0, {config::at_least(0.0)}));
     for (config::Reader& place : day_.tables("place")) read_place(place);
+    read_remeasuring();
     for (config::Reader& phase : day_.tables("phase")) read_phase(phase);
     return std::move(out_);
   }
@@ -59,6 +64,18 @@ class DayReader {
     place.Q = read_pose(table, scenario_.machine);
     place.p_ST.z() = -table.real("tool_length_mm", config::kLength, {config::at_least(0.0)});
     out_.places.push_back(std::move(place));
+  }
+
+  void read_remeasuring() {
+    if (!day_.has("remeasure")) return;
+    config::Reader table = day_.table("remeasure");
+    model::Remeasuring one;
+    one.place = read_datum(table);
+    one.every = table.real("every_min", config::kTime,
+                           {config::above(0.0), config::at_most(kLongestPhase)});
+    one.duration = table.real_or("duration_min", 120.0, config::kTime,
+                                 {config::at_least(0.0), config::at_most(kLongestPhase)});
+    out_.remeasuring = one;
   }
 
   void read_phase(config::Reader& table) {

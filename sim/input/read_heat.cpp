@@ -97,7 +97,7 @@ class HeatReader {
       out_.coldest.push_back(kColdest);
       out_.warmest.push_back(is_winding ? kWarmestWinding : kWarmest);
       read_links(table, bodies_[name]);
-      read_thermal_errors(table, bodies_[name]);
+      read_thermal_errors(table, bodies_[name], out_.errors);
     }
   }
 
@@ -128,9 +128,9 @@ class HeatReader {
                        });
   }
 
-  void read_thermal_errors(config::Reader& body, int index) {
-    if (!body.has("errors_per_K")) return;
-    config::Reader table = body.table("errors_per_K");
+  void read_thermal_errors(config::Reader& of, int index, std::vector<plant::ThermalError>& out) {
+    if (!of.has("errors_per_K")) return;
+    config::Reader table = of.table("errors_per_K");
     plant::ErrorModel errors = read_errors(table, MachineAxes(machine_));
     for (const Axis axis : kAllAxes) {
       for (const Axis direction : kAllAxes) {
@@ -138,7 +138,7 @@ class HeatReader {
         table.fault("errors that depend on the temperature must not have a reversal");
       }
     }
-    out_.errors.push_back({index, std::move(errors)});
+    out.push_back({index, std::move(errors)});
   }
 
   void read_sources() {
@@ -269,6 +269,7 @@ class HeatReader {
       out_.sensors.push_back({name, body,
                               table.real_or("noise_K", 0.0, config::kTemperature,
                                             {config::at_least(0.0), config::at_most(100.0)})});
+      read_thermal_errors(table, static_cast<int>(out_.sensors.size()) - 1, out_.sensor_errors);
     }
   }
 

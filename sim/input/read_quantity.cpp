@@ -72,6 +72,7 @@ class QuantityReader {
                   "needs a machine with identified errors and their covariance, as written by "
                   "servomill calibrate -o");
     }
+    if (info.needs_day && out_.day == nullptr) table.fault("name", "needs [day]");
     if (info.probes > 0) {
       read_part(table, info, spec);
     } else if (info.is_r_test) {

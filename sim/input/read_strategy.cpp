@@ -157,7 +157,7 @@ const config::Value* read_strategy(config::Reader& table, std::span<const std::s
                     strategy.entry->name));
   }
   const config::Value* machine = nullptr;
-  if (strategy.entry->runs_program && table.has("machine")) machine = table.raw("machine");
+  if (strategy.entry->knows_machine() && table.has("machine")) machine = table.raw("machine");
   if (machine != nullptr && machine->type != config::Value::Type::table) {
     table.fault("machine", "must be the name of a machine file, or a table of keys of the machine");
     machine = nullptr;

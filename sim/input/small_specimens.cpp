@@ -49,7 +49,7 @@ winding = false
 conductance_W_per_K = { room = 10.0 }
 errors_per_K = { EZZ = { constant_um = 1.0 } }
 [machine.heat.sensor]
-NAME = { body = "head", noise_K = 0.05 }
+NAME = { body = "head", noise_K = 0.05, errors_per_K = { EZZ = { constant_um = 1.0 } } }
 [machine.heat.source]
 pump = { body = "head", kind = "constant", power_W = 10.0 }
 bearings = { body = "head", kind = "spindle", speed_rpm = [0, 1000], power_W = [0, 10.0] }
@@ -63,6 +63,9 @@ text = "M2\n"
 
 [day]
 sample_min = 1.0
+probe_noise_um = 0.5
+noise_seed = 1
+remeasure = { place = "table", every_min = 30.0, duration_min = 2.0 }
 [[day.place]]
 name = "table"
 at = { Z_mm = 0.0, C_deg = 0.0 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 
 #include "sim/config/value.h"
@@ -106,6 +107,12 @@ void write_identified_file(const std::string& path, const IdentifiedFile& file, 
   const std::string text = identified_text(file);
   refuse_unreadable(text, path, file.identified);
   system::write_text_file(path, text, force);
+}
+
+std::string machine_seen_from(const std::string& path, const std::string& machine) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+  return fs::absolute(machine).lexically_normal().lexically_relative(folder).string();
 }
 
 }  // namespace servomill::sim::input

@@ -28,4 +28,7 @@ std::string identified_text(const IdentifiedFile& file);
 /// read, or the machine refuses a value: with the line that the file would have had
 void write_identified_file(const std::string& path, const IdentifiedFile& file, bool force);
 
+/// The name of a machine file as a file at `path` gives it: relative to its folder.
+std::string machine_seen_from(const std::string& path, const std::string& machine);
+
 }  // namespace servomill::sim::input

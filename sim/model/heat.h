@@ -59,6 +59,8 @@ struct HeatSettings {
   std::vector<HeatSource> sources;
   std::vector<plant::ThermalError> errors;
   std::vector<HeatSensor> sensors;
+  std::vector<plant::ThermalError> sensor_errors;  // what a temperature compensation attributes to
+                                                   // readings; `body` is the place of the sensor
   std::optional<PartExpansion> part;
   std::uint64_t noise_seed = 0;          // of the sensors
   std::vector<double> coldest, warmest;  // K, of each body: beyond them the run ends

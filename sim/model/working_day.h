@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,10 +33,20 @@ struct DayPlace {
   Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();  // m, the measured point in the spindle
 };
 
+/// Datums in between the cycles of a program, as soon as the last one is older than `every`.
+struct Remeasuring {
+  int place = 0;          // index of the place
+  double every = 0.0;     // s
+  double duration = 0.0;  // s, of each, axes and spindle at rest
+};
+
 struct WorkingDay {
   std::vector<DayPhase> phases;
   std::vector<DayPlace> places;
-  double sample = 60.0;  // s, between readings
+  double sample = 60.0;      // s, between readings
+  double probe_noise = 0.0;  // m, standard deviation of a datum along each axis
+  std::uint64_t noise_seed = 0;
+  std::optional<Remeasuring> remeasuring;
 };
 
 }  // namespace servomill::sim::model

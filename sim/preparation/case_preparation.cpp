@@ -13,6 +13,7 @@
 #include "sim/preparation/added_gains.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/cutting_force_plan.h"
+#include "sim/preparation/identified_heat.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/rewritten_text.h"
 
@@ -39,6 +40,17 @@ void add(system::MemoKey& key, const model::StrategySpec& spec) {
       key.add(spec.parameters.word(parameter.name));
     } else {
       key.add(spec.parameters.number(parameter.name));
+    }
+  }
+}
+
+void add(system::MemoKey& key, const strategies::IdentifiedHeat& heat) {
+  key.add(heat.reference);
+  for (const auto* errors : {&heat.by_body, &heat.by_sensor}) {
+    key.add(errors->size());
+    for (const plant::ThermalError& one : *errors) {
+      key.add(one.body);
+      preparation::add(key, one.per_kelvin);
     }
   }
 }
@@ -199,9 +211,11 @@ SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
   const model::LoopPeriods& periods = machine_.nc.periods;
   const double period = periods.seconds(periods.position);
   key.add(period);
+  const auto heat = identified_heat(spec, spec_, machine_);
+  if (heat) add(key, *heat);
   return cache_.strategies.get(key, [&] {
     return make(spec, {machine_.chain.layout, *model(spec.model), tip, machine_.nc.lower,
-                       machine_.nc.upper, start_, shift, Kv, added, period});
+                       machine_.nc.upper, start_, shift, Kv, added, period, heat});
   });
 }
 

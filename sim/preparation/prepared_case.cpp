@@ -15,6 +15,7 @@
 #include "sim/preparation/case_preparation.h"
 #include "sim/preparation/chatter_check.h"
 #include "sim/preparation/estimate.h"
+#include "sim/preparation/identified_heat.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/stability_check.h"
@@ -251,6 +252,7 @@ engine::CaseInputs PreparedCase::Parts::inputs_on(const model::MachineSettings& 
   if (machine.heat) {
     inputs.component_errors = components;
     inputs.spindle_speeds = spindle_speeds(*p.motion->moves);
+    inputs.known_heat = known_heat_of(p.spec, machine);
   }
   inputs.records_orientation =
       std::any_of(p.scenario.tests.begin(), p.scenario.tests.end(),

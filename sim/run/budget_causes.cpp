@@ -258,7 +258,8 @@ bool moves_on_purpose(const model::CaseSpec& one) {
          std::any_of(one.strategies.begin(), one.strategies.end(),
                      [](const model::StrategySpec& spec) {
                        const strategies::Entry& entry = *spec.entry;
-                       return !entry.reads_errors && entry.acts && !entry.corrects_following;
+                       return !entry.reads_errors && entry.acts && !entry.corrects_following &&
+                              !entry.corrects_heat;
                      });
 }
 

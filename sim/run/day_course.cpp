@@ -6,14 +6,16 @@
 #include <cmath>
 #include <utility>
 
-#include "plant/heat/temperature.h"
+#include "plant/sensing/noise.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/heat_run.h"
+#include "sim/evaluation/quantity.h"
 #include "sim/model/working_day.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
-#include "sim/system/json.h"
+#include "sim/run/cycle_powers.h"
+#include "sim/run/day_correction.h"
 
 namespace servomill::sim::run {
 namespace {
@@ -22,7 +24,6 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1.0;                // s, over which powers of a cycle are averaged
 constexpr double kLongStep = 60.0;           // s, of the network while powers are constant
 constexpr std::uint32_t kNoiseOfDay = 1000;  // first stream; those of runs come before
 constexpr double kHour = 3600.0;             // s
@@ -50,30 +51,6 @@ std::vector<PathPlace> places_along(const preparation::PreparedParts& parts,
   return out;
 }
 
-// Mean powers of some time of a cycle.
-struct PowerStep {
-  double length = 0.0;  // s
-  VectorXd power;       // W, of each body
-};
-
-// Powers of a cycle over steps of about kStep.
-std::vector<PowerStep> averaged(const engine::HeatCourse& cycle) {
-  const auto rows = cycle.power.size() / std::max<std::size_t>(1, cycle.bodies);
-  const auto each = static_cast<std::size_t>(std::max(1L, std::lround(kStep / cycle.step)));
-  std::vector<PowerStep> out;
-  for (std::size_t first = 0; first < rows; first += each) {
-    const std::size_t end = std::min(rows, first + each);
-    VectorXd sum = VectorXd::Zero(static_cast<Index>(cycle.bodies));
-    for (std::size_t row = first; row < end; ++row) {
-      sum += Eigen::Map<const VectorXd>(&cycle.power[row * cycle.bodies],
-                                        static_cast<Index>(cycle.bodies));
-    }
-    const auto steps = static_cast<double>(end - first);
-    out.push_back({steps * cycle.step, sum / steps});
-  }
-  return out;
-}
-
 // Surroundings are linear within a step: a hundredth of their period at most.
 double long_step(const model::HeatSettings& heat) {
   double step = kLongStep;
@@ -85,17 +62,19 @@ double long_step(const model::HeatSettings& heat) {
 
 class Day {
  public:
-  Day(const preparation::PreparedParts& parts, const engine::HeatCourse& cycle, double duration)
+  Day(const preparation::PreparedParts& parts, const engine::CaseResult& cycle, double duration)
       : day_(*parts.scenario.day),
         machine_(parts.scenario.machine_of(parts.spec)),
         heat_(*machine_.heat),
         sources_(machine_),
         network_(engine::network_at_start(machine_)),
         path_(places_along(parts, machine_.chain.layout)),
-        cycle_(averaged(cycle)),
+        cycle_(averaged(cycle.heat)),
         duration_(duration),
         long_step_(long_step(heat_)),
         power_(VectorXd::Zero(static_cast<Index>(heat_.network.bodies.size()))),
+        correction_(parts, averaged(cycle.known_heat)),
+        now_(std::make_unique<plant::VolumetricModel>(errors_now())),
         at_start_(errors_now()) {
     for (const auto& body : heat_.network.bodies) out_.bodies.push_back(body.name);
     for (const auto& place : day_.places) out_.places.push_back(place.name);
@@ -103,6 +82,9 @@ class Day {
     out_.temperatures.resize(out_.bodies.size());
     out_.readings.resize(out_.sensors.size());
     out_.drift.resize(out_.places.size());
+    correction_.begin(network_.temperatures());
+    for (const auto& place : day_.places) place_at_start_.push_back(displaced(place.Q, place.p_ST));
+    for (const auto& place : path_) path_at_start_.push_back(displaced(place.Q, place.p_ST));
   }
 
   DayCourse run() {
@@ -118,39 +100,73 @@ class Day {
 
  private:
   void run(const model::DayPhase& phase) {
-    engine::HeatInputs inputs;
-    inputs.spindle = phase.activity == model::Activity::spindle ? phase.spindle : 0.0;
     switch (phase.activity) {
       case model::Activity::idle:
+        rest(phase.duration, 0.0);
+        return;
       case model::Activity::spindle:
-        sources_.powers(inputs, power_);
-        rest(phase.duration);
+        rest(phase.duration, phase.spindle);
         return;
       case model::Activity::program:
-        for (int n = 0; n < phase.cycles && out_.stopped.empty(); ++n) run_cycle();
+        for (int n = 0; n < phase.cycles && out_.stopped.empty(); ++n) {
+          remeasure();
+          run_cycle();
+        }
         return;
       case model::Activity::probe:
-        now_ = std::make_unique<plant::VolumetricModel>(errors_now());
-        datum_ = drift_of(day_.places[static_cast<std::size_t>(phase.place)]).dp_W;
+        take_datum(phase.place);
         return;
     }
   }
 
   // Constant powers, from reading to reading.
-  void rest(double duration) {
+  // @param spindle  rad/s
+  void rest(double duration, double spindle) {
+    engine::HeatInputs inputs;
+    inputs.spindle = spindle;
+    sources_.powers(inputs, power_);
+    correction_.use(inputs);
     const double end = t_ + duration;
     while (t_ < end && out_.stopped.empty()) {
       advance(std::min({end, next_reading_, t_ + long_step_}) - t_);
     }
   }
 
+  // A datum, if the last one is too old.
+  void remeasure() {
+    if (!day_.remeasuring) return;
+    const double last = out_.datums.empty() ? 0.0 : out_.datums.back();
+    if (t_ - last < day_.remeasuring->every) return;
+    rest(day_.remeasuring->duration, 0.0);
+    out_.measuring += day_.remeasuring->duration;
+    take_datum(day_.remeasuring->place);
+  }
+
+  void take_datum(int number) {
+    const auto k = static_cast<std::size_t>(number);
+    const model::DayPlace& place = day_.places[k];
+    *now_ = errors_now();
+    datum_ = displaced(place.Q, place.p_ST) - place_at_start_[k] + probe_noise();
+    out_.datums.push_back(t_);
+  }
+
+  // Along X, Y, Z of the workpiece (m).
+  Vector3d probe_noise() const {
+    const auto channel = [&](std::uint32_t n) {
+      return plant::white_noise({day_.noise_seed}, n, static_cast<Tick>(out_.datums.size()));
+    };
+    const auto xy = channel(0), z = channel(1);
+    return day_.probe_noise * Vector3d(xy[0], xy[1], z[0]);
+  }
+
   void run_cycle() {
     throw_if_interrupted();
     judge_cycle();
     const double end = t_ + duration_;
-    for (const PowerStep& step : cycle_) {
-      power_ = step.power;
-      advance_to(std::min(end, t_ + step.length));
+    for (std::size_t n = 0; n < cycle_.size(); ++n) {
+      power_ = cycle_[n].power;
+      correction_.use(n);
+      advance_to(std::min(end, t_ + cycle_[n].length));
     }
     advance_to(end);  // less than a step of the recorded powers
   }
@@ -163,6 +179,7 @@ class Day {
   void advance(double h) {
     if (!(h > 0.0)) return;
     network_.advance(heat_.clock + t_, h, power_);
+    correction_.advance(heat_.clock + t_, h, network_.temperatures());
     t_ += h;
     if (t_ >= next_reading_) read();
     out_.stopped = engine::fault_of(heat_, network_.temperatures());
@@ -182,40 +199,42 @@ class Day {
     const auto reading = static_cast<Tick>(out_.time.size());
     const auto sensed = engine::readings_of(heat_, network_.temperatures(), reading, kNoiseOfDay);
     for (std::size_t i = 0; i < sensed.size(); ++i) out_.readings[i].push_back(sensed[i]);
-    now_ = std::make_unique<plant::VolumetricModel>(errors_now());
+    *now_ = errors_now();
     for (std::size_t k = 0; k < day_.places.size(); ++k) {
-      out_.drift[k].push_back(in_machine_axes(day_.places[k]));
+      out_.drift[k].push_back(in_machine_axes(k));
     }
   }
 
   // Along and about the axes of the machine: the linear axes have the directions J in W, and a tool
   // axis k that changes by dk turns by k x dk.
-  std::array<double, kDrifts> in_machine_axes(const model::DayPlace& place) const {
-    const plant::VolumetricError d = drift_of(place);
+  std::array<double, kDrifts> in_machine_axes(std::size_t k) {
+    const model::DayPlace& place = day_.places[k];
     const Eigen::Matrix3d J = plant::linear_jacobian(machine_.chain, place.Q);
-    const Vector3d k = plant::forward(machine_.chain, place.Q, place.p_ST).k_W;
-    const Vector3d shift = J.transpose() * d.dp_W, turn = J.transpose() * k.cross(d.dk_W);
+    const Vector3d axis = plant::forward(machine_.chain, place.Q, place.p_ST).k_W;
+    const Vector3d tilt =
+        now_->error(place.Q, place.p_ST).dk_W - at_start_.error(place.Q, place.p_ST).dk_W;
+    const Vector3d shift = J.transpose() * (displaced(place.Q, place.p_ST) - place_at_start_[k]);
+    const Vector3d turn = J.transpose() * axis.cross(tilt);
     return {shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z()};
   }
 
-  // Errors `now_` against those at the start.
-  plant::VolumetricError drift_of(const model::DayPlace& place) const {
-    const plant::VolumetricError a = now_->error(place.Q, place.p_ST);
-    const plant::VolumetricError b = at_start_.error(place.Q, place.p_ST);
-    return {a.dp_W - b.dp_W, a.dk_W - b.dk_W};
+  // Displacement of the tip (3; m) by errors `now_` and what the strategies make of it.
+  Vector3d displaced(const Joints& Q, const Vector3d& p_ST) {
+    return now_->error(Q, p_ST).dp_W +
+           plant::linear_jacobian(machine_.chain, Q) * correction_.offset(Q).head<kLinearJoints>();
   }
 
   void judge_cycle() {
-    const plant::VolumetricModel errors = errors_now();
+    *now_ = errors_now();
     DayCycle cycle{t_, 0.0, 0.0};
-    for (const PathPlace& place : path_) {
-      const Vector3d d = errors.error(place.Q, place.p_ST).dp_W -
-                         at_start_.error(place.Q, place.p_ST).dp_W - datum_;
+    for (std::size_t n = 0; n < path_.size(); ++n) {
+      const Vector3d d = displaced(path_[n].Q, path_[n].p_ST) - path_at_start_[n] - datum_;
       cycle.rms += d.squaredNorm() / kPathPlaces;
       cycle.most = std::max(cycle.most, d.norm());
     }
     cycle.rms = std::sqrt(cycle.rms);
     out_.cycles.push_back(cycle);
+    if (out_.stopped.empty()) out_.stopped = correction_.failure();
   }
 
   plant::VolumetricModel errors_now() const {
@@ -249,8 +268,10 @@ class Day {
   std::vector<PowerStep> cycle_;
   double duration_, long_step_;
   VectorXd power_;
-  plant::VolumetricModel at_start_;
+  DayCorrection correction_;
   std::unique_ptr<plant::VolumetricModel> now_;
+  plant::VolumetricModel at_start_;
+  std::vector<Vector3d> place_at_start_, path_at_start_;  // m, displaced()
   Vector3d datum_ = Vector3d::Zero();
   double t_ = 0.0, next_reading_ = 0.0;
   DayCourse out_;
@@ -258,50 +279,27 @@ class Day {
 
 }  // namespace
 
-DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::HeatCourse& cycle,
+bool is_day_asked_for(const model::Scenario& scenario) {
+  return std::any_of(scenario.quantities.begin(), scenario.quantities.end(), [](const auto& one) {
+    return evaluation::quantity_entry(one.name).needs_day;
+  });
+}
+
+evaluation::DayFigures figures_of(const DayCourse& day) {
+  evaluation::DayFigures out;
+  out.measuring = day.measuring;
+  double squares = 0.0;
+  for (const DayCycle& cycle : day.cycles) {
+    squares += cycle.rms * cycle.rms;
+    out.largest = std::max(out.largest, cycle.most);
+  }
+  out.rms = std::sqrt(squares / static_cast<double>(day.cycles.size()));
+  return out;
+}
+
+DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::CaseResult& cycle,
                         double duration) {
   return Day(parts, cycle, duration).run();
-}
-
-std::string day_json(const std::string& case_name, const DayCourse& day) {
-  system::JsonObject out;
-  out.text("case", case_name);
-  for (const DriftRange& range : day.ranges) {
-    system::JsonObject place;
-    for (std::size_t c = 0; c < kDrifts; ++c) {
-      const std::string unit = c < 3 ? "um" : "urad", name = kDriftNames[c];
-      place.number(fmt::format("{}_first_60_min_{}", name, unit), range.first_hour[c] / um);
-      place.number(fmt::format("{}_{}", name, unit), range.whole[c] / um);
-      place.number(name + "_reached_h", range.reached[c] / kHour);
-    }
-    out.raw(range.place, place.line());
-  }
-  if (!day.stopped.empty()) out.text("stopped", day.stopped);
-  return out.line();
-}
-
-std::string day_table(const DayCourse& day) {
-  std::string out = fmt::format("{:<12} {:>10} {:>12} {:>12} {:>12}\n", "drift at", "direction",
-                                "first 60 min", "whole", "reached");
-  for (const DriftRange& range : day.ranges) {
-    for (std::size_t c = 0; c < kDrifts; ++c) {
-      const char* unit = c < 3 ? "um" : "urad";
-      out += fmt::format("{:<12} {:>10} {:>7.2f} {:<4} {:>7.2f} {:<4} {:>10.2f} h\n",
-                         c == 0 ? range.place : "", kDriftNames[c], range.first_hour[c] / um, unit,
-                         range.whole[c] / um, unit, range.reached[c] / kHour);
-    }
-  }
-  if (!day.cycles.empty()) {
-    const auto by_most = [](const DayCycle& a, const DayCycle& b) { return a.most < b.most; };
-    const auto [best, worst] = std::minmax_element(day.cycles.begin(), day.cycles.end(), by_most);
-    out += fmt::format(
-        "{} cycles; heat displaces the tip by {:.2f} um at most in the best, begun after {:.2f} h, "
-        "and by {:.2f} um in the worst, begun after {:.2f} h\n",
-        day.cycles.size(), best->most / um, best->begin / kHour, worst->most / um,
-        worst->begin / kHour);
-  }
-  if (!day.stopped.empty()) out += "stopped: " + day.stopped + "\n";
-  return out;
 }
 
 }  // namespace servomill::sim::run

@@ -6,9 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "sim/evaluation/comparison.h"
+
 namespace servomill::sim::engine {
-struct HeatCourse;
+struct CaseResult;
 }  // namespace servomill::sim::engine
+namespace servomill::sim::model {
+struct Scenario;
+}  // namespace servomill::sim::model
+
 namespace servomill::sim::preparation {
 struct PreparedParts;
 }  // namespace servomill::sim::preparation
@@ -16,7 +22,11 @@ struct PreparedParts;
 namespace servomill::sim::run {
 
 /// Note of commands that run a scenario without its day.
-inline constexpr const char* kDayLeftOut = "[day] is left out; servomill run computes it";
+inline constexpr const char* kDayLeftOut =
+    "[day] is left out; servomill run computes it (a sweep does for quantities of the day)";
+
+/// True if a quantity of the scenario is one of its day: then sweeps compute it, too.
+bool is_day_asked_for(const model::Scenario& scenario);
 
 /// Directions of drift, of the machine: of the tip along X, Y, Z (m), of the tool axis about X, Y,
 /// Z (rad).
@@ -32,8 +42,9 @@ struct DriftRange {
 
 /// One cycle of the program.
 struct DayCycle {
-  double begin = 0.0;            // s since the start
-  double rms = 0.0, most = 0.0;  // m; what heat displaces the tip along the path, datum taken off
+  double begin = 0.0;  // s since the start
+  // m; what heat displaces the tip by along the path, datum and what strategies correct taken off
+  double rms = 0.0, most = 0.0;
 };
 
 struct DayCourse {
@@ -45,20 +56,19 @@ struct DayCourse {
   std::vector<std::vector<std::array<double, kDrifts>>> drift;  // since the start; of each place
   std::vector<DriftRange> ranges;
   std::vector<DayCycle> cycles;
-  std::string stopped;  // why the day ended early: a body beyond its limits
+  std::vector<double> datums;  // s since the start, when they were taken
+  double measuring = 0.0;      // s, of datums in between cycles
+  std::string stopped;         // why the day ended early: a body beyond its limits
 };
 
 /// Powers of a cycle are averaged over steps of at most a second.
-/// @param cycle     powers of the program, run once
+/// @param cycle     of the program, run once, with its powers
 /// @param duration  s, of a cycle
 /// @pre the scenario has a day, and the machine of the case heat
-DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::HeatCourse& cycle,
+DayCourse course_of_day(const preparation::PreparedParts& parts, const engine::CaseResult& cycle,
                         double duration);
 
-/// The ranges as one JSON object.
-std::string day_json(const std::string& case_name, const DayCourse& day);
-
-/// Ranges of the drift and the cycles with the least and the greatest error, as a table.
-std::string day_table(const DayCourse& day);
+/// @pre it has cycles
+evaluation::DayFigures figures_of(const DayCourse& day);
 
 }  // namespace servomill::sim::run

@@ -77,6 +77,22 @@ records::Series read_series(PluginChild& from, const records::RowKeeping& keepin
   return keeper.take();
 }
 
+void write(ProcessPipe& to, const engine::HeatCourse& course) {
+  write(to, course.step);
+  write(to, course.bodies);
+  write(to, course.power.size());
+  for (const double P : course.power) write(to, P);
+}
+
+engine::HeatCourse read_heat_course(PluginChild& from) {
+  engine::HeatCourse out;
+  out.step = from.read<double>();
+  out.bodies = from.read<std::size_t>();
+  out.power.resize(from.read<std::size_t>());
+  for (double& P : out.power) P = from.read<double>();
+  return out;
+}
+
 }  // namespace
 
 void write_result(const engine::CaseResult& result, ProcessPipe& to) {
@@ -90,10 +106,7 @@ void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   write(to, result.last_ticks);
   write(to, result.saturations.size());
   for (const strategies::Saturation& one : result.saturations) write(to, one);
-  write(to, result.heat.step);
-  write(to, result.heat.bodies);
-  write(to, result.heat.power.size());
-  for (const double P : result.heat.power) write(to, P);
+  for (const engine::HeatCourse* course : {&result.heat, &result.known_heat}) write(to, *course);
   write(to, result.left_out.size());
   for (const std::size_t rows : result.left_out) write(to, rows);
   write(to, result.off_path);
@@ -113,10 +126,9 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   result.last_ticks = read_series(from, keeping);
   result.saturations.resize(from.read<std::size_t>());
   for (strategies::Saturation& one : result.saturations) one = from.read<strategies::Saturation>();
-  result.heat.step = from.read<double>();
-  result.heat.bodies = from.read<std::size_t>();
-  result.heat.power.resize(from.read<std::size_t>());
-  for (double& P : result.heat.power) P = from.read<double>();
+  for (engine::HeatCourse* course : {&result.heat, &result.known_heat}) {
+    *course = read_heat_course(from);
+  }
   result.left_out.resize(from.read<std::size_t>());
   for (std::size_t& rows : result.left_out) rows = from.read<std::size_t>();
   result.off_path = from.read<double>();

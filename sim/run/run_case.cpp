@@ -31,12 +31,18 @@ void probe(const preparation::PreparedParts& p, CaseOutput& out) {
 }  // namespace
 
 evaluation::CaseData CaseOutput::data() const {
-  return {name,           &result.servo,
-          sections,       duration,
-          blocks,         result.outcome.finished,
-          chain,          probes.empty() ? nullptr : &probes,
-          signal_delay,   uncertain,
-          result.left_out};
+  return {name,
+          &result.servo,
+          sections,
+          duration,
+          blocks,
+          result.outcome.finished,
+          chain,
+          probes.empty() ? nullptr : &probes,
+          signal_delay,
+          uncertain,
+          result.left_out,
+          day && !day->cycles.empty() ? std::optional(figures_of(*day)) : std::nullopt};
 }
 
 CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {
@@ -65,7 +71,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
     }
   }
   if (p.scenario.day && out.result.outcome.finished && out.result.heat.step > 0.0) {
-    out.day = std::make_shared<const DayCourse>(course_of_day(p, out.result.heat, out.duration));
+    out.day = std::make_shared<const DayCourse>(course_of_day(p, out.result, out.duration));
   }
   for (std::string& note : notes_of_run(p, out.result)) {
     out.notes.push_back(std::move(note));

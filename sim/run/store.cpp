@@ -15,6 +15,7 @@
 #include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
+#include "sim/run/day_course.h"
 #include "sim/run/store_day.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
@@ -340,12 +341,14 @@ StoredRun read_run(const std::string& path) {
     run.probes.push_back(std::make_unique<std::vector<evaluation::ProbedFeature>>(
         read_probed(file, group + "/probes", scenario.probes)));
     const std::vector<evaluation::ProbedFeature>& probes = *run.probes.back();
-    if (auto day = read_day(file, group + "/day")) run.days.push_back({name, std::move(day)});
+    const std::shared_ptr<const DayCourse> day = read_day(file, group + "/day");
+    if (day) run.days.push_back({name, day});
     run.cases.push_back({name, run.series.back().get(), split_lines(file.text(group, "sections")),
                          file.number(group, "duration_s"), file.number(group, "blocks"),
                          file.number(group, "finished") != 0.0, chain_of(scenario, name),
                          probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name),
                          scenario.uncertain, left_out_of(file, group)});
+    if (day && !day->cycles.empty()) run.cases.back().day = figures_of(*day);
   }
   return run;
 }

@@ -12,7 +12,7 @@
 namespace servomill::sim::run {
 namespace {
 
-constexpr double kHour = 3600.0;  // s
+constexpr double kMinute = 60.0, kHour = 3600.0;  // s
 
 void write_drift(records::Hdf5Group group, const DayCourse& day, std::size_t place) {
   std::vector<double> hours;
@@ -49,6 +49,13 @@ void write_cycles(records::Hdf5Group group, const DayCourse& day) {
   group.list("largest", most, {"um", "greatest of it"}, "begin");
 }
 
+void write_datums(records::Hdf5Group group, const DayCourse& day) {
+  std::vector<double> hours;
+  for (const double t : day.datums) hours.push_back(t / kHour);
+  group.list("time", hours, {"h", "time of each datum since the start of the day"});
+  group.scalar("measuring", day.measuring / kMinute, {"min", "time of datums in between cycles"});
+}
+
 }  // namespace
 
 void write_day(records::Hdf5Group group, const DayCourse& day) {
@@ -70,6 +77,7 @@ void write_day(records::Hdf5Group group, const DayCourse& day) {
     write_drift(group.group("drift/" + day.places[k]), day, k);
   }
   if (!day.cycles.empty()) write_cycles(group.group("cycles"), day);
+  if (!day.datums.empty()) write_datums(group.group("datums"), day);
   if (!day.stopped.empty()) group.attribute("stopped", day.stopped);
 }
 
@@ -134,6 +142,11 @@ std::shared_ptr<const DayCourse> read_day(const records::InputFile& file,
                rms = read_list(file, path + "/rms", um, count),
                most = read_list(file, path + "/largest", um, count);
     for (std::size_t n = 0; n < count; ++n) out->cycles.push_back({begin[n], rms[n], most[n]});
+  }
+  if (file.has(group + "/datums")) {
+    const std::string path = group + "/datums";
+    out->datums = read_list(file, path + "/time", kHour, file.values(path + "/time").size());
+    out->measuring = read_list(file, path + "/measuring", kMinute, 1)[0];
   }
   if (file.has_attribute(group, "stopped")) out->stopped = file.text(group, "stopped");
   return out;

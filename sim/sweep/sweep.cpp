@@ -14,6 +14,7 @@
 #include "sim/input/identified_values.h"
 #include "sim/input/scenario_document.h"
 #include "sim/preparation/estimate.h"
+#include "sim/run/day_course.h"
 #include "sim/run/run.h"
 #include "sim/run/test_comparison.h"
 
@@ -233,7 +234,7 @@ model::Scenario Sweep::at(std::uint64_t point) const {
   try {
     model::Scenario scenario = source_.at(changes);
     scenario.record.windows = {};  // columns of a table have no note that they are not of all rows
-    scenario.day.reset();          // no point stores it
+    if (!run::is_day_asked_for(scenario)) scenario.day.reset();  // no point stores it
     return scenario;
   } catch (const InputError& error) {
     throw at_the_list(error, values);

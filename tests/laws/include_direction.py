@@ -10,8 +10,8 @@ root = pathlib.Path(sys.argv[1])
 MAY_SEE = {
     "plant": ["plant/"],
     "controllers": ["controllers/", "plant/vocabulary/", "plant/kinematics/"],
-    # strategies know the machine as the NC models it and the form of the models of errors and structure
-    "strategies": ["strategies/", "plant/vocabulary/", "plant/kinematics/", "plant/geometry/", "plant/structure/"],
+    # strategies know the machine as the NC models it and the form of the models of errors, heat and structure
+    "strategies": ["strategies/", "plant/vocabulary/", "plant/kinematics/", "plant/geometry/", "plant/heat/", "plant/structure/"],
     "sim": ["sim/", "controllers/", "strategies/", "plant/"],
     "tools": ["tools/", "sim/", "plant/vocabulary/"],
 }

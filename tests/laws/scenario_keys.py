@@ -46,7 +46,7 @@ def below(section, key):
     path = f"{section}.{key}" if section else key
     path = re.sub(r"^(case\.)?machine_override|^case\.strategy\.machine(?=\.|$)", "machine", path)
     path = path.replace("machine.axis.X.screw.lead_error", "errors.NAME.EXX")
-    path = path.replace("machine.heat.body.NAME.errors_per_K", "errors.NAME")
+    path = re.sub(r"machine\.heat\.(body|sensor)\.NAME\.errors_per_K", "errors.NAME", path)
     return re.sub(r"^machine\.errors", "errors", path)
 
 

@@ -45,6 +45,7 @@ int table_command(const Arguments& arguments);
 int compensate_command(const Arguments& arguments);
 int calibrate_command(const Arguments& arguments);
 int identify_command(const Arguments& arguments);
+int identify_heat_command(const Arguments& arguments);
 int recording_command(const Arguments& arguments);
 int response_command(const Arguments& arguments);
 int evaluate_command(const Arguments& arguments);

@@ -8,6 +8,7 @@
 #include "sim/model/scenario.h"
 #include "sim/run/day_comparison.h"
 #include "sim/run/day_course.h"
+#include "sim/run/day_report.h"
 #include "sim/run/store.h"
 #include "tools/servomill/command.h"
 

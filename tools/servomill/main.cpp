@@ -25,7 +25,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 22> kCommands = {{
+constexpr std::array<Command, 23> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -62,6 +62,9 @@ constexpr std::array<Command, 22> kCommands = {{
      plan_calibration_command},
     {"identify", "EXPERIMENT.toml [-o identified.toml]",
      "finds parameters of drives from recordings of real axes", identify_command},
+    {"identify-heat", "READINGS.csv|DAY.h5 --machine M.toml [-o OUT.toml]",
+     "finds errors per kelvin of temperature sensors from the drift of the tip",
+     identify_heat_command},
     {"response", "RECORDING --input CHANNEL --output CHANNEL --period S",
      "frequency response of a real axis from a recording", response_command},
     {"evaluate", "READINGS... --standard iso230-2",

@@ -10,6 +10,7 @@
 #include "sim/model/machine_test.h"
 #include "sim/model/scenario.h"
 #include "sim/run/day_course.h"
+#include "sim/run/day_report.h"
 #include "sim/run/machine_tests.h"
 #include "sim/run/run.h"
 #include "sim/run/test_sheet.h"

@@ -198,7 +198,9 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
 
 // Names parts of the scenario that a sweep leaves out.
 void tell_left_out(const sim::model::Scenario& base) {
-  if (base.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  if (base.day && !sim::run::is_day_asked_for(base)) {
+    fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  }
   if (base.record.windows.limited()) {
     fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
   }

@@ -57,7 +57,7 @@ TEST(HeatRun, RisesAndGrowsByTheClosedForm) {
   ASSERT_EQ(servo.rows(), rigid.rows());
   EXPECT_GT(servo.at(servo.rows() - 1, time), 3.0);
   for (std::size_t n = 0; n < servo.rows(); ++n) {
-    const double t = HeatRun::kStep * std::floor(servo.at(n, time) / HeatRun::kStep + 1e-9);
+    const double t = HeatBalance::kStep * std::floor(servo.at(n, time) / HeatBalance::kStep + 1e-9);
     const double rise = 200.0 * (1.0 - std::exp(-4.0 / 500.0 * t));
     const double measured = servo.at(n, T) - 20.0;
     EXPECT_NEAR(measured, rise, 1e-9) << servo.at(n, time);

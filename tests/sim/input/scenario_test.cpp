@@ -211,8 +211,14 @@ TEST(EveryStrategy, CanBeNamedWithItsDefaultsSaidOrNot) {
   for (const strategies::Entry& entry : strategies::entries()) {
     const std::string silent = required_keys(entry);
     const auto read = [&](const std::string& keys) {
-      return read_scenario(kSmall,
-                           {fmt::format("case[1].strategy=[{{type=\"{}\"{}}}]", entry.name, keys)});
+      std::vector<std::string> changes = {
+          fmt::format("case[1].strategy=[{{type=\"{}\"{}}}]", entry.name, keys)};
+      if (entry.corrects_heat) {
+        changes.emplace_back(
+            "case[1].machine_override={ heat = { surroundings = { room = {} }, body = { head = { "
+            "capacity_J_per_K = 1e4, conductance_W_per_K = { room = 10.0 } } } } }");
+      }
+      return read_scenario(kSmall, changes);
     };
     const auto quiet = read(silent).cases.at(1).strategies.at(0).parameters;
     const model::Scenario scenario = read(silent + all_defaults(entry));

@@ -8,6 +8,7 @@
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/run/day_course.h"
+#include "sim/run/day_report.h"
 #include "sim/run/store_day.h"
 
 namespace servomill::sim::run::day_comparison_test {
