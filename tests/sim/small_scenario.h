@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/input_error.h"
 #include "sim/input/read_scenario.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"
@@ -21,6 +22,20 @@ inline model::Scenario small_scenario(const std::string& program, const std::str
                                            "\n[program]\nfile = \"small.ngc\"\ntext = '''\n" +
                                            program + "'''\n",
                                        SERVOMILL_SOURCE_DIR "/scenarios/small.toml");
+}
+
+/// Refusal of the cases of a scenario on a short line, files named from scenarios/ on; or
+/// "accepted".
+inline std::string refusal_of(const std::string& toml,
+                              const std::string& program = "G21 G90 G94\nG1 X10 F3000\nM30\n") {
+  try {
+    const model::Scenario scenario = small_scenario(program, toml);
+    preparation::prepare_cases(scenario);
+  } catch (const InputError& error) {
+    const std::string folder = SERVOMILL_SOURCE_DIR "/scenarios/", text = error.what();
+    return text.starts_with(folder) ? text.substr(folder.size()) : text;
+  }
+  return "accepted";
 }
 
 /// Runs one case alone, in this thread; that it ends is taken for granted.

@@ -10,19 +10,10 @@ namespace servomill::sim::run::combinations_test {
 namespace {
 
 std::string refusal(const std::string& strategies) {
-  try {
-    const model::Scenario scenario =
-        small_scenario("G21 G90 G94\nG1 X10 F3000\nM30\n",
-                       "[errors.machine]\nEYX = { um_per_m = 50.0 }\n[errors.rest]\n"
-                       "relative_to = \"machine\"\nEYX = { um_per_m = -30.0 }\n"
-                       "[[case]]\nname = \"one\"\n" +
-                           strategies);
-    preparation::prepare_cases(scenario);
-  } catch (const InputError& error) {
-    const std::string folder = SERVOMILL_SOURCE_DIR "/scenarios/", text = error.what();
-    return text.starts_with(folder) ? text.substr(folder.size()) : text;
-  }
-  return "accepted";
+  return refusal_of(
+      "[errors.machine]\nEYX = { um_per_m = 50.0 }\n[errors.rest]\n"
+      "relative_to = \"machine\"\nEYX = { um_per_m = -30.0 }\n[[case]]\nname = \"one\"\n" +
+      strategies);
 }
 
 std::string strategy(const std::string& type, const std::string& model = "machine") {

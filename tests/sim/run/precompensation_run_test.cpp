@@ -322,17 +322,7 @@ TEST(Precompensation, WarnsOfLimitsThatItIgnores) {
 }
 
 // Every fault of a scenario, without the folder of its file.
-std::string refusal(const std::string& toml) {
-  try {
-    const model::Scenario scenario =
-        small_scenario("G21 G90 G94\nG1 X10 F3000\nM30\n", "[errors.machine]\n" + toml);
-    preparation::prepare_cases(scenario);
-  } catch (const InputError& error) {
-    const std::string folder = SERVOMILL_SOURCE_DIR "/scenarios/", text = error.what();
-    return text.starts_with(folder) ? text.substr(folder.size()) : text;
-  }
-  return "accepted";
-}
+std::string refusal(const std::string& toml) { return refusal_of("[errors.machine]\n" + toml); }
 
 TEST(Precompensation, RefusesToKnowAnotherMachine) {
   for (const char* machine :
