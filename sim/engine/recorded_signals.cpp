@@ -54,6 +54,15 @@ double per_metre(const Signal& signal) {
   return signal.scale == kIjk ? 1.0 / kArm : 0.0;
 }
 
+Signal whole_numbers(const char* name, const char* about) {
+  return {.name = name,
+          .units = "1",
+          .long_name = about,
+          .labels = "",
+          .scale = "",
+          .storage = records::Storage::int32};
+}
+
 // Signals of the cut: those of single teeth have an angle.
 void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
   all.push_back({"cutting_force", "N",
@@ -128,9 +137,9 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
   std::vector<Signal> all = {
       {"time", "s", "time since the start of the program", "", ""},
       {"s", "mm", "arc length on the path of the original program", "", ""},
-      {"line", "1", "line of the original program", "", ""},
-      {"section", "1", "section of the original program, index into attribute sections", "", ""},
-      {"rapid", "1", "1 while a rapid move is interpolated", "", ""},
+      whole_numbers("line", "line of the original program"),
+      whole_numbers("section", "section of the original program, index into attribute sections"),
+      whole_numbers("rapid", "1 while a rapid move is interpolated"),
   };
   const auto per_axis = [&](const std::string& name, const char* unit_linear,
                             const char* unit_rotary, const std::string& what) {
@@ -163,9 +172,9 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
   }
   if (parts.windows) {
     all.push_back(
-        {"window", "1", "number of the window; rows between windows are not recorded", "", ""});
+        whole_numbers("window", "number of the window; rows between windows are not recorded"));
     all.push_back(
-        {"in_window", "1", "1 in a window, 0 in the row before and the row after it", "", ""});
+        whole_numbers("in_window", "1 in a window, 0 in the row before and the row after it"));
   }
   return all;
 }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::identification {
@@ -36,6 +37,7 @@ void store_signals(records::Hdf5Group& group, const RecordResult& one) {
   signal("force", r.force, force, "force of the drive as recorded");
   signal("simulated_force", one.simulated.force, force, "force of the drive as simulated");
   signal("disturbance_force", r.disturbance, force, "force on the slide from outside");
+  records::make_nexus_data(group, {"residual", {"time"}, {}});
 }
 
 void store_colour(records::Hdf5Group& group, const AutoregressiveNoise& noise, double period,
@@ -48,6 +50,7 @@ void store_colour(records::Hdf5Group& group, const AutoregressiveNoise& noise, d
 }
 
 void store_parameters(records::Hdf5Group group, const Identification& result) {
+  records::make_nexus_group(group, "NXcollection");
   const std::size_t count = result.estimates.size();
   std::vector<double> number(count), value(count), half(count), counted(count), covariance;
   for (std::size_t k = 0; k < count; ++k) {
@@ -66,8 +69,8 @@ void store_parameters(records::Hdf5Group group, const Identification& result) {
                     result.uncertainty.identifiable[k] ? "yes" : "no");
   }
   if (count == 0) return;
-  group.list("parameter", number, {"1", "number of the parameter: key_NN, unit_NN"});
-  group.list("other", number, {"1", "number of the other parameter"});
+  group.counts("parameter", number, {"1", "number of the parameter: key_NN, unit_NN"});
+  group.counts("other", number, {"1", "number of the other parameter"});
   group.list("value", value, {"as unit_NN", "identified value"}, "parameter");
   group.list("half_width", half, {"as unit_NN", "expanded uncertainty, k = 2"}, "parameter");
   group.list("half_width_counted", counted,
@@ -87,12 +90,13 @@ void store_laws(records::Hdf5Group group, const std::vector<LawResult>& laws) {
     error.push_back(law.held_out_error);
     bic.push_back(law.bic);
   }
-  group.list("law", number, {"1", "number of the law: law_NN"});
-  group.list("parameters", parameters, {"1", "estimated parameters"}, "law");
+  group.counts("law", number, {"1", "number of the law: law_NN"});
+  group.counts("parameters", parameters, {"1", "estimated parameters"}, "law");
   group.list("rms", rms, {"m", "of the residual"}, "law");
   group.list("held_out_rms", held_out, {"m", "of segments excluded from the fit"}, "law");
   group.list("held_out_error", error, {"m", "standard error of held_out_rms"}, "law");
   group.list("bic", bic, {"1", "information criterion of Bayes, relative to the smallest"}, "law");
+  records::make_nexus_data(group, {"rms", {"law"}, {"held_out_rms", "held_out_error"}});
 }
 
 }  // namespace
@@ -102,6 +106,7 @@ void store_identification(const Experiment& experiment, const Identification& re
   records::OutputFile file(path, force);
   file.remove_unless_committed();
   records::Hdf5Group root = file.root();
+  records::make_nexus_group(root, "NXroot", "recording_001");
   root.attribute("kind", "identification");
   root.attribute("experiment", experiment.document.to_toml());
   root.attribute("name", experiment.name);

@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/records/input_file.h"
+#include "sim/records/nexus.h"
 #include "sim/system/counted.h"
 
 namespace servomill::sim::recordings {
@@ -69,7 +70,7 @@ class Hdf5Walk {
     Base base;
     base.name = group.empty() ? base_name : group.substr(1) + "/" + base_name;
     if (is_recording_ && file_.has_attribute(dataset, "long_name")) {
-      base.name = file_.text(dataset, "long_name");
+      base.name = records::unlabelled(file_.text(dataset, "long_name"), units_of(dataset));
     }
     base.unit = units_of(dataset);
     base.values = file_.values(dataset);

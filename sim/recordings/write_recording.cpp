@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/hdf5_reader.h"
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 #include "sim/system/write_file.h"
 
@@ -28,18 +29,28 @@ void write_hdf5(const Recording& recording, const std::string& path, bool force)
   records::Hdf5Group root = file.root();
   root.attribute(kSourceAttribute, recording.file);
   root.attribute("recording_format", recording.format);
+  records::make_nexus_group(root, "NXroot", recording.bases.empty() ? "" : "base_001");
   for (std::size_t b = 0; b < recording.bases.size(); ++b) {
     const Base& base = recording.bases[b];
     records::Hdf5Group group = root.group(fmt::format("base_{:03}", b + 1));
     const std::string scale = base.unit == "Hz" ? "frequency" : "time";
     group.list(scale, base.values, {base.unit, base.name});
     std::size_t number = 0;
+    std::string plotted_unit;
+    records::Plot plot{"", {scale}, {}};
     for (const Channel& channel : recording.channels) {
       if (channel.base != b) continue;
       const std::string name = fmt::format("channel_{:04}", ++number);
       group.list(name, channel.samples, {channel.unit, channel.name}, scale);
       group.dataset(name).attribute("channel", channel.name);
+      if (plot.signal.empty()) {
+        plot.signal = name;
+        plotted_unit = channel.unit;
+      } else if (channel.unit == plotted_unit) {
+        plot.others.push_back(name);
+      }
     }
+    if (!plot.signal.empty()) records::make_nexus_data(group, plot);
   }
   file.commit();
 }

@@ -181,6 +181,7 @@ Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
                                 .values = letters.data(),
                                 .value_type = H5T_C_S1},
                                {"1", long_name});
+  dataset.attribute("_Encoding", "utf-8");  // netCDF's mark of characters that are texts
   dataset.make_scale(name);
   return dataset;
 }
@@ -211,9 +212,20 @@ void Hdf5Group::table(const std::string& name, std::size_t columns, std::span<co
 
 void Hdf5Group::list(const std::string& name, std::span<const double> values,
                      const Meaning& meaning, const std::string& scale) {
+  list(Storage::float64, name, values, meaning, scale);
+}
+
+void Hdf5Group::counts(const std::string& name, std::span<const double> values,
+                       const Meaning& meaning, const std::string& scale) {
+  list(Storage::int32, name, values, meaning, scale);
+}
+
+void Hdf5Group::list(Storage storage, const std::string& name, std::span<const double> values,
+                     const Meaning& meaning, const std::string& scale) {
   const Hdf5Lock lock;
   Hdf5Dataset made = create(
-      name, {.type = H5T_IEEE_F64LE, .space = list_space(values.size()), .values = values.data()},
+      name,
+      {.type = stored_type(storage), .space = list_space(values.size()), .values = values.data()},
       meaning);
   if (scale.empty()) {
     made.make_scale(name);

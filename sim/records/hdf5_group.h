@@ -50,7 +50,8 @@ class Hdf5Group : public Hdf5Object {
   /// A dataset that is there.
   Hdf5Dataset dataset(const std::string& name);
 
-  /// One letter a column, as the scale of the dimension `name`.
+  /// One letter a column, as the scale of the dimension `name`. xarray selects by it:
+  /// `sel(axis_linear="Y")`.
   Hdf5Dataset labels(const std::string& name, std::string_view letters,
                      const std::string& long_name);
 
@@ -66,9 +67,14 @@ class Hdf5Group : public Hdf5Object {
   /// is its dimension; without, it is a dimension itself.
   void list(const std::string& name, std::span<const double> values, const Meaning& meaning,
             const std::string& scale = "");
+  /// The same of whole numbers, stored as int32.
+  void counts(const std::string& name, std::span<const double> values, const Meaning& meaning,
+              const std::string& scale = "");
 
  private:
   friend class OutputFile;
+  void list(Storage storage, const std::string& name, std::span<const double> values,
+            const Meaning& meaning, const std::string& scale);
   struct Layout;
   explicit Hdf5Group(Hdf5Handle id) : Hdf5Object(std::move(id)) {}
   Hdf5Dataset create(const std::string& name, const Layout& layout, const Meaning& meaning);

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "sim/system/system_error.h"
 
@@ -93,6 +94,37 @@ void Hdf5Object::attribute(const std::string& name, std::span<const double> valu
   const hsize_t size = values.size();
   const Hdf5Handle space = hdf5_handle(H5Screate_simple(1, &size, nullptr));
   write_attribute(id_.get(), name, H5T_NATIVE_DOUBLE, space.get(), values.data());
+}
+
+void Hdf5Object::attribute(const std::string& name, std::span<const std::int32_t> values) {
+  const Hdf5Lock lock;
+  const hsize_t size = values.size();
+  const Hdf5Handle space = hdf5_handle(H5Screate_simple(1, &size, nullptr));
+  write_attribute(id_.get(), name, H5T_NATIVE_INT32, space.get(), values.data());
+}
+
+void Hdf5Object::attribute(const std::string& name, std::span<const std::string> texts) {
+  const Hdf5Lock lock;
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const hsize_t size = pointers.size();
+  const Hdf5Handle space = hdf5_handle(H5Screate_simple(1, &size, nullptr));
+  write_attribute(id_.get(), name, text_type().get(), space.get(), pointers.data());
+}
+
+bool Hdf5Object::has_attribute(const std::string& name) const {
+  const Hdf5Lock lock;
+  return written(H5Aexists(id_.get(), name.c_str()), id_.get()) > 0;
+}
+
+std::string Hdf5Object::text(const std::string& name) const {
+  const Hdf5Lock lock;
+  const Hdf5Handle attribute(written(H5Aopen(id_.get(), name.c_str(), H5P_DEFAULT), id_.get()));
+  char* pointer = nullptr;
+  written(H5Aread(attribute.get(), text_type().get(), &pointer), id_.get());
+  std::string out = pointer == nullptr ? "" : pointer;
+  H5free_memory(pointer);
+  return out;
 }
 
 void Hdf5Object::flush_file() {

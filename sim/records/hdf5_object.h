@@ -22,6 +22,12 @@ class Hdf5Object {
   void attribute(const std::string& name, std::int64_t value);
   void attribute(const std::string& name, int value) { attribute(name, std::int64_t{value}); }
   void attribute(const std::string& name, std::span<const double> values);
+  void attribute(const std::string& name, std::span<const std::int32_t> values);
+  void attribute(const std::string& name, std::span<const std::string> texts);
+
+  bool has_attribute(const std::string& name) const;
+  /// Value of an attribute that holds a text.
+  std::string text(const std::string& name) const;
 
   /// Hands everything written so far to the system, so that it outlives a kill of the process.
   void flush_file();

@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/records/nexus.h"
 
 namespace servomill::sim::records {
 
@@ -178,6 +179,12 @@ Hdf5Handle InputFile::open_attribute(const std::string& object, const std::strin
   Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
   if (attribute.get() < 0) fail(fmt::format("'{}' has no attribute '{}'", object, name));
   return attribute;
+}
+
+Meaning InputFile::meaning(const std::string& dataset) const {
+  std::string units = text(dataset, "units");
+  std::string long_name = unlabelled(text(dataset, "long_name"), units);
+  return {std::move(units), std::move(long_name)};
 }
 
 std::string InputFile::text(const std::string& object, const std::string& name) const {

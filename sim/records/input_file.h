@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/records/hdf5_dataset.h"
 #include "sim/records/hdf5_library.h"
 
 namespace servomill::sim::records {
@@ -39,6 +40,8 @@ class InputFile {
 
   bool has_attribute(const std::string& object, const std::string& name) const;
   std::string text(const std::string& object, const std::string& name) const;
+  /// Unit of a dataset and its long name without it.
+  Meaning meaning(const std::string& dataset) const;
   double number(const std::string& object, const std::string& name) const;
   std::vector<double> numbers(const std::string& object, const std::string& name) const;
 

@@ -46,9 +46,13 @@ RowThinning::RowThinning(const std::vector<Signal>& signals, ThinningLimits limi
     if (!signal.name.starts_with("ref_")) continue;
     for (std::size_t c = 0; c < signal.columns(); ++c) axes_.push_back(signal.offset + c);
   }
-  signals_.push_back(
-      {std::string(kSamples), "1",
-       "number of instants that the row represents: itself and those omitted before it", "", ""});
+  signals_.push_back({.name = std::string(kSamples),
+                      .units = "1",
+                      .long_name = "number of instants that the row represents: itself and those "
+                                   "omitted before it",
+                      .labels = "",
+                      .scale = "",
+                      .storage = Storage::int32});
   for (const Signal& signal : coming.signals()) {
     const std::string& name = signal.name;
     if (name == "following_error_linear" || name == "tool_deviation" || name == "contour_error") {

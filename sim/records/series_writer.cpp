@@ -32,6 +32,7 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
   }
   add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
   for (const Channel& channel : layout_.channels) add_channel(channel, scales);
+  if (!layout_.plot.signal.empty()) make_nexus_data(group_, layout_.plot);
   if (!layout_.is_encoded) allocate();
   group_.flush_file();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/records/hdf5_group.h"
+#include "sim/records/nexus.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::records {
@@ -34,6 +35,7 @@ struct SeriesLayout {
   Meaning index_meaning = {"s", "time"};
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
+  Plot plot = {};  // what viewers draw; without a signal, nothing
   std::size_t chunk_rows = 16384;
   int compression = 1;      // kNoCompression to kMaxCompression
   unsigned threads = 0;     // that compress; 0: one a core; the file does not depend on it

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::responses {
@@ -26,6 +27,7 @@ struct Columns {
     group.list("real", real, {unit, fmt::format("real part of {}", meaning)}, "frequency");
     group.list("imaginary", imaginary, {unit, fmt::format("imaginary part of {}", meaning)},
                "frequency");
+    records::make_nexus_data(group, {"real", {"frequency"}, {"imaginary"}});
   }
 };
 
@@ -70,7 +72,7 @@ void store_fit(records::Hdf5Group group, const TwoMassFit& fit, const MeasuredRe
     value.push_back(fit.model.value[k]);
     half.push_back(2.0 * fit.standard(k));
   }
-  group.list("parameter", number, {"1", "number of the parameter: key_NN, unit_NN"});
+  group.counts("parameter", number, {"1", "number of the parameter: key_NN, unit_NN"});
   group.list("value", value, {"as unit_NN", "fitted value"}, "parameter");
   group.list("half_width", half, {"as unit_NN", "expanded uncertainty, k = 2"}, "parameter");
   group.scalar("noise_ratio", fit.noise_ratio, {"1", "rms misfit over the noise of the lines"});
@@ -79,6 +81,7 @@ void store_fit(records::Hdf5Group group, const TwoMassFit& fit, const MeasuredRe
 }
 
 void store_roots(records::Hdf5Group group, const std::vector<Root>& roots) {
+  records::make_nexus_group(group, "NXcollection");
   if (roots.empty()) return;
   std::vector<double> number, frequency, damping, of_frequency, of_damping;
   for (const Root& root : roots) {
@@ -88,7 +91,7 @@ void store_roots(records::Hdf5Group group, const std::vector<Root>& roots) {
     of_frequency.push_back(2.0 * root.frequency_deviation);
     of_damping.push_back(2.0 * root.damping_deviation);
   }
-  group.list("root", number, {"1", "number of the root, one a conjugate pair"});
+  group.counts("root", number, {"1", "number of the root, one a conjugate pair"});
   group.list("frequency", frequency, {"Hz", "absolute value"}, "root");
   group.list("frequency_half_width", of_frequency, {"Hz", "expanded uncertainty, k = 2"}, "root");
   group.list("damping", damping, {"1", "- real part over absolute value"}, "root");
@@ -116,6 +119,7 @@ void store_response(const ResponseRecord& record, const std::string& path, bool 
   records::OutputFile file(path, force);
   file.remove_unless_committed();
   records::Hdf5Group root = file.root();
+  records::make_nexus_group(root, "NXroot", "response");
   root.attribute("kind", "response");
   root.attribute("name", record.recording);
   root.attribute("input", record.input.name);

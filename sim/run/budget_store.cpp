@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/records/nexus.h"
 #include "sim/run/store.h"
 
 namespace servomill::sim::run {
@@ -33,11 +34,14 @@ BudgetStore::BudgetStore(const std::string& path, bool force, const model::Scena
     : file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
   records::Hdf5Group root = file_.root();
-  write_inputs(root, scenario, "budget");
+  write_inputs(root, scenario, "budget", "budget");
 }
 
 void BudgetStore::add(const Budget& budget) {
-  records::Hdf5Group group = file_.root().group(fmt::format("budget/{:03}", count_++));
+  const std::string number = fmt::format("{:03}", count_++);
+  records::Hdf5Group all = file_.root().group("budget");
+  records::Hdf5Group group = all.group(number);
+  records::make_nexus_group(group, "NXcollection");
   const model::QuantitySpec& quantity = budget.quantity;
   group.attribute("case", quantity.cases.front());
   group.attribute("quantity", quantity.name);
@@ -47,16 +51,21 @@ void BudgetStore::add(const Budget& budget) {
   group.attribute("note", budget.note);
   if (!budget.note.empty()) return;
   group.attribute("place", budget.place_s);
+  if (!all.has_attribute("default")) records::make_nexus_group(all, "NXentry", number);
   records::Hdf5Dataset s =
       write(group, "s", budget.s, {"mm", "arc length on the path of the original program"});
   s.make_scale("s");
   write(group, "residual", budget.residual, "residual", s);
+  records::Plot plot{"residual", {"s"}, {}};
   for (const BudgetPart& part : budget.parts) {
     if (!part.present) continue;
+    plot.others.emplace_back(info_of(part.cause).name);
     const CauseInfo& info = info_of(part.cause);
     write(group, std::string(info.name), part, std::string(info.help), s);
   }
   write(group, "remainder", budget.remainder, "residual minus all parts", s);
+  plot.others.push_back("remainder");
+  records::make_nexus_data(group, plot);
 }
 
 }  // namespace servomill::sim::run

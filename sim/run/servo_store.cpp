@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/nexus.h"
 #include "sim/run/store.h"
 
 namespace servomill::sim::run {
@@ -44,6 +45,7 @@ void write_curve(records::Hdf5Group group, const frequency::BodeCurve& curve,
   group.list("frequency", curve.exact.f, {"Hz", "frequency"});
   group.list("magnitude", magnitudes(curve.exact.y, unit), magnitude, "frequency");
   group.list("phase", phases(curve.exact.y), {"deg", "phase, exact"}, "frequency");
+  records::make_nexus_data(group, {"magnitude", {"frequency"}, {}, true});
   if (curve.measured.empty()) return;
   group.list("measured_frequency", curve.f, {"Hz", "measured frequency"});
   group.list("measured_magnitude", magnitudes(curve.measured, unit), magnitude,
@@ -78,15 +80,29 @@ std::string name_of(frequency::StepKind kind) {
   return "load";
 }
 
+namespace {
+
+// Group of an axis. The first one has the default plot.
+records::Hdf5Group group_of(records::OutputFile& file, const std::string& kind, char axis) {
+  records::Hdf5Group all = file.root().group(kind);
+  if (!all.has_attribute("default")) {
+    records::make_nexus_group(all, "NXentry", std::string(1, axis));
+  }
+  return all.group(std::string(1, axis));
+}
+
+}  // namespace
+
 BodeStore::BodeStore(const std::string& path, bool force, const model::Scenario& scenario)
     : file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
   records::Hdf5Group root = file_.root();
-  write_inputs(root, scenario, "bode");
+  write_inputs(root, scenario, "bode", "bode");
 }
 
 void BodeStore::add(char axis, const frequency::BodeResult& result) {
-  records::Hdf5Group of_axis = file_.root().group(fmt::format("bode/{}", axis));
+  records::Hdf5Group of_axis = group_of(file_, "bode", axis);
+  records::make_nexus_group(of_axis, "NXcollection", result.curves.front().name);
   const bool compliance = result.loop == frequency::BodeLoop::compliance;
   const bool linear = is_linear_axis(axis);
   const records::Meaning magnitude = {compliance ? (linear ? "um N-1" : "urad N-1 m-1") : "1",
@@ -95,6 +111,7 @@ void BodeStore::add(char axis, const frequency::BodeResult& result) {
     write_curve(of_axis.group(curve.name), curve, magnitude, compliance ? um : 1.0);
   }
   records::Hdf5Group loop = of_axis.group(name_of(result.loop) + "_loop");
+  records::make_nexus_group(loop, "NXcollection");
   loop.attribute("stable", result.stable ? 1 : 0);
   loop.attribute("slowest_time_constant_s", result.time_constant);
   loop.attribute("nyquist_Hz", result.nyquist);
@@ -124,19 +141,20 @@ StepStore::StepStore(const std::string& path, bool force, const model::Scenario&
     : machine_(scenario.machine), file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
   records::Hdf5Group root = file_.root();
-  write_inputs(root, scenario, "step");
+  write_inputs(root, scenario, "step", "step");
 }
 
 void StepStore::add(char axis, const frequency::StepSettings& settings,
                     const frequency::StepResponse& response) {
-  records::Hdf5Group group =
-      file_.root().group(fmt::format("step/{}/{}", axis, name_of(settings.kind)));
+  records::Hdf5Group of_axis = group_of(file_, "step", axis);
+  if (!of_axis.has_attribute("default")) {
+    records::make_nexus_group(of_axis, "NXcollection", name_of(settings.kind));
+  }
+  records::Hdf5Group group = of_axis.group(name_of(settings.kind));
   const bool linear = is_linear_axis(axis);
   const std::string length = linear ? "mm" : "deg";
   const double unit = linear ? mm : deg;
-  file_.root()
-      .group(fmt::format("step/{}", axis))
-      .attribute("travel_per_radian", travel_per_radian(machine_, axis) / unit);
+  of_axis.attribute("travel_per_radian", travel_per_radian(machine_, axis) / unit);
   struct Column {
     const char* name;
     frequency::AxisSignal signal;
@@ -160,6 +178,10 @@ void StepStore::add(char axis, const frequency::StepSettings& settings,
     }
     group.list(column.name, values, {column.units, column.long_name}, "time");
   }
+  // the default plot is what was stepped; under load, the position
+  const bool is_velocity = settings.kind == frequency::StepKind::velocity;
+  records::make_nexus_data(group, is_velocity ? records::Plot{"velocity", {"time"}, {}}
+                                              : records::Plot{"position", {"time"}, {"reading"}});
   const bool load = settings.kind == frequency::StepKind::load;
   const frequency::StepFigures& f = response.figures;
   group.attribute("amplitude", settings.amplitude / (load ? 1.0 : unit));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/records/nexus.h"
 #include "sim/records/row_keeper.h"
 #include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
@@ -19,6 +21,7 @@
 #include "sim/run/store_day.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
+#include "sim/run/store_sections.h"
 #include "sim/run/store_tests.h"
 #include "sim/run/touch_record.h"
 
@@ -26,9 +29,26 @@ namespace servomill::sim::run {
 namespace {
 
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
+constexpr std::size_t kRoomOfAttributes = 8;       // as names of cases take
+
+// Contour error over time, next to the other distances of one column; without it, the first signal.
+records::Plot plot_of(const records::Series& series, const std::string& index) {
+  const records::Signal* signal = series.find("contour_error");
+  for (const records::Signal& one : series.signals()) {
+    if (signal == nullptr && one.name != index) signal = &one;
+  }
+  records::Plot plot{signal->name, {index}, {}};
+  if (!signal->labels.empty()) plot.axes.push_back(records::kNoAxis);
+  for (const records::Signal& one : series.signals()) {
+    const bool fits = one.units == signal->units && one.labels == signal->labels;
+    if (fits && one.name != index && one.name != signal->name) plot.others.push_back(one.name);
+  }
+  return plot;
+}
 
 records::SeriesLayout layout_of(const records::Series& series, const std::string& index) {
   records::SeriesLayout layout;
+  layout.plot = plot_of(series, index);
   layout.index = index;
   layout.chunk_rows = records::even_chunk_rows(series.rows());
   for (const records::Signal& signal : series.signals()) {
@@ -60,15 +80,19 @@ void write_row(records::Hdf5Group& group, const evaluation::ComparisonRow& row) 
 }
 
 // Deviations in the runs that a strategy has learnt from.
-void write_learnt(records::Hdf5Group& of_case, const LearntRuns& learnt) {
+void write_learnt(records::Hdf5Group& all, const LearntRuns& learnt) {
   std::vector<double> rms, largest;
   for (const strategies::TrialFigures& run : learnt.figures) {
     rms.push_back(run.rms / um);
     largest.push_back(run.largest / um);
   }
-  records::Hdf5Group group = of_case.group("learnt/" + learnt.strategy);
-  group.list("rms", rms, {"um", "deviation from the interpolated path in feed motion, rms"});
-  group.list("largest", largest, {"um", "the same, largest"});
+  records::Hdf5Group group = all.group(learnt.strategy);
+  std::vector<double> numbers(rms.size());
+  std::iota(numbers.begin(), numbers.end(), 1.0);
+  group.counts("run", numbers, {"1", "number of the run, counted from 1"});
+  group.list("rms", rms, {"um", "deviation from the interpolated path in feed motion, rms"}, "run");
+  group.list("largest", largest, {"um", "the same, largest"}, "run");
+  records::make_nexus_data(group, {"rms", {"run"}, {"largest"}});
 }
 
 // Recorded signals in a file, read when they are asked for.
@@ -121,7 +145,8 @@ StoredSignals signals_of(const records::InputFile& file, const std::string& grou
     std::string labels;
     if (shape.size() == 2) labels = file.text(path, "columns");
     rows = shape.at(0);
-    signals.push_back({name, file.text(path, "units"), file.text(path, "long_name"), labels, ""});
+    const records::Meaning meaning = file.meaning(path);
+    signals.push_back({name, meaning.units, meaning.long_name, labels, ""});
   }
   return out;
 }
@@ -219,17 +244,19 @@ void check_schema(const records::InputFile& file, const std::string& path,
 
 }  // namespace
 
-void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario,
-                  std::string_view kind) {
+void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std::string_view kind,
+                  const std::string& shown) {
   root.attribute("Conventions", "CF-1.8");
   write_build(root);
   root.attribute("schema_version", kSchemaVersion);
   root.attribute("kind", kind);
+  records::make_nexus_group(root, "NXroot", shown);
   root.attribute("simd_level", name_of(simd_level()));
   root.attribute("scenario", scenario.name);
   root.attribute("title", scenario.title);
   root.attribute("source", scenario.source);
   records::Hdf5Group inputs = root.group("inputs");
+  records::make_nexus_group(inputs, "NXcollection");
   inputs.attribute("scenario", scenario.text);
   inputs.attribute("machine", scenario.machine_text);
   inputs.attribute("program", scenario.program.text());
@@ -239,15 +266,19 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario,
 RunStore::RunStore(const std::string& path, bool force, const model::Scenario& scenario,
                    unsigned threads)
     : file_(writable_name(path, force), force),
+      shown_(scenario.cases.front().name),
       compression_(scenario.record.compression),
       threads_(threads) {
   records::Hdf5Group root = file_.root();
-  write_inputs(root, scenario, "run");
+  write_inputs(root, scenario, "run", "cases");
   write_errors(root, scenario);
   std::size_t longest_name = 0;
   for (const model::CaseSpec& one : scenario.cases)
     longest_name = std::max(longest_name, one.name.size());
-  root.group_with_room("cases", scenario.cases.size(), longest_name);
+  // room for the attributes that show the first case, too
+  records::Hdf5Group cases =
+      root.group_with_room("cases", scenario.cases.size() + kRoomOfAttributes, longest_name);
+  records::make_nexus_group(cases, "NXentry", shown_);
   root.group_with_room(kUnfinished, 1, longest_name);
   root.flush_file();
 }
@@ -287,6 +318,7 @@ void RunStore::add(const CaseOutput& one) {
   records::Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
   records::Hdf5Group group = root.group(unfinished);
+  records::make_nexus_group(group, "NXsubentry", "servo");
   write_series(group.group("servo"), one.result.servo);
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks);
@@ -294,11 +326,16 @@ void RunStore::add(const CaseOutput& one) {
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
   if (!one.tests.empty()) write_tests(group.group("tests"), one.tests);
-  for (const LearntRuns& learnt : one.learnt) write_learnt(group, learnt);
+  write_sections(group.group("sections"), passes_of(one.result.servo), one.sections);
+  if (!one.learnt.empty()) {
+    records::Hdf5Group learnt = group.group("learnt");
+    records::make_nexus_group(learnt, "NXcollection", one.learnt.front().strategy);
+    for (const LearntRuns& runs : one.learnt) write_learnt(learnt, runs);
+  }
   if (one.day) write_day(group.group("day"), *one.day);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
-  group.attribute("blocks", one.blocks);
+  group.attribute("blocks", static_cast<std::int64_t>(one.blocks));
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
   if (!one.program.empty()) group.attribute("program", one.program);
   if (!one.result.left_out.empty()) {
@@ -308,14 +345,19 @@ void RunStore::add(const CaseOutput& one) {
   // A kill meanwhile spoils nothing but this case; from now on it is one of the complete ones.
   root.flush_file();
   root.move(unfinished, "cases/" + one.name);
+  // the first case ended without result, as that of a plug-in that crashed
+  if (!has_case_ && one.name != shown_) root.group("cases").attribute("default", one.name);
+  has_case_ = true;
   root.flush_file();
 }
 
 void RunStore::commit(const std::vector<evaluation::ComparisonRow>& comparison) {
   file_.root().remove(kUnfinished);
   records::Hdf5Group table = file_.root().group("comparison");
+  records::make_nexus_group(table, "NXcollection");
   for (std::size_t i = 0; i < comparison.size(); ++i) {
     records::Hdf5Group group = table.group(fmt::format("{:03}", i));
+    records::make_nexus_group(group, "NXcollection");
     write_row(group, comparison[i]);
     group.scalar("value", comparison[i].value, {comparison[i].unit, comparison[i].quantity});
   }

@@ -19,7 +19,8 @@ namespace servomill::sim::run {
 
 /// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
-void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std::string_view kind);
+void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std::string_view kind,
+                  const std::string& shown);
 
 /// Writes a run case by case, so that complete cases can be read even if it ends early. Layout:
 /// README, section "The result file".
@@ -41,6 +42,8 @@ class RunStore {
                           const records::Series& series);
 
   records::OutputFile file_;
+  std::string shown_;  // first case of the scenario: that of the default plot
+  bool has_case_ = false;
   int compression_;
   unsigned threads_;
 };

@@ -6,6 +6,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/records/input_file.h"
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 #include "sim/run/day_course.h"
 
@@ -34,6 +35,7 @@ void write_drift(records::Hdf5Group group, const DayCourse& day, std::size_t pla
     group.scalar("reached_" + name, range.reached[c] / kHour,
                  {"h", "time at which the range of the drift " + what + " was reached"});
   }
+  records::make_nexus_data(group, {kDriftNames[0], {"time"}, {kDriftNames[1], kDriftNames[2]}});
 }
 
 void write_cycles(records::Hdf5Group group, const DayCourse& day) {
@@ -47,6 +49,7 @@ void write_cycles(records::Hdf5Group group, const DayCourse& day) {
   group.list("rms", rms, {"um", "rms along the path of what heat displaces the tip by, datum off"},
              "begin");
   group.list("largest", most, {"um", "greatest of it"}, "begin");
+  records::make_nexus_data(group, {"rms", {"begin"}, {"largest"}});
 }
 
 void write_datums(records::Hdf5Group group, const DayCourse& day) {
@@ -62,9 +65,11 @@ void write_day(records::Hdf5Group group, const DayCourse& day) {
   std::vector<double> hours;
   for (const double t : day.time) hours.push_back(t / kHour);
   group.list("time", hours, {"h", "time since the start of the day"});
+  std::vector<std::string> names;
   const auto write = [&](const std::string& name, std::vector<double> T, const std::string& what) {
     for (double& one : T) one = celsius(one);
     group.list(name, T, {"degC", what}, "time");
+    names.push_back(name);
   };
   for (std::size_t i = 0; i < day.bodies.size(); ++i) {
     write("temperature_" + day.bodies[i], day.temperatures[i], "temperature of " + day.bodies[i]);
@@ -73,8 +78,15 @@ void write_day(records::Hdf5Group group, const DayCourse& day) {
     write("sensor_" + day.sensors[i], day.readings[i],
           "reading of temperature sensor " + day.sensors[i]);
   }
-  for (std::size_t k = 0; k < day.places.size(); ++k) {
-    write_drift(group.group("drift/" + day.places[k]), day, k);
+  if (!names.empty()) {
+    records::make_nexus_data(group, {names[0], {"time"}, {names.begin() + 1, names.end()}});
+  }
+  if (!day.places.empty()) {
+    records::Hdf5Group drift = group.group("drift");
+    records::make_nexus_group(drift, "NXcollection", day.places.front());
+    for (std::size_t k = 0; k < day.places.size(); ++k) {
+      write_drift(drift.group(day.places[k]), day, k);
+    }
   }
   if (!day.cycles.empty()) write_cycles(group.group("cycles"), day);
   if (!day.datums.empty()) write_datums(group.group("datums"), day);

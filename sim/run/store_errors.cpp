@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
@@ -51,6 +52,7 @@ void write_grids(records::Hdf5Group& group, const std::string& error, const plan
   for (std::size_t n = 0; n < f.grids.size(); ++n) {
     const plant::GridPoints& points = f.grids[n].points();
     records::Hdf5Group grid = group.group(fmt::format("{}_grid_{}", error, n + 1));
+    records::make_nexus_group(grid, "NXcollection");
     std::string axes;
     for (std::size_t k = 0; k < points.axes.size(); ++k) {
       const Axis axis = points.axes[k];
@@ -88,6 +90,8 @@ void write_components(records::Hdf5Group& root, const std::string& path,
   };
   group.list("position", over_axis([](double at) { return at; }, is_linear(axis) ? mm : deg),
              {is_linear(axis) ? "mm" : "deg", fmt::format("position of {}", letter(axis))});
+  records::Plot plot{"", {"position"}, {}};
+  const char* plotted_unit = "";
   for (const Axis direction : kAllAxes) {
     const auto& f = components[static_cast<std::size_t>(index_of(direction))];
     if (f.is_zero()) continue;
@@ -99,11 +103,18 @@ void write_components(records::Hdf5Group& root, const std::string& path,
       return f.value(at, words);
     };
     group.list(error, over_axis(value, um), {unit, "error " + error}, "position");
+    if (plot.signal.empty()) {
+      plot.signal = error;
+      plotted_unit = unit;
+    } else if (plotted_unit == unit) {
+      plot.others.push_back(error);
+    }
     write_grids(group, error, f, unit);
     if (f.reversals.empty()) continue;
     group.list(error + "_width", over_axis([&](double at) { return f.width(at); }, um),
                {unit, error + " travelling up minus travelling down"}, "position");
   }
+  records::make_nexus_data(group, plot);
 }
 
 void write_locations(records::Hdf5Group& root, const std::string& path,
@@ -113,9 +124,10 @@ void write_locations(records::Hdf5Group& root, const std::string& path,
       const plant::ErrorName name{direction, axis, true};
       const double value = model.location(name);
       if (value == 0.0) continue;
-      root.group(path + "/locations")
-          .scalar(plant::to_string(name), value / um,
-                  {is_linear(direction) ? "um" : "urad", "location error " + to_string(name)});
+      records::Hdf5Group locations = root.group(path + "/locations");
+      records::make_nexus_group(locations, "NXcollection");
+      locations.scalar(plant::to_string(name), value / um,
+                       {is_linear(direction) ? "um" : "urad", "location error " + to_string(name)});
     }
   }
 }
@@ -126,6 +138,9 @@ void write_errors(records::Hdf5Group& root, const model::Scenario& scenario) {
   const JointLayout& layout = scenario.machine.chain.layout;
   for (const auto& [name, model] : scenario.errors) {
     const std::string path = "errors/" + name;
+    records::Hdf5Group all = root.group("errors"), of_model = root.group(path);
+    records::make_nexus_group(all, "NXcollection");
+    records::make_nexus_group(of_model, "NXcollection");
     for (const Axis axis : kAllAxes) {
       const auto joint = layout.joint_of(axis);
       if (joint) write_components(root, path, model, axis, scenario.machine.nc, *joint);

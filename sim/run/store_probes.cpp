@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
@@ -50,8 +51,8 @@ void write_motion(records::Hdf5Group& group, const metrology::BestFit& fit) {
 
 void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& found) {
   group.attribute("kind", metrology::name_of(found.feature.kind));
-  group.list("point", counted(found.deviation.size()), {"1", "number of the point"});
-  group.list("repetition", counted(found.measured.size()), {"1", "number of the repetition"});
+  group.counts("point", counted(found.deviation.size()), {"1", "number of the point"});
+  group.counts("repetition", counted(found.measured.size()), {"1", "number of the repetition"});
   group.labels("xyz", "XYZ", "xyz");
   group.labels("ijk", "IJK", "ijk");
   std::vector<double> nominal, normal, measured;
@@ -71,9 +72,13 @@ void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& f
               {"um", "probed minus nominal along the normal"}, "repetition", "point");
   group.list("sigma", in_um(metrology::standard_deviation_of(found.measured)),
              {"um", "standard deviation of the repetitions"}, "point");
-  if (found.imposed.empty()) return;
-  group.list("imposed", in_um(found.imposed),
-             {"um", "displacement along the normal required by the imposed errors"}, "point");
+  records::Plot plot{"deviation", {"point"}, {"sigma"}};
+  if (!found.imposed.empty()) {
+    group.list("imposed", in_um(found.imposed),
+               {"um", "displacement along the normal required by the imposed errors"}, "point");
+    plot.others.push_back("imposed");
+  }
+  records::make_nexus_data(group, plot);
 }
 
 evaluation::ProbedFeature read_feature(const records::InputFile& file, const std::string& group,
@@ -102,6 +107,7 @@ evaluation::ProbedFeature read_feature(const records::InputFile& file, const std
 
 void write_probes(records::Hdf5Group group, std::span<const evaluation::ProbedFeature> features,
                   const std::optional<evaluation::PartFit>& fit) {
+  records::make_nexus_group(group, "NXcollection", features.front().name);
   if (fit) write_motion(group, fit->fit);
   for (std::size_t i = 0; i < features.size(); ++i) {
     records::Hdf5Group of_feature = group.group(features[i].name);

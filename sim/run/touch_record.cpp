@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
@@ -58,21 +59,29 @@ void write_touches(records::Hdf5Group group, std::span<const preparation::Touch>
                    const JointLayout& layout) {
   std::vector<double> numbers(touches.size()), values(touches.size());
   std::iota(numbers.begin(), numbers.end(), 0.0);
-  group.list("touch", numbers, {"1", "number of the probing move"});
-  const auto write = [&](const std::string& name, const records::Meaning& meaning, auto value) {
+  group.counts("touch", numbers, {"1", "number of the probing move"});
+  const auto count = [&](const std::string& name, const std::string& about, auto value) {
     std::transform(touches.begin(), touches.end(), values.begin(), value);
-    group.list(name, values, meaning, "touch");
+    group.counts(name, values, {"1", about}, "touch");
   };
   using preparation::Touch;
-  write("line", {"1", "line of the program"},
-        [](const Touch& touch) { return static_cast<double>(touch.line); });
-  write("switched", {"1", "1: the probe switched, 0: it did not"},
-        [](const Touch& touch) { return touch.has_switched ? 1.0 : 0.0; });
+  count("line", "line of the program", [](const Touch& touch) { return touch.line; });
+  count("switched", "1: the probe switched, 0: it did not",
+        [](const Touch& touch) { return touch.has_switched; });
+  records::Plot plot{"", {"touch"}, {}};
   for (const Axis axis : axes_of(layout)) {
-    write(std::string(1, letter(axis)),
-          {is_linear(axis) ? "mm" : "deg", "position latched, as the NC shows it"},
-          [&](const Touch& touch) { return in_unit(touch, axis, layout); });
+    const std::string name(1, letter(axis));
+    std::transform(touches.begin(), touches.end(), values.begin(),
+                   [&](const Touch& touch) { return in_unit(touch, axis, layout); });
+    group.list(name, values,
+               {is_linear(axis) ? "mm" : "deg", "position latched, as the NC shows it"}, "touch");
+    if (plot.signal.empty()) {
+      plot.signal = name;
+    } else if (is_linear(axis)) {
+      plot.others.push_back(name);
+    }
   }
+  records::make_nexus_data(group, plot);
   std::string sections;
   for (const Touch& touch : touches) sections += touch.section + "\n";
   group.attribute("sections", sections);

@@ -17,6 +17,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/records/nexus.h"
 #include "sim/run/build_identity.h"
 #include "sim/run/store.h"
 #include "sim/sweep/table_csv.h"
@@ -143,8 +144,8 @@ void make_flags(records::Hdf5Group& group, records::Hdf5Dataset& point, std::siz
                 const Flags& flags) {
   records::Hdf5Dataset dataset =
       group.fixed(flags.name, rows, records::Storage::int32, 0.0, {"1", flags.about});
-  std::vector<double> values(flags.meanings.size());
-  std::iota(values.begin(), values.end(), 0.0);
+  std::vector<std::int32_t> values(flags.meanings.size());
+  std::iota(values.begin(), values.end(), 0);
   dataset.attribute("flag_values", values);
   dataset.attribute("flag_meanings", fmt::format("{}", fmt::join(flags.meanings, " ")));
   dataset.attach_scale(point, 0);
@@ -178,7 +179,7 @@ void write_selection(records::Hdf5Group& group, const Selection& selection) {
 
 void SweepTable::make(const model::Scenario& base) {
   records::Hdf5Group root = file_->root();
-  run::write_inputs(root, base, "sweep");
+  run::write_inputs(root, base, "sweep", "sweep");
   root.group("inputs").attribute("swept_files", base.swept_files);
   root.attribute("schema_version", kSweepSchemaVersion);
   root.flush_file();
@@ -195,6 +196,7 @@ void SweepTable::make(const model::Scenario& base) {
     for (const auto& [name, text] : column.attributes) dataset.attribute(name, text);
     dataset.attach_scale(point, 0);
   }
+  records::make_nexus_data(group, plot_of(columns_));
   write_selection(group, selection_);
   root.flush_file();
   // last: with it the table can be filled

@@ -101,6 +101,22 @@ std::vector<TableColumn> columns_of(const model::Scenario& base) {
   return columns;
 }
 
+records::Plot plot_of(const std::vector<TableColumn>& columns) {
+  std::vector<const TableColumn*> keys, quantities;
+  for (const TableColumn& column : columns) {
+    (column.attributes.front().second == "parameter" ? keys : quantities).push_back(&column);
+  }
+  const bool is_curve = keys.size() == 1 && keys.front()->texts.empty();
+  records::Plot plot{"status", {is_curve ? keys.front()->name : "point"}, {}};
+  if (quantities.empty()) return plot;
+  plot.signal = quantities.front()->name;
+  for (const TableColumn* one : quantities) {
+    const bool fits = one->meaning.units == quantities.front()->meaning.units;
+    if (fits && one != quantities.front()) plot.others.push_back(one->name);
+  }
+  return plot;
+}
+
 std::vector<TableColumn> columns_of(const records::InputFile& file) {
   std::vector<TableColumn> columns;
   for (const std::string& name : file.datasets(kSweepGroup)) {
@@ -108,7 +124,7 @@ std::vector<TableColumn> columns_of(const records::InputFile& file) {
     if (!file.has_attribute(path, "role")) continue;  // point, status, reason
     TableColumn column;
     column.name = name;
-    column.meaning = {file.text(path, "units"), file.text(path, "long_name")};
+    column.meaning = file.meaning(path);
     column.fill = kNoNumber;
     for (const std::string_view about :
          {"role", "key", "values", "case", "quantity", "axis", "statistic", "sections", "reference",

@@ -10,6 +10,7 @@
 #include "sim/model/scenario.h"
 #include "sim/records/hdf5_dataset.h"
 #include "sim/records/input_file.h"
+#include "sim/records/nexus.h"
 
 namespace servomill::sim::sweep {
 
@@ -38,5 +39,8 @@ std::vector<TableColumn> columns_of(const model::Scenario& base);
 
 /// The same of a file that is there. @throws InputError
 std::vector<TableColumn> columns_of(const records::InputFile& file);
+
+/// First quantity with those of its unit, over the swept key if it is one number, else over points.
+records::Plot plot_of(const std::vector<TableColumn>& columns);
 
 }  // namespace servomill::sim::sweep

@@ -13,6 +13,8 @@ import unittest
 import h5py
 import numpy as np
 
+import nexus_rules
+
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 LINEAR_AXIS = os.path.join(ROOT, "scenarios", "standards", "linear_axis.csv")
@@ -204,6 +206,7 @@ class SimulatedTest(unittest.TestCase):
         return os.path.join(self.folder, "readings", case, "X.csv")
 
     def test_parameters_of_the_run_are_those_of_its_readings(self):
+        self.assertEqual(nexus_rules.faults(os.path.join(self.folder, "out.h5")), [])
         with h5py.File(os.path.join(self.folder, "out.h5")) as file:
             for case in ("as_it_is", "table"):
                 values, _ = parameters(self.path(case), "--standard", "2")
@@ -245,6 +248,7 @@ class SimulatedDiagonals(unittest.TestCase):
         return os.path.join(self.folder, "readings", *names)
 
     def test_parameters_of_the_run_are_those_of_its_readings(self):
+        self.assertEqual(nexus_rules.faults(os.path.join(self.folder, "out.h5")), [])
         with h5py.File(os.path.join(self.folder, "out.h5")) as file:
             for case in ("as_it_is", "gcode"):
                 stored = file[f"cases/{case}/tests/face"]

@@ -15,6 +15,8 @@ import unittest
 import h5py
 import numpy as np
 
+import nexus_rules
+
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenarios")
 ACTUAL = {"axis.Y.moving_mass": 640.0, "axis.Y.slide_viscous_friction": 1700.0, "axis.Y.friction.coulomb": 520.0,
@@ -85,6 +87,7 @@ class Way(unittest.TestCase):
         self.run_in_folder("identify", "record.toml", "--make-up", "recording.csv", status=2)
 
     def test_signals_hold_the_recording_the_simulation_and_the_parameters(self):
+        self.assertEqual(nexus_rules.faults(self.path("signals.h5")), [])
         with h5py.File(self.path("signals.h5")) as file:
             record = file["recording_001"]
             residual = record["simulated_feedback"][:] - record["feedback"][:]

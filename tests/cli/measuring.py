@@ -16,6 +16,8 @@ import unittest
 import h5py
 import numpy as np
 
+import nexus_rules
+
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 TRUNNION = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "calibration" / "trunnion"
 ACTUAL = {"EC0Y": 18, "EA0Z": -12, "EB0Z": 25, "EB0A": -31, "EC0A": 22, "EA0C": 27, "EB0C": -19}  # urad
@@ -55,6 +57,7 @@ class Measuring(unittest.TestCase):
         np.testing.assert_allclose(positions(made), positions(shipped), atol=2e-6, rtol=0)
 
     def test_result_file_holds_the_touches(self):
+        self.assertEqual(nexus_rules.faults(self.path("t.h5")), [])
         with h5py.File(self.path("t.h5")) as file:
             touches = file["cases/touches/touches"]
             table = positions(rows_of(self.path("touches/touches.csv")))

@@ -14,6 +14,7 @@ import unittest
 import h5py
 import numpy as np
 
+import nexus_rules
 from sweep_files import BUILD, HERE, PATIENCE, POINTS, SCENARIO, SERVOMILL, SLOW, Sweeps, columns, servomill
 from sweep_merge import *
 from sweep_samples import *
@@ -23,6 +24,7 @@ class Table(Sweeps):
     def test_has_a_row_a_point(self):
         done = self.sweep("out.h5")
         self.assertEqual(len(done.stderr.splitlines()), 10)
+        self.assertEqual(nexus_rules.faults(self.path("out.h5")), [])
         with h5py.File(self.path("out.h5")) as file:
             table = file["sweep"]
             self.assertEqual(table["point"][:].tolist(), list(range(1, 41)))

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/program_corrector.h"
+#include "sim/records/nexus.h"
 #include "sim/run/store.h"
 
 namespace servomill::sim::programs {
@@ -59,9 +60,10 @@ void PathRecord::write(const std::string& path, bool force, const std::string& t
   root.attribute("machine", machine);
   records::Hdf5Group group = root.group("compensate");
   group.list("s", s_, {"mm", "arc length on the programmed path"});
-  group.list("line", line_, {"1", "line of the program"}, "s");
-  group.list("block_end", block_end_, {"1", "1 where a block of the corrected program ends"}, "s");
-  group.list("rapid", rapid_, {"1", "1 during a rapid move"}, "s");
+  group.counts("line", line_, {"1", "line of the program"}, "s");
+  group.counts("block_end", block_end_, {"1", "1 where a block of the corrected program ends"},
+               "s");
+  group.counts("rapid", rapid_, {"1", "1 during a rapid move"}, "s");
   constexpr std::array<char, 3> kLetters = {'x', 'y', 'z'};
   for (int i = 0; i < kLinearJoints; ++i) {
     const char c = kLetters[static_cast<std::size_t>(i)];
@@ -70,6 +72,8 @@ void PathRecord::write(const std::string& path, bool force, const std::string& t
     group.list(fmt::format("correction_{}", c), correction_[i],
                {"um", fmt::format("correction of {}", c)}, "s");
   }
+  records::make_nexus_group(root, "NXroot", "compensate");
+  records::make_nexus_data(group, {"correction_x", {"s"}, {"correction_y", "correction_z"}});
   file.commit();
 }
 

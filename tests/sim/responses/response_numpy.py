@@ -14,6 +14,9 @@ import tempfile
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+import nexus_rules  # noqa: E402
+
 BENCH = pathlib.Path(__file__).resolve().parents[4] / "shared/data/measured/two_inertia_multisine_A.mat"
 TOLERANCE = 1e-9
 
@@ -50,6 +53,7 @@ def compare(servomill, recording, table, names, period, samples, rate, folder, o
           f"{np.max(np.abs(found[:, 3] / variance[lines] - 1)):.2g}")
     assert error.max() <= TOLERANCE
     assert np.allclose(found[:, 3], variance[lines], rtol=1e-6)
+    assert not nexus_rules.faults(signals), nexus_rules.faults(signals)
     with h5py.File(signals) as file:
         stored = np.column_stack([file["response"][key][:] for key in ("frequency", "real", "imaginary", "variance", "radius_95")])
         np.testing.assert_array_equal(stored, found)
