@@ -7,12 +7,16 @@ BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libde
   libnanoflann-dev libmatio-dev libpugixml-dev libceres-dev)
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
+# Other programs that open result files: tested with them.
+READER_PACKAGES=(octave python3-netcdf4)
 TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools shellcheck)
 # Fuzz targets with libFuzzer (tools/fuzz); clang-tidy brings most of it along.
 FUZZ_PACKAGES=(clang-14 libclang-rt-14-dev)
 # A Slurm cluster of one machine (tools/slurm/local_cluster) and GNU parallel (tools/parallel).
 CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge)
 PARALLEL_PACKAGES=(parallel)
+# The page that shows result files (tools/page): a browser for its tests; node_packages prints the others.
+PAGE_TEST_PACKAGES=(chromium)
 
 # The comment at the head of the command, before it does anything.
 help_if_asked() {
@@ -30,6 +34,12 @@ missing_packages() {
   for package in "$@"; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
   done
+}
+
+# Packages of the commands that bundle the page, of those that are not installed from elsewhere.
+node_packages() {
+  command -v node >/dev/null || echo nodejs
+  command -v npm >/dev/null || echo npm
 }
 
 install_packages() {
