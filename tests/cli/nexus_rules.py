@@ -102,7 +102,8 @@ def dataset_faults(name, data):
     if data.dtype.kind in "OSU":
         return [] if data.dtype == np.dtype("S1") else [f"{name}: is a dataset of strings"]
     is_direction = data.ndim == 2 and data.shape[1] == 3
-    if data.dtype.kind != "f" or data.attrs["units"] != "1" or data.size < 2 or is_direction:
+    is_of_user = "role" in data.attrs    # a column of a sweep: its numbers may be whole
+    if data.dtype.kind != "f" or data.attrs["units"] != "1" or data.size < 2 or is_direction or is_of_user:
         return []
     values = data[:]
     if np.all(values == np.round(values)) and np.ptp(values) > 0.0:
