@@ -33,7 +33,8 @@ std::string time_left(double seconds) {
 
 // Message of boost, and the nearest option of ours.
 std::string unknown_option(const po::unknown_option& error, const po::options_description& known) {
-  const std::string given = error.get_option_name();
+  std::string given = error.get_option_name();
+  given.resize(std::min(given.find('='), given.size()));
   std::vector<std::string> names;
   for (const auto& option : known.options()) names.push_back("--" + option->long_name());
   const std::vector<std::string_view> views(names.begin(), names.end());

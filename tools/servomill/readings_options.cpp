@@ -8,7 +8,12 @@
 namespace servomill::tools {
 
 std::string measured_machine(const Options& options, const std::string& readings) {
-  if (options.has("machine")) return options.get<std::string>("machine");
+  const bool is_given = options.has("machine");
+  return measured_machine(is_given ? options.get<std::string>("machine") : "", readings);
+}
+
+std::string measured_machine(const std::string& machine, const std::string& readings) {
+  if (!machine.empty()) return machine;
   if (readings.empty()) {
     throw InputError({"--machine"}, "is missing: the machine to be measured");
   }
