@@ -1,5 +1,7 @@
 #include "sim/input/input_files.h"
 
+#include <utility>
+
 #include "plant/vocabulary/checksum.h"
 #include "sim/system/read_file.h"
 
@@ -14,8 +16,15 @@ InputFiles::InputFiles(std::size_t most_bytes)
     : texts_(most_bytes, [](const std::string& text) { return text.size(); }),
       documents_(kMaxDocuments) {}
 
+void InputFiles::provide(const std::string& path, std::string text) {
+  const std::scoped_lock lock(mutex_);
+  checksums_.emplace(path, crc64(text));
+  provided_.emplace(path, std::make_shared<const std::string>(std::move(text)));
+}
+
 std::shared_ptr<const std::string> InputFiles::text(const std::string& path, const Place& at,
                                                     std::string_view what) {
+  if (const auto found = provided_.find(path); found != provided_.end()) return found->second;
   system::MemoKey key;
   key.add(path);
   return texts_.get(key, [&] {

@@ -22,6 +22,9 @@ class InputFiles {
   /// @param most_bytes  of texts that are kept beside the last one
   explicit InputFiles(std::size_t most_bytes = 200'000'000);
 
+  /// Takes a text for the file of that name, which need not be on a disk. Before it is asked for.
+  void provide(const std::string& path, std::string text);
+
   /// @param at    where the file was named; without a file: the complaint stands in `path`
   /// @param what  "program", "machine": for the message
   /// @throws InputError if it cannot be read, or has changed since it was read before
@@ -46,6 +49,8 @@ class InputFiles {
   system::SharedCache<config::Document> documents_;
   std::mutex mutex_;
   std::unordered_map<std::string, std::uint64_t> checksums_;  // by path, of all that was read
+  // by path; constant once files are asked for
+  std::unordered_map<std::string, std::shared_ptr<const std::string>> provided_;
 };
 
 }  // namespace servomill::sim::input

@@ -28,8 +28,10 @@ struct ScenarioSource::Parts {
   }
 };
 
-ScenarioSource::ScenarioSource(const std::string& path, std::vector<std::string> changes) {
+ScenarioSource::ScenarioSource(const std::string& path, std::vector<std::string> changes,
+                               std::optional<std::string> text) {
   auto files = std::make_unique<InputFiles>();
+  if (text) files->provide(path, *std::move(text));
   config::Document as_written = scenario_document(path, *files);
   ScenarioDocument base = with_machine(as_written, changes, *files);
   parts_.reset(new Parts{path, std::filesystem::path(path).stem().string(), std::move(changes),

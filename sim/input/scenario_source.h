@@ -19,8 +19,10 @@ class ScenarioSource {
  public:
   /// @param path     of the scenario; other paths are relative to it
   /// @param changes  what --set says, in order
+  /// @param text     of the scenario, which then need not be on a disk; none: that of the file
   /// @throws InputError if a file cannot be read or is not TOML, or a change makes no sense
-  explicit ScenarioSource(const std::string& path, std::vector<std::string> changes = {});
+  explicit ScenarioSource(const std::string& path, std::vector<std::string> changes = {},
+                          std::optional<std::string> text = {});
   ~ScenarioSource();
   ScenarioSource(ScenarioSource&&) noexcept;
 

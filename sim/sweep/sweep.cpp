@@ -139,10 +139,11 @@ std::string without(std::string message, const std::string& value) {
 
 }  // namespace
 
-Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes)
+Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes,
+             std::optional<std::string> text)
     : path_(std::move(scenario_path)),
       changes_(std::move(changes)),
-      source_(path_, changes_),
+      source_(path_, changes_, std::move(text)),
       base_(source_.at()) {
   if (base_.sweep.empty()) {
     throw InputError({path_},

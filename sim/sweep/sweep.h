@@ -22,8 +22,10 @@ std::vector<evaluation::ComparisonRow> quantities_of(const model::Scenario& scen
 class Sweep {
  public:
   /// @param changes  what --set says, at all points
+  /// @param text     of the scenario, which then need not be on a disk; none: that of the file
   /// @throws InputError if the scenario cannot be read or has no [sweep] table
-  Sweep(std::string scenario_path, std::vector<std::string> changes);
+  Sweep(std::string scenario_path, std::vector<std::string> changes,
+        std::optional<std::string> text = {});
 
   /// The scenario as it is without its sweep. Its `swept_files` are those that values of the sweep
   /// and its samples name, and the machines that these are based on, one line each: "CHECKSUM

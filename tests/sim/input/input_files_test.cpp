@@ -42,6 +42,17 @@ TEST_F(Files, AreRefusedWhenForgottenAndChanged) {
   }
 }
 
+TEST_F(Files, MayBeTextsThatLieOnNoDisk) {
+  InputFiles files(1);
+  files.provide("nowhere/scenario.toml", "title = 1");
+  files.text(path_, {}, "program");
+  EXPECT_EQ(*files.text("nowhere/scenario.toml", {}, "scenario"), "title = 1");
+  EXPECT_EQ(files.document("nowhere/scenario.toml")->name(), "nowhere/scenario.toml");
+  write("title = 1");
+  EXPECT_EQ(files.checksum("nowhere/scenario.toml", {}, "scenario"),
+            InputFiles().checksum(path_, {}, "scenario"));
+}
+
 // The check value of CRC-64/XZ in the catalogue of parametrised CRC algorithms.
 TEST_F(Files, HaveTheChecksumThatXzWouldStore) {
   write("123456789");
