@@ -131,6 +131,27 @@ void load_plugin(const std::string& path, const Place& at) {
   if (!is_loaded) known.all.push_back(Loading(path, at).load());
 }
 
+void add_plugin(LoadedPlugin plugin) {
+  Plugins& known = plugins();
+  const std::scoped_lock lock(known.loading);
+  const auto same = std::find_if(known.all.begin(), known.all.end(),
+                                 [&](const LoadedPlugin& one) { return one.file == plugin.file; });
+  const auto is_replaced = [&](const Entry* entry) {
+    return same != known.all.end() && std::count(same->entries.begin(), same->entries.end(), entry);
+  };
+  for (const Entry* entry : plugin.entries) {
+    const Entry* const other = find(entry->name);
+    if (other == nullptr || is_replaced(other)) continue;
+    throw InputError({plugin.file},
+                     fmt::format("the name '{}' belongs to another strategy", entry->name));
+  }
+  if (same != known.all.end()) {
+    *same = std::move(plugin);
+  } else {
+    known.all.push_back(std::move(plugin));
+  }
+}
+
 bool is_loaded_by_name(const std::string& path) {
   const std::filesystem::path name = std::filesystem::path(path).filename();
   return std::any_of(plugins().all.begin(), plugins().all.end(), [&](const LoadedPlugin& one) {
@@ -141,8 +162,10 @@ bool is_loaded_by_name(const std::string& path) {
 std::span<const LoadedPlugin> loaded_plugins() { return plugins().all; }
 
 const Entry* find_in_plugins(std::string_view name) {
-  for (const auto& one : plugins().entries) {
-    if (one->entry.name == name) return &one->entry;
+  for (const LoadedPlugin& plugin : plugins().all) {
+    for (const Entry* entry : plugin.entries) {
+      if (entry->name == name) return entry;
+    }
   }
   return nullptr;
 }

@@ -30,6 +30,13 @@ struct LoadedPlugin {
 ///         strategy that is faulty or whose name is taken
 void load_plugin(const std::string& path, const Place& at = {});
 
+/// Makes strategies known that this process itself holds; they are found like those of a library.
+/// They replace those of an earlier plug-in with the same `file`, whose entries must stay for the
+/// scenarios that have been read with them. Not while a scenario is read or runs.
+/// @param plugin  its entries must stay until the process ends
+/// @throws InputError if another plug-in or the tree has a strategy of that name
+void add_plugin(LoadedPlugin plugin);
+
 /// Tells if a library with the file name of this path has been loaded.
 bool is_loaded_by_name(const std::string& path);
 
