@@ -15,10 +15,12 @@ MAY_SEE = {
     "sim": ["sim/", "controllers/", "strategies/", "plant/"],
     "tools": ["tools/", "sim/", "plant/vocabulary/"],
 }
-# Subrooms that see less than their room: readers that verify what others write know nothing of them.
+# Subrooms that see less than their room (readers that verify what others write know nothing of them), or more.
 SUBROOM_MAY_SEE = {
     "controllers/dialects": ["controllers/dialects/", "plant/vocabulary/"],
     "controllers/tables": ["controllers/tables/", "plant/vocabulary/"],
+    # declares strategies that are classes of Python, as a plug-in does
+    "tools/python": ["tools/", "sim/", "strategies/", "plant/vocabulary/"],
 }
 # Rooms of sim/: which others each may include, beside plant/. Rooms stand in the order of their floors.
 SIM_ROOMS = {

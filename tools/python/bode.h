@@ -1,0 +1,10 @@
+/// Frequency responses for Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace servomill::python {
+
+void bind_bode(pybind11::module_& module);
+
+}  // namespace servomill::python

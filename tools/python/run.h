@@ -1,0 +1,10 @@
+/// Runs of scenarios for Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace servomill::python {
+
+void bind_run(pybind11::module_& module);
+
+}  // namespace servomill::python
