@@ -24,6 +24,9 @@ struct Entry {
   bool acts = true;          ///< false: leaves everything as it is
   /// Margins from which its gain follows (IdentifiedMachine::added_gain); nullptr or nullopt: none.
   std::optional<WantedMargins> (*wanted_margins)(const Parameters&) = nullptr;
+  /// Tells if it knows the position loops and the friction (IdentifiedMachine::loops): it may then
+  /// know a machine of its own; nullptr: it never does.
+  bool (*reads_loops)(const Parameters&) = nullptr;
   bool once = false;  ///< true: a second one in a case would correct the same again
   /// True if it corrects how axes and structure follow the path: it moves nothing off it on
   /// purpose.

@@ -24,6 +24,7 @@ namespace servomill::strategies {
 enum class Action : std::int8_t { impose = 1, compensate = -1 };
 
 struct IdentifiedHeat;  // strategies/identified_heat.h
+struct IdentifiedLoops;  // strategies/identified_loops.h
 
 /// Knowledge of a strategy. Never the actual errors: its errors are an identified model.
 struct IdentifiedMachine {
@@ -43,6 +44,9 @@ struct IdentifiedMachine {
   double position_period = 0.0;  // s, of the interpolation of setpoints
   // errors by temperature; nullptr: the entry does not correct them, or the machine has no heat
   std::shared_ptr<const IdentifiedHeat> heat = {};
+  // position loops and friction as identified; nullptr unless the entry reads_loops and for ideal
+  // axes
+  std::shared_ptr<const IdentifiedLoops> loops = nullptr;
 };
 
 /// Reading of a run at one instant, as a strategy may see it.
@@ -200,6 +204,9 @@ class Strategy {
 
   /// Itself, if it learns from runs of the program; nullptr: it acts as it is.
   virtual const LearningStrategy* learning() const { return nullptr; }
+
+  /// Limits of the strategy that a user should know before a run, a sentence each.
+  virtual std::vector<std::string> notes() const { return {}; }
 
   /// True if it has a part that displaces the feedback.
   virtual bool displaces_feedback() const { return false; }

@@ -124,6 +124,11 @@ bool repeats_start(const model::StrategySpec& strategy,
          });
 }
 
+bool knows_loops(const model::StrategySpec& strategy) {
+  const auto reads = strategy.entry->reads_loops;
+  return reads != nullptr && reads(strategy.parameters);
+}
+
 }  // namespace
 
 const config::Value* read_strategy(config::Reader& table, std::span<const std::string> error_models,
@@ -157,7 +162,15 @@ const config::Value* read_strategy(config::Reader& table, std::span<const std::s
                     strategy.entry->name));
   }
   const config::Value* machine = nullptr;
-  if (strategy.entry->knows_machine() && table.has("machine")) machine = table.raw("machine");
+  const bool knows_machine = strategy.entry->knows_machine() || knows_loops(strategy);
+  if (table.has("machine") && !knows_machine && strategy.entry->reads_loops != nullptr) {
+    table.raw("machine");
+    table.fault("machine", fmt::format("is read by the strategy {} only where it predicts with "
+                                       "the position loops",
+                                       strategy.entry->name));
+  } else if (table.has("machine") && knows_machine) {
+    machine = table.raw("machine");
+  }
   if (machine != nullptr && machine->type != config::Value::Type::table) {
     table.fault("machine", "must be the name of a machine file, or a table of keys of the machine");
     machine = nullptr;

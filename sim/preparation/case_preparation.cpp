@@ -14,6 +14,7 @@
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/cutting_force_plan.h"
 #include "sim/preparation/identified_heat.h"
+#include "sim/preparation/identified_loops.h"
 #include "sim/preparation/refusals.h"
 #include "sim/preparation/rewritten_text.h"
 
@@ -213,10 +214,25 @@ SharedStrategy CasePreparation::strategy(const model::StrategySpec& spec,
   key.add(period);
   const auto heat = identified_heat(spec, spec_, machine_);
   if (heat) add(key, *heat);
+  const auto loops = identified_loops(spec);
+  if (loops != nullptr) add(key, *loops);
   return cache_.strategies.get(key, [&] {
     return make(spec, {machine_.chain.layout, *model(spec.model), tip, machine_.nc.lower,
-                       machine_.nc.upper, start_, shift, Kv, added, period, heat});
+                       machine_.nc.upper, start_, shift, Kv, added, period, heat, loops});
   });
+}
+
+// Ideal axes have no loops, and at a standstill without the hardware none acts.
+std::shared_ptr<const strategies::IdentifiedLoops> CasePreparation::identified_loops(
+    const model::StrategySpec& spec) const {
+  const auto reads = spec.entry->reads_loops;
+  if (reads == nullptr || !reads(spec.parameters) || spec_.servo == model::ServoModel::ideal) {
+    return nullptr;
+  }
+  const model::MachineSettings& known = spec.machine ? *spec.machine : machine_;
+  return preparation::identified_loops(known, scenario_.reading_delay_of(spec_),
+                                       machine_.nc.periods.seconds(scenario_.hardware.model_period),
+                                       cache_);
 }
 
 double CasePreparation::added_gain(const model::StrategySpec& spec) const {

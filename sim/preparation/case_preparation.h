@@ -71,6 +71,9 @@ class CasePreparation {
 
  private:
   double added_gain(const model::StrategySpec& spec) const;
+  /// Position loops that the strategy knows; nullptr: none.
+  std::shared_ptr<const strategies::IdentifiedLoops> identified_loops(
+      const model::StrategySpec& spec) const;
   SharedStrategy make(const model::StrategySpec& spec,
                       const strategies::IdentifiedMachine& machine) const;
   /// The surroundings of probing moves; nullptr without a touch probe.

@@ -136,6 +136,7 @@ PreparationCache::PreparationCache()
       strategies(kModels),
       spectral_radii(kRadii),
       open_loops(kDrives),
+      loop_responses(kDrives),
       plan_distances(kModels) {}
 
 void add(system::MemoKey& key, const JointLayout& layout) {

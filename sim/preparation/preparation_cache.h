@@ -26,6 +26,9 @@
 namespace servomill::sim::frequency {
 struct Curve;
 }  // namespace servomill::sim::frequency
+namespace servomill::strategies {
+struct LoopResponse;
+}  // namespace servomill::strategies
 namespace servomill::sim::metrology {
 class TriangleMesh;
 }  // namespace servomill::sim::metrology
@@ -126,6 +129,7 @@ struct PreparationCache {
   system::SharedCache<strategies::Strategy> strategies;
   system::SharedCache<double> spectral_radii;
   system::SharedCache<frequency::Curve> open_loops;  // of position loops
+  system::SharedCache<servomill::strategies::LoopResponse> loop_responses;
   system::SharedCache<PlanDistance> plan_distances;
   plant::PreparedDrives drives{kDrives};
 };
