@@ -5,17 +5,39 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
+#include "plant/vocabulary/input_error.h"
 #include "strategies/displacement_limits.h"
 #include "strategies/pose_compensation.h"
+#include "strategies/prediction_limits.h"
+#include "strategies/predictive_encoder.h"
 
 namespace servomill::strategies {
 namespace {
 
 constexpr std::array<std::string_view, 1> kAuto = {"auto"};
+constexpr std::array<std::string_view, 3> kPredictions = {"lag", "loop", "observer"};
 
-const std::array<ParameterSpec, 9>& specs() {
-  static const std::array<ParameterSpec, 9> kSpecs = {{
+constexpr ParameterSpec kPredictionSpec = {
+    .name = "prediction",
+    .help =
+        "lag: the two keys above; loop: inverse of the whole position loop along the observed "
+        "motion; observer: and friction of the displaced axes",
+    .default_text = "lag",
+    .is_number = false,
+    .words = kPredictions};
+
+constexpr ParameterSpec kBandwidthSpec = {
+    .name = "observer_bandwidth_Hz",
+    .help = "of position, velocity and acceleration, for loop and observer",
+    .unit = "Hz",
+    .default_text = "50",
+    .min = 1.0,
+    .max = 1e3};
+
+const std::array<ParameterSpec, 11>& specs() {
+  static const std::array<ParameterSpec, 11> kSpecs = {{
       {.name = "max_um",
        .help = "limit of the virtual displacement of a linear axis",
        .unit = "um",
@@ -57,6 +79,8 @@ const std::array<ParameterSpec, 9>& specs() {
        .default_text = "3",
        .min = 0.0,
        .max = 1e4},
+      kPredictionSpec,
+      kBandwidthSpec,
       kIterationsSpec,
       kAxesSpec,
       kSingularSpec,
@@ -64,15 +88,9 @@ const std::array<ParameterSpec, 9>& specs() {
   return kSpecs;
 }
 
-struct FeedbackParams {
-  Action action = Action::compensate;
-  Iterations iterations = Iterations::one;
-  DisplacedAxes axes = DisplacedAxes::linear;
-  double sigma_0 = 0.0;
-  Joints max = Joints::Zero();       // m, rad
-  Joints max_rate = Joints::Zero();  // m/s, rad/s
-  Joints lead = Joints::Zero();      // s, of each displaced axis
-  double window = 0.0;               // s
+struct FeedbackParams : VirtualEncoderParams {
+  Joints lead = Joints::Zero();  // s, of each displaced axis
+  double window = 0.0;           // s
 };
 
 // Velocity of the first joints as the difference of readings over a window.
@@ -277,6 +295,40 @@ class ModifiedFeedback final : public Strategy {
   FeedbackParams params_;
 };
 
+// The same with an inverse of the position loops.
+class PredictiveFeedback final : public Strategy {
+ public:
+  PredictiveFeedback(const IdentifiedMachine& identified, const VirtualEncoderParams& params,
+                     double bandwidth, bool friction)
+      : identified_(identified),
+        params_(params),
+        prediction_(prediction_of(identified_, params, bandwidth, friction)),
+        notes_(check_prediction(identified_, params, prediction_)) {}
+  bool displaces_feedback() const override { return true; }
+  bool displaces_rotary() const override { return params_.axes == DisplacedAxes::all; }
+  std::optional<Residual> uncorrectable(const Joints& Q) const override {
+    return strategies::uncorrectable(identified_, params_.action, params_.axes, params_.sigma_0, Q);
+  }
+  std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
+    return predictive_encoder(identified_, params_, prediction_, model_period);
+  }
+  std::vector<std::string> notes() const override { return notes_; }
+
+ private:
+  IdentifiedMachine identified_;
+  VirtualEncoderParams params_;
+  Prediction prediction_;
+  std::vector<std::string> notes_;
+};
+
+bool knows_loops(const Parameters& p) { return p.word("prediction") != "lag"; }
+
+void refuse_second_lag(const Parameters& p) {
+  if (!p.is_word("extrapolation_time_ms") && p.number("extrapolation_time_ms") == 0.0) return;
+  throw InputError({}, "extrapolation_time_ms and prediction = \"" + p.word("prediction") +
+                           "\" would both compensate the lag; remove one of them");
+}
+
 std::unique_ptr<Strategy> make(const Parameters& p, Action action,
                                const IdentifiedMachine& identified) {
   FeedbackParams params;
@@ -289,6 +341,12 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action action,
     params.sigma_0 = std::sin(p.number("singular_deg"));
     params.max.tail<2>().setConstant(p.number("max_mrad"));
     params.max_rate.tail<2>().setConstant(p.number("max_rate_mrad_per_s"));
+  }
+  if (knows_loops(p)) {
+    refuse_second_lag(p);
+    return std::make_unique<PredictiveFeedback>(
+        identified, params, 2.0 * std::numbers::pi * p.number("observer_bandwidth_Hz"),
+        p.word("prediction") == "observer");
   }
   if (p.is_word("extrapolation_time_ms")) {
     for (int j = 0; j < kJoints; ++j) {
@@ -313,6 +371,7 @@ Entry feedback_entry() {
   Entry entry = {"feedback", "modifies the position feedback (virtual encoder)", specs(), make};
   entry.reads_gains = true;
   entry.uses_feedback_hardware = true;
+  entry.reads_loops = knows_loops;
   return entry;
 }
 

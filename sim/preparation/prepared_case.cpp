@@ -65,7 +65,7 @@ struct PreparedCase::Parts {
   Joints machine_start;
   std::optional<records::ThinningLimits> thinning = {};  // of its recording
   double distance_of_plan = 0.0;                         // m, of nominal points from the part
-  std::vector<std::string> warnings = {};                // of added gains
+  std::vector<std::string> warnings = {};                // margins, limits of strategies
   std::string stops_with = {};  // why a plug-in could not rewrite the program
   std::vector<std::vector<servomill::strategies::TrialFigures>> trials = {};  // of each strategy
 
@@ -117,6 +117,10 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
     refuse_undeclared_feedback(strategy, *strategies.back());
     refuse_unread_scale(strategy, *strategies.back(), machine(), spec.name);
     check_added_gain(prepare, strategy);
+    for (const std::string& note : strategies.back()->notes()) {
+      warnings.push_back(
+          fmt::format("case {}: strategy {}: {}", spec.name, strategy.entry->name, note));
+    }
     if (!strategies.back()->rewrites()) continue;
     refuse_rewritten_probing(strategy, *program, spec.name);
     refuse_tip_moves(strategy, *strategies.back(), *program, scenario.program.file, spec.name);

@@ -112,9 +112,13 @@ Residual residual_of(const std::string& program, const std::string& strategy,
 // The true tool is where the program wants it, to 1 nm, on a line, an arc and a helix.
 TEST(PerfectIdentification, FeedbackLeavesNothing) {
   for (const std::string action : {"compensate", "impose"}) {
-    const Residual r = residual_of(kSpatialProgram, "feedback", action, "max_um = 1000.0\n");
-    EXPECT_GT(r.error, 10.0);
-    EXPECT_LT(r.largest, kResidualTol) << action;
+    for (const std::string prediction : {"lag", "loop", "observer"}) {
+      const Residual r =
+          residual_of(kSpatialProgram, "feedback", action,
+                      fmt::format("max_um = 1000.0\nprediction = \"{}\"\n", prediction));
+      EXPECT_GT(r.error, 10.0);
+      EXPECT_LT(r.largest, kResidualTol) << action << ", " << prediction;
+    }
   }
 }
 

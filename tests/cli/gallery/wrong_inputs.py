@@ -104,6 +104,8 @@ SCENARIO = [
     line("a word that is not allowed beside numbers", "from_mm = -200.0", 'from_mm = "travl"'),
     line("a strategy's number out of range", "spacing_mm = 1.6384", "spacing_mm = 0.0"),
     line("two sets of feedback hardware", 'type = "table"', 'type = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"'),
+    line("feedback that compensates its lag twice", '[[case.strategy]]\ntype = "table"', '[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\nprediction = "loop"\nextrapolation_time_ms = "auto"\n[[case.strategy]]\ntype = "table"'),
+    line("a machine known to feedback without a prediction", '[[case.strategy]]\ntype = "table"', '[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\nmachine = { nc.Kv = "50 1/s" }\n[[case.strategy]]\ntype = "table"'),
     line("feedback without its hardware", '[[case.strategy]]\ntype = "table"', 'feedback_hardware = false\n[[case.strategy]]\ntype = "feedback"\nmodel = "imposed"\n[[case.strategy]]\ntype = "table"'),
     line("a recorder period that is no multiple", "period_ms = 1.0", "period_ms = 1.005"),
     line("a recorder period of the wrong type", "period_ms = 1.0", "period_ms = true"),
