@@ -45,17 +45,6 @@ void add(system::MemoKey& key, const model::StrategySpec& spec) {
   }
 }
 
-void add(system::MemoKey& key, const strategies::IdentifiedHeat& heat) {
-  key.add(heat.reference);
-  for (const auto* errors : {&heat.by_body, &heat.by_sensor}) {
-    key.add(errors->size());
-    for (const plant::ThermalError& one : *errors) {
-      key.add(one.body);
-      preparation::add(key, one.per_kelvin);
-    }
-  }
-}
-
 void add(system::MemoKey& key, const plant::Stock& stock) {
   key.add(stock.solids().size());
   for (const plant::StockSolid& solid : stock.solids()) {

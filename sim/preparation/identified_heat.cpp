@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/model/heat.h"
+#include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
 
 namespace servomill::sim::preparation {
@@ -60,6 +61,17 @@ std::shared_ptr<const strategies::IdentifiedHeat> identified_heat(
     throw fault_of(strategy, spec.name, error);
   }
   return out;
+}
+
+void add(system::MemoKey& key, const strategies::IdentifiedHeat& heat) {
+  key.add(heat.reference);
+  for (const auto* errors : {&heat.by_body, &heat.by_sensor}) {
+    key.add(errors->size());
+    for (const plant::ThermalError& one : *errors) {
+      key.add(one.body);
+      add(key, one.per_kelvin);
+    }
+  }
 }
 
 }  // namespace servomill::sim::preparation

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/model/scenario.h"
+#include "sim/system/shared_cache.h"
 #include "strategies/identified_heat.h"
 
 namespace servomill::sim::preparation {
@@ -21,5 +22,8 @@ const model::MachineSettings* known_heat_of(const model::CaseSpec& spec,
 std::shared_ptr<const strategies::IdentifiedHeat> identified_heat(
     const model::StrategySpec& strategy, const model::CaseSpec& spec,
     const model::MachineSettings& machine);
+
+/// Adds it to a key.
+void add(system::MemoKey& key, const strategies::IdentifiedHeat& heat);
 
 }  // namespace servomill::sim::preparation

@@ -5,7 +5,10 @@ import json
 import pathlib
 import sys
 import tempfile
+import tomllib
 import unittest
+
+import numpy as np
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -55,7 +58,7 @@ class Data(unittest.TestCase):
         self.assertIn('model = "machine"\ncutoff_Hz = 40', texts[0])
         self.assertIn('model = "identified"', texts[1])
         self.assertNotIn("machine = {", texts[1])
-        self.assertIn('machine = { nc = { Kv = "79 1/s" }', texts[2])
+        self.assertIn('machine = { nc = { Kv = "79.1666 1/s" }, axis = { X = { friction = { coulomb = "360 N", breakaway = "448 N" }', texts[2])
 
     def test_rotary_axes_correct_where_the_program_has_five_axes(self):
         league, (strategy,) = jobs.League(), [one for one in jobs.League().strategies if one.name == "gcode"]
@@ -79,6 +82,59 @@ class Data(unittest.TestCase):
     def test_an_unknown_machine_is_named(self):
         with self.assertRaisesRegex(InputError, r'machine = "lathe"; known are hsm, trunnion, router'):
             jobs.League()._job({"machine": "lathe", "program": "square"})
+
+
+class Draws(unittest.TestCase):
+    def setUp(self):
+        self.league = jobs.League()
+        self.job = self.league.jobs[1]   # unkind
+
+    def drives(self, number):
+        return jobs.known_drives(self.job, f"{jobs.DRAW}{number}")
+
+    def test_drives_are_drawn_about_what_they_are(self):
+        number = lambda value: float(str(value).strip('"').split()[0])
+        samples = [self.drives(n) for n in range(1, 1001)]
+        for key, one in (self.job.machine["drives"] | self.job.machine["unkind_drives"]).items():
+            values = np.array([number(sample[key]) for sample in samples]) / one["value"] - 1.0
+            self.assertAlmostEqual(values.mean(), 0.0, delta=0.12 * abs(one["off"]), msg=key)
+            self.assertAlmostEqual(values.std(), abs(one["off"]), delta=0.09 * abs(one["off"]), msg=key)
+
+    def test_what_belongs_together_deviates_together(self):
+        for n in range(1, 20):
+            drives = self.drives(n)
+            ratio = [float(drives[f"axis.X.friction.{name}"].strip('" N')) for name in ("coulomb", "breakaway")]
+            self.assertAlmostEqual(ratio[0] / ratio[1], 450.0 / 560.0, places=4)
+
+    def test_a_draw_is_the_same_every_time_and_another_one_differs(self):
+        self.assertEqual(self.drives(3), self.drives(3))
+        self.assertNotEqual(self.drives(3), self.drives(4))
+        machine = self.job.machine
+        errors = [jobs.residual_errors(machine, f"{jobs.DRAW}{n}") for n in (3, 3, 4)]
+        self.assertEqual(errors[0], errors[1])
+        self.assertNotEqual(errors[0], errors[2])
+        self.assertEqual(tomllib.loads(errors[0]).keys(), tomllib.loads(machine["identified"]).keys())
+        self.assertIn("period_mm = 55.0", errors[0])
+
+    def test_only_what_knows_something_is_drawn_and_shards_share_the_draws(self):
+        every = list(runs.drawn(self.league, 3))
+        self.assertFalse([one for _, _, one in every if not one.knows()])
+        parts = [every[slice(n, None, 4)] for n in range(4)]
+        self.assertEqual(sorted(map(repr, sum(parts, []))), sorted(map(repr, every)))
+
+    def test_the_report_states_the_spread(self):
+        league = small()
+        name = league.jobs[0].name
+        results = [{"job": name, "knowledge": f"{jobs.DRAW}{n}", "strategy": "gcode", "tip_99": float(n), "cycle_time": 1.0} for n in range(1, 101)]
+        table = page.Table(league, results)
+        (row,) = page.spread_rows(table)
+        self.assertEqual(row, [name, "gcode", "-", "50.5", "3.48 to 97.5", "100", "100"])
+
+    def test_heat_is_a_job_for_those_that_say_so(self):
+        heat = [job for job in self.league.jobs if "day" in job.program]
+        self.assertEqual(len(heat), 1)
+        self.assertIn("thermal_network", [one.name for one in self.league.strategies_of(heat[0])])
+        self.assertNotIn("thermal_network", [one.name for one in self.league.strategies_of(self.job)])
 
 
 class Runs(unittest.TestCase):

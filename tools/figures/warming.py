@@ -26,7 +26,7 @@ def draw(run):
     _temperatures(grid[0][0], day)
     drift = _drift(grid[1][0], day)
     if has_cycles:
-        _cycles(grid[2][0], day)
+        _cycles(grid[2][0], run)
     hours = day["time"][:]
     for row in grid:
         row[0].set_xlim(hours[0], hours[-1] * 1.14)   # room for the names at the ends of the curves
@@ -83,12 +83,22 @@ def _drift(ax, day):
     return found
 
 
-def _cycles(ax, day):
-    begin, largest = day["cycles/begin"][:], day["cycles/largest"][:]
-    ax.plot(begin, largest, "o", color=style.BLUE, markersize=4)
+def _cycles(ax, run):
+    """Each part of each case; datums of the first one are marked."""
+    days = {name: group["day"] for name, group in run.h5["cases"].items() if "day" in group and "cycles" in group["day"]}
+    ends = []
+    for (name, day), colour in zip(days.items(), COLOURS):
+        begin, largest = day["cycles/begin"][:], day["cycles/largest"][:]
+        ax.plot(begin, largest, "o", color=colour, markersize=4)
+        ends.append((largest[-1], name, colour))
     ax.set_ylim(bottom=0.0)
+    first = next(iter(days.values()))
+    if "datums" in first:
+        ax.plot(first["datums/time"][:], np.zeros(len(first["datums/time"])), "|", color=style.BLACK, markersize=14, clip_on=False)
+    if len(days) > 1:
+        _named_ends(ax, first["time"][-1], ends)
     ax.set_ylabel("µm")
-    ax.set_title("Each part: largest displacement by heat along its path, datum taken off")
+    ax.set_title("Each part: largest displacement by heat along its path, datum (|) taken off")
 
 
 def _message(day, drift):

@@ -1,13 +1,27 @@
 """The data of the league, and the scenario of one run."""
 import dataclasses
 import pathlib
+import re
 import tomllib
+import zlib
+
+import numpy as np
 
 from command_line import InputError
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENARIOS = HERE.parents[1] / "scenarios"
 KNOWLEDGE = ("exact", "errors identified", "errors and drives identified")
+DRAW = "draw "   # before its number: knowledge that is drawn
+
+
+def draws(samples):
+    return [f"{DRAW}{number}" for number in range(1, samples + 1)]
+
+
+def generator(knowledge, machine):
+    """The random numbers of a draw: the same for every strategy and program on a machine."""
+    return np.random.default_rng([int(knowledge.removeprefix(DRAW)), zlib.crc32(machine["title"].encode())])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,6 +32,7 @@ class Job:
     program: dict
     unkind: bool
     offset: str
+    strategies: tuple   # names of those that run; empty: all that are not for heat alone
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,6 +42,7 @@ class Strategy:
     needs: str
     measures: str
     turns: bool
+    heat: bool = False   # corrects nothing else
 
     def knows(self):
         """True if what it does depends on what it knows."""
@@ -42,7 +58,8 @@ class League:
             data = tomllib.load(file)
         self.machines, self.programs = data["machine"], data["program"]
         self.tuning = data["tuning"]
-        self.strategies = [Strategy(name, one["text"], one["needs"], one.get("measures", ""), one.get("turns", False))
+        self.strategies = [Strategy(name, one["text"], one["needs"], one.get("measures", ""), one.get("turns", False),
+                                    one.get("heat", False))
                            for name, one in data["strategy"].items()]
         self.jobs = [self._job(one) for one in data["job"]]
 
@@ -54,11 +71,15 @@ class League:
         unkind = one.get("unkind", False)
         kind = "unkind" if unkind else "clean"
         return Job(f"{one['machine']}-{kind}-{one['program']}", f"{program['title']}; {machine['title']}, {kind}", machine, program,
-                   unkind, one.get("offset", ""))
+                   unkind, one.get("offset", ""), tuple(one.get("strategies", ())))
+
+    def strategies_of(self, job):
+        """Those that run a job."""
+        return [one for one in self.strategies if (one.name in job.strategies if job.strategies else not one.heat)]
 
     def tuning_job(self):
         program = {"title": "tuning", "text": self.tuning["text"], "sections": self.tuning["sections"]}
-        return Job("tuning", "tuning program", self.machines["hsm"], program, True, "")
+        return Job("tuning", "tuning program", self.machines["hsm"], program, True, "", ())
 
     def scenario(self, job, knowledge, strategy, cutoff, made):
         """Text of the scenario of one run; `made` is the folder with the made programs."""
@@ -73,25 +94,89 @@ class League:
         if job.offset:
             parts += [f"work_offset = {{ {job.offset} }}", "start = { Z_mm = 20.0 }"]
         parts += ["[record]", "period_ms = 1.0", "[errors.machine]", machine["errors"], "[errors.identified]",
-                  'relative_to = "machine"', machine["identified"], "[[case]]", 'name = "case"',
-                  self._strategy(job, knowledge, strategy, cutoff)]
+                  'relative_to = "machine"', residual_errors(machine, knowledge), "[[case]]", 'name = "case"',
+                  self._strategy(job, knowledge, strategy, cutoff).replace('"machines/', f'"{SCENARIOS}/machines/'), job.program.get("day", "")]
         return "\n".join(parts) + "\n"
 
     def _strategy(self, job, knowledge, strategy, cutoff):
-        machine, five_axes = job.machine, "five axes" in job.program["title"]
+        five_axes = "five axes" in job.program["title"]
         turns = 'axes = "all"' if strategy.turns and five_axes else ""
-        drives_differ = knowledge == KNOWLEDGE[2]
-        known = ""
-        if drives_differ:
-            known = f"machine = {machine['known_unkind' if job.unkind else 'known_clean']}"
+        drives = known_drives(job, knowledge)
+        known = f"machine = {inline(nested(drives))}" if drives else ""
         text = strategy.text if "{turns}" in strategy.text else strategy.text + "{turns}\n"
         for word, value in (("{model}", "machine" if knowledge == KNOWLEDGE[0] else "identified"), ("{known}", known),
-                            ("{gains}", self._gains(job, drives_differ)), ("{cutoff}", str(cutoff)), ("{turns}", turns)):
+                            ("{gains}", gains(job, drives)), ("{cutoff}", str(cutoff)), ("{turns}", turns)):
             text = text.replace(word, value)
         return text
 
-    @staticmethod
-    def _gains(job, drives_differ):
-        if not job.unkind:
-            return ""
-        return job.machine["gains_identified" if drives_differ else "gains"]
+
+def known_drives(job, knowledge):
+    """{key: value as TOML} of what is known wrongly of drives, structure and heat; empty: it is known exactly."""
+    if knowledge in KNOWLEDGE[:2]:
+        return {}
+    data = job.machine["drives"] | (job.machine.get("unkind_drives", {}) if job.unkind else {})
+    deviates = {}
+    if knowledge.startswith(DRAW):
+        random = generator(knowledge, job.machine)
+        for key, one in data.items():
+            deviates.setdefault(one.get("together", key), random.standard_normal())
+    out = {}
+    for key, one in data.items():
+        share = one["off"] * deviates.get(one.get("together", key), 1.0)
+        value = f"{one['value'] * (1.0 + share):.6g}"
+        out[key] = f'"{value} {one["unit"]}"' if "unit" in one else value
+    return out
+
+
+def residual_errors(machine, knowledge):
+    """Errors that a calibration leaves; of a draw each number of them times a normal deviate."""
+    if not knowledge.startswith(DRAW):
+        return machine["identified"]
+    random = generator(knowledge, machine)
+    random.standard_normal(100)   # those of the drives come before
+
+    def drawn(key, value):
+        if isinstance(value, dict):
+            return {name: drawn(name, one) for name, one in value.items()}
+        if key.startswith(("period", "phase")):
+            return repr(value)
+        number, _, unit = str(value).partition(" ")
+        number = f"{float(number) * random.standard_normal():.6g}"
+        return f'"{number} {unit}"' if unit else number
+
+    errors = tomllib.loads(machine["identified"])
+    return "\n".join(f"{name} = {inline(drawn(name, value))}" for name, value in errors.items()) + "\n"
+
+
+def gains(job, drives):
+    """Keys of the strategy inertia: the structure as it is known."""
+    if not job.unkind:
+        return ""
+    lines = []
+    for key, one in job.machine["unkind_drives"].items():
+        found = re.fullmatch(r"inertial_deflection\.(.)\1\.(gain_um_per_m_s2|frequency_Hz)", key)
+        if found:
+            axis, what = found.groups()
+            name = f"{axis}{axis}_um_per_m_s2" if what.startswith("gain") else f"{axis}_frequency_Hz"
+            lines.append(f"{name} = {drives.get(key, one['value'])}")
+    lines += [f"{axis}_damping = {value}" for axis, value in job.machine["damping"].items()]
+    return "\n".join(lines)
+
+
+def nested(values):
+    """Tables of dotted keys."""
+    out = {}
+    for key, value in values.items():
+        *path, last = key.split(".")
+        table = out
+        for name in path:
+            table = table.setdefault(name, {})
+        table[last] = value
+    return out
+
+
+def inline(value):
+    """A TOML value of tables whose leaves are written already."""
+    if not isinstance(value, dict):
+        return value
+    return "{ " + ", ".join(f"{key} = {inline(one)}" for key, one in value.items()) + " }"

@@ -6,6 +6,7 @@ import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
 
 from strategy_league import jobs  # noqa: E402
 
@@ -27,13 +28,18 @@ class Table:
         self.results = {(one["job"], one["knowledge"], one["strategy"]): one for one in results}
         self.jobs = [job for job in league.jobs if any(key[0] == job.name for key in self.results)]
 
+    def spread(self, job, strategy):
+        """99 % of the tip over all draws, ascending."""
+        return sorted(one["tip_99"] for (name, knowledge, of), one in self.results.items()
+                      if name == job.name and of == strategy.name and knowledge.startswith(jobs.DRAW) and "refused" not in one)
+
     def at(self, job, knowledge, strategy):
         known = knowledge if strategy.knows() else jobs.KNOWLEDGE[0]
         return self.results.get((job.name, known, strategy.name))
 
     def complete(self, job, knowledge):
         """(strategy, result) of those that ran."""
-        pairs = [(one, self.at(job, knowledge, one)) for one in self.league.strategies]
+        pairs = [(one, self.at(job, knowledge, one)) for one in self.league.strategies_of(job)]
         return [(one, found) for one, found in pairs if found and "refused" not in found]
 
     def best(self, job, knowledge, offer, slower=None):
@@ -86,13 +92,15 @@ class Table:
 
 
 def cell(value):
+    if value is None:
+        return "-"
     return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
 
 
 def rows_of(table, job, knowledge):
     """Cells of the table of one job, a strategy each."""
     front = table.pareto(job, knowledge)
-    for one in table.league.strategies:
+    for one in table.league.strategies_of(job):
         found = table.at(job, knowledge, one)
         if not found:
             continue
@@ -101,8 +109,8 @@ def rows_of(table, job, knowledge):
             yield [one.name, needs, "refused: " + found["refused"]] + [""] * (len(COLUMNS) - 1)
             continue
         name = one.name + (" *" if one in front else "")
-        yield [name, needs, *(cell(found[key]) for key, _ in COLUMNS[:-1]),
-               cell(found["blocks"]) + ("" if found["keeps_limits"] else " (exceeds limits)")]
+        yield [name, needs, *(cell(found.get(key)) for key, _ in COLUMNS[:-1]),
+               cell(found["blocks"]) + ("" if found.get("keeps_limits", True) else " (exceeds limits)")]
 
 
 def headings():
@@ -115,6 +123,25 @@ def choice_rows(table, slower=None):
         yield [knowledge, offer, *(f"{row[job.name][0]} ({row[job.name][1]:.3g} um)" if job.name in row else "-" for job in table.jobs)]
 
 
+def spread_headings():
+    return ["job", "strategy", "exact, um", "mean, um", "95 %, um", "worst, um", "draws"]
+
+
+def spread_rows(table):
+    """What draws of the knowledge do to the 99 % of the tip, a strategy and job each; with less than 40 draws the range."""
+    for job in table.jobs:
+        for strategy in table.league.strategies_of(job):
+            values = table.spread(job, strategy)
+            if not values:
+                continue
+            exact = table.at(job, jobs.KNOWLEDGE[0], strategy)
+            low, high = np.percentile(values, (2.5, 97.5)) if len(values) >= 40 else (values[0], values[-1])
+            yield [job.name, strategy.name, cell((exact or {}).get("tip_99")), cell(float(np.mean(values))), f"{cell(low)} to {cell(high)}",
+                   cell(values[-1]), str(len(values))]
+
+
+SPREAD = ("Draws of the knowledge: residual errors, drives, structure and heat known with normal deviates times the errors of \"errors and drives "
+          "identified\", the same for every strategy. 99 % of the tip.")
 NOTES = (
     "Every strategy runs the same program on the same machine with the same knowledge. Judged are all rows of feed motion in the named sections, at equal arc length. "
     "A star marks strategies that no other one beats in both the 99 % of the tip and the cycle time.",
@@ -130,6 +157,9 @@ def markdown(table, cutoffs, version):
     out += lines_of(head, choice_rows(table))
     out += ["", "## The same within 2 % of the cycle time", "", *lines_of(head, choice_rows(table, SLOWER))]
     out += ["", "## The order of paper [G]: G-code, feedback, tables", "", *(f"- {line}" for line in table.order_of_paper())]
+    rows = list(spread_rows(table))
+    if rows:
+        out += ["", "## Sensitivity to the knowledge", "", SPREAD, "", *lines_of(spread_headings(), rows)]
     for job in table.jobs:
         out += ["", f"## {job.title}"]
         for knowledge in jobs.KNOWLEDGE:
@@ -161,6 +191,9 @@ def page(table, cutoffs, version):
              html_table(head, choice_rows(table, SLOWER)),
              "<h2>The order of paper [G]: G-code, feedback, tables</h2><ul>",
              *(f"<li>{html.escape(line)}</li>" for line in table.order_of_paper()), "</ul>"]
+    rows = list(spread_rows(table))
+    if rows:
+        parts += ["<h2>Sensitivity to the knowledge</h2>", f"<p>{html.escape(SPREAD)}</p>", html_table(spread_headings(), rows)]
     for job in table.jobs:
         parts.append(f"<h2>{html.escape(job.title)}</h2>{figure(table, job)}")
         for knowledge in jobs.KNOWLEDGE:

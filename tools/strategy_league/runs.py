@@ -28,9 +28,20 @@ def wanted(league, only=""):
     for job in league.jobs:
         if only not in job.name:
             continue
-        for strategy in league.strategies:
+        for strategy in league.strategies_of(job):
             for knowledge in jobs.KNOWLEDGE if strategy.knows() else jobs.KNOWLEDGE[:1]:
                 yield job, knowledge, strategy
+
+
+def drawn(league, samples, only=""):
+    """(job, knowledge, strategy) of every run of a Monte Carlo: those that know something, draw after draw."""
+    for knowledge in jobs.draws(samples):
+        for job in league.jobs:
+            if only not in job.name:
+                continue
+            for strategy in league.strategies_of(job):
+                if strategy.knows():
+                    yield job, knowledge, strategy
 
 
 class Runner:
@@ -41,11 +52,11 @@ class Runner:
         self.results = folder / "runs"
         self.cutoffs = {}   # Hz, of the strategies that are tuned
 
-    def tune(self):
-        """The cutoff of each tuned strategy: that with the smallest rms of the tip on the tuning program, known as drives are."""
+    def tune(self, strategies):
+        """The cutoff of each tuned strategy of these: that with the smallest rms of the tip on the tuning program, known as drives are."""
         job = self.league.tuning_job()
         for strategy in self.league.strategies:
-            if not strategy.is_tuned():
+            if not strategy.is_tuned() or strategy not in strategies:
                 continue
             found = {cutoff: self.one(job, jobs.KNOWLEDGE[2], strategy, cutoff) for cutoff in self.league.tuning["cutoffs_Hz"]}
             good = {cutoff: one["tip_rms"] for cutoff, one in found.items() if "refused" not in one}
@@ -109,6 +120,8 @@ def measured(path, sections):
     """Figures of one case, of its rows of feed motion in these sections."""
     with h5py.File(path) as file:
         case = file["cases/case"]
+        if "day" in case:
+            return measured_of_day(case)
         servo = case["servo"]
         names = case.attrs["sections"]
         names = (names.decode() if isinstance(names, bytes) else str(names)).split("\n")
@@ -126,3 +139,10 @@ def measured(path, sections):
                 "jerk_rms": float(np.sqrt(np.mean(jerk[rows]**2))),
                 "current_rms": float(np.sqrt(np.mean(np.sum(current**2, axis=1)))),
                 "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"])}
+
+
+def measured_of_day(case):
+    """Figures of the parts of a day; the largest of each for the 99 %."""
+    rms, largest = (case["day/cycles"][name][:] for name in ("rms", "largest"))
+    return {"tip_rms": float(np.sqrt(np.mean(rms**2))), "tip_99": float(np.percentile(largest, 99)), "tip_max": float(largest.max()),
+            "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"])}
