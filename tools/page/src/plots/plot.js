@@ -1,0 +1,297 @@
+/** One plot: a signal of every visible case over the common abscissa, with zoom and cursor. */
+import uPlot from "uplot";
+import { lookOf } from "../core/palette.js";
+import { short, tickTexts } from "../core/ticks.js";
+import { unitText, withUnit, words } from "../core/units.js";
+import { button, html } from "../shell/dom.js";
+import { inks } from "../shell/theme.js";
+import { Curve, abscissaSpec, extentWithin, ordinateAt, ordinateSpec } from "./curves.js";
+
+const HEIGHT = 210; // pixels
+const FADED = 0.2;
+
+export class Plot {
+  /**
+   * @param {import("../shell/store.js").Store} store
+   * @param {import("../data/client.js").Client} client
+   * @param {{family: string, signal: string, column: number | "norm"}} chosen
+   * @param {{remove: () => void, bands: () => [number, number][], abscissa: (family: object) => object}} context
+   */
+  constructor(store, client, chosen, context) {
+    Object.assign(this, { store, client, chosen, context });
+    this.curves = new Map();
+    this.title = html("h3");
+    this.readout = html("div", { class: "readout" });
+    this.area = html("div", { class: "area", tabindex: 0, role: "group" });
+    this.element = html("section", { class: "plot" },
+      html("header", {}, this.title, this.readout, button("✕", "Remove this plot", () => context.remove())), this.area);
+    this.area.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    this.dirty = false;
+    this.rebuild();
+  }
+
+  get family() {
+    return this.store.state.families.find((family) => family.key === this.chosen.family);
+  }
+
+  get signal() {
+    return this.family?.signals.find((signal) => signal.name === this.chosen.signal);
+  }
+
+  /** Baseline member of the family, if differences are shown. */
+  get baseline() {
+    return this.family?.servo ? this.family.members.find((member) => member.case === this.store.state.baseline) : undefined;
+  }
+
+  /** Key of the abscissa: plots with the same one are linked. */
+  get key() {
+    return this.abscissa.key;
+  }
+
+  get members() {
+    const { visible, baseline } = this.store.state;
+    return this.family.members.filter((member) => (!member.case || visible.has(member.case)) && !(this.baseline && member.case === baseline));
+  }
+
+  /** Begins anew after a change of the cases, the abscissa or the baseline. */
+  rebuild() {
+    if (!this.signal) return;
+    this.abscissa = this.context.abscissa(this.family);
+    const letter = this.signal.letters[this.signal.columns.indexOf(this.chosen.column)];
+    this.name = [words(this.signal.name), letter].filter(Boolean).join(" ") + (this.baseline ? ` − ${this.baseline.label} at equal s` : "");
+    this.title.textContent = withUnit(this.name, this.signal.unit);
+    this.title.title = this.signal.label;
+    this.area.setAttribute("aria-label", `${this.title.textContent} over ${this.abscissa.label}`);
+    const wanted = new Map(this.members.map((member) => [this.keyOf(member), member]));
+    for (const key of this.curves.keys()) if (!wanted.has(key)) this.curves.delete(key);
+    for (const [key, member] of wanted) {
+      if (!this.curves.has(key)) this.curves.set(key, { member, curve: this.newCurve(member) });
+    }
+    this.makeChart();
+    this.refresh();
+  }
+
+  keyOf(member) {
+    return [member.file, member.path, this.abscissa.key, this.baseline?.path, this.baseline?.file].join("|");
+  }
+
+  newCurve(member) {
+    const { family, signal, abscissa } = this;
+    const y = ordinateSpec(family, member, signal, this.chosen.column, this.baseline);
+    const result = this.store.state.results[member.file];
+    const gaps = result.has(`${member.path}/window`) ? { file: member.file, path: `${member.path}/window`, column: 0 } : undefined;
+    return new Curve(this.client, { x: abscissaSpec(family, member, abscissa), y, monotone: abscissa.monotone, gaps }, () => this.redraw());
+  }
+
+  makeChart() {
+    this.u?.destroy();
+    const colours = inks();
+    const axis = { stroke: colours.ink, grid: { stroke: colours.grid, width: 1 }, ticks: { stroke: colours.grid, width: 1 }, font: "11px system-ui, sans-serif" };
+    this.u = new uPlot({
+      width: Math.max(200, this.area.clientWidth || 600), height: HEIGHT, legend: { show: false },
+      scales: { x: { time: false, range: () => this.range() }, y: { range: () => this.yRange() } },
+      series: [{}, { paths: () => null, points: { show: false } }], // the curves have an abscissa each: drawCurves
+      axes: [
+        { ...axis, label: withUnit(this.abscissa.label, this.abscissa.unit), labelSize: 18, labelFont: axis.font, size: 26, values: (_, ticks) => tickTexts(ticks) },
+        { ...axis, size: 66, values: (_, ticks) => tickTexts(ticks) },
+      ],
+      cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false, bind: { dblclick: () => () => this.store.setRange(this.key, undefined) } },
+      hooks: {
+        drawAxes: [() => this.drawBands()], draw: [() => this.drawCurves()],
+        setCursor: [(u) => this.moved(u)], setSelect: [(u) => this.selected(u)],
+      },
+    }, [[0, 1], [0, 1]], this.area);
+  }
+
+  /** What is seen of the abscissa. @returns {[number, number]} */
+  range() {
+    return this.store.state.ranges[this.key] ?? this.extent();
+  }
+
+  /** All of the abscissa that is known yet. */
+  extent() {
+    const known = [...this.curves.values()].map(({ curve }) => curve.overview?.extent).filter((extent) => extent && Number.isFinite(extent[0]));
+    if (known.length === 0) return [0, 1];
+    const [low, high] = [Math.min(...known.map((e) => e[0])), Math.max(...known.map((e) => e[1]))];
+    return low === high ? [low - 1, high + 1] : [low, high];
+  }
+
+  yRange() {
+    const range = this.range();
+    let [low, high] = [Infinity, -Infinity];
+    for (const { curve } of this.curves.values()) {
+      const points = curve.points(this.store.state.ranges[this.key]);
+      if (!points) continue;
+      const [least, greatest] = extentWithin(points, range);
+      low = Math.min(low, least);
+      high = Math.max(high, greatest);
+    }
+    if (low > high) return [0, 1];
+    const room = high > low ? 0.06 * (high - low) : Math.abs(high) * 0.1 || 1;
+    return [low - room, high + room];
+  }
+
+  /** Asks for what is seen. */
+  refresh() {
+    const pixels = Math.max(200, this.u.bbox.width / devicePixelRatio);
+    const range = this.store.state.ranges[this.key];
+    for (const { curve } of this.curves.values()) curve.ask({ range, pixels });
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.dirty) return;
+    this.dirty = true;
+    requestAnimationFrame(() => {
+      this.dirty = false;
+      if (!this.element.isConnected) return;
+      this.u.setData(this.u.data, true);
+      this.showCursor();
+    });
+  }
+
+  resize() {
+    const width = this.area.clientWidth;
+    if (width > 100 && width !== this.u.width) {
+      this.u.setSize({ width, height: HEIGHT });
+      this.refresh();
+    }
+  }
+
+  lookOf(member) {
+    const { cases, families, theme, highlight } = this.store.state;
+    const index = member.case ? cases.findIndex((one) => one.id === member.case) : this.family.members.indexOf(member) + (families.length > 0 ? 1 : 0);
+    const faded = highlight && member.case && highlight.cases.size > 0 && !highlight.cases.has(member.case);
+    return { ...lookOf(index, theme), opacity: faded ? FADED : 1, width: highlight && !faded ? 2 : 1.25 };
+  }
+
+  drawBands() {
+    const { ctx, bbox } = this.u;
+    ctx.save();
+    ctx.fillStyle = inks().band;
+    for (const [from, to] of this.context.bands(this)) {
+      const [left, right] = [this.u.valToPos(from, "x", true), this.u.valToPos(to, "x", true)];
+      const [low, high] = [Math.max(left, bbox.left), Math.min(right, bbox.left + bbox.width)];
+      if (high > low) ctx.fillRect(low, bbox.top, high - low, bbox.height);
+    }
+    ctx.restore();
+  }
+
+  drawCurves() {
+    const { ctx, bbox } = this.u;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.lineJoin = "round";
+    for (const { member, curve } of this.curves.values()) {
+      const points = curve.points(this.store.state.ranges[this.key]);
+      if (points) this.stroke(points, this.lookOf(member));
+    }
+    ctx.restore();
+  }
+
+  stroke({ x, y }, look) {
+    const { ctx } = this.u;
+    const [ax, bx] = this.linear("x");
+    const [ay, by] = this.linear("y");
+    ctx.beginPath();
+    let down = false;
+    for (let i = 0; i < x.length; ++i) {
+      if (y[i] !== y[i]) down = false;
+      else if (down) ctx.lineTo(ax + bx * x[i], ay + by * y[i]);
+      else {
+        ctx.moveTo(ax + bx * x[i], ay + by * y[i]);
+        down = true;
+      }
+    }
+    ctx.strokeStyle = look.colour;
+    ctx.globalAlpha = look.opacity;
+    ctx.lineWidth = look.width * devicePixelRatio;
+    ctx.setLineDash(look.dash.map((length) => length * devicePixelRatio));
+    ctx.stroke();
+  }
+
+  /** Offset and factor from values to pixels of the canvas. */
+  linear(scale) {
+    const { min, max } = this.u.scales[scale];
+    const [low, high] = [this.u.valToPos(min, scale, true), this.u.valToPos(max, scale, true)];
+    const factor = (high - low) / (max - min);
+    return [low - factor * min, factor];
+  }
+
+  moved(u) {
+    if (this.moving || u.cursor.left === undefined || u.cursor.left < 0) return;
+    this.store.set({ cursor: { key: this.key, value: u.posToVal(u.cursor.left, "x") } });
+  }
+
+  selected(u) {
+    if (u.select.width < 4) return;
+    const range = [u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x")];
+    u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    this.store.setRange(this.key, range);
+  }
+
+  wheel(event) {
+    if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.area) return;
+    event.preventDefault();
+    const left = event.clientX - this.u.over.getBoundingClientRect().left;
+    this.zoom(Math.exp(0.0015 * (event.deltaY || event.deltaX)), this.u.posToVal(left, "x"));
+  }
+
+  /** Changes what is seen by a factor about a place. */
+  zoom(factor, about) {
+    const [low, high] = this.range();
+    const [least, greatest] = this.extent();
+    const place = about ?? (low + high) / 2;
+    const range = [Math.max(least, place - factor * (place - low)), Math.min(greatest, place + factor * (high - place))];
+    this.store.setRange(this.key, range[0] <= least && range[1] >= greatest ? undefined : range);
+  }
+
+  /** Moves what is seen by a share of it. */
+  pan(share) {
+    const [low, high] = this.range();
+    const [least, greatest] = this.extent();
+    const shift = Math.min(greatest - high, Math.max(least - low, share * (high - low)));
+    this.store.setRange(this.key, [low + shift, high + shift]);
+  }
+
+  showCursor() {
+    const { cursor } = this.store.state;
+    const shown = cursor?.key === this.key;
+    this.moving = true;
+    if (shown) this.u.setCursor({ left: this.u.valToPos(cursor.value, "x"), top: 10 }, false);
+    this.moving = false;
+    this.showValues(shown ? cursor.value : undefined);
+  }
+
+  showValues(at) {
+    this.readout.replaceChildren(...[...this.curves.values()].map(({ member, curve }) => {
+      const look = this.lookOf(member);
+      const points = curve.points(this.store.state.ranges[this.key]);
+      const value = at !== undefined && this.abscissa.monotone && points ? ` ${short(ordinateAt(points, at))} ${unitText(this.signal.unit)}` : "";
+      return html("span", { class: curve.fault ? "fault" : "", title: curve.fault ?? member.label, style: `--colour: ${look.colour}; opacity: ${look.opacity === 1 ? 1 : 0.5}` },
+        html("i"), `${member.label || member.path}${value}`, curve.fault ? ` ${curve.fault}` : "");
+    }));
+  }
+
+  /** What is seen, for export. */
+  figure(width) {
+    const state = this.store.state;
+    const [min, max] = this.range();
+    const [low, high] = this.yRange();
+    const lines = [...this.curves.values()].flatMap(({ member, curve }) => {
+      const points = curve.points(state.ranges[this.key]);
+      return points ? [{ ...this.lookOf(member), label: member.label, x: points.x, y: points.y, exact: points.exact }] : [];
+    });
+    return {
+      title: this.title.textContent, width, height: 260, lines, bands: this.context.bands(this),
+      x: { label: withUnit(this.abscissa.label, this.abscissa.unit), min, max }, y: { label: unitText(this.signal.unit), min: low, max: high },
+    };
+  }
+
+  destroy() {
+    this.u?.destroy();
+    this.element.remove();
+  }
+}
