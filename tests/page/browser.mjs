@@ -15,7 +15,7 @@ export function launch(options = []) {
   if (!CHROMIUM) throw new Error("no Chromium: apt-get install chromium");
   return puppeteer.launch({
     executablePath: CHROMIUM, headless: true, protocolTimeout: 3 * PATIENCE,
-    args: ["--no-sandbox", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--hide-scrollbars", ...options],
+    args: ["--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu", "--enable-unsafe-swiftshader", "--hide-scrollbars", ...options],
   });
 }
 

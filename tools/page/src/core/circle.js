@@ -58,11 +58,25 @@ export function bestFitCircle(x, y) {
   return undefined;
 }
 
+/** Least angle about its centre that makes an arc a circle to be drawn; a ball bar measures 220 degrees at least. */
+const MIN_SWEEP = (200 * Math.PI) / 180;
+
+/** Angle from the first point to the last, turn by turn. */
+function sweep(x, y, { cx, cy }) {
+  let sum = 0;
+  for (let i = 1; i < x.length; ++i) {
+    const [ax, ay, bx, by] = [x[i - 1] - cx, y[i - 1] - cy, x[i] - cx, y[i] - cy];
+    sum += Math.atan2(ax * by - ay * bx, ax * bx + ay * by);
+  }
+  return sum;
+}
+
 /**
  * Coordinates of the plane of a circle, or undefined if the nominal points are none.
  * @param {ArrayLike<number>[]} nominal X, Y and Z (mm)
  * @param {number} [flat] how far the path may leave its plane or its circle (mm)
- * @returns {{first: number, second: number, circle: {cx: number, cy: number, radius: number}} | undefined}
+ * @returns {{first: number, second: number, circle: {cx: number, cy: number, radius: number}, angle: number} | undefined}
+ *   angle (rad) that the path turns by, counter-clockwise positive
  */
 export function planeOfCircle(nominal, flat = 0.01) {
   if (nominal[0].length < 10) return undefined;
@@ -85,7 +99,8 @@ export function planeOfCircle(nominal, flat = 0.01) {
     const rho = Math.hypot(nominal[first][i] - circle.cx, nominal[second][i] - circle.cy);
     if (Math.abs(rho - circle.radius) > flat) return undefined;
   }
-  return { first, second, circle };
+  const angle = sweep(nominal[first], nominal[second], circle);
+  return Math.abs(angle) >= MIN_SWEEP ? { first, second, circle, angle } : undefined;
 }
 
 /**

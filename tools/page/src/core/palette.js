@@ -36,5 +36,17 @@ export function cividis(share) {
   return [0, 1, 2].map((i) => CIVIDIS[low][i] + (place - low) * (CIVIDIS[low + 1][i] - CIVIDIS[low][i]));
 }
 
+/**
+ * Colour of a share between 0 and 1 on paper of a theme: without the end of the scale that is like it.
+ * @param {number} share @param {"light" | "dark"} theme
+ */
+export const shadeOf = (share, theme) => {
+  const inside = Math.min(1, Math.max(0, share));
+  return cividis(theme === "dark" ? 0.3 + 0.7 * inside : 0.86 * inside);
+};
+
 /** The same as "rgb(...)". */
-export const cividisText = (share) => `rgb(${cividis(share).map((part) => Math.round(255 * part)).join(",")})`;
+export const shadeText = (share, theme) => `rgb(${shadeOf(share, theme).map((part) => Math.round(255 * part)).join(",")})`;
+
+/** The whole scale from left to right. */
+export const shadeGradient = (theme) => `linear-gradient(90deg, ${Array.from({ length: 9 }, (_, i) => shadeText(i / 8, theme)).join(", ")})`;

@@ -44,7 +44,7 @@
  * @property {Signal[]} signals
  */
 
-const HIDDEN_GROUPS = /^\/(comparison|sweep|inputs|budget\/|unfinished)/;
+const HIDDEN_GROUPS = /^\/(comparison|sweep|inputs|bode|parameters|unfinished)/;
 const CASE = /^\/cases\/([^/]+)(\/.*)?$/;
 const MAX_COLUMNS = 9; // of a dataset whose columns are signals
 
@@ -115,7 +115,7 @@ function byScale(group) {
   const scales = new Set(group.datasets.map((dataset) => dataset.scale).filter(Boolean));
   const found = new Map();
   for (const dataset of group.datasets.filter(drawable)) {
-    if (scales.has(baseName(dataset.path))) continue;
+    if (scales.has(baseName(dataset.path)) || (scales.size > 0 && dataset.isScale)) continue;
     const own = group.datasets.some((other) => baseName(other.path) === dataset.scale) ? dataset.scale : "";
     const key = own || `rows ${dataset.shape[0]}`;
     if (!found.has(key)) found.set(key, { scale: own, datasets: [] });
@@ -124,7 +124,8 @@ function byScale(group) {
   return [...found.values()];
 }
 
-function labelOf(path, scale, several) {
+function labelOf({ path, attributes }, scale, several) {
+  if (path.startsWith("/budget/")) return `budget of ${[attributes.case, attributes.quantity, attributes.axis, attributes.sections].filter(Boolean).join(" ")}`;
   const inCase = CASE.exec(path);
   const name = (inCase ? (inCase[2] ?? "") : path).slice(1).replaceAll("/", " › ") || "case";
   return several ? `${name} over ${scale || "rows"}` : name;
@@ -148,7 +149,7 @@ export function familiesOf(results, cases) {
         const key = `${inCase ? `/cases/*${inCase[2] ?? ""}` : group.path}@${scale}`;
         const owner = inCase && cases.find((one) => one.file === result.index && one.name === inCase[1]);
         if (!families.has(key)) {
-          families.set(key, { key, scale, label: labelOf(group.path, scale, parts.length > 1), servo: key === "/cases/*/servo@time", members: [], signals: [] });
+          families.set(key, { key, scale, label: labelOf(group, scale, parts.length > 1), servo: key === "/cases/*/servo@time", members: [], signals: [] });
         }
         const family = families.get(key);
         family.members.push({ file: result.index, path: group.path, case: owner?.id ?? "", label: owner?.label ?? result.name, rows: datasets[0].shape[0] });
@@ -157,7 +158,8 @@ export function familiesOf(results, cases) {
       }
     }
   }
-  return [...families.values()].sort((a, b) => Number(b.servo) - Number(a.servo));
+  const rank = (family) => (family.servo ? 0 : family.scale === "time" ? 1 : 2);
+  return [...families.values()].sort((a, b) => rank(a) - rank(b));
 }
 
 /**

@@ -9,12 +9,21 @@ import { Curve, abscissaSpec, extentWithin, ordinateAt, ordinateSpec } from "./c
 
 const HEIGHT = 210; // pixels
 const FADED = 0.2;
+const PART_DASHES = [[7, 3], [2, 2], [9, 2, 2, 2]]; // of the second signal of a plot and the next ones
+
+/**
+ * @typedef {object} Chosen what a plot shows
+ * @property {string} family
+ * @property {string} signal
+ * @property {number | "norm"} column
+ * @property {{signal: string, column: number | "norm"}[]} [also] signals drawn with it, with other dashes
+ */
 
 export class Plot {
   /**
    * @param {import("../shell/store.js").Store} store
    * @param {import("../data/client.js").Client} client
-   * @param {{family: string, signal: string, column: number | "norm"}} chosen
+   * @param {Chosen} chosen
    * @param {{remove: () => void, bands: () => [number, number][], abscissa: (family: object) => object}} context
    */
   constructor(store, client, chosen, context) {
@@ -38,6 +47,13 @@ export class Plot {
     return this.family?.signals.find((signal) => signal.name === this.chosen.signal);
   }
 
+  /** All signals of the plot with their names, the first one first. */
+  get parts() {
+    const all = [this.chosen, ...(this.chosen.also ?? [])];
+    return all.map(({ signal: name, column }) => ({ signal: this.family.signals.find((one) => one.name === name), column })).filter(({ signal }) => signal)
+      .map(({ signal, column }) => ({ signal, column, name: [words(signal.name), signal.letters[signal.columns.indexOf(column)]].filter(Boolean).join(" ") }));
+  }
+
   /** Baseline member of the family, if differences are shown. */
   get baseline() {
     return this.family?.servo ? this.family.members.find((member) => member.case === this.store.state.baseline) : undefined;
@@ -57,27 +73,27 @@ export class Plot {
   rebuild() {
     if (!this.signal) return;
     this.abscissa = this.context.abscissa(this.family);
-    const letter = this.signal.letters[this.signal.columns.indexOf(this.chosen.column)];
-    this.name = [words(this.signal.name), letter].filter(Boolean).join(" ") + (this.baseline ? ` − ${this.baseline.label} at equal s` : "");
+    const { parts } = this;
+    this.name = parts.map((part) => part.name).join(", ") + (this.baseline ? ` − ${this.baseline.label} at equal s` : "");
     this.title.textContent = withUnit(this.name, this.signal.unit);
     this.title.title = this.signal.label;
     this.area.setAttribute("aria-label", `${this.title.textContent} over ${this.abscissa.label}`);
-    const wanted = new Map(this.members.map((member) => [this.keyOf(member), member]));
+    const wanted = new Map(parts.flatMap((part, index) => this.members.map((member) => [this.keyOf(member, part), { member, part, index }])));
     for (const key of this.curves.keys()) if (!wanted.has(key)) this.curves.delete(key);
-    for (const [key, member] of wanted) {
-      if (!this.curves.has(key)) this.curves.set(key, { member, curve: this.newCurve(member) });
+    for (const [key, one] of wanted) {
+      if (!this.curves.has(key)) this.curves.set(key, { ...one, label: parts.length > 1 ? `${one.member.label} ${one.part.name}` : one.member.label, curve: this.newCurve(one.member, one.part) });
     }
     this.makeChart();
     this.refresh();
   }
 
-  keyOf(member) {
-    return [member.file, member.path, this.abscissa.key, this.baseline?.path, this.baseline?.file].join("|");
+  keyOf(member, { name }) {
+    return [member.file, member.path, name, this.abscissa.key, this.baseline?.path, this.baseline?.file].join("|");
   }
 
-  newCurve(member) {
-    const { family, signal, abscissa } = this;
-    const y = ordinateSpec(family, member, signal, this.chosen.column, this.baseline);
+  newCurve(member, { signal, column }) {
+    const { family, abscissa } = this;
+    const y = ordinateSpec(family, member, signal, column, this.baseline);
     const result = this.store.state.results[member.file];
     const gaps = result.has(`${member.path}/window`) ? { file: member.file, path: `${member.path}/window`, column: 0 } : undefined;
     return new Curve(this.client, { x: abscissaSpec(family, member, abscissa), y, monotone: abscissa.monotone, gaps }, () => this.redraw());
@@ -98,9 +114,10 @@ export class Plot {
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false, bind: { dblclick: () => () => this.store.setRange(this.key, undefined) } },
       hooks: {
         drawAxes: [() => this.drawBands()], draw: [() => this.drawCurves()],
-        setCursor: [(u) => this.moved(u)], setSelect: [(u) => this.selected(u)],
+        setSelect: [(u) => this.selected(u)],
       },
     }, [[0, 1], [0, 1]], this.area);
+    this.u.over.addEventListener("mousemove", (event) => this.moved(event.offsetX));
   }
 
   /** What is seen of the abscissa. @returns {[number, number]} */
@@ -158,11 +175,14 @@ export class Plot {
     }
   }
 
-  lookOf(member) {
-    const { cases, families, theme, highlight } = this.store.state;
-    const index = member.case ? cases.findIndex((one) => one.id === member.case) : this.family.members.indexOf(member) + (families.length > 0 ? 1 : 0);
+  lookOf({ member, index: part }) {
+    const { cases, theme, highlight } = this.store.state;
+    // Signals without cases have the colours for themselves.
+    const alone = !member.case && this.family.members.length === 1;
+    const index = member.case ? cases.findIndex((one) => one.id === member.case) : this.family.members.indexOf(member) + (alone ? part : 0) + 1;
     const faded = highlight && member.case && highlight.cases.size > 0 && !highlight.cases.has(member.case);
-    return { ...lookOf(index, theme), opacity: faded ? FADED : 1, width: highlight && !faded ? 2 : 1.25 };
+    const look = lookOf(index, theme);
+    return { ...look, dash: part > 0 && !alone ? PART_DASHES[(part - 1) % PART_DASHES.length] : look.dash, opacity: faded ? FADED : 1, width: highlight && !faded ? 2 : 1.25 };
   }
 
   drawBands() {
@@ -184,9 +204,9 @@ export class Plot {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.lineJoin = "round";
-    for (const { member, curve } of this.curves.values()) {
-      const points = curve.points(this.store.state.ranges[this.key]);
-      if (points) this.stroke(points, this.lookOf(member));
+    for (const one of this.curves.values()) {
+      const points = one.curve.points(this.store.state.ranges[this.key]);
+      if (points) this.stroke(points, this.lookOf(one));
     }
     ctx.restore();
   }
@@ -220,9 +240,8 @@ export class Plot {
     return [low - factor * min, factor];
   }
 
-  moved(u) {
-    if (this.moving || u.cursor.left === undefined || u.cursor.left < 0) return;
-    this.store.set({ cursor: { key: this.key, value: u.posToVal(u.cursor.left, "x") } });
+  moved(left) {
+    this.store.set({ cursor: { key: this.key, value: this.u.posToVal(left, "x") } });
   }
 
   selected(u) {
@@ -259,19 +278,18 @@ export class Plot {
   showCursor() {
     const { cursor } = this.store.state;
     const shown = cursor?.key === this.key;
-    this.moving = true;
     if (shown) this.u.setCursor({ left: this.u.valToPos(cursor.value, "x"), top: 10 }, false);
-    this.moving = false;
     this.showValues(shown ? cursor.value : undefined);
   }
 
   showValues(at) {
-    this.readout.replaceChildren(...[...this.curves.values()].map(({ member, curve }) => {
-      const look = this.lookOf(member);
+    this.readout.replaceChildren(...[...this.curves.values()].map((one) => {
+      const { label, member, curve } = one;
+      const look = this.lookOf(one);
       const points = curve.points(this.store.state.ranges[this.key]);
       const value = at !== undefined && this.abscissa.monotone && points ? ` ${short(ordinateAt(points, at))} ${unitText(this.signal.unit)}` : "";
       return html("span", { class: curve.fault ? "fault" : "", title: curve.fault ?? member.label, style: `--colour: ${look.colour}; opacity: ${look.opacity === 1 ? 1 : 0.5}` },
-        html("i"), `${member.label || member.path}${value}`, curve.fault ? ` ${curve.fault}` : "");
+        html("i"), `${label || member.path}${value}`, curve.fault ? ` ${curve.fault}` : "");
     }));
   }
 
@@ -280,9 +298,9 @@ export class Plot {
     const state = this.store.state;
     const [min, max] = this.range();
     const [low, high] = this.yRange();
-    const lines = [...this.curves.values()].flatMap(({ member, curve }) => {
-      const points = curve.points(state.ranges[this.key]);
-      return points ? [{ ...this.lookOf(member), label: member.label, x: points.x, y: points.y, exact: points.exact }] : [];
+    const lines = [...this.curves.values()].flatMap((one) => {
+      const points = one.curve.points(state.ranges[this.key]);
+      return points ? [{ ...this.lookOf(one), label: one.label, x: points.x, y: points.y, exact: points.exact }] : [];
     });
     return {
       title: this.title.textContent, width, height: 260, lines, bands: this.context.bands(this),

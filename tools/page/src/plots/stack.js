@@ -47,15 +47,26 @@ export class PlotStack {
       this.element.append(plot.element);
       plot.resize();
     }
+    const ordered = [...wanted.keys()].map((key) => this.plots.get(key).element);
+    if (ordered.some((element, i) => this.element.children[i + 1] !== element)) this.element.append(...ordered);
     this.empty.hidden = this.plots.size > 0;
   }
 
-  /** Adds a plot, or removes it. */
-  toggle(chosen) {
-    const key = JSON.stringify(chosen);
+  /**
+   * Shows a signal in a plot of its own, or removes it from where it is.
+   * @param {{family: string, signal: string, column: number | "norm"}} chosen
+   * @param {boolean} [together] in the last plot of its family instead
+   */
+  toggle(chosen, together = false) {
     const { plots } = this.store.state;
-    const rest = plots.filter((one) => JSON.stringify(one) !== key);
-    this.store.set({ plots: rest.length < plots.length ? rest : [...plots, chosen] });
+    const same = (one) => one.signal === chosen.signal && one.column === chosen.column;
+    const owner = plots.find((plot) => plot.family === chosen.family && [plot, ...(plot.also ?? [])].some(same));
+    const host = together ? plots.findLast((plot) => plot.family === chosen.family) : undefined;
+    const replace = (plot, also) => plots.map((one) => (one === plot ? { family: plot.family, signal: plot.signal, column: plot.column, ...(also.length ? { also } : {}) } : one));
+    if (owner && same(owner)) this.store.set({ plots: plots.filter((one) => one !== owner) });
+    else if (owner) this.store.set({ plots: replace(owner, owner.also.filter((one) => !same(one))) });
+    else if (host) this.store.set({ plots: replace(host, [...(host.also ?? []), { signal: chosen.signal, column: chosen.column }]) });
+    else this.store.set({ plots: [...plots, chosen] });
   }
 
   /** What the curves of a family are drawn over. Differences are over s unless over time or s already. */

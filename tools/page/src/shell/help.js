@@ -8,6 +8,7 @@ const SHORTCUTS = [
   ["Z", "zoom to the highlighted sections"], ["Esc", "end the highlight"],
   ["← →", "move the cursor (with Shift: ten steps)"], ["Home, End", "cursor to the left, right end"],
   ["+ − 0", "zoom in, out, show all"], [", .", "move to the left, right"], ["Del", "remove the plot that has the focus"],
+  ["Shift + a signal", "draw it in the last plot, too"],
 ];
 
 const POINTER = [

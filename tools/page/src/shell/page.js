@@ -20,12 +20,12 @@ export class Page {
   constructor(root) {
     this.root = root;
     this.store = new Store();
+    followTheme(this.store); // first, for the others to draw with its colours
     this.client = new Client((progress) => this.showProgress(progress));
     this.client.onFault = (text) => this.say(text);
     this.stack = new PlotStack(this.store, this.client);
-    this.sidebar = new Sidebar(this.store, { toggle: (chosen) => { this.main.open("Signals"); this.stack.toggle(chosen); }, close: (file) => this.close(file) });
+    this.sidebar = new Sidebar(this.store, { toggle: (chosen, together) => { this.main.open("Signals"); this.stack.toggle(chosen, together); }, close: (file) => this.close(file) });
     this.build();
-    followTheme(this.store);
     this.store.on(["families", "abscissa", "baseline", "cases"], () => this.showChoices());
     this.store.on(["results", "families"], () => this.showViews());
   }
@@ -51,7 +51,6 @@ export class Page {
     this.side.element.classList.add("right");
     this.work.append(this.main.element, this.side.element, this.mainArea, this.sideArea);
     this.root.append(top, this.message, this.sidebar.element, this.work);
-    this.root.style.gridTemplateRows = "auto auto minmax(0, 1fr)";
     this.welcome();
     this.listen();
   }
@@ -117,6 +116,7 @@ export class Page {
     }
     this.statusText.textContent = "";
     this.say(faults.join("\n"));
+    this.opened = true;
     this.adopt(results);
   }
 
@@ -162,6 +162,9 @@ export class Page {
       return;
     }
     this.main.update();
+    const special = { sweep: "Sweep", budget: "Budget", bode: "Bode" }[this.store.state.results.filter(Boolean).at(-1).attributes.kind];
+    if (special && this.opened) this.main.open(special);
+    this.opened = false;
     this.side.update();
     this.showSide(this.main.current);
   }

@@ -5,6 +5,8 @@ import { button, html } from "./dom.js";
 
 const OPEN_SIGNALS = 40; // a family with more signals begins folded, unless it is that of the run
 
+const keyOf = (family, { signal, column }) => `${family}|${signal}|${column}`;
+
 export class Sidebar {
   /** @param {import("./store.js").Store} store @param {{toggle: (chosen: object) => void, close: (file: number) => void}} actions */
   constructor(store, actions) {
@@ -57,7 +59,7 @@ export class Sidebar {
 
   showSignals() {
     const wanted = this.filter.value.trim().toLowerCase();
-    const chosen = new Set(this.store.state.plots.map((plot) => JSON.stringify(plot)));
+    const chosen = new Set(this.store.state.plots.flatMap((plot) => [plot, ...(plot.also ?? [])].map((one) => keyOf(plot.family, one))));
     const focused = document.activeElement?.dataset?.signal;
     this.signals.replaceChildren(...this.store.state.families.map((family) => this.familyElement(family, wanted, chosen)).filter(Boolean));
     if (focused) this.signals.querySelector(`[data-signal="${CSS.escape(focused)}"]`)?.focus();
@@ -78,9 +80,9 @@ export class Sidebar {
     const buttons = signal.columns.map((column, i) => {
       const one = { family: family.key, signal: signal.name, column };
       const name = signal.letters[i];
-      const pressed = chosen.has(JSON.stringify(one));
-      return button(name || withUnit(signal.name, signal.unit), `${signal.label}${name ? `, ${name}` : ""}`, () => this.actions.toggle(one),
-        { class: "signal", "aria-pressed": pressed, "data-signal": `${family.key}|${signal.name}|${column}`, "aria-label": `${signal.name} ${name}`.trim() });
+      const pressed = chosen.has(keyOf(family.key, one));
+      return button(name || withUnit(signal.name, signal.unit), `${signal.label}${name ? `, ${name}` : ""} (Shift: into the last plot)`, (event) => this.actions.toggle(one, event.shiftKey),
+        { class: "signal", "aria-pressed": String(pressed), "data-signal": keyOf(family.key, one), "aria-label": `${signal.name} ${name}`.trim() });
     });
     if (signal.letters[0] === "") return html("li", {}, ...buttons);
     return html("li", { class: "vector" }, html("span", { title: signal.label }, withUnit(signal.name, signal.unit)), html("span", {}, ...buttons));

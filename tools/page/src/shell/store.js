@@ -9,7 +9,7 @@
  * @property {string} abscissa key of that of the servo signals
  * @property {Record<string, [number, number] | undefined>} ranges what is seen of each abscissa; all without
  * @property {{key: string, value: number} | undefined} cursor
- * @property {{family: string, signal: string, column: number | "norm"}[]} plots
+ * @property {import("../plots/plot.js").Chosen[]} plots
  * @property {string} baseline id of the case that the others are compared with, "" for the signals themselves
  * @property {{cases: Set<string>, sections: Set<string>, line: string} | undefined} highlight
  * @property {"light" | "dark"} theme

@@ -51,11 +51,11 @@ function cutAt(intervals, gaps) {
 function addBuckets(points, [from, to], level, xLevel) {
   const last = Math.min(level.min.length, Math.ceil(to / level.size));
   for (let i = Math.floor(from / level.size); i < last; ++i) {
+    // From the end that is nearer to the bucket before: exact where the curve rises or falls all through it.
     const rising = i === 0 || !(Math.abs(level.min[i] - points.y.at(-1)) > Math.abs(level.max[i] - points.y.at(-1)));
     points.add(xLevel.min[i], rising ? level.min[i] : level.max[i]);
-    points.add(xLevel.min[i], rising ? level.max[i] : level.min[i]);
+    points.add(xLevel.max[i], rising ? level.max[i] : level.min[i]);
   }
-  if (last > 0) points.add(xLevel.max[last - 1], points.y.at(-1));
 }
 
 function addRows(points, [from, to], x, y) {
@@ -117,7 +117,7 @@ export async function curve(columns, { x, y, monotone, gaps, range, pixels }) {
     return { ...points.arrays(), rows, exact: step === 1, extent };
   }
   const yPyramid = await columns.pyramid(y);
-  const level = levelFor(yPyramid, rows, pixels);
+  const level = levelFor(yPyramid, rows, 2 * pixels) ?? yPyramid.levels[0];
   const xLevel = xPyramid.levels.find((one) => one.size === level.size);
   for (const interval of intervals) {
     points.lift();

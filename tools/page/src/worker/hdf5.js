@@ -15,13 +15,13 @@ let mounted = 0;
  * @property {number[]} shape
  * @property {boolean} numeric
  * @property {Record<string, any>} attributes
+ * @property {boolean} isScale marked as an abscissa of others, which there need not be
  * @property {string} scale name of the dataset that is its abscissa, "" if it has none
  */
 
 /** @typedef {{path: string, attributes: Record<string, any>, groups: string[], datasets: DatasetNode[]}} GroupNode */
 
-function attributeValue(attribute) {
-  const value = attribute.value;
+function attributeValue(value) {
   if (typeof value === "bigint") return Number(value);
   if (typeof value === "string") return value;
   if (value && value.length === 1) return attributeNumber(value[0]);
@@ -32,9 +32,9 @@ const attributeNumber = (value) => (typeof value === "bigint" ? Number(value) : 
 
 function attributesOf(node) {
   const out = {};
-  for (const [name, attribute] of Object.entries(node.attrs)) {
+  for (const name of Object.keys(node.attrs)) {
     if (INTERNAL.has(name)) continue;
-    const value = attributeValue(attribute);
+    const value = attributeValue(node.get_attribute(name));
     out[name] = typeof value === "string" && value.length > LONG_TEXT && name !== "sections" && name !== "values" ? undefined : value;
   }
   return out;
@@ -98,7 +98,9 @@ export class ResultFile {
   datasetNode(dataset, path) {
     const { shape, type } = dataset.metadata;
     const scales = shape?.length > 0 ? dataset.get_attached_scales(0) : [];
+    const isScale = Object.keys(dataset.attrs).includes("CLASS");
     return {
+      isScale,
       path,
       shape: shape ?? [],
       numeric: type === 0 || type === 1, // H5T_INTEGER, H5T_FLOAT
@@ -118,7 +120,7 @@ export class ResultFile {
 
   /** Text of an attribute too long for the tree. */
   attribute(path, name) {
-    return attributeValue(this.file.get(path).attrs[name]);
+    return attributeValue(this.file.get(path).get_attribute(name));
   }
 
   /** Rows of one chunk of a dataset, or all of them. */

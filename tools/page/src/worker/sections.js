@@ -126,8 +126,5 @@ export async function circle(columns, { file, servo, pass }) {
   const actual = await read("tool_position_true");
   const found = radialDeviation(actual[first], actual[second], plane.circle.radius);
   if (!found) return undefined;
-  const cross = (i, j) => (nominal[first][i] - plane.circle.cx) * (nominal[second][j] - plane.circle.cy)
-    - (nominal[second][i] - plane.circle.cy) * (nominal[first][j] - plane.circle.cx);
-  const near = Math.min(5, nominal[first].length - 1);
-  return { plane: "XYZ"[first] + "XYZ"[second], nominalRadius: plane.circle.radius, sense: Math.sign(cross(0, near)), ...found };
+  return { plane: "XYZ"[first] + "XYZ"[second], nominalRadius: plane.circle.radius, sense: Math.sign(plane.angle), ...found };
 }

@@ -1,4 +1,5 @@
 /** Requests of the page: {id, method, args} is answered by {id, result} or {id, fault}. */
+import { rangeOf } from "../core/pyramid.js";
 import { Columns } from "./columns.js";
 import { curve, rowAt, valuesAt } from "./curves.js";
 import { ResultFile } from "./hdf5.js";
@@ -42,6 +43,7 @@ const methods = {
   attribute: (file, path_, name) => fileOf(file).attribute(path_, name),
   column: (file, path_, column) => fileOf(file).read(path_, column, 0, fileOf(file).dataset(path_).shape[0]),
   curve: (request) => curve(columns, request),
+  range: async (spec) => rangeOf(await columns.pyramid(spec)),
   rowAt: (spec, value) => rowAt(columns, spec, value),
   valuesAt: (request) => valuesAt(columns, request),
   sections: (request) => sections(columns, request),
