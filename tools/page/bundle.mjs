@@ -12,14 +12,28 @@ const folder = resolve(process.argv[2]);
 const packages = join(folder, "node_modules");
 const { build } = createRequire(join(folder, "package.json"))("esbuild");
 
-const LICENCES = [["h5wasm", "LICENSE.txt"], ["uplot", "LICENSE"], ["three", "LICENSE"]];
+const LICENCES = [
+  ["h5wasm", "LICENSE.txt"],
+  ["uplot", "LICENSE"],
+  ["three", "LICENSE"],
+];
 
 async function bundle(entry, more = {}) {
   const { outputFiles } = await build({
-    entryPoints: [join(here, "src", entry)], bundle: true, write: false, format: "iife", target: "es2022", minify: true,
+    entryPoints: [join(here, "src", entry)],
+    bundle: true,
+    write: false,
+    format: "iife",
+    target: "es2022",
+    minify: true,
     // Charset utf8 keeps texts readable; the library's branches for node are never taken in a browser.
-    charset: "utf8", legalComments: "none", nodePaths: [packages], logLevel: "warning", external: ["node:*", "module"],
-    define: { "import.meta.url": '""' }, ...more,
+    charset: "utf8",
+    legalComments: "none",
+    nodePaths: [packages],
+    logLevel: "warning",
+    external: ["node:*", "module"],
+    define: { "import.meta.url": '""' },
+    ...more,
   });
   return outputFiles[0].text;
 }
@@ -28,7 +42,9 @@ function licences() {
   return LICENCES.map(([name, file]) => {
     const { version } = JSON.parse(readFileSync(join(packages, name, "package.json"), "utf8"));
     return `${name} ${version}\n\n${readFileSync(join(packages, name, file), "utf8").trim()}`;
-  }).concat(`servomill\n\n${readFileSync(join(here, "../../LICENSE"), "utf8").trim()}`).join(`\n\n${"-".repeat(80)}\n\n`);
+  })
+    .concat(`servomill\n\n${readFileSync(join(here, "../../LICENSE"), "utf8").trim()}`)
+    .join(`\n\n${"-".repeat(80)}\n\n`);
 }
 
 /** A text inside of a script element ends at the first "</script". */

@@ -22,7 +22,11 @@ function solve3(a, b) {
 
 /** Change of centre and radius of one step of Gauss and Newton. */
 function correction(x, y, { cx, cy, radius }) {
-  const a = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
+  const a = [
+    [0, 0, 0],
+    [0, 0, 0],
+    [0, 0, 0],
+  ];
   const b = [0, 0, 0];
   for (let i = 0; i < x.length; ++i) {
     const dx = x[i] - cx;

@@ -33,7 +33,7 @@ function atFraction(values, from, to, fraction) {
 export function differenceAtEqualS(s, values, sBase, base) {
   const out = new Float64Array(s.length).fill(NaN);
   let at = 0; // the last row of the baseline that is not beyond s
-  for (let row = 0; row < s.length; ) {
+  for (let row = 0; row < s.length;) {
     const end = endOfStandstill(s, row);
     while (at < sBase.length && sBase[at] < s[row] - STANDSTILL) ++at;
     if (at === sBase.length) break;

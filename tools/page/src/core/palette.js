@@ -22,8 +22,18 @@ export function lookOf(index, theme) {
   };
 }
 
-const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"]
-  .map((hex) => [1, 3, 5].map((i) => Number.parseInt(hex.slice(i, i + 2), 16) / 255));
+const CIVIDIS = [
+  "#00224e",
+  "#123570",
+  "#3b496c",
+  "#575d6d",
+  "#707173",
+  "#8a8678",
+  "#a59c74",
+  "#c3b369",
+  "#e1cc55",
+  "#fee838",
+].map((hex) => [1, 3, 5].map((i) => Number.parseInt(hex.slice(i, i + 2), 16) / 255));
 
 /**
  * Colour of a share between 0 and 1.
@@ -46,7 +56,11 @@ export const shadeOf = (share, theme) => {
 };
 
 /** The same as "rgb(...)". */
-export const shadeText = (share, theme) => `rgb(${shadeOf(share, theme).map((part) => Math.round(255 * part)).join(",")})`;
+export const shadeText = (share, theme) =>
+  `rgb(${shadeOf(share, theme)
+    .map((part) => Math.round(255 * part))
+    .join(",")})`;
 
 /** The whole scale from left to right. */
-export const shadeGradient = (theme) => `linear-gradient(90deg, ${Array.from({ length: 9 }, (_, i) => shadeText(i / 8, theme)).join(", ")})`;
+export const shadeGradient = (theme) =>
+  `linear-gradient(90deg, ${Array.from({ length: 9 }, (_, i) => shadeText(i / 8, theme)).join(", ")})`;

@@ -49,7 +49,7 @@ export class PyramidBuilder {
   push(values) {
     if (this.row + values.length > this.rows) throw new RangeError("more values than rows");
     const { min, max } = this.level;
-    for (let i = 0; i < values.length; ) {
+    for (let i = 0; i < values.length;) {
       const bucket = Math.floor(this.row / BUCKET);
       const end = Math.min(values.length, i + (bucket + 1) * BUCKET - this.row);
       let low = min[bucket];

@@ -36,7 +36,13 @@ export function short(value, digits = 4) {
   if (value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e6)) return minus(value.toExponential(Math.max(0, digits - 1)).replace(/\.?0+e/, "e").replace("e+", "e"));
+  if (size !== 0 && (size < 1e-4 || size >= 1e6))
+    return minus(
+      value
+        .toExponential(Math.max(0, digits - 1))
+        .replace(/\.?0+e/, "e")
+        .replace("e+", "e"),
+    );
   return minus(String(Number(value.toPrecision(digits))));
 }
 
@@ -48,6 +54,8 @@ export function tickTexts(ticks) {
   const step = Math.abs(ticks[1] - ticks[0]);
   const largest = Math.max(...ticks.map(Math.abs));
   if (largest >= 1e6 || largest < 1e-4) return ticks.map((tick) => short(tick, 3));
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  return ticks.map((tick) => minus(tick.toFixed(Math.min(decimals, 12))));
+  let decimals = 0;
+  while (decimals < 12 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 * step * 10 ** decimals)
+    ++decimals;
+  return ticks.map((tick) => minus(tick.toFixed(decimals)));
 }

@@ -15,5 +15,9 @@ export function cursorScale(state) {
  */
 export function valuesAtCursor(client, one, cursor, columns) {
   const spec = (name, column) => ({ file: one.file, path: `${one.servo}/${name}`, column });
-  return client.ask("valuesAt", { x: spec(cursor.key, 0), ys: columns.map(([name, column]) => spec(name, column)), at: cursor.value });
+  return client.ask("valuesAt", {
+    x: spec(cursor.key, 0),
+    ys: columns.map(([name, column]) => spec(name, column)),
+    at: cursor.value,
+  });
 }

@@ -81,16 +81,23 @@ const baseName = (path) => path.slice(path.lastIndexOf("/") + 1);
 /** @param {Result[]} results @returns {Case[]} */
 export function casesOf(results) {
   const several = results.filter((result) => result.has("/cases")).length > 1;
-  return results.flatMap((result) => result.below("/cases").map((group) => {
-    const name = baseName(group.path);
-    const { sections = "", finished = 1, outcome = "" } = group.attributes;
-    return {
-      id: `${result.index}:${name}`, file: result.index, name, path: group.path,
-      label: several ? `${name} (${result.name})` : name,
-      servo: result.has(`${group.path}/servo/time`) ? `${group.path}/servo` : "",
-      sections: String(sections).split("\n"), finished: Boolean(finished), outcome,
-    };
-  }));
+  return results.flatMap((result) =>
+    result.below("/cases").map((group) => {
+      const name = baseName(group.path);
+      const { sections = "", finished = 1, outcome = "" } = group.attributes;
+      return {
+        id: `${result.index}:${name}`,
+        file: result.index,
+        name,
+        path: group.path,
+        label: several ? `${name} (${result.name})` : name,
+        servo: result.has(`${group.path}/servo/time`) ? `${group.path}/servo` : "",
+        sections: String(sections).split("\n"),
+        finished: Boolean(finished),
+        outcome,
+      };
+    }),
+  );
 }
 
 function columnsOf(dataset) {
@@ -99,7 +106,9 @@ function columnsOf(dataset) {
   const letters = String(dataset.attributes.columns ?? "");
   const names = Array.from({ length: width }, (_, i) => letters[i] ?? String(i + 1));
   const columns = Array.from({ length: width }, (_, i) => i);
-  return width > 1 && letters.startsWith("XYZ") ? { columns: [...columns, "norm"], letters: [...names, "‖·‖"] } : { columns, letters: names };
+  return width > 1 && letters.startsWith("XYZ")
+    ? { columns: [...columns, "norm"], letters: [...names, "‖·‖"] }
+    : { columns, letters: names };
 }
 
 function signalOf(dataset) {
@@ -107,8 +116,12 @@ function signalOf(dataset) {
   return { name: baseName(dataset.path), label: channel || label, unit: units, ...columnsOf(dataset) };
 }
 
-const drawable = (dataset) => dataset.numeric && dataset.shape.length > 0 && dataset.shape.length <= 2
-  && dataset.shape[0] > 1 && (dataset.shape[1] ?? 1) <= MAX_COLUMNS;
+const drawable = (dataset) =>
+  dataset.numeric &&
+  dataset.shape.length > 0 &&
+  dataset.shape.length <= 2 &&
+  dataset.shape[0] > 1 &&
+  (dataset.shape[1] ?? 1) <= MAX_COLUMNS;
 
 /** Datasets of a group by their abscissa. */
 function byScale(group) {
@@ -125,7 +138,8 @@ function byScale(group) {
 }
 
 function labelOf({ path, attributes }, scale, several) {
-  if (path.startsWith("/budget/")) return `budget of ${[attributes.case, attributes.quantity, attributes.axis, attributes.sections].filter(Boolean).join(" ")}`;
+  if (path.startsWith("/budget/"))
+    return `budget of ${[attributes.case, attributes.quantity, attributes.axis, attributes.sections].filter(Boolean).join(" ")}`;
   const inCase = CASE.exec(path);
   const name = (inCase ? (inCase[2] ?? "") : path).slice(1).replaceAll("/", " › ") || "case";
   return several ? `${name} over ${scale || "rows"}` : name;
@@ -149,10 +163,23 @@ export function familiesOf(results, cases) {
         const key = `${inCase ? `/cases/*${inCase[2] ?? ""}` : group.path}@${scale}`;
         const owner = inCase && cases.find((one) => one.file === result.index && one.name === inCase[1]);
         if (!families.has(key)) {
-          families.set(key, { key, scale, label: labelOf(group, scale, parts.length > 1), servo: key === "/cases/*/servo@time", members: [], signals: [] });
+          families.set(key, {
+            key,
+            scale,
+            label: labelOf(group, scale, parts.length > 1),
+            servo: key === "/cases/*/servo@time",
+            members: [],
+            signals: [],
+          });
         }
         const family = families.get(key);
-        family.members.push({ file: result.index, path: group.path, case: owner?.id ?? "", label: owner?.label ?? result.name, rows: datasets[0].shape[0] });
+        family.members.push({
+          file: result.index,
+          path: group.path,
+          case: owner?.id ?? "",
+          label: owner?.label ?? result.name,
+          rows: datasets[0].shape[0],
+        });
         const known = new Set(family.signals.map((signal) => signal.name));
         family.signals.push(...datasets.map(signalOf).filter((signal) => !known.has(signal.name)));
       }
@@ -178,7 +205,8 @@ export function abscissaeOf(family, results) {
     const dataset = results[member.file]?.dataset(`${member.path}/${name}`);
     if (!dataset) continue;
     columnsOf(dataset).letters.forEach((letter, column) => {
-      if (letter !== "‖·‖") out.push({ key: letter, name, column, label: `position of ${letter}`, unit: dataset.attributes.units, monotone: false });
+      if (letter !== "‖·‖")
+        out.push({ key: letter, name, column, label: `position of ${letter}`, unit: dataset.attributes.units, monotone: false });
     });
   }
   return out.filter((one) => results[member.file].dataset(`${member.path}/${one.name}`));
@@ -190,10 +218,18 @@ export function abscissaeOf(family, results) {
 /** Lines of the comparison of a file, without their values. @returns {ComparisonLine[]} */
 export function comparisonOf(result) {
   return result.below("/comparison").map((group) => ({
-    file: result.index, number: baseName(group.path), path: `${group.path}/value`,
-    quantity: group.attributes.quantity ?? "", axis: group.attributes.axis ?? "", statistic: group.attributes.statistic ?? "",
-    sections: String(group.attributes.sections ?? "").split(", ").filter(Boolean), case: group.attributes.case ?? "",
-    reference: group.attributes.reference ?? "", basis: group.attributes.basis ?? "",
+    file: result.index,
+    number: baseName(group.path),
+    path: `${group.path}/value`,
+    quantity: group.attributes.quantity ?? "",
+    axis: group.attributes.axis ?? "",
+    statistic: group.attributes.statistic ?? "",
+    sections: String(group.attributes.sections ?? "")
+      .split(", ")
+      .filter(Boolean),
+    case: group.attributes.case ?? "",
+    reference: group.attributes.reference ?? "",
+    basis: group.attributes.basis ?? "",
     unit: result.dataset(`${group.path}/value`)?.attributes.units ?? "",
   }));
 }

@@ -21,14 +21,23 @@ function shortLabel(label) {
 /** @returns {Promise<{columns: SweepColumn[], points: number, done: boolean[]}>} */
 export async function loadSweep(client, result) {
   const group = result.groups.get("/sweep");
-  const wanted = group.datasets.filter((dataset) => dataset.numeric && ["parameter", "quantity"].includes(dataset.attributes.role));
-  const columns = await Promise.all(wanted.map(async (dataset) => {
-    const { role, units = "", values: lines, long_name: label = "" } = dataset.attributes;
-    return {
-      name: baseName(dataset.path), label: shortLabel(label || baseName(dataset.path)), unit: units, role, case: dataset.attributes.case ?? "",
-      values: await client.ask("values", result.index, dataset.path), texts: lines ? String(lines).split("\n") : undefined,
-    };
-  }));
+  const wanted = group.datasets.filter(
+    (dataset) => dataset.numeric && ["parameter", "quantity"].includes(dataset.attributes.role),
+  );
+  const columns = await Promise.all(
+    wanted.map(async (dataset) => {
+      const { role, units = "", values: lines, long_name: label = "" } = dataset.attributes;
+      return {
+        name: baseName(dataset.path),
+        label: shortLabel(label || baseName(dataset.path)),
+        unit: units,
+        role,
+        case: dataset.attributes.case ?? "",
+        values: await client.ask("values", result.index, dataset.path),
+        texts: lines ? String(lines).split("\n") : undefined,
+      };
+    }),
+  );
   const status = result.has("/sweep/status") ? await client.ask("values", result.index, "/sweep/status") : [];
   return { columns, points: columns[0]?.values.length ?? 0, done: Array.from(status, (value) => value === 1) };
 }
@@ -53,4 +62,4 @@ export function varying(columns) {
 }
 
 /** Text of a value of a column. */
-export const textOf = (column, value, format) => (column.texts ? column.texts[value] ?? "" : format(value));
+export const textOf = (column, value, format) => (column.texts ? (column.texts[value] ?? "") : format(value));

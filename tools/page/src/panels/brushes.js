@@ -23,16 +23,25 @@ export class Brushes {
   /** Rows within all brushes. */
   chosen(rows) {
     const columns = this.scales.map((axis) => axis.column);
-    const within = (row) => [...this.intervals].every(([name, [low, high]]) => {
-      const value = columns.find((one) => one.name === name)?.values[row];
-      return value === undefined || (value >= low && value <= high);
-    });
+    const within = (row) =>
+      [...this.intervals].every(([name, [low, high]]) => {
+        const value = columns.find((one) => one.name === name)?.values[row];
+        return value === undefined || (value >= low && value <= high);
+      });
     return new Set(rows.filter(within));
   }
 
   drawing(columns, rows, width, look) {
     this.scales = parallelScales(columns, width, HEIGHT);
-    return parallelDrawing({ scales: this.scales, rows, chosen: this.chosen(rows), brushes: this.intervals, width, height: HEIGHT, ...look });
+    return parallelDrawing({
+      scales: this.scales,
+      rows,
+      chosen: this.chosen(rows),
+      brushes: this.intervals,
+      width,
+      height: HEIGHT,
+      ...look,
+    });
   }
 
   /** Column and its two limits, for those who do not drag. */
@@ -40,15 +49,29 @@ export class Brushes {
     const axis = this.scales.find((one) => one.column.name === this.column) ?? this.scales[0];
     if (!axis) return html("span");
     const [low, high] = this.intervals.get(axis.column.name) ?? [axis.min, axis.max];
-    const limit = (label, value, index) => html("input", {
-      type: "number", step: "any", value: Number(value.toPrecision(6)), "aria-label": label, "data-brush": label, style: "width: 90px",
-      onchange: (event) => {
-        const limits = [low, high];
-        limits[index] = Number(event.target.value);
-        this.set(axis, limits);
+    const limit = (label, value, index) =>
+      html("input", {
+        type: "number",
+        step: "any",
+        value: Number(value.toPrecision(6)),
+        "aria-label": label,
+        "data-brush": label,
+        style: "width: 90px",
+        onchange: (event) => {
+          const limits = [low, high];
+          limits[index] = Number(event.target.value);
+          this.set(axis, limits);
+        },
+      });
+    const choice = select(
+      "",
+      this.scales.map((one) => [one.column.name, one.column.label]),
+      axis.column.name,
+      (name) => {
+        this.column = name;
+        this.onChange();
       },
-    });
-    const choice = select("", this.scales.map((one) => [one.column.name, one.column.label]), axis.column.name, (name) => { this.column = name; this.onChange(); });
+    );
     return html("span", {}, choice, " from ", limit("least", low, 0), " to ", limit("greatest", high, 1));
   }
 

@@ -9,7 +9,10 @@ const NOT_A_CAUSE = new Set(["s", "residual"]);
 const ROW = 30; // pixels
 const LEFT = 300;
 const FONT = { "font-family": "system-ui, sans-serif", "font-size": 11 };
-const CHOICES = [["at_place", "where the residual is largest"], ["rms", "rms along the path"]];
+const CHOICES = [
+  ["at_place", "where the residual is largest"],
+  ["rms", "rms along the path"],
+];
 const text = (x, y, content, more) => svg("text", { x, y, ...FONT, ...more }, content);
 
 /**
@@ -54,7 +57,12 @@ export class BudgetView {
   show() {
     this.seen = true;
     this.budgets = this.store.state.results.filter(Boolean).flatMap(budgetsOf);
-    this.controls.replaceChildren(select("parts", CHOICES, this.kind, (kind) => { this.kind = kind; this.draw(); }));
+    this.controls.replaceChildren(
+      select("parts", CHOICES, this.kind, (kind) => {
+        this.kind = kind;
+        this.draw();
+      }),
+    );
     this.draw();
   }
 
@@ -72,7 +80,13 @@ export class BudgetView {
 
   /** One drawing for each unit. */
   drawings(width) {
-    return [...new Set(this.budgets.map((budget) => budget.unit))].map((unit) => this.bars(this.budgets.filter((budget) => budget.unit === unit), unit, width));
+    return [...new Set(this.budgets.map((budget) => budget.unit))].map((unit) =>
+      this.bars(
+        this.budgets.filter((budget) => budget.unit === unit),
+        unit,
+        width,
+      ),
+    );
   }
 
   bars(budgets, unit, width) {
@@ -86,11 +100,29 @@ export class BudgetView {
     const ticks = linearTicks(low, high, 8);
     const texts = tickTexts(ticks);
     const bottom = top + ROW * budgets.length;
-    return svg("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "Budgets" },
-      svg("rect", { width, height, fill: colours.paper }), this.hatches(colours), legend.group,
-      ...ticks.flatMap((tick, i) => [svg("line", { x1: place(tick), x2: place(tick), y1: top, y2: bottom, stroke: tick === 0 ? colours.faint : colours.grid }), text(place(tick), bottom + 16, texts[i], { fill: colours.ink, "text-anchor": "middle" })]),
-      text((LEFT + width) / 2, bottom + 32, `${CHOICES.find(([key]) => key === this.kind)[1]} (${unitText(unit)})`, { fill: colours.ink, "text-anchor": "middle" }),
-      ...budgets.map((budget, i) => this.bar(budget, top + i * ROW, place, colours)));
+    return svg(
+      "svg",
+      {
+        xmlns: "http://www.w3.org/2000/svg",
+        width,
+        height,
+        viewBox: `0 0 ${width} ${height}`,
+        role: "img",
+        "aria-label": "Budgets",
+      },
+      svg("rect", { width, height, fill: colours.paper }),
+      this.hatches(colours),
+      legend.group,
+      ...ticks.flatMap((tick, i) => [
+        svg("line", { x1: place(tick), x2: place(tick), y1: top, y2: bottom, stroke: tick === 0 ? colours.faint : colours.grid }),
+        text(place(tick), bottom + 16, texts[i], { fill: colours.ink, "text-anchor": "middle" }),
+      ]),
+      text((LEFT + width) / 2, bottom + 32, `${CHOICES.find(([key]) => key === this.kind)[1]} (${unitText(unit)})`, {
+        fill: colours.ink,
+        "text-anchor": "middle",
+      }),
+      ...budgets.map((budget, i) => this.bar(budget, top + i * ROW, place, colours)),
+    );
   }
 
   bar(budget, y, place, colours) {
@@ -101,12 +133,30 @@ export class BudgetView {
       if (value >= 0) positive += value;
       else negative += value;
       const [a, b] = [place(from), place(from + value)].sort((p, q) => p - q);
-      return svg("rect", { class: "part", "data-cause": cause, x: a, width: b - a, y: y + 5, height: ROW - 10, fill: this.fillOf(cause) }, svg("title", {}, `${words(cause)}: ${short(value)} ${unitText(budget.unit)}, ${part.meaning}`));
+      return svg(
+        "rect",
+        { class: "part", "data-cause": cause, x: a, width: b - a, y: y + 5, height: ROW - 10, fill: this.fillOf(cause) },
+        svg("title", {}, `${words(cause)}: ${short(value)} ${unitText(budget.unit)}, ${part.meaning}`),
+      );
     });
     const residual = budget.residual?.[this.kind];
     const at = residual === undefined ? undefined : place(residual);
-    return svg("g", {}, text(LEFT - 8, y + ROW / 2 + 4, budget.label.length > 52 ? `${budget.label.slice(0, 51)}…` : budget.label, { fill: colours.ink, "text-anchor": "end" }), ...boxes,
-      at === undefined ? undefined : svg("path", { d: `M${at} ${y + 2}V${y + ROW - 2}`, stroke: colours.ink, "stroke-width": 2 }, svg("title", {}, `residual: ${short(residual)} ${unitText(budget.unit)}`)));
+    return svg(
+      "g",
+      {},
+      text(LEFT - 8, y + ROW / 2 + 4, budget.label.length > 52 ? `${budget.label.slice(0, 51)}…` : budget.label, {
+        fill: colours.ink,
+        "text-anchor": "end",
+      }),
+      ...boxes,
+      at === undefined
+        ? undefined
+        : svg(
+            "path",
+            { d: `M${at} ${y + 2}V${y + ROW - 2}`, stroke: colours.ink, "stroke-width": 2 },
+            svg("title", {}, `residual: ${short(residual)} ${unitText(budget.unit)}`),
+          ),
+    );
   }
 
   /** Colour of a cause, hatched where colours repeat. */
@@ -116,9 +166,20 @@ export class BudgetView {
   }
 
   hatches(colours) {
-    return svg("defs", {}, ...this.causes.filter((cause) => this.fillOf(cause).startsWith("url")).map((cause) => svg("pattern",
-      { id: `hatch-${cause}`, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
-      svg("rect", { width: 6, height: 6, fill: colours.paper }), svg("rect", { width: 4, height: 6, fill: lookOf(this.causes.indexOf(cause) + 1, this.store.state.theme).colour }))));
+    return svg(
+      "defs",
+      {},
+      ...this.causes
+        .filter((cause) => this.fillOf(cause).startsWith("url"))
+        .map((cause) =>
+          svg(
+            "pattern",
+            { id: `hatch-${cause}`, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+            svg("rect", { width: 6, height: 6, fill: colours.paper }),
+            svg("rect", { width: 4, height: 6, fill: lookOf(this.causes.indexOf(cause) + 1, this.store.state.theme).colour }),
+          ),
+        ),
+    );
   }
 
   legend(width, colours) {
@@ -127,8 +188,15 @@ export class BudgetView {
     for (const cause of [...this.causes, "residual"]) {
       const needed = 26 + 6.6 * cause.length;
       if (x + needed > width - 16) [x, y] = [0, y + 16];
-      group.append(svg("rect", cause === "residual" ? { x: x + 4, y: y - 10, width: 2, height: 12, fill: colours.ink } : { x, y: y - 9, width: 10, height: 10, fill: this.fillOf(cause) }),
-        text(x + 14, y, words(cause), { fill: colours.ink }));
+      group.append(
+        svg(
+          "rect",
+          cause === "residual"
+            ? { x: x + 4, y: y - 10, width: 2, height: 12, fill: colours.ink }
+            : { x, y: y - 9, width: 10, height: 10, fill: this.fillOf(cause) },
+        ),
+        text(x + 14, y, words(cause), { fill: colours.ink }),
+      );
       x += needed;
     }
     return { group, height: y + 22 };
@@ -136,9 +204,17 @@ export class BudgetView {
 
   figures(width) {
     const causes = this.causes;
-    const rows = this.budgets.map((budget) => [budget.label, budget.residual?.[this.kind], ...causes.map((cause) => budget.parts.get(cause)?.[this.kind])]);
+    const rows = this.budgets.map((budget) => [
+      budget.label,
+      budget.residual?.[this.kind],
+      ...causes.map((cause) => budget.parts.get(cause)?.[this.kind]),
+    ]);
     const table = { head: ["residual of", "residual", ...causes], rows };
-    return this.drawings(width).map((drawing, i) => ({ title: "budget", drawing, table: i === 0 ? table : { head: table.head, rows: [] } }));
+    return this.drawings(width).map((drawing, i) => ({
+      title: "budget",
+      drawing,
+      table: i === 0 ? table : { head: table.head, rows: [] },
+    }));
   }
 }
 

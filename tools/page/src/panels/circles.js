@@ -26,7 +26,10 @@ export class CirclesView {
       this.stale = true;
       if (this.seen) this.load();
     });
-    store.on(["results"], () => { this.chosen = undefined; this.magnification = undefined; });
+    store.on(["results"], () => {
+      this.chosen = undefined;
+      this.magnification = undefined;
+    });
   }
 
   get cases() {
@@ -72,27 +75,50 @@ export class CirclesView {
   }
 
   showSections(names) {
-    if (names.length === 0) this.sections.replaceChildren(html("p", { class: "hint" }, "No section of the visible cases is a circle."));
-    else this.sections.replaceChildren(...names.map((name) => {
-      const input = html("input", { type: "checkbox", onchange: () => { if (!this.chosen.delete(name)) this.chosen.add(name); this.draw(); } });
-      input.checked = this.chosen.has(name);
-      return html("label", {}, input, ` ${name}`);
-    }));
+    if (names.length === 0)
+      this.sections.replaceChildren(html("p", { class: "hint" }, "No section of the visible cases is a circle."));
+    else
+      this.sections.replaceChildren(
+        ...names.map((name) => {
+          const input = html("input", {
+            type: "checkbox",
+            onchange: () => {
+              if (!this.chosen.delete(name)) this.chosen.add(name);
+              this.draw();
+            },
+          });
+          input.checked = this.chosen.has(name);
+          return html("label", {}, input, ` ${name}`);
+        }),
+      );
   }
 
   /** Circles of the chosen sections with the looks of their cases; clockwise ones are dashed. */
   selected() {
     const { cases, theme } = this.store.state;
-    return this.cases.flatMap((one) => (this.known.get(one.id) ?? []).filter((circle) => this.chosen.has(circle.section)).map((circle) => ({
-      ...circle, case: one, colour: lookOf(cases.indexOf(one), theme).colour, dash: circle.sense < 0 ? CLOCKWISE : [], label: `${one.label}, ${circle.section}`,
-    })));
+    return this.cases.flatMap((one) =>
+      (this.known.get(one.id) ?? [])
+        .filter((circle) => this.chosen.has(circle.section))
+        .map((circle) => ({
+          ...circle,
+          case: one,
+          colour: lookOf(cases.indexOf(one), theme).colour,
+          dash: circle.sense < 0 ? CLOCKWISE : [],
+          label: `${one.label}, ${circle.section}`,
+        })),
+    );
   }
 
   draw() {
     this.circles = this.selected();
     const fitting = fittingMagnification(this.circles);
     const value = Math.log10(this.magnification ?? fitting);
-    this.controls.replaceChildren(slider("magnification", { min: 0, max: 5, step: 0.05, value, text: (e) => `${short(10 ** e, 2)} ×` }, (e) => { this.magnification = 10 ** e; this.redraw(); }));
+    this.controls.replaceChildren(
+      slider("magnification", { min: 0, max: 5, step: 0.05, value, text: (e) => `${short(10 ** e, 2)} ×` }, (e) => {
+        this.magnification = 10 ** e;
+        this.redraw();
+      }),
+    );
     this.table.replaceChildren(this.tableOf());
     this.redraw();
   }
@@ -104,19 +130,57 @@ export class CirclesView {
 
   rows() {
     const um = (mm) => 1000 * mm;
-    return this.circles.map((c) => [c.case.label, c.section, c.nominalRadius, um(c.radius - c.nominalRadius), um(c.circularity), um(c.cx), um(c.cy)]);
+    return this.circles.map((c) => [
+      c.case.label,
+      c.section,
+      c.nominalRadius,
+      um(c.radius - c.nominalRadius),
+      um(c.circularity),
+      um(c.cx),
+      um(c.cy),
+    ]);
   }
 
   tableOf() {
     const head = ["case", "section", "R (mm)", "R − nom. (µm)", "range (µm)"];
-    return html("table", {}, html("thead", {}, html("tr", {}, ...head.map((name, i) => html("th", { class: i > 1 ? "number" : "" }, name)))),
-      html("tbody", {}, ...this.rows().map((row, k) => html("tr", {}, ...row.slice(0, 5).map((cell, i) => html("td", { class: i > 1 ? "number" : "" },
-        i === 0 ? html("span", { class: "swatch", style: `--colour: ${this.circles[k].colour}` }) : undefined, typeof cell === "number" ? short(cell) : cell))))));
+    return html(
+      "table",
+      {},
+      html("thead", {}, html("tr", {}, ...head.map((name, i) => html("th", { class: i > 1 ? "number" : "" }, name)))),
+      html(
+        "tbody",
+        {},
+        ...this.rows().map((row, k) =>
+          html(
+            "tr",
+            {},
+            ...row
+              .slice(0, 5)
+              .map((cell, i) =>
+                html(
+                  "td",
+                  { class: i > 1 ? "number" : "" },
+                  i === 0 ? html("span", { class: "swatch", style: `--colour: ${this.circles[k].colour}` }) : undefined,
+                  typeof cell === "number" ? short(cell) : cell,
+                ),
+              ),
+          ),
+        ),
+      ),
+    );
   }
 
   figures() {
     if (this.circles.length === 0) return [];
-    const rows = this.circles.flatMap((c) => Array.from(c.angle, (angle, i) => [c.case.label, c.section, (angle * 180) / Math.PI, 1000 * c.deviation[i]]));
-    return [{ title: "circles", drawing: this.drawing.firstChild, table: { head: ["case", "section", "angle_deg", "radial_deviation_um"], rows } }];
+    const rows = this.circles.flatMap((c) =>
+      Array.from(c.angle, (angle, i) => [c.case.label, c.section, (angle * 180) / Math.PI, 1000 * c.deviation[i]]),
+    );
+    return [
+      {
+        title: "circles",
+        drawing: this.drawing.firstChild,
+        table: { head: ["case", "section", "angle_deg", "radial_deviation_um"], rows },
+      },
+    ];
   }
 }

@@ -15,10 +15,24 @@ export class ComparisonView {
     this.filter = html("input", { type: "search", placeholder: "filter", "aria-label": "Filter the comparison" });
     this.filter.addEventListener("input", () => this.draw());
     this.body = html("tbody");
-    this.table = html("table", {}, html("thead", {}, html("tr", {}, ...HEAD.map((name) => html("th", { class: name === "value" ? "number" : "" }, name)))), this.body);
-    this.element = html("div", { class: "comparison" }, html("div", { class: "controls" }, this.filter,
-      button("Zoom to sections", "Zoom to the highlighted sections (Z)", () => stack.zoomToHighlight()),
-      button("Clear", "End the highlight (Esc)", () => store.set({ highlight: undefined }))), this.table);
+    this.table = html(
+      "table",
+      {},
+      html("thead", {}, html("tr", {}, ...HEAD.map((name) => html("th", { class: name === "value" ? "number" : "" }, name)))),
+      this.body,
+    );
+    this.element = html(
+      "div",
+      { class: "comparison" },
+      html(
+        "div",
+        { class: "controls" },
+        this.filter,
+        button("Zoom to sections", "Zoom to the highlighted sections (Z)", () => stack.zoomToHighlight()),
+        button("Clear", "End the highlight (Esc)", () => store.set({ highlight: undefined })),
+      ),
+      this.table,
+    );
     this.body.addEventListener("click", (event) => this.choose(event.target.closest("tr")));
     this.body.addEventListener("keydown", (event) => this.key(event));
     store.on(["results"], () => this.load());
@@ -31,7 +45,11 @@ export class ComparisonView {
 
   async load() {
     const lines = this.store.state.results.filter(Boolean).flatMap(comparisonOf);
-    await Promise.all(lines.map(async (line) => { line.value = await this.client.ask("values", line.file, line.path); }));
+    await Promise.all(
+      lines.map(async (line) => {
+        line.value = await this.client.ask("values", line.file, line.path);
+      }),
+    );
     this.lines = lines;
     this.draw();
   }
@@ -47,8 +65,13 @@ export class ComparisonView {
 
   cells(line) {
     const quantity = [words(line.quantity), line.axis, line.statistic].filter(Boolean).join(", ");
-    return [quantity, line.sections.join(", "), this.caseOf(line)?.label ?? line.case, `${short(line.value)} ${unitText(line.unit)}`.trim(),
-      `${unitText(line.reference)}${line.basis && line.reference ? ` (${words(line.basis)})` : words(line.basis)}`];
+    return [
+      quantity,
+      line.sections.join(", "),
+      this.caseOf(line)?.label ?? line.case,
+      `${short(line.value)} ${unitText(line.unit)}`.trim(),
+      `${unitText(line.reference)}${line.basis && line.reference ? ` (${words(line.basis)})` : words(line.basis)}`,
+    ];
   }
 
   draw() {
@@ -61,8 +84,14 @@ export class ComparisonView {
     const { highlight, cases, theme } = this.store.state;
     const key = `${line.file}-${line.number}`;
     const colour = lookOf(Math.max(0, cases.indexOf(this.caseOf(line))), theme).colour;
-    const cells = this.cells(line).map((text, i) => html("td", { class: i === 3 ? "number" : "", title: i === 3 ? String(line.value) : undefined },
-      i === 2 ? html("span", { class: "swatch", style: `--colour: ${colour}` }) : undefined, text));
+    const cells = this.cells(line).map((text, i) =>
+      html(
+        "td",
+        { class: i === 3 ? "number" : "", title: i === 3 ? String(line.value) : undefined },
+        i === 2 ? html("span", { class: "swatch", style: `--colour: ${colour}` }) : undefined,
+        text,
+      ),
+    );
     return html("tr", { tabindex: 0, "data-line": key, "aria-selected": String(highlight?.line === key) }, ...cells);
   }
 
@@ -93,8 +122,24 @@ export class ComparisonView {
 
   /** For export as a table; there is no drawing of it. */
   figures() {
-    const rows = this.shown().map((line) => [line.quantity, line.axis, line.statistic, line.sections.join(" "), line.case, line.value, line.unit, line.reference, line.basis]);
-    return [{ title: "comparison", table: { head: ["quantity", "axis", "statistic", "sections", "case", "value", "unit", "reference", "basis"], rows }, drawing: tableDrawing(this.shown().map((line) => this.cells(line))) }];
+    const rows = this.shown().map((line) => [
+      line.quantity,
+      line.axis,
+      line.statistic,
+      line.sections.join(" "),
+      line.case,
+      line.value,
+      line.unit,
+      line.reference,
+      line.basis,
+    ]);
+    return [
+      {
+        title: "comparison",
+        table: { head: ["quantity", "axis", "statistic", "sections", "case", "value", "unit", "reference", "basis"], rows },
+        drawing: tableDrawing(this.shown().map((line) => this.cells(line))),
+      },
+    ];
   }
 }
 
@@ -105,14 +150,25 @@ function tableDrawing(rows) {
   const drawing = document.createElementNS(ns, "svg");
   const height = 18 * (rows.length + 1) + 12;
   const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink");
-  for (const [name, value] of Object.entries({ xmlns: ns, width: 900, height, viewBox: `0 0 900 ${height}`, "font-family": "system-ui, sans-serif", "font-size": 11, fill: ink })) drawing.setAttribute(name, value);
-  [HEAD, ...rows].forEach((cells, i) => cells.forEach((cell, j) => {
-    const element = document.createElementNS(ns, "text");
-    element.setAttribute("x", String(8 + COLUMNS[j]));
-    element.setAttribute("y", String(18 * (i + 1)));
-    if (i === 0) element.setAttribute("font-weight", "600");
-    element.textContent = cell;
-    drawing.append(element);
-  }));
+  for (const [name, value] of Object.entries({
+    xmlns: ns,
+    width: 900,
+    height,
+    viewBox: `0 0 900 ${height}`,
+    "font-family": "system-ui, sans-serif",
+    "font-size": 11,
+    fill: ink,
+  }))
+    drawing.setAttribute(name, value);
+  [HEAD, ...rows].forEach((cells, i) =>
+    cells.forEach((cell, j) => {
+      const element = document.createElementNS(ns, "text");
+      element.setAttribute("x", String(8 + COLUMNS[j]));
+      element.setAttribute("y", String(18 * (i + 1)));
+      if (i === 0) element.setAttribute("font-weight", "600");
+      element.textContent = cell;
+      drawing.append(element);
+    }),
+  );
   return drawing;
 }

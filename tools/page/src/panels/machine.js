@@ -44,7 +44,9 @@ export class MachineView {
     const result = this.store.state.results[one.file];
     return POSITIONS.flatMap((name) => {
       const dataset = result.dataset(`${one.servo}/${name}`);
-      return dataset ? Array.from(dataset.attributes.columns ?? "", (letter, i) => [name, i, letter, dataset.attributes.units]) : [];
+      return dataset
+        ? Array.from(dataset.attributes.columns ?? "", (letter, i) => [name, i, letter, dataset.attributes.units])
+        : [];
     });
   }
 
@@ -52,12 +54,14 @@ export class MachineView {
     const cursor = cursorScale(this.store.state);
     const cases = this.cases;
     if (!cursor || cases.length === 0) return;
-    const found = await Promise.all(cases.map(async (one) => {
-      const axes = this.axesOf(one);
-      const wanted = [...axes.map(([name, i]) => [name, i]), ["time", 0], ["s", 0], ["line", 0], ["section", 0]];
-      const { values } = await valuesAtCursor(this.client, one, cursor, wanted);
-      return { one, axes, values };
-    }));
+    const found = await Promise.all(
+      cases.map(async (one) => {
+        const axes = this.axesOf(one);
+        const wanted = [...axes.map(([name, i]) => [name, i]), ["time", 0], ["s", 0], ["line", 0], ["section", 0]];
+        const { values } = await valuesAtCursor(this.client, one, cursor, wanted);
+        return { one, axes, values };
+      }),
+    );
     await this.showPlace(found[0]);
     await this.showAxes(found);
   }
@@ -68,12 +72,15 @@ export class MachineView {
     const name = one.sections[Math.round(section)] ?? "";
     this.place.textContent = `${one.label}: ${short(time, 6)} s, s = ${short(s, 6)} mm${name ? `, section ${name}` : ""}`;
     const program = await this.programOf(one.file);
-    this.line.textContent = program[number - 1] !== undefined ? `line ${number}: ${program[number - 1].trim()}` : `line ${number}`;
+    this.line.textContent =
+      program[number - 1] !== undefined ? `line ${number}: ${program[number - 1].trim()}` : `line ${number}`;
   }
 
   async programOf(file) {
     if (!this.programs.has(file)) {
-      const text = this.store.state.results[file].has("/inputs") ? await this.client.ask("attribute", file, "/inputs", "program").catch(() => "") : "";
+      const text = this.store.state.results[file].has("/inputs")
+        ? await this.client.ask("attribute", file, "/inputs", "program").catch(() => "")
+        : "";
       this.programs.set(file, String(text ?? "").split("\n"));
     }
     return this.programs.get(file);
@@ -82,7 +89,8 @@ export class MachineView {
   /** Range of an axis over the run. */
   async rangeOf(one, name, column) {
     const key = `${one.id}|${name}|${column}`;
-    if (!this.ranges.has(key)) this.ranges.set(key, await this.client.ask("range", { file: one.file, path: `${one.servo}/${name}`, column }));
+    if (!this.ranges.has(key))
+      this.ranges.set(key, await this.client.ask("range", { file: one.file, path: `${one.servo}/${name}`, column }));
     return this.ranges.get(key);
   }
 
@@ -93,12 +101,28 @@ export class MachineView {
     for (const [k, [name, column, letter, unit]] of first.axes.entries()) {
       const [low, high] = await this.rangeOf(first.one, name, column);
       const share = (value) => (high > low ? Math.min(100, Math.max(0, (100 * (value - low)) / (high - low))) : 50);
-      const marks = found.map(({ one, values }) => html("i", { style: `left: calc(${share(values[k])}% - 1px); --colour: ${lookOf(cases.indexOf(one), theme).colour}`, title: one.label }));
-      rows.push(html("tr", {}, html("th", {}, withUnit(letter, unit)), html("td", { class: "number" }, short(first.values[k], 7)),
-        html("td", { style: "width: 60%" }, html("div", { class: "axisbar" }, ...marks)), html("td", { class: "number" }, `${short(low, 4)} … ${short(high, 4)} ${unitText(unit)}`)));
+      const marks = found.map(({ one, values }) =>
+        html("i", {
+          style: `left: calc(${share(values[k])}% - 1px); --colour: ${lookOf(cases.indexOf(one), theme).colour}`,
+          title: one.label,
+        }),
+      );
+      rows.push(
+        html(
+          "tr",
+          {},
+          html("th", {}, withUnit(letter, unit)),
+          html("td", { class: "number" }, short(first.values[k], 7)),
+          html("td", { style: "width: 60%" }, html("div", { class: "axisbar" }, ...marks)),
+          html("td", { class: "number" }, `${short(low, 4)} … ${short(high, 4)} ${unitText(unit)}`),
+        ),
+      );
     }
     this.axes.replaceChildren(html("table", {}, html("tbody", {}, ...rows)));
-    this.positions = found.map(({ one, axes, values }) => ({ case: one.label, values: Object.fromEntries(axes.map(([, , letter], k) => [letter, values[k]])) }));
+    this.positions = found.map(({ one, axes, values }) => ({
+      case: one.label,
+      values: Object.fromEntries(axes.map(([, , letter], k) => [letter, values[k]])),
+    }));
   }
 
   figures() {

@@ -11,10 +11,14 @@ export class Orbit {
     Object.assign(this, { camera, onChange, azimuth: -0.9, polar: 1.0, distance: 1, target: [0, 0, 0] });
     element.addEventListener("pointerdown", (event) => element.setPointerCapture(event.pointerId));
     element.addEventListener("pointermove", (event) => this.drag(event));
-    element.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoom(Math.exp(0.001 * event.deltaY));
-    }, { passive: false });
+    element.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoom(Math.exp(0.001 * event.deltaY));
+      },
+      { passive: false },
+    );
     element.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -67,7 +71,11 @@ export class Orbit {
 
   apply() {
     const { azimuth, polar, distance, target, camera } = this;
-    camera.position.set(target[0] + distance * Math.sin(polar) * Math.cos(azimuth), target[1] + distance * Math.sin(polar) * Math.sin(azimuth), target[2] + distance * Math.cos(polar));
+    camera.position.set(
+      target[0] + distance * Math.sin(polar) * Math.cos(azimuth),
+      target[1] + distance * Math.sin(polar) * Math.sin(azimuth),
+      target[2] + distance * Math.cos(polar),
+    );
     camera.up.set(0, 0, 1);
     camera.lookAt(...target);
     camera.updateProjectionMatrix();

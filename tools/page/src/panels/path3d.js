@@ -12,12 +12,20 @@ import { PathLines } from "./path_lines.js";
 
 const POINTS = 80_000;
 const HEIGHT = 380; // pixels
-const COLOURS = [["contour_error", "contour error"], ["tool_deviation", "tool deviation"]];
+const COLOURS = [
+  ["contour_error", "contour error"],
+  ["tool_deviation", "tool deviation"],
+];
 
 export class PathView {
   constructor({ store, client }) {
     Object.assign(this, { store, client, name: "Path", chosen: "", colour: "contour_error", exponent: 2, stale: true });
-    this.canvas = html("canvas", { class: "scene", tabindex: 0, role: "img", "aria-label": "Path of the tool in space; arrows turn it, + and − zoom" });
+    this.canvas = html("canvas", {
+      class: "scene",
+      tabindex: 0,
+      role: "img",
+      "aria-label": "Path of the tool in space; arrows turn it, + and − zoom",
+    });
     this.controls = html("div", { class: "controls" });
     this.scale = html("div", { class: "scale" }, html("span"), html("i"), html("span"));
     this.note = html("div", { class: "hint" });
@@ -32,14 +40,25 @@ export class PathView {
 
   get candidates() {
     const { cases, results } = this.store.state;
-    return cases.filter((one) => one.servo && ["tool_position_nominal", "tool_deviation"].every((name) => results[one.file].has(`${one.servo}/${name}`)));
+    return cases.filter(
+      (one) =>
+        one.servo && ["tool_position_nominal", "tool_deviation"].every((name) => results[one.file].has(`${one.servo}/${name}`)),
+    );
   }
 
   /** Case that is drawn: the highlighted one, else the chosen, else the second visible one: the first often has no errors. */
   get case() {
     const { highlight, visible } = this.store.state;
     const all = this.candidates;
-    return all.find((one) => highlight?.cases.has(one.id)) ?? all.find((one) => one.id === this.chosen) ?? all.filter((one) => visible.has(one.id)).slice(0, 2).at(-1) ?? all[0];
+    return (
+      all.find((one) => highlight?.cases.has(one.id)) ??
+      all.find((one) => one.id === this.chosen) ??
+      all
+        .filter((one) => visible.has(one.id))
+        .slice(0, 2)
+        .at(-1) ??
+      all[0]
+    );
   }
 
   available() {
@@ -68,7 +87,10 @@ export class PathView {
     this.scene = new three.Scene();
     this.orbit = new Orbit(this.camera, this.canvas, () => this.redraw());
     this.marker = new three.Mesh(new three.SphereGeometry(1, 12, 8), new three.MeshBasicMaterial());
-    this.tool = new three.Line(new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3(0, 0, 1)]), new three.LineBasicMaterial());
+    this.tool = new three.Line(
+      new three.BufferGeometry().setFromPoints([new three.Vector3(), new three.Vector3(0, 0, 1)]),
+      new three.LineBasicMaterial(),
+    );
     this.tool.frustumCulled = false;
     this.marker.visible = this.tool.visible = false;
     this.scene.add(this.marker, this.tool, new three.AxesHelper(1));
@@ -88,9 +110,29 @@ export class PathView {
 
   showControls() {
     this.controls.replaceChildren(
-      select("case", this.candidates.map((one) => [one.id, one.label]), this.case.id, (id) => { this.chosen = id; this.changed(); }),
-      select("colour", COLOURS.filter(([name]) => this.hasSignal(name)), this.colour, (name) => { this.colour = name; this.changed(); }),
-      slider("error ×", { min: 0, max: 5, step: 0.05, value: this.exponent, text: (e) => short(10 ** e, 2) }, (e) => { this.exponent = e; this.magnify(); }));
+      select(
+        "case",
+        this.candidates.map((one) => [one.id, one.label]),
+        this.case.id,
+        (id) => {
+          this.chosen = id;
+          this.changed();
+        },
+      ),
+      select(
+        "colour",
+        COLOURS.filter(([name]) => this.hasSignal(name)),
+        this.colour,
+        (name) => {
+          this.colour = name;
+          this.changed();
+        },
+      ),
+      slider("error ×", { min: 0, max: 5, step: 0.05, value: this.exponent, text: (e) => short(10 ** e, 2) }, (e) => {
+        this.exponent = e;
+        this.magnify();
+      }),
+    );
   }
 
   hasSignal(name) {
@@ -172,7 +214,12 @@ export class PathView {
     this.at = undefined;
     if (cursor && one && this.lines) {
       const names = ["tool_position_nominal", "tool_deviation", ...(this.hasSignal("tool_axis_true") ? ["tool_axis_true"] : [])];
-      const { values } = await valuesAtCursor(this.client, one, cursor, names.flatMap((name) => [0, 1, 2].map((i) => [name, i])));
+      const { values } = await valuesAtCursor(
+        this.client,
+        one,
+        cursor,
+        names.flatMap((name) => [0, 1, 2].map((i) => [name, i])),
+      );
       if (values.every(Number.isFinite)) this.at = values;
     }
     this.placeMarker();
@@ -188,7 +235,10 @@ export class PathView {
     this.marker.position.set(...place);
     this.marker.scale.setScalar(0.018 * size);
     const axis = this.at.length > 6 ? this.at.slice(6) : [0, 0, 1];
-    this.tool.geometry.setFromPoints([new three.Vector3(...place), new three.Vector3(...place.map((p, i) => p + 0.3 * size * axis[i]))]);
+    this.tool.geometry.setFromPoints([
+      new three.Vector3(...place),
+      new three.Vector3(...place.map((p, i) => p + 0.3 * size * axis[i])),
+    ]);
   }
 
   /** What is seen: the picture, and the points for CSV. */
@@ -196,10 +246,27 @@ export class PathView {
     if (!this.lines) return [];
     this.renderer.render(this.scene, this.camera);
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    const drawing = svg("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` },
-      svg("image", { width, height, href: this.canvas.toDataURL("image/png") }));
+    const drawing = svg(
+      "svg",
+      { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` },
+      svg("image", { width, height, href: this.canvas.toDataURL("image/png") }),
+    );
     const { nominal, deviation, colour, row } = this.data;
-    const rows = Array.from(row, (r, i) => [r, ...nominal.slice(3 * i, 3 * i + 3), ...deviation.slice(3 * i, 3 * i + 3), colour[i]]);
-    return [{ title: `path of ${this.case.label}`, drawing, table: { head: ["row", "X_mm", "Y_mm", "Z_mm", "deviation_X_um", "deviation_Y_um", "deviation_Z_um", `${this.colour}_um`], rows } }];
+    const rows = Array.from(row, (r, i) => [
+      r,
+      ...nominal.slice(3 * i, 3 * i + 3),
+      ...deviation.slice(3 * i, 3 * i + 3),
+      colour[i],
+    ]);
+    return [
+      {
+        title: `path of ${this.case.label}`,
+        drawing,
+        table: {
+          head: ["row", "X_mm", "Y_mm", "Z_mm", "deviation_X_um", "deviation_Y_um", "deviation_Z_um", `${this.colour}_um`],
+          rows,
+        },
+      },
+    ];
   }
 }

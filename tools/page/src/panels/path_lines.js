@@ -18,13 +18,21 @@ const FRAGMENT = `
   varying vec3 vShade;
   void main() { gl_FragColor = vec4(vShade, opacity); }`;
 
-const material = (opacity) => new three.ShaderMaterial({
-  vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: opacity < 1,
-  uniforms: { magnification: { value: 0 }, opacity: { value: opacity }, offset: { value: new three.Vector2() } },
-});
+const material = (opacity) =>
+  new three.ShaderMaterial({
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    transparent: opacity < 1,
+    uniforms: { magnification: { value: 0 }, opacity: { value: opacity }, offset: { value: new three.Vector2() } },
+  });
 
 /** Pixels by which a line is drawn again: lines of WebGL are one pixel wide. */
-const STROKES = [[0, 0], [1, 0], [0, 1], [1, 1]];
+const STROKES = [
+  [0, 0],
+  [1, 0],
+  [0, 1],
+  [1, 1],
+];
 
 /** Share of the values that are beyond the ends of the scale, so that one peak does not make all others equal. */
 const CUT = 0.002;
@@ -50,11 +58,23 @@ export class PathLines {
     this.range = shadeRange(path.colour, path.rapid);
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(path.nominal, 3));
-    geometry.setAttribute("deviation", new three.BufferAttribute(path.deviation.map((um) => um / 1000), 3));
+    geometry.setAttribute(
+      "deviation",
+      new three.BufferAttribute(
+        path.deviation.map((um) => um / 1000),
+        3,
+      ),
+    );
     geometry.setAttribute("shade", new three.BufferAttribute(shades(path, this.range, grey, theme), 3));
     geometry.computeBoundingSphere();
     const plain = geometry.clone();
-    plain.setAttribute("shade", new three.BufferAttribute(Float32Array.from({ length: path.nominal.length }, (_, i) => grey[i % 3]), 3));
+    plain.setAttribute(
+      "shade",
+      new three.BufferAttribute(
+        Float32Array.from({ length: path.nominal.length }, (_, i) => grey[i % 3]),
+        3,
+      ),
+    );
     this.actual = STROKES.map(() => new three.Line(geometry, material(1)));
     this.nominal = new three.Line(plain, material(0.55));
     this.group = new three.Group().add(this.nominal, ...this.actual);
@@ -71,7 +91,9 @@ export class PathLines {
 
   /** Sets the size of the picture, in pixels of the page. */
   resize(width, height) {
-    this.actual.forEach((line, i) => line.material.uniforms.offset.value.set((2 * STROKES[i][0]) / width, (2 * STROKES[i][1]) / height));
+    this.actual.forEach((line, i) =>
+      line.material.uniforms.offset.value.set((2 * STROKES[i][0]) / width, (2 * STROKES[i][1]) / height),
+    );
   }
 
   /** Draws only points of these rows. */

@@ -33,17 +33,52 @@ export function polarDrawing({ circles, magnification, size, colours }) {
     const [x, y] = place((2 * Math.PI * i) / SPOKES, 1.3);
     return svg("line", { x1: centre, y1: centre, x2: x, y2: y, stroke: colours.grid });
   });
-  const label = (text, [x, y], anchor = "middle") => svg("text", { x, y: y + 4, fill: colours.ink, "text-anchor": anchor, ...FONT }, text);
-  return svg("svg", { xmlns: "http://www.w3.org/2000/svg", width: size, height: size, viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": `Radial deviation, magnified ${short(magnification, 2)} times` },
-    svg("rect", { width: size, height: size, fill: colours.paper }), ...spokes,
-    ...rings.map(([um, share]) => svg("circle", { cx: centre, cy: centre, r: radius * share, fill: "none", stroke: um === 0 ? colours.faint : colours.grid, "stroke-width": um === 0 ? 1.5 : 1 })),
+  const label = (text, [x, y], anchor = "middle") =>
+    svg("text", { x, y: y + 4, fill: colours.ink, "text-anchor": anchor, ...FONT }, text);
+  return svg(
+    "svg",
+    {
+      xmlns: "http://www.w3.org/2000/svg",
+      width: size,
+      height: size,
+      viewBox: `0 0 ${size} ${size}`,
+      role: "img",
+      "aria-label": `Radial deviation, magnified ${short(magnification, 2)} times`,
+    },
+    svg("rect", { width: size, height: size, fill: colours.paper }),
+    ...spokes,
+    ...rings.map(([um, share]) =>
+      svg("circle", {
+        cx: centre,
+        cy: centre,
+        r: radius * share,
+        fill: "none",
+        stroke: um === 0 ? colours.faint : colours.grid,
+        "stroke-width": um === 0 ? 1.5 : 1,
+      }),
+    ),
     ...circles.map((circle) => curveOf(circle, magnification, place)),
     ...rings.map(([um, share]) => label(`${short(um, 3)}${um === 0 ? " µm" : ""}`, place(Math.PI / 2 - 0.13, share))),
-    label(`+${plane[0]}`, place(0, 1.24)), label(`+${plane[1]}`, place(Math.PI / 2, 1.24)));
+    label(`+${plane[0]}`, place(0, 1.24)),
+    label(`+${plane[1]}`, place(Math.PI / 2, 1.24)),
+  );
 }
 
 function curveOf({ angle, deviation, nominalRadius, colour, dash, label }, magnification, place) {
   const points = Array.from(angle, (a, i) => place(a, 1 + (magnification * deviation[i]) / nominalRadius));
-  return svg("path", { d: pathData(points.map(([x]) => x), points.map(([, y]) => y)), fill: "none", stroke: colour, "stroke-width": 1.4, "stroke-dasharray": dash.length ? dash.join(" ") : undefined, "stroke-linejoin": "round" },
-    svg("title", {}, label));
+  return svg(
+    "path",
+    {
+      d: pathData(
+        points.map(([x]) => x),
+        points.map(([, y]) => y),
+      ),
+      fill: "none",
+      stroke: colour,
+      "stroke-width": 1.4,
+      "stroke-dasharray": dash.length ? dash.join(" ") : undefined,
+      "stroke-linejoin": "round",
+    },
+    svg("title", {}, label),
+  );
 }

@@ -10,7 +10,11 @@ import { Brushes } from "./brushes.js";
 import { mapDrawing } from "./sweep_drawings.js";
 
 const CHART_HEIGHT = 300; // pixels
-const MODES = [["curves", "curves"], ["map", "map"], ["parallel", "parallel coordinates"]];
+const MODES = [
+  ["curves", "curves"],
+  ["map", "map"],
+  ["parallel", "parallel coordinates"],
+];
 
 export class SweepView {
   constructor({ store, client }) {
@@ -19,7 +23,10 @@ export class SweepView {
     this.drawings = html("div");
     this.brushes = new Brushes(() => this.draw());
     this.element = html("div", {}, this.controls, this.drawings);
-    store.on(["results"], () => { this.table = undefined; if (this.seen) this.show(); });
+    store.on(["results"], () => {
+      this.table = undefined;
+      if (this.seen) this.show();
+    });
     store.on(["theme"], () => this.table && this.draw());
     new ResizeObserver(() => this.table && this.draw()).observe(this.element);
   }
@@ -58,14 +65,42 @@ export class SweepView {
 
   showControls() {
     const name = (column) => column?.name ?? "";
-    const choice = (label, key, columns) => select(label, columns.map((one) => [one.name, one.label]), name(this[key]), (value) => {
-      this[key] = columns.find((one) => one.name === value);
-      this.draw();
-    });
-    const parts = [select("as", MODES.filter(([mode]) => mode !== "map" || this.parameters.length > 1), this.mode, (mode) => { this.mode = mode; this.draw(); })];
+    const choice = (label, key, columns) =>
+      select(
+        label,
+        columns.map((one) => [one.name, one.label]),
+        name(this[key]),
+        (value) => {
+          this[key] = columns.find((one) => one.name === value);
+          this.draw();
+        },
+      );
+    const parts = [
+      select(
+        "as",
+        MODES.filter(([mode]) => mode !== "map" || this.parameters.length > 1),
+        this.mode,
+        (mode) => {
+          this.mode = mode;
+          this.draw();
+        },
+      ),
+    ];
     if (this.mode !== "parallel") parts.push(choice("over", "x", this.parameters));
     if (this.mode === "map") parts.push(choice("and", "y", this.parameters), choice("of", "quantity", this.quantities));
-    if (this.mode === "parallel") parts.push(html("span", { class: "hint" }, `${this.brushes.chosen(this.rows).size} of ${this.rows.length} points; drag along an axis, or choose limits:`), this.brushes.form(), button("Clear", "Remove all brushes", () => { this.brushes.clear(); this.draw(); }));
+    if (this.mode === "parallel")
+      parts.push(
+        html(
+          "span",
+          { class: "hint" },
+          `${this.brushes.chosen(this.rows).size} of ${this.rows.length} points; drag along an axis, or choose limits:`,
+        ),
+        this.brushes.form(),
+        button("Clear", "Remove all brushes", () => {
+          this.brushes.clear();
+          this.draw();
+        }),
+      );
     this.controls.replaceChildren(...parts);
   }
 
@@ -79,7 +114,11 @@ export class SweepView {
       return;
     }
     const focused = document.activeElement?.dataset?.brush;
-    const drawings = { curves: () => this.charts(this.width).map((one) => chart({ ...one, colours: inks() })), map: () => [this.map(this.width)], parallel: () => [this.parallel(this.width)] }[this.mode]();
+    const drawings = {
+      curves: () => this.charts(this.width).map((one) => chart({ ...one, colours: inks() })),
+      map: () => [this.map(this.width)],
+      parallel: () => [this.parallel(this.width)],
+    }[this.mode]();
     this.drawings.replaceChildren(...drawings);
     if (this.mode === "parallel") this.brushes.listen(drawings[0]);
     this.showControls();
@@ -92,18 +131,33 @@ export class SweepView {
     const x = this.x;
     const [min, max] = limitsOf([x.values]);
     return [...kinds.values()].map((quantities) => {
-      const lines = quantities.flatMap((quantity) => this.linesOf(quantity)).map((line, i) => ({ ...lookOf(i, this.store.state.theme), ...line }));
+      const lines = quantities
+        .flatMap((quantity) => this.linesOf(quantity))
+        .map((line, i) => ({ ...lookOf(i, this.store.state.theme), ...line }));
       const [low, high] = limitsOf(lines.map((line) => line.y));
-      return { title: withUnit(kindOf(quantities[0]), quantities[0].unit), width, height: CHART_HEIGHT, lines, x: { label: withUnit(x.label, x.unit), min, max }, y: { label: "", min: low, max: high } };
+      return {
+        title: withUnit(kindOf(quantities[0]), quantities[0].unit),
+        width,
+        height: CHART_HEIGHT,
+        lines,
+        x: { label: withUnit(x.label, x.unit), min, max },
+        y: { label: "", min: low, max: high },
+      };
     });
   }
 
   linesOf(quantity) {
     const others = this.parameters.filter((one) => one !== this.x && levelsOf(one).length <= 12);
-    const groups = groupBy(this.rows, (row) => others.map((one) => `${one.label} ${textOf(one, one.values[row], short)}`).join(", "));
+    const groups = groupBy(this.rows, (row) =>
+      others.map((one) => `${one.label} ${textOf(one, one.values[row], short)}`).join(", "),
+    );
     return [...groups].map(([label, rows]) => {
       const sorted = [...rows].sort((a, b) => this.x.values[a] - this.x.values[b]);
-      return { label: [quantity.case || quantity.label, label].filter(Boolean).join(": "), x: sorted.map((row) => this.x.values[row]), y: sorted.map((row) => quantity.values[row]) };
+      return {
+        label: [quantity.case || quantity.label, label].filter(Boolean).join(": "),
+        x: sorted.map((row) => this.x.values[row]),
+        y: sorted.map((row) => quantity.values[row]),
+      };
     });
   }
 
@@ -111,7 +165,16 @@ export class SweepView {
     const { x, quantity, rows } = this;
     const y = this.y === x ? this.parameters.find((one) => one !== x) : this.y;
     this.y = y;
-    return mapDrawing({ x, y, quantity, rows, width, height: Math.min(560, 120 + 60 * levelsOf(y).length), colours: inks(), theme: this.store.state.theme });
+    return mapDrawing({
+      x,
+      y,
+      quantity,
+      rows,
+      width,
+      height: Math.min(560, 120 + 60 * levelsOf(y).length),
+      colours: inks(),
+      theme: this.store.state.theme,
+    });
   }
 
   parallel(width) {
@@ -123,7 +186,10 @@ export class SweepView {
     if (!this.table) return [];
     const rows = this.mode === "parallel" ? this.rows.filter((row) => this.brushes.chosen(this.rows).has(row)) : this.rows;
     const columns = this.table.columns;
-    const table = { head: columns.map((one) => withUnit(one.label, one.unit)), rows: rows.map((row) => columns.map((one) => textOf(one, one.values[row], (v) => v))) };
+    const table = {
+      head: columns.map((one) => withUnit(one.label, one.unit)),
+      rows: rows.map((row) => columns.map((one) => textOf(one, one.values[row], (v) => v))),
+    };
     if (this.mode === "curves") return this.charts(width);
     return [{ title: "sweep", drawing: this.mode === "map" ? this.map(width) : this.parallel(width), table }];
   }

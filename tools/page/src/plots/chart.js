@@ -57,19 +57,35 @@ const text = (x, y, content, more = {}) => svg("text", { x, y, ...FONT, ...more 
 function axisX(axis, place, width, height, colours) {
   const ticks = axis.log ? logTicks(axis.min, axis.max) : linearTicks(axis.min, axis.max, width / 80);
   const texts = axis.log ? ticks.map((tick) => short(tick, 3)) : tickTexts(ticks);
-  return svg("g", {}, ...ticks.flatMap((tick, i) => {
-    const x = place(tick).toFixed(1);
-    return [svg("line", { x1: x, x2: x, y1: 0, y2: height, stroke: colours.grid }), text(x, height + 15, texts[i], { fill: colours.ink, "text-anchor": "middle" })];
-  }), text(width / 2, height + 32, axis.label, { fill: colours.ink, "text-anchor": "middle" }));
+  return svg(
+    "g",
+    {},
+    ...ticks.flatMap((tick, i) => {
+      const x = place(tick).toFixed(1);
+      return [
+        svg("line", { x1: x, x2: x, y1: 0, y2: height, stroke: colours.grid }),
+        text(x, height + 15, texts[i], { fill: colours.ink, "text-anchor": "middle" }),
+      ];
+    }),
+    text(width / 2, height + 32, axis.label, { fill: colours.ink, "text-anchor": "middle" }),
+  );
 }
 
 function axisY(axis, place, width, height, colours) {
   const ticks = axis.log ? logTicks(axis.min, axis.max) : linearTicks(axis.min, axis.max, height / 40);
   const texts = axis.log ? ticks.map((tick) => short(tick, 3)) : tickTexts(ticks);
-  return svg("g", {}, ...ticks.flatMap((tick, i) => {
-    const y = (height - place(tick)).toFixed(1);
-    return [svg("line", { x1: 0, x2: width, y1: y, y2: y, stroke: colours.grid }), text(-6, Number(y) + 4, texts[i], { fill: colours.ink, "text-anchor": "end" })];
-  }), text(0, 0, axis.label, { fill: colours.ink, "text-anchor": "middle", transform: `translate(-50 ${height / 2}) rotate(-90)` }));
+  return svg(
+    "g",
+    {},
+    ...ticks.flatMap((tick, i) => {
+      const y = (height - place(tick)).toFixed(1);
+      return [
+        svg("line", { x1: 0, x2: width, y1: y, y2: y, stroke: colours.grid }),
+        text(-6, Number(y) + 4, texts[i], { fill: colours.ink, "text-anchor": "end" }),
+      ];
+    }),
+    text(0, 0, axis.label, { fill: colours.ink, "text-anchor": "middle", transform: `translate(-50 ${height / 2}) rotate(-90)` }),
+  );
 }
 
 /** Data of a path through points; NaN lifts the pen. */
@@ -96,10 +112,24 @@ function lineElement(line, placeX, placeY, height) {
   const y = Array.from(line.y, (value) => height - placeY(value));
   const look = { opacity: line.opacity ?? 1 };
   if (!line.dots) {
-    return svg("path", { d: pathData(x, y), fill: "none", stroke: line.colour, "stroke-width": line.width ?? 1.5, "stroke-dasharray": line.dash?.length ? line.dash.join(" ") : undefined, "stroke-linejoin": "round", ...look });
+    return svg("path", {
+      d: pathData(x, y),
+      fill: "none",
+      stroke: line.colour,
+      "stroke-width": line.width ?? 1.5,
+      "stroke-dasharray": line.dash?.length ? line.dash.join(" ") : undefined,
+      "stroke-linejoin": "round",
+      ...look,
+    });
   }
-  return svg("g", { fill: line.colour, ...look }, ...x.map((at, i) => [at, y[i]]).filter((point) => point.every(Number.isFinite))
-    .map(([cx, cy]) => svg("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r: 2.6 })));
+  return svg(
+    "g",
+    { fill: line.colour, ...look },
+    ...x
+      .map((at, i) => [at, y[i]])
+      .filter((point) => point.every(Number.isFinite))
+      .map(([cx, cy]) => svg("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r: 2.6 })),
+  );
 }
 
 /** Names of the lines with their strokes, in rows of the width. */
@@ -110,9 +140,20 @@ function legend(lines, width, colours) {
   for (const line of named) {
     const needed = 34 + 6.4 * line.label.length;
     if (x > 0 && x + needed > width) [x, y] = [0, y + 15];
-    group.append(line.dots ? svg("circle", { cx: x + 11, cy: y - 4, r: 3, fill: line.colour })
-      : svg("line", { x1: x, x2: x + 22, y1: y - 4, y2: y - 4, stroke: line.colour, "stroke-width": 2, "stroke-dasharray": line.dash?.length ? line.dash.join(" ") : undefined }),
-    text(x + 27, y, line.label, { fill: colours.ink }));
+    group.append(
+      line.dots
+        ? svg("circle", { cx: x + 11, cy: y - 4, r: 3, fill: line.colour })
+        : svg("line", {
+            x1: x,
+            x2: x + 22,
+            y1: y - 4,
+            y2: y - 4,
+            stroke: line.colour,
+            "stroke-width": 2,
+            "stroke-dasharray": line.dash?.length ? line.dash.join(" ") : undefined,
+          }),
+      text(x + 27, y, line.label, { fill: colours.ink }),
+    );
     x += needed;
   }
   return { group, height: named.length ? y + 15 : 0 };
@@ -132,14 +173,28 @@ export function chart({ width, height, title = "", x, y, lines, bands = [], colo
   const [placeX, placeY] = [scaleOf(x, inner), scaleOf(y, tall)];
   const clip = `clip-${++clips}`;
   names.group?.setAttribute("transform", `translate(0 ${tall + MARGIN.bottom + 9})`);
-  return svg("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title },
+  return svg(
+    "svg",
+    { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title },
     svg("rect", { width, height, fill: colours.paper }),
     text(MARGIN.left, 16, title, { fill: colours.ink, "font-weight": 600, "font-size": 12 }),
     svg("clipPath", { id: clip }, svg("rect", { width: inner, height: tall })),
-    svg("g", { transform: `translate(${MARGIN.left} ${MARGIN.top})` },
-      ...bands.map(([from, to]) => svg("rect", { x: Math.max(0, placeX(from)), width: Math.max(1, Math.min(inner, placeX(to)) - Math.max(0, placeX(from))), height: tall, fill: colours.band })),
-      axisX(x, placeX, inner, tall, colours), axisY(y, placeY, inner, tall, colours),
+    svg(
+      "g",
+      { transform: `translate(${MARGIN.left} ${MARGIN.top})` },
+      ...bands.map(([from, to]) =>
+        svg("rect", {
+          x: Math.max(0, placeX(from)),
+          width: Math.max(1, Math.min(inner, placeX(to)) - Math.max(0, placeX(from))),
+          height: tall,
+          fill: colours.band,
+        }),
+      ),
+      axisX(x, placeX, inner, tall, colours),
+      axisY(y, placeY, inner, tall, colours),
       svg("rect", { width: inner, height: tall, fill: "none", stroke: colours.faint }),
       svg("g", { "clip-path": `url(#${clip})`, class: "lines" }, ...lines.map((line) => lineElement(line, placeX, placeY, tall))),
-      names.group));
+      names.group,
+    ),
+  );
 }

@@ -6,14 +6,20 @@ const MARGIN = 0.15; // of the range on both sides, for the curve to be there wh
 /** What a member is drawn over: specification for the worker. */
 export function abscissaSpec(family, member, abscissa) {
   if (family.servo) return { file: member.file, path: `${member.path}/${abscissa.name}`, column: abscissa.column };
-  return family.scale ? { file: member.file, path: `${member.path}/${family.scale}`, column: 0 } : { file: member.file, rows: member.rows };
+  return family.scale
+    ? { file: member.file, path: `${member.path}/${family.scale}`, column: 0 }
+    : { file: member.file, rows: member.rows };
 }
 
 /** What is drawn of a member: the signal, or its difference to the baseline at equal s. */
 export function ordinateSpec(family, member, signal, column, baseline) {
   const own = { file: member.file, path: `${member.path}/${signal.name}`, column };
   if (!baseline) return own;
-  return { ...own, s: `${member.path}/s`, base: { file: baseline.file, path: `${baseline.path}/${signal.name}`, s: `${baseline.path}/s` } };
+  return {
+    ...own,
+    s: `${member.path}/s`,
+    base: { file: baseline.file, path: `${baseline.path}/${signal.name}`, s: `${baseline.path}/s` },
+  };
 }
 
 /** The curve of one case in one plot. */
@@ -41,7 +47,11 @@ export class Curve {
       }
       const room = MARGIN * (range[1] - range[0]);
       const wide = [range[0] - room, range[1] + room];
-      const detail = await this.client.ask("curve", { ...this.request, range: wide, pixels: Math.round(pixels * (1 + 2 * MARGIN)) });
+      const detail = await this.client.ask("curve", {
+        ...this.request,
+        range: wide,
+        pixels: Math.round(pixels * (1 + 2 * MARGIN)),
+      });
       this.detail = { ...detail, range: wide };
     } catch (fault) {
       this.fault = fault.message;

@@ -5,11 +5,16 @@ import { short, tickTexts } from "../core/ticks.js";
 import { unitText, withUnit, words } from "../core/units.js";
 import { button, html } from "../shell/dom.js";
 import { inks } from "../shell/theme.js";
+import { paintBands, paintWithin, strokeCurve } from "./painting.js";
 import { Curve, abscissaSpec, extentWithin, ordinateAt, ordinateSpec } from "./curves.js";
 
 const HEIGHT = 210; // pixels
 const FADED = 0.2;
-const PART_DASHES = [[7, 3], [2, 2], [9, 2, 2, 2]]; // of the second signal of a plot and the next ones
+const PART_DASHES = [
+  [7, 3],
+  [2, 2],
+  [9, 2, 2, 2],
+]; // of the second signal of a plot and the next ones
 
 /**
  * @typedef {object} Chosen what a plot shows
@@ -32,8 +37,18 @@ export class Plot {
     this.title = html("h3");
     this.readout = html("div", { class: "readout" });
     this.area = html("div", { class: "area", tabindex: 0, role: "group" });
-    this.element = html("section", { class: "plot" },
-      html("header", {}, this.title, this.readout, button("✕", "Remove this plot", () => context.remove())), this.area);
+    this.element = html(
+      "section",
+      { class: "plot" },
+      html(
+        "header",
+        {},
+        this.title,
+        this.readout,
+        button("✕", "Remove this plot", () => context.remove()),
+      ),
+      this.area,
+    );
     this.area.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     this.dirty = false;
     this.rebuild();
@@ -50,8 +65,14 @@ export class Plot {
   /** All signals of the plot with their names, the first one first. */
   get parts() {
     const all = [this.chosen, ...(this.chosen.also ?? [])];
-    return all.map(({ signal: name, column }) => ({ signal: this.family.signals.find((one) => one.name === name), column })).filter(({ signal }) => signal)
-      .map(({ signal, column }) => ({ signal, column, name: [words(signal.name), signal.letters[signal.columns.indexOf(column)]].filter(Boolean).join(" ") }));
+    return all
+      .map(({ signal: name, column }) => ({ signal: this.family.signals.find((one) => one.name === name), column }))
+      .filter(({ signal }) => signal)
+      .map(({ signal, column }) => ({
+        signal,
+        column,
+        name: [words(signal.name), signal.letters[signal.columns.indexOf(column)]].filter(Boolean).join(" "),
+      }));
   }
 
   /** Baseline member of the family, if differences are shown. */
@@ -66,7 +87,9 @@ export class Plot {
 
   get members() {
     const { visible, baseline } = this.store.state;
-    return this.family.members.filter((member) => (!member.case || visible.has(member.case)) && !(this.baseline && member.case === baseline));
+    return this.family.members.filter(
+      (member) => (!member.case || visible.has(member.case)) && !(this.baseline && member.case === baseline),
+    );
   }
 
   /** Begins anew after a change of the cases, the abscissa or the baseline. */
@@ -78,10 +101,13 @@ export class Plot {
     this.title.textContent = withUnit(this.name, this.signal.unit);
     this.title.title = this.signal.label;
     this.area.setAttribute("aria-label", `${this.title.textContent} over ${this.abscissa.label}`);
-    const wanted = new Map(parts.flatMap((part, index) => this.members.map((member) => [this.keyOf(member, part), { member, part, index }])));
+    const wanted = new Map(
+      parts.flatMap((part, index) => this.members.map((member) => [this.keyOf(member, part), { member, part, index }])),
+    );
     for (const key of this.curves.keys()) if (!wanted.has(key)) this.curves.delete(key);
     for (const [key, one] of wanted) {
-      if (!this.curves.has(key)) this.curves.set(key, { ...one, label: parts.length > 1 ? `${one.member.label} ${one.part.name}` : one.member.label, curve: this.newCurve(one.member, one.part) });
+      const label = parts.length > 1 ? `${one.member.label} ${one.part.name}` : one.member.label;
+      this.curves.set(key, { ...one, label, curve: this.curves.get(key)?.curve ?? this.newCurve(one.member, one.part) });
     }
     this.makeChart();
     this.refresh();
@@ -95,28 +121,59 @@ export class Plot {
     const { family, abscissa } = this;
     const y = ordinateSpec(family, member, signal, column, this.baseline);
     const result = this.store.state.results[member.file];
-    const gaps = result.has(`${member.path}/window`) ? { file: member.file, path: `${member.path}/window`, column: 0 } : undefined;
-    return new Curve(this.client, { x: abscissaSpec(family, member, abscissa), y, monotone: abscissa.monotone, gaps }, () => this.redraw());
+    const gaps = result.has(`${member.path}/window`)
+      ? { file: member.file, path: `${member.path}/window`, column: 0 }
+      : undefined;
+    return new Curve(this.client, { x: abscissaSpec(family, member, abscissa), y, monotone: abscissa.monotone, gaps }, () =>
+      this.redraw(),
+    );
   }
 
   makeChart() {
     this.u?.destroy();
     const colours = inks();
-    const axis = { stroke: colours.ink, grid: { stroke: colours.grid, width: 1 }, ticks: { stroke: colours.grid, width: 1 }, font: "11px system-ui, sans-serif" };
-    this.u = new uPlot({
-      width: Math.max(200, this.area.clientWidth || 600), height: HEIGHT, legend: { show: false },
-      scales: { x: { time: false, range: () => this.range() }, y: { range: () => this.yRange() } },
-      series: [{}, { paths: () => null, points: { show: false } }], // the curves have an abscissa each: drawCurves
-      axes: [
-        { ...axis, label: withUnit(this.abscissa.label, this.abscissa.unit), labelSize: 18, labelFont: axis.font, size: 26, values: (_, ticks) => tickTexts(ticks) },
-        { ...axis, size: 66, values: (_, ticks) => tickTexts(ticks) },
-      ],
-      cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false, bind: { dblclick: () => () => this.store.setRange(this.key, undefined) } },
-      hooks: {
-        drawAxes: [() => this.drawBands()], draw: [() => this.drawCurves()],
-        setSelect: [(u) => this.selected(u)],
+    const axis = {
+      stroke: colours.ink,
+      grid: { stroke: colours.grid, width: 1 },
+      ticks: { stroke: colours.grid, width: 1 },
+      font: "11px system-ui, sans-serif",
+    };
+    this.u = new uPlot(
+      {
+        width: Math.max(200, this.area.clientWidth || 600),
+        height: HEIGHT,
+        legend: { show: false },
+        scales: { x: { time: false, range: () => this.range() }, y: { range: () => this.yRange() } },
+        series: [{}, { paths: () => null, points: { show: false } }], // the curves have an abscissa each: drawCurves
+        axes: [
+          {
+            ...axis,
+            label: withUnit(this.abscissa.label, this.abscissa.unit),
+            labelSize: 18,
+            labelFont: axis.font,
+            size: 26,
+            values: (_, ticks) => tickTexts(ticks),
+          },
+          { ...axis, size: 66, values: (_, ticks) => tickTexts(ticks) },
+        ],
+        cursor: {
+          drag: { x: true, y: false, setScale: false },
+          points: { show: false },
+          y: false,
+          bind: { dblclick: () => () => this.store.setRange(this.key, undefined) },
+        },
+        hooks: {
+          drawAxes: [(u) => paintBands(u, this.context.bands(this), inks().band)],
+          draw: [() => this.drawCurves()],
+          setSelect: [(u) => this.selected(u)],
+        },
       },
-    }, [[0, 1], [0, 1]], this.area);
+      [
+        [0, 1],
+        [0, 1],
+      ],
+      this.area,
+    );
     this.u.over.addEventListener("mousemove", (event) => this.moved(event.offsetX));
   }
 
@@ -127,7 +184,9 @@ export class Plot {
 
   /** All of the abscissa that is known yet. */
   extent() {
-    const known = [...this.curves.values()].map(({ curve }) => curve.overview?.extent).filter((extent) => extent && Number.isFinite(extent[0]));
+    const known = [...this.curves.values()]
+      .map(({ curve }) => curve.overview?.extent)
+      .filter((extent) => extent && Number.isFinite(extent[0]));
     if (known.length === 0) return [0, 1];
     const [low, high] = [Math.min(...known.map((e) => e[0])), Math.max(...known.map((e) => e[1]))];
     return low === high ? [low - 1, high + 1] : [low, high];
@@ -179,65 +238,26 @@ export class Plot {
     const { cases, theme, highlight } = this.store.state;
     // Signals without cases have the colours for themselves.
     const alone = !member.case && this.family.members.length === 1;
-    const index = member.case ? cases.findIndex((one) => one.id === member.case) : this.family.members.indexOf(member) + (alone ? part : 0) + 1;
+    const index = member.case
+      ? cases.findIndex((one) => one.id === member.case)
+      : this.family.members.indexOf(member) + (alone ? part : 0) + 1;
     const faded = highlight && member.case && highlight.cases.size > 0 && !highlight.cases.has(member.case);
     const look = lookOf(index, theme);
-    return { ...look, dash: part > 0 && !alone ? PART_DASHES[(part - 1) % PART_DASHES.length] : look.dash, opacity: faded ? FADED : 1, width: highlight && !faded ? 2 : 1.25 };
-  }
-
-  drawBands() {
-    const { ctx, bbox } = this.u;
-    ctx.save();
-    ctx.fillStyle = inks().band;
-    for (const [from, to] of this.context.bands(this)) {
-      const [left, right] = [this.u.valToPos(from, "x", true), this.u.valToPos(to, "x", true)];
-      const [low, high] = [Math.max(left, bbox.left), Math.min(right, bbox.left + bbox.width)];
-      if (high > low) ctx.fillRect(low, bbox.top, high - low, bbox.height);
-    }
-    ctx.restore();
+    return {
+      ...look,
+      dash: part > 0 && !alone ? PART_DASHES[(part - 1) % PART_DASHES.length] : look.dash,
+      opacity: faded ? FADED : 1,
+      width: highlight && !faded ? 2 : 1.25,
+    };
   }
 
   drawCurves() {
-    const { ctx, bbox } = this.u;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-    ctx.clip();
-    ctx.lineJoin = "round";
-    for (const one of this.curves.values()) {
-      const points = one.curve.points(this.store.state.ranges[this.key]);
-      if (points) this.stroke(points, this.lookOf(one));
-    }
-    ctx.restore();
-  }
-
-  stroke({ x, y }, look) {
-    const { ctx } = this.u;
-    const [ax, bx] = this.linear("x");
-    const [ay, by] = this.linear("y");
-    ctx.beginPath();
-    let down = false;
-    for (let i = 0; i < x.length; ++i) {
-      if (y[i] !== y[i]) down = false;
-      else if (down) ctx.lineTo(ax + bx * x[i], ay + by * y[i]);
-      else {
-        ctx.moveTo(ax + bx * x[i], ay + by * y[i]);
-        down = true;
+    paintWithin(this.u, () => {
+      for (const one of this.curves.values()) {
+        const points = one.curve.points(this.store.state.ranges[this.key]);
+        if (points) strokeCurve(this.u, points, this.lookOf(one));
       }
-    }
-    ctx.strokeStyle = look.colour;
-    ctx.globalAlpha = look.opacity;
-    ctx.lineWidth = look.width * devicePixelRatio;
-    ctx.setLineDash(look.dash.map((length) => length * devicePixelRatio));
-    ctx.stroke();
-  }
-
-  /** Offset and factor from values to pixels of the canvas. */
-  linear(scale) {
-    const { min, max } = this.u.scales[scale];
-    const [low, high] = [this.u.valToPos(min, scale, true), this.u.valToPos(max, scale, true)];
-    const factor = (high - low) / (max - min);
-    return [low - factor * min, factor];
+    });
   }
 
   moved(left) {
@@ -283,14 +303,28 @@ export class Plot {
   }
 
   showValues(at) {
-    this.readout.replaceChildren(...[...this.curves.values()].map((one) => {
-      const { label, member, curve } = one;
-      const look = this.lookOf(one);
-      const points = curve.points(this.store.state.ranges[this.key]);
-      const value = at !== undefined && this.abscissa.monotone && points ? ` ${short(ordinateAt(points, at))} ${unitText(this.signal.unit)}` : "";
-      return html("span", { class: curve.fault ? "fault" : "", title: curve.fault ?? member.label, style: `--colour: ${look.colour}; opacity: ${look.opacity === 1 ? 1 : 0.5}` },
-        html("i"), `${label || member.path}${value}`, curve.fault ? ` ${curve.fault}` : "");
-    }));
+    this.readout.replaceChildren(
+      ...[...this.curves.values()].map((one) => {
+        const { label, member, curve } = one;
+        const look = this.lookOf(one);
+        const points = curve.points(this.store.state.ranges[this.key]);
+        const value =
+          at !== undefined && this.abscissa.monotone && points
+            ? ` ${short(ordinateAt(points, at))} ${unitText(this.signal.unit)}`
+            : "";
+        return html(
+          "span",
+          {
+            class: curve.fault ? "fault" : "",
+            title: curve.fault ?? member.label,
+            style: `--colour: ${look.colour}; opacity: ${look.opacity === 1 ? 1 : 0.5}`,
+          },
+          html("i"),
+          `${label || member.path}${value}`,
+          curve.fault ? ` ${curve.fault}` : "",
+        );
+      }),
+    );
   }
 
   /** What is seen, for export. */
@@ -303,8 +337,13 @@ export class Plot {
       return points ? [{ ...this.lookOf(one), label: one.label, x: points.x, y: points.y, exact: points.exact }] : [];
     });
     return {
-      title: this.title.textContent, width, height: 260, lines, bands: this.context.bands(this),
-      x: { label: withUnit(this.abscissa.label, this.abscissa.unit), min, max }, y: { label: unitText(this.signal.unit), min: low, max: high },
+      title: this.title.textContent,
+      width,
+      height: 260,
+      lines,
+      bands: this.context.bands(this),
+      x: { label: withUnit(this.abscissa.label, this.abscissa.unit), min, max },
+      y: { label: unitText(this.signal.unit), min: low, max: high },
     };
   }
 

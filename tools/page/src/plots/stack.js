@@ -17,7 +17,7 @@ export class PlotStack {
     this.passes = new Map();
     this.empty = html("p", { class: "hint" }, "Choose a signal on the left.");
     this.element = html("div", { class: "plots", id: "plots" }, this.empty);
-    this.element.addEventListener("keydown", (event) => this.key(event));
+    document.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.each((plot) => plot.resize())).observe(this.element);
     store.on(["plots"], () => this.update());
     store.on(["visible", "abscissa", "baseline", "families", "theme", "cases"], () => this.each((plot) => plot.rebuild()));
@@ -41,7 +41,9 @@ export class PlotStack {
     for (const [key, chosen] of wanted) {
       if (this.plots.has(key)) continue;
       const plot = new Plot(this.store, this.client, chosen, {
-        remove: () => this.toggle(chosen), bands: (one) => this.bands(one), abscissa: (family) => this.abscissa(family),
+        remove: () => this.toggle(chosen),
+        bands: (one) => this.bands(one),
+        abscissa: (family) => this.abscissa(family),
       });
       this.plots.set(key, plot);
       this.element.append(plot.element);
@@ -62,10 +64,20 @@ export class PlotStack {
     const same = (one) => one.signal === chosen.signal && one.column === chosen.column;
     const owner = plots.find((plot) => plot.family === chosen.family && [plot, ...(plot.also ?? [])].some(same));
     const host = together ? plots.findLast((plot) => plot.family === chosen.family) : undefined;
-    const replace = (plot, also) => plots.map((one) => (one === plot ? { family: plot.family, signal: plot.signal, column: plot.column, ...(also.length ? { also } : {}) } : one));
+    const replace = (plot, also) =>
+      plots.map((one) =>
+        one === plot ? { family: plot.family, signal: plot.signal, column: plot.column, ...(also.length ? { also } : {}) } : one,
+      );
     if (owner && same(owner)) this.store.set({ plots: plots.filter((one) => one !== owner) });
-    else if (owner) this.store.set({ plots: replace(owner, owner.also.filter((one) => !same(one))) });
-    else if (host) this.store.set({ plots: replace(host, [...(host.also ?? []), { signal: chosen.signal, column: chosen.column }]) });
+    else if (owner)
+      this.store.set({
+        plots: replace(
+          owner,
+          owner.also.filter((one) => !same(one)),
+        ),
+      });
+    else if (host)
+      this.store.set({ plots: replace(host, [...(host.also ?? []), { signal: chosen.signal, column: chosen.column }]) });
     else this.store.set({ plots: [...plots, chosen] });
   }
 
@@ -97,7 +109,9 @@ export class PlotStack {
 
   async loadPasses() {
     const { highlight, cases } = this.store.state;
-    const one = highlight && cases.find((candidate) => candidate.servo && (highlight.cases.size === 0 || highlight.cases.has(candidate.id)));
+    const one =
+      highlight &&
+      cases.find((candidate) => candidate.servo && (highlight.cases.size === 0 || highlight.cases.has(candidate.id)));
     if (one && highlight.sections.size > 0 && !this.passes.has(one.id)) {
       this.passes.set(one.id, await this.client.ask("sections", { file: one.file, servo: one.servo }));
     }
@@ -133,16 +147,23 @@ export class PlotStack {
 
   key(event) {
     const plot = this.current;
-    if (!plot || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("button, input, select")) return;
+    if (!plot || !this.element.isConnected || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target.closest("button, input, select, dialog, canvas.scene, tr")) return;
     const large = event.shiftKey;
     const { cursor } = this.store.state;
     const about = cursor?.key === plot.key ? cursor.value : undefined;
     const actions = {
       ArrowLeft: () => this.moveCursor(plot, -CURSOR_STEP * (large ? 10 : 1)),
       ArrowRight: () => this.moveCursor(plot, CURSOR_STEP * (large ? 10 : 1)),
-      "+": () => plot.zoom(1 / ZOOM, about), "=": () => plot.zoom(1 / ZOOM, about), "-": () => plot.zoom(ZOOM, about),
-      ",": () => plot.pan(-PAN), ".": () => plot.pan(PAN), 0: () => this.store.setRange(plot.key, undefined),
-      Home: () => this.moveCursor(plot, -1), End: () => this.moveCursor(plot, 1), Delete: () => plot.context.remove(),
+      "+": () => plot.zoom(1 / ZOOM, about),
+      "=": () => plot.zoom(1 / ZOOM, about),
+      "-": () => plot.zoom(ZOOM, about),
+      ",": () => plot.pan(-PAN),
+      ".": () => plot.pan(PAN),
+      0: () => this.store.setRange(plot.key, undefined),
+      Home: () => this.moveCursor(plot, -1),
+      End: () => this.moveCursor(plot, 1),
+      Delete: () => plot.context.remove(),
     };
     if (!actions[event.key]) return;
     event.preventDefault();

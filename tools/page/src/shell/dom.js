@@ -23,12 +23,21 @@ export const svg = (tag, attributes = {}, ...children) =>
 
 /** A list of choices with its label. */
 export function select(label, options, value, onchange) {
-  return html("label", {}, `${label} `, html("select", { onchange: (event) => onchange(event.target.value) },
-    ...options.map(([key, text]) => html("option", { value: key, selected: key === value }, text))));
+  return html(
+    "label",
+    {},
+    `${label} `,
+    html(
+      "select",
+      { onchange: (event) => onchange(event.target.value) },
+      ...options.map(([key, text]) => html("option", { value: key, selected: key === value }, text)),
+    ),
+  );
 }
 
 /** A button with a text and what it does. */
-export const button = (text, title, onclick, attributes = {}) => html("button", { type: "button", title, onclick, ...attributes }, text);
+export const button = (text, title, onclick, attributes = {}) =>
+  html("button", { type: "button", title, onclick, ...attributes }, text);
 
 /** A slider with its label and value; of powers of ten if log. */
 export function slider(label, { min, max, step, value, text }, oninput) {

@@ -23,8 +23,11 @@ export function combined(figures) {
   const sizes = drawings.map((drawing) => [Number(drawing.getAttribute("width")), Number(drawing.getAttribute("height"))]);
   const width = Math.max(...sizes.map(([w]) => w));
   const height = sizes.reduce((sum, [, h]) => sum + h, 0);
-  const all = svg("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` },
-    svg("rect", { width, height, fill: inks().paper }));
+  const all = svg(
+    "svg",
+    { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` },
+    svg("rect", { width, height, fill: inks().paper }),
+  );
   let y = 0;
   drawings.forEach((drawing, i) => {
     drawing.setAttribute("y", y);
@@ -47,10 +50,12 @@ function tableOf(figure) {
 function csvOf(figures) {
   const tables = figures.map(tableOf);
   // Tables with the same columns follow each other without a new head.
-  return tables.map(({ head, rows }, i) => {
-    const text = csvText(head, rows);
-    return i > 0 && String(tables[i - 1].head) === String(head) ? text.slice(text.indexOf("\n") + 1) : text;
-  }).join("");
+  return tables
+    .map(({ head, rows }, i) => {
+      const text = csvText(head, rows);
+      return i > 0 && String(tables[i - 1].head) === String(head) ? text.slice(text.indexOf("\n") + 1) : text;
+    })
+    .join("");
 }
 
 function save(blob, name) {
@@ -61,7 +66,8 @@ function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-const svgText = (figures) => `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(combined(figures))}\n`;
+const svgText = (figures) =>
+  `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(combined(figures))}\n`;
 
 /** Draws an SVG into a picture. @returns {Promise<Blob>} */
 async function pngOf(figures) {
@@ -82,8 +88,12 @@ async function pngOf(figures) {
  */
 export async function exportFigures(figures, format, name) {
   if (figures.length === 0) throw new Error("nothing to export is seen");
-  const blob = format === "png" ? await pngOf(figures)
-    : new Blob([format === "svg" ? svgText(figures) : csvOf(figures)], { type: format === "svg" ? "image/svg+xml" : "text/csv" });
+  const blob =
+    format === "png"
+      ? await pngOf(figures)
+      : new Blob([format === "svg" ? svgText(figures) : csvOf(figures)], {
+          type: format === "svg" ? "image/svg+xml" : "text/csv",
+        });
   save(blob, `${name}.${format}`);
   return blob;
 }

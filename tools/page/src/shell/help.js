@@ -2,17 +2,30 @@
 import { html } from "./dom.js";
 
 const SHORTCUTS = [
-  ["?", "this list"], ["O", "open files"], ["/", "filter the signals"], ["A", "show all cases or none"], ["1 … 9", "show or hide a case"],
-  ["X", "next abscissa: time, s, positions of axes"], ["B", "next baseline: differences at equal s"], ["T", "light or dark"],
-  ["S, P, C", "export what is seen as SVG, PNG, CSV"], ["[ and ]", "view before, next view"], ["{ and }", "side view before, next"],
-  ["Z", "zoom to the highlighted sections"], ["Esc", "end the highlight"],
-  ["← →", "move the cursor (with Shift: ten steps)"], ["Home, End", "cursor to the left, right end"],
-  ["+ − 0", "zoom in, out, show all"], [", .", "move to the left, right"], ["Del", "remove the plot that has the focus"],
+  ["?", "this list"],
+  ["O", "open files"],
+  ["/", "filter the signals"],
+  ["A", "show all cases or none"],
+  ["1 … 9", "show or hide a case"],
+  ["X", "next abscissa: time, s, positions of axes"],
+  ["B", "next baseline: differences at equal s"],
+  ["T", "light or dark"],
+  ["S, P, C", "export what is seen as SVG, PNG, CSV"],
+  ["[ and ]", "view before, next view"],
+  ["{ and }", "side view before, next"],
+  ["Z", "zoom to the highlighted sections"],
+  ["Esc", "end the highlight"],
+  ["← →", "move the cursor (with Shift: ten steps)"],
+  ["Home, End", "cursor to the left, right end"],
+  ["+ − 0", "zoom in, out, show all"],
+  [", .", "move to the left, right"],
+  ["Del", "remove the plot that has the focus"],
   ["Shift + a signal", "draw it in the last plot, too"],
 ];
 
 const POINTER = [
-  ["drag", "zoom to an interval"], ["double click", "show all"],
+  ["drag", "zoom to an interval"],
+  ["double click", "show all"],
   ["wheel", "zoom, in the plot that has the focus or with Shift or Ctrl"],
 ];
 
@@ -31,8 +44,13 @@ export function showLicences() {
 }
 
 export function showHelp() {
-  dialogOf(html("h3", {}, "Keys"), html("table", {}, ...rows(SHORTCUTS)), html("h3", {}, "Pointer"), html("table", {}, ...rows(POINTER)),
-    html("p", {}, html("button", { type: "button", onclick: showLicences }, "Licences")));
+  dialogOf(
+    html("h3", {}, "Keys"),
+    html("table", {}, ...rows(SHORTCUTS)),
+    html("h3", {}, "Pointer"),
+    html("table", {}, ...rows(POINTER)),
+    html("p", {}, html("button", { type: "button", onclick: showLicences }, "Licences")),
+  );
 }
 
 /**

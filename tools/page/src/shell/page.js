@@ -12,7 +12,12 @@ import { Tabs } from "./tabs.js";
 import { followTheme, toggleTheme } from "./theme.js";
 
 /** Signals that are shown first, those that the file has. */
-const FIRST = [["contour_error", 0], ["tool_deviation", "norm"], ["following_error_linear", 0], ["following_error_linear", 1]];
+const FIRST = [
+  ["contour_error", 0],
+  ["tool_deviation", "norm"],
+  ["following_error_linear", 0],
+  ["following_error_linear", 1],
+];
 const FIRST_PLOTS = 3;
 const ENDING = /\.(h5|hdf5|hdf|nc)$/i;
 
@@ -24,7 +29,13 @@ export class Page {
     this.client = new Client((progress) => this.showProgress(progress));
     this.client.onFault = (text) => this.say(text);
     this.stack = new PlotStack(this.store, this.client);
-    this.sidebar = new Sidebar(this.store, { toggle: (chosen, together) => { this.main.open("Signals"); this.stack.toggle(chosen, together); }, close: (file) => this.close(file) });
+    this.sidebar = new Sidebar(this.store, {
+      toggle: (chosen, together) => {
+        this.main.open("Signals");
+        this.stack.toggle(chosen, together);
+      },
+      close: (file) => this.close(file),
+    });
     this.build();
     this.store.on(["families", "abscissa", "baseline", "cases"], () => this.showChoices());
     this.store.on(["results", "families"], () => this.showViews());
@@ -37,12 +48,28 @@ export class Page {
     this.statusText = html("span", { role: "status" });
     this.message = html("div", { class: "message", role: "alert", hidden: true });
     this.input = html("input", { type: "file", multiple: true, accept: ".h5,.hdf5,.nc", hidden: true, id: "files" });
-    this.input.addEventListener("change", () => this.openFiles([...this.input.files]).then(() => { this.input.value = ""; }));
-    const formats = ["svg", "png", "csv"].map((format) => button(format.toUpperCase(), `Export what is seen as ${format.toUpperCase()} (${format[0].toUpperCase()})`, () => this.export(format)));
-    const top = html("header", { class: "top" }, button("Open", "Open result files (O)", () => this.input.click()), this.input, this.heading,
-      html("span", { class: "status" }, this.progress, this.statusText), this.choices,
+    this.input.addEventListener("change", () =>
+      this.openFiles([...this.input.files]).then(() => {
+        this.input.value = "";
+      }),
+    );
+    const formats = ["svg", "png", "csv"].map((format) =>
+      button(format.toUpperCase(), `Export what is seen as ${format.toUpperCase()} (${format[0].toUpperCase()})`, () =>
+        this.export(format),
+      ),
+    );
+    const top = html(
+      "header",
+      { class: "top" },
+      button("Open", "Open result files (O)", () => this.input.click()),
+      this.input,
+      this.heading,
+      html("span", { class: "status" }, this.progress, this.statusText),
+      this.choices,
       html("span", { class: "tools", role: "group", "aria-label": "Export" }, ...formats),
-      button("◐", "Light or dark (T)", () => toggleTheme(this.store), { "aria-label": "Light or dark" }), button("?", "Keys (?)", showHelp, { "aria-label": "Keys" }));
+      button("◐", "Light or dark (T)", () => toggleTheme(this.store), { "aria-label": "Light or dark" }),
+      button("?", "Keys (?)", showHelp, { "aria-label": "Keys" }),
+    );
     this.mainArea = html("main", { class: "main" });
     this.sideArea = html("aside", { class: "side" });
     this.work = html("div", { class: "work" });
@@ -56,17 +83,31 @@ export class Page {
   }
 
   welcome() {
-    this.drop = html("div", { class: "drop" }, html("h3", {}, "Drop result files of servomill here"),
-      html("p", { class: "hint" }, "Files of servomill run, sweep, budget, bode, step, identify and recording. Nothing leaves this computer."),
-      button("Choose files", "Open result files (O)", () => this.input.click()));
+    this.drop = html(
+      "div",
+      { class: "drop" },
+      html("h3", {}, "Drop result files of servomill here"),
+      html(
+        "p",
+        { class: "hint" },
+        "Files of servomill run, sweep, budget, bode, step, identify and recording. Nothing leaves this computer.",
+      ),
+      button("Choose files", "Open result files (O)", () => this.input.click()),
+    );
     this.mainArea.replaceChildren(this.drop);
     this.work.classList.add("wide");
     this.side.element.hidden = true;
   }
 
   listen() {
-    for (const type of ["dragenter", "dragover"]) document.addEventListener(type, (event) => { event.preventDefault(); this.root.classList.add("dropping"); });
-    document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) this.root.classList.remove("dropping"); });
+    for (const type of ["dragenter", "dragover"])
+      document.addEventListener(type, (event) => {
+        event.preventDefault();
+        this.root.classList.add("dropping");
+      });
+    document.addEventListener("dragleave", (event) => {
+      if (!event.relatedTarget) this.root.classList.remove("dropping");
+    });
     document.addEventListener("drop", (event) => {
       event.preventDefault();
       this.root.classList.remove("dropping");
@@ -77,12 +118,26 @@ export class Page {
       if (views.length) tabs.open(views[(views.indexOf(tabs.current) + by + views.length) % views.length]);
     };
     listenToKeys({
-      "?": showHelp, o: () => this.input.click(), "/": () => this.sidebar.filter.focus(), a: () => this.sidebar.showAll(),
-      digit: (key) => { const one = this.store.state.cases[Number(key) - 1]; if (one) this.sidebar.toggleCase(one.id); },
-      x: () => this.nextAbscissa(), b: () => this.nextBaseline(), t: () => toggleTheme(this.store),
-      s: () => this.export("svg"), p: () => this.export("png"), c: () => this.export("csv"),
-      "[": () => step(this.main, -1), "]": () => step(this.main, 1), "{": () => step(this.side, -1), "}": () => step(this.side, 1),
-      z: () => this.stack.zoomToHighlight(), Escape: () => this.store.set({ highlight: undefined }),
+      "?": showHelp,
+      o: () => this.input.click(),
+      "/": () => this.sidebar.filter.focus(),
+      a: () => this.sidebar.showAll(),
+      digit: (key) => {
+        const one = this.store.state.cases[Number(key) - 1];
+        if (one) this.sidebar.toggleCase(one.id);
+      },
+      x: () => this.nextAbscissa(),
+      b: () => this.nextBaseline(),
+      t: () => toggleTheme(this.store),
+      s: () => this.export("svg"),
+      p: () => this.export("png"),
+      c: () => this.export("csv"),
+      "[": () => step(this.main, -1),
+      "]": () => step(this.main, 1),
+      "{": () => step(this.side, -1),
+      "}": () => step(this.side, 1),
+      z: () => this.stack.zoomToHighlight(),
+      Escape: () => this.store.set({ highlight: undefined }),
     });
   }
 
@@ -92,7 +147,9 @@ export class Page {
     const answer = await fetch("files.json").catch(() => undefined);
     if (!answer?.ok) return;
     const served = await answer.json();
-    await this.openPlaces(served.map(({ name, url, size }) => ({ name, place: { url: new URL(url, location.href).href, size } })));
+    await this.openPlaces(
+      served.map(({ name, url, size }) => ({ name, place: { url: new URL(url, location.href).href, size } })),
+    );
   }
 
   openFiles(files) {
@@ -133,12 +190,20 @@ export class Page {
     const cases = casesOf(open);
     const families = familiesOf(open, cases);
     const known = new Set(this.store.state.cases.map((one) => one.id));
-    const visible = new Set(cases.filter((one) => !known.has(one.id) || this.store.state.visible.has(one.id)).map((one) => one.id));
-    const has = ({ family, signal }) => families.some((one) => one.key === family && one.signals.some((other) => other.name === signal));
+    const visible = new Set(
+      cases.filter((one) => !known.has(one.id) || this.store.state.visible.has(one.id)).map((one) => one.id),
+    );
+    const has = ({ family, signal }) =>
+      families.some((one) => one.key === family && one.signals.some((other) => other.name === signal));
     const kept = this.store.state.plots.filter(has);
     const { baseline } = this.store.state;
     this.store.set({
-      results, cases, families, visible, highlight: undefined, baseline: cases.some((one) => one.id === baseline) ? baseline : "",
+      results,
+      cases,
+      families,
+      visible,
+      highlight: undefined,
+      baseline: cases.some((one) => one.id === baseline) ? baseline : "",
       plots: kept.length > 0 ? kept : this.firstPlots(families),
     });
     this.heading.textContent = open.map((result) => result.title).join(" · ") || "servomill results";
@@ -148,8 +213,12 @@ export class Page {
   firstPlots(families) {
     const [family] = families;
     if (!family) return [];
-    if (!family.servo) return family.signals.slice(0, FIRST_PLOTS).map((signal) => ({ family: family.key, signal: signal.name, column: signal.columns[0] }));
-    return FIRST.filter(([name, column]) => family.signals.find((signal) => signal.name === name)?.columns.includes(column)).slice(0, FIRST_PLOTS)
+    if (!family.servo)
+      return family.signals
+        .slice(0, FIRST_PLOTS)
+        .map((signal) => ({ family: family.key, signal: signal.name, column: signal.columns[0] }));
+    return FIRST.filter(([name, column]) => family.signals.find((signal) => signal.name === name)?.columns.includes(column))
+      .slice(0, FIRST_PLOTS)
       .map(([signal, column]) => ({ family: family.key, signal, column }));
   }
 
@@ -162,7 +231,9 @@ export class Page {
       return;
     }
     this.main.update();
-    const special = { sweep: "Sweep", budget: "Budget", bode: "Bode" }[this.store.state.results.filter(Boolean).at(-1).attributes.kind];
+    const special = { sweep: "Sweep", budget: "Budget", bode: "Bode" }[
+      this.store.state.results.filter(Boolean).at(-1).attributes.kind
+    ];
     if (special && this.opened) this.main.open(special);
     this.opened = false;
     this.side.update();
@@ -179,10 +250,19 @@ export class Page {
   showChoices() {
     const { families, results, cases, abscissa, baseline } = this.store.state;
     const choices = abscissaeOf(families[0], results).map((one) => [one.key, one.label]);
-    this.choices.replaceChildren(...(choices.length ? [
-      select("over", choices, abscissa, (key) => this.setAbscissa(key)),
-      select("difference to", [["", "–"], ...cases.filter((one) => one.servo).map((one) => [one.id, one.label])], baseline, (id) => this.store.set({ baseline: id })),
-    ] : []));
+    this.choices.replaceChildren(
+      ...(choices.length
+        ? [
+            select("over", choices, abscissa, (key) => this.setAbscissa(key)),
+            select(
+              "difference to",
+              [["", "–"], ...cases.filter((one) => one.servo).map((one) => [one.id, one.label])],
+              baseline,
+              (id) => this.store.set({ baseline: id }),
+            ),
+          ]
+        : []),
+    );
   }
 
   setAbscissa(key) {
@@ -221,7 +301,11 @@ export class Page {
       const width = 900;
       const focusInSide = this.sideArea.contains(document.activeElement);
       const view = focusInSide ? this.side.current : this.main.current;
-      this.lastExport = await exportFigures(view?.figures?.(width) ?? [], format, `${name}-${(view?.name ?? "").toLowerCase().replace(/\W+/g, "_")}`);
+      this.lastExport = await exportFigures(
+        view?.figures?.(width) ?? [],
+        format,
+        `${name}-${(view?.name ?? "").toLowerCase().replace(/\W+/g, "_")}`,
+      );
     } catch (fault) {
       this.say(`export: ${fault.message}`);
     }

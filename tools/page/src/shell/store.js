@@ -19,8 +19,17 @@ export class Store {
   constructor() {
     /** @type {State} */
     this.state = {
-      results: [], cases: [], families: [], visible: new Set(), abscissa: "time", ranges: {}, cursor: undefined,
-      plots: [], baseline: "", highlight: undefined, theme: "light",
+      results: [],
+      cases: [],
+      families: [],
+      visible: new Set(),
+      abscissa: "time",
+      ranges: {},
+      cursor: undefined,
+      plots: [],
+      baseline: "",
+      highlight: undefined,
+      theme: "light",
     };
     this.listeners = [];
     this.changed = new Set();

@@ -24,10 +24,22 @@ export class Tabs {
   /** Shows the tabs of what there is, and keeps the one that is open. */
   update() {
     const views = this.views.filter((view) => view.available());
-    this.element.replaceChildren(...views.map((view) => html("button", {
-      type: "button", role: "tab", id: `tab-${view.name}`, "aria-selected": view === this.current, tabindex: view === this.current ? 0 : -1,
-      onclick: () => this.open(view),
-    }, view.name)));
+    this.element.replaceChildren(
+      ...views.map((view) =>
+        html(
+          "button",
+          {
+            type: "button",
+            role: "tab",
+            id: `tab-${view.name}`,
+            "aria-selected": view === this.current,
+            tabindex: view === this.current ? 0 : -1,
+            onclick: () => this.open(view),
+          },
+          view.name,
+        ),
+      ),
+    );
     if (!views.includes(this.current)) this.open(views[0]);
     else this.current?.show?.();
   }

@@ -15,7 +15,9 @@ export const preferredTheme = () => stored() ?? (matchMedia("(prefers-color-sche
 
 /** Applies the theme of the store, and follows that of the system. */
 export function followTheme(store) {
-  const apply = () => { document.documentElement.dataset.theme = store.state.theme; };
+  const apply = () => {
+    document.documentElement.dataset.theme = store.state.theme;
+  };
   store.on(["theme"], apply);
   store.state.theme = preferredTheme();
   apply();
@@ -36,5 +38,12 @@ export function toggleTheme(store) {
 export function inks() {
   const style = getComputedStyle(document.documentElement);
   const value = (name) => style.getPropertyValue(`--${name}`).trim();
-  return { ink: value("ink"), faint: value("faint"), grid: value("grid"), paper: value("paper"), accent: value("accent"), band: value("band") };
+  return {
+    ink: value("ink"),
+    faint: value("faint"),
+    grid: value("grid"),
+    paper: value("paper"),
+    accent: value("accent"),
+    band: value("band"),
+  };
 }

@@ -12,8 +12,17 @@ import { SweepView } from "../panels/sweep.js";
 export function mainViews(page) {
   const { store, stack } = page;
   return [
-    { name: "Signals", element: stack.element, available: () => store.state.families.length > 0, show: () => stack.each((plot) => plot.resize()), figures: (width) => stack.figures(width) },
-    new SweepView(page), new BudgetView(page), new BodeView(page), new ParametersView(page),
+    {
+      name: "Signals",
+      element: stack.element,
+      available: () => store.state.families.length > 0,
+      show: () => stack.each((plot) => plot.resize()),
+      figures: (width) => stack.figures(width),
+    },
+    new SweepView(page),
+    new BudgetView(page),
+    new BodeView(page),
+    new ParametersView(page),
   ];
 }
 

@@ -8,14 +8,15 @@ import { PyramidBuilder } from "../core/pyramid.js";
 const BLOCK = 1 << 18; // rows read at a time
 
 /** Lets other messages be answered. */
-const breathe = () => new Promise((resolve) => {
-  const { port1, port2 } = new MessageChannel();
-  port2.onmessage = () => {
-    port2.close();
-    resolve();
-  };
-  port1.postMessage(0);
-});
+const breathe = () =>
+  new Promise((resolve) => {
+    const { port1, port2 } = new MessageChannel();
+    port2.onmessage = () => {
+      port2.close();
+      resolve();
+    };
+    port1.postMessage(0);
+  });
 
 /**
  * @typedef {object} Column
@@ -62,7 +63,12 @@ async function readAll(column, report) {
 
 /** @returns {Promise<Column>} column minus that of a baseline at equal arc length */
 async function differenceColumn(column, s, base, sBase, report) {
-  const [own, ownS, other, otherS] = [await readAll(column, report), await readAll(s, report), await readAll(base, report), await readAll(sBase, report)];
+  const [own, ownS, other, otherS] = [
+    await readAll(column, report),
+    await readAll(s, report),
+    await readAll(base, report),
+    await readAll(sBase, report),
+  ];
   const difference = Float32Array.from(differenceAtEqualS(ownS, own, otherS, other));
   return { rows: column.rows, block: BLOCK, read: (from, to) => Float64Array.from(difference.subarray(from, to)) };
 }
@@ -124,7 +130,10 @@ export class Columns {
         this.column({ file: base.file, path: base.path, column: spec.column }),
         this.column({ file: base.file, path: base.s, column: 0 }),
       ]);
-      return this.counted(parts.reduce((sum, part) => sum + part.rows, 0), (report) => differenceColumn(...parts, report));
+      return this.counted(
+        parts.reduce((sum, part) => sum + part.rows, 0),
+        (report) => differenceColumn(...parts, report),
+      );
     }
     if (spec.path === undefined) return rowColumn(spec.rows);
     const file = this.fileOf(spec.file);
@@ -154,7 +163,9 @@ export class Columns {
     let own = 0;
     const before = this.queue;
     let end;
-    this.queue = new Promise((resolve) => { end = resolve; });
+    this.queue = new Promise((resolve) => {
+      end = resolve;
+    });
     await before;
     try {
       return await task((read) => {

@@ -35,7 +35,8 @@ function attributesOf(node) {
   for (const name of Object.keys(node.attrs)) {
     if (INTERNAL.has(name)) continue;
     const value = attributeValue(node.get_attribute(name));
-    out[name] = typeof value === "string" && value.length > LONG_TEXT && name !== "sections" && name !== "values" ? undefined : value;
+    out[name] =
+      typeof value === "string" && value.length > LONG_TEXT && name !== "sections" && name !== "values" ? undefined : value;
   }
   return out;
 }
@@ -54,6 +55,7 @@ export class ResultFile {
     FS.mkdir(folder);
     FS.mount(WORKERFS, { blobs: [{ name: "result.h5", data: paged }] }, folder);
     const file = new h5wasm.File(`${folder}/result.h5`, "r");
+    if (file.file_id < 0n) throw paged.fault ?? new Error("is damaged, cut short, or still being written");
     return new ResultFile(name, file, paged, folder);
   }
 
@@ -139,7 +141,13 @@ export class ResultFile {
    */
   read(path, column, from, to) {
     const dataset = this.dataset(path);
-    const ranges = dataset.shape.length > 1 ? [[from, to], [column, column + 1]] : [[from, to]];
+    const ranges =
+      dataset.shape.length > 1
+        ? [
+            [from, to],
+            [column, column + 1],
+          ]
+        : [[from, to]];
     let values;
     try {
       values = dataset.slice(ranges);

@@ -49,14 +49,20 @@ export async function path(columns, { file, servo, colour, points, has }, report
   const nominal = await three("tool_position_nominal");
   const deviation = await three("tool_deviation");
   const axis = has.axis ? await three("tool_axis_true") : [];
-  const shade = await columns.column(spec(colour === "tool_deviation" ? "tool_deviation" : colour, colour === "tool_deviation" ? "norm" : 0));
+  const shade = await columns.column(
+    spec(colour === "tool_deviation" ? "tool_deviation" : colour, colour === "tool_deviation" ? "norm" : 0),
+  );
   const rapid = has.rapid ? await columns.column(spec("rapid")) : undefined;
   const rows = shade.rows;
   const step = Math.max(1, Math.ceil((2 * rows) / points));
   const count = Math.ceil(rows / step) * (step > 1 ? 2 : 1);
   const out = {
-    nominal: new Float32Array(3 * count), deviation: new Float32Array(3 * count), axis: new Float32Array(axis.length ? 3 * count : 0),
-    colour: new Float32Array(count), row: new Uint32Array(count), rapid: new Uint8Array(count),
+    nominal: new Float32Array(3 * count),
+    deviation: new Float32Array(3 * count),
+    axis: new Float32Array(axis.length ? 3 * count : 0),
+    colour: new Float32Array(count),
+    row: new Uint32Array(count),
+    rapid: new Uint8Array(count),
   };
   let n = 0;
   const block = Math.ceil(BLOCK / step) * step;
@@ -84,9 +90,17 @@ export async function path(columns, { file, servo, colour, points, has }, report
     }
     await report(to / rows);
   }
-  if (n < count) for (const [name, width] of [["nominal", 3], ["deviation", 3], ["axis", 3], ["colour", 1], ["row", 1], ["rapid", 1]]) {
-    if (out[name].length) out[name] = out[name].slice(0, width * n);
-  }
+  if (n < count)
+    for (const [name, width] of [
+      ["nominal", 3],
+      ["deviation", 3],
+      ["axis", 3],
+      ["colour", 1],
+      ["row", 1],
+      ["rapid", 1],
+    ]) {
+      if (out[name].length) out[name] = out[name].slice(0, width * n);
+    }
   return out;
 }
 

@@ -68,7 +68,7 @@ export class PagedFile {
 
   read(from, to) {
     const out = new Uint8Array(to - from);
-    for (let at = from; at < to; ) {
+    for (let at = from; at < to;) {
       const number = Math.floor(at / PAGE);
       const page = this.page(number);
       const end = Math.min(to, (number + 1) * PAGE);

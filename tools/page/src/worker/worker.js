@@ -47,10 +47,11 @@ const methods = {
   rowAt: (spec, value) => rowAt(columns, spec, value),
   valuesAt: (request) => valuesAt(columns, request),
   sections: (request) => sections(columns, request),
-  path: (request) => path(columns, request, async (share) => {
-    report(share, 1, "path");
-    await pause();
-  }),
+  path: (request) =>
+    path(columns, request, async (share) => {
+      report(share, 1, "path");
+      await pause();
+    }),
   circle: (request) => circle(columns, request),
 };
 

@@ -1,0 +1,38 @@
+#!/usr/bin/python3
+"""Makes the result files that the tests of the page open.
+
+    files.py SERVOMILL FOLDER
+"""
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SIDE = "scenarios/guevel2025/experiment1.toml"
+COMMANDS = {
+    "run": ("run", SIDE, "--set", "record.period_ms=4"),
+    "circle": ("run", "tests/page/circle.toml"),
+    "day": ("run", "scenarios/thermal/day.toml", "--set", "record.period_ms=50"),
+    "sweep": ("sweep", "scenarios/sweeps/blocks_friction.toml"),
+    "budget": ("budget", "tests/page/circle.toml", "--quantity", "tool_deviation"),
+    "bode": ("bode", SIDE, "--axis", "Y", "--loop", "position"),
+}
+
+
+def main():
+    servomill, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (command, scenario, *options) in COMMANDS.items():
+        # Names of scenarios are relative to the source tree, as users type them.
+        done = subprocess.run([servomill, command, scenario, *options, "-o", folder / f"{name}.h5", "--force"],
+                              cwd=ROOT, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            print(f"{name}: status {done.returncode}: {done.stderr}")
+            return 1
+    (folder / "text.h5").write_text("not HDF5, whatever its name\n", encoding="utf-8")
+    (folder / "cut.h5").write_bytes((folder / "run.h5").read_bytes()[:300_000])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
