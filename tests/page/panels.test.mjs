@@ -99,7 +99,7 @@ describe("path and machine", () => {
     page = await opened("circle");
   });
   after(() => page.close());
-  const picture = () => page.evaluate(() => servomill.side.current.canvas.toDataURL());
+  const picture = () => page.evaluate(() => servomill.side.current.picture());
 
   it("shows positions of the axes and the line of the program at the cursor", async () => {
     await side(page, "Machine");

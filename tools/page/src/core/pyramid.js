@@ -6,7 +6,7 @@
 /** Rows of a bucket of the finest level. */
 export const BUCKET = 16;
 /** Buckets of a level that one bucket of the next level covers. */
-export const FACTOR = 4;
+export const FACTOR = 2;
 
 /**
  * @typedef {object} Level

@@ -28,18 +28,14 @@ export class BodeView {
   }
 
   get axes() {
-    return this.store.state.results
-      .filter(Boolean)
-      .flatMap((result) =>
-        result
-          .below("/bode")
-          .map((group) => ({
-            key: `${result.index}${group.path}`,
-            label: `${baseName(group.path)} of ${result.name}`,
-            result,
-            group,
-          })),
-      );
+    return this.store.state.results.filter(Boolean).flatMap((result) =>
+      result.below("/bode").map((group) => ({
+        key: `${result.index}${group.path}`,
+        label: `${baseName(group.path)} of ${result.name}`,
+        result,
+        group,
+      })),
+    );
   }
 
   available() {

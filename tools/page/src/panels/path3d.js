@@ -10,12 +10,23 @@ import { inks } from "../shell/theme.js";
 import { Orbit } from "./orbit.js";
 import { PathLines } from "./path_lines.js";
 
-const POINTS = 80_000;
+const POINTS = 30_000;
 const HEIGHT = 380; // pixels
 const COLOURS = [
   ["contour_error", "contour error"],
   ["tool_deviation", "tool deviation"],
 ];
+
+const REST = 150; // ms without movement
+
+/** True where there is no graphics card: smooth edges would take most of the time. */
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
 
 export class PathView {
   constructor({ store, client }) {
@@ -82,7 +93,7 @@ export class PathView {
   }
 
   begin() {
-    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: !drawsInSoftware() });
     this.camera = new three.PerspectiveCamera(35, 1, 1, 1e5);
     this.scene = new three.Scene();
     this.orbit = new Orbit(this.camera, this.canvas, () => this.redraw());
@@ -186,14 +197,29 @@ export class PathView {
     this.redraw();
   }
 
+  /** Draws the next frame with thin lines, and with thick ones as soon as nothing moves any more. */
   redraw() {
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.render(true), REST);
     if (this.drawing || !this.seen) return;
     this.drawing = true;
     requestAnimationFrame(() => {
       this.drawing = false;
-      if (this.seen) this.renderer.render(this.scene, this.camera);
+      this.render(false);
       this.frames = (this.frames ?? 0) + 1;
     });
+  }
+
+  render(isThick) {
+    if (!this.seen) return;
+    this.lines?.thicken(isThick);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** The picture, as an address that contains it. */
+  picture() {
+    this.render(true); // the canvas is empty once it has been shown
+    return this.canvas.toDataURL("image/png");
   }
 
   /** The part of the path that the plots show. */
@@ -244,12 +270,11 @@ export class PathView {
   /** What is seen: the picture, and the points for CSV. */
   figures() {
     if (!this.lines) return [];
-    this.renderer.render(this.scene, this.camera);
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
     const drawing = svg(
       "svg",
       { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` },
-      svg("image", { width, height, href: this.canvas.toDataURL("image/png") }),
+      svg("image", { width, height, href: this.picture() }),
     );
     const { nominal, deviation, colour, row } = this.data;
     const rows = Array.from(row, (r, i) => [

@@ -85,6 +85,13 @@ export class PathLines {
     return this.nominal.geometry.boundingSphere;
   }
 
+  /** Draws lines of two pixels, or of one while they move. */
+  thicken(isThick) {
+    this.actual.forEach((line, i) => {
+      line.visible = isThick || i === 0;
+    });
+  }
+
   magnify(factor) {
     for (const line of this.actual) line.material.uniforms.magnification.value = factor;
   }

@@ -143,15 +143,30 @@ export class Columns {
   }
 
   /** @returns {Promise<import("../core/pyramid.js").Pyramid>} */
-  pyramid(spec) {
-    const key = JSON.stringify(spec);
-    let found = this.pyramids.get(key);
-    if (!found) {
-      found = this.column(spec).then((column) => this.counted(column.rows, (report) => build(column, report)));
-      this.pyramids.set(key, found);
-      found.catch(() => this.pyramids.delete(key));
+  async pyramid(spec) {
+    return (await this.pyramidsOf([spec]))[0];
+  }
+
+  /**
+   * Pyramids of columns that are wanted together: the file holds their rows next to each other.
+   * @returns {Promise<import("../core/pyramid.js").Pyramid[]>}
+   */
+  pyramidsOf(specs) {
+    const fresh = specs.map((spec) => ({ spec, key: JSON.stringify(spec) })).filter(({ key }) => !this.pyramids.has(key));
+    if (fresh.length > 0) {
+      const built = Promise.all(fresh.map(({ spec }) => this.column(spec))).then((columns) =>
+        this.counted(
+          columns.reduce((sum, column) => sum + column.rows, 0),
+          (report) => build(columns, report),
+        ),
+      );
+      fresh.forEach(({ key }, i) => {
+        const own = built.then((all) => all[i]);
+        this.pyramids.set(key, own);
+        own.catch(() => this.pyramids.delete(key));
+      });
     }
-    return found;
+    return Promise.all(specs.map((spec) => this.pyramids.get(JSON.stringify(spec))));
   }
 
   /**
@@ -182,13 +197,19 @@ export class Columns {
   }
 }
 
-async function build(column, report) {
-  const builder = new PyramidBuilder(column.rows);
-  for (let from = 0; from < column.rows; from += column.block) {
-    const to = Math.min(column.rows, from + column.block);
-    builder.push(column.read(from, to));
-    report(to - from);
-    await breathe();
+/** Pyramids of columns, all read at the same rows before the next ones. */
+async function build(columns, report) {
+  const builders = columns.map((column) => new PyramidBuilder(column.rows));
+  const rows = Math.max(...columns.map((column) => column.rows));
+  const block = columns[0].block;
+  for (let from = 0; from < rows; from += block) {
+    for (const [i, column] of columns.entries()) {
+      const to = Math.min(column.rows, from + block);
+      if (to <= from) continue;
+      builders[i].push(column.read(from, to));
+      report(to - from);
+      await breathe();
+    }
   }
-  return builder.finish();
+  return builders.map((builder) => builder.finish());
 }

@@ -94,7 +94,7 @@ function addExtremes(points, [from, to], x, y, step) {
 export async function curve(columns, { x, y, monotone, gaps, range, pixels }) {
   const [xColumn, yColumn] = await Promise.all([columns.column(x), columns.column(y)]);
   const isLong = yColumn.rows > 2 * pixels;
-  const [xPyramid] = await Promise.all([columns.pyramid(x), isLong && monotone ? columns.pyramid(y) : undefined]);
+  const [xPyramid] = await columns.pyramidsOf(isLong && monotone ? [x, y] : [x]);
   const extent = rangeOf(xPyramid);
   const [low, high] = range ?? extent;
   let intervals = rowsWithin(xPyramid, low, high);
@@ -117,7 +117,7 @@ export async function curve(columns, { x, y, monotone, gaps, range, pixels }) {
     return { ...points.arrays(), rows, exact: step === 1, extent };
   }
   const yPyramid = await columns.pyramid(y);
-  const level = levelFor(yPyramid, rows, 2 * pixels) ?? yPyramid.levels[0];
+  const level = levelFor(yPyramid, rows, pixels);
   const xLevel = xPyramid.levels.find((one) => one.size === level.size);
   for (const interval of intervals) {
     points.lift();

@@ -5,6 +5,7 @@ import { pagedFile, pageReader } from "./source.js";
 const SIGNATURE = [0x89, 0x48, 0x44, 0x46, 0x0d, 0x0a, 0x1a, 0x0a];
 // Attributes that hold references of the library between datasets, not what people read.
 const INTERNAL = new Set(["DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME"]);
+const SIGNALS = /^\/cases\/[^/]+\/servo$/;
 const LONG_TEXT = 4096; // characters of an attribute that are part of the tree; longer ones are read on demand
 
 let mounted = 0;
@@ -78,10 +79,16 @@ export class ResultFile {
   tree(report) {
     /** @type {GroupNode[]} */
     const nodes = [];
+    /** @type {GroupNode | undefined} */
+    let signals;
     const walk = (group, path) => {
       const node = { path, attributes: attributesOf(group), groups: [], datasets: [] };
       nodes.push(node);
       if (nodes.length % 50 === 0) report(nodes.length);
+      if (SIGNALS.test(path)) {
+        if (signals && this.likeFirst(node, signals, group.keys())) return;
+        signals ??= node;
+      }
       for (const key of group.keys()) {
         const child = group.get(key);
         const childPath = path === "/" ? `/${key}` : `${path}/${key}`;
@@ -95,6 +102,23 @@ export class ResultFile {
     };
     walk(this.file, "/");
     return nodes;
+  }
+
+  /**
+   * Signals of a case with the names of the first one: the program gives them the same units and columns in every case
+   * of a file, and reading them again would take most of the time that opening takes.
+   */
+  likeFirst(node, first, names) {
+    const namesOfFirst = first.datasets.map(({ path }) => path.slice(first.path.length + 1));
+    if (names.join() !== namesOfFirst.join()) return false;
+    const [rowsOfFirst] = first.datasets[names.indexOf("time")]?.shape ?? [];
+    const rows = this.dataset(`${node.path}/time`).shape[0];
+    node.datasets = first.datasets.map((dataset, i) => ({
+      ...dataset,
+      path: `${node.path}/${names[i]}`,
+      shape: dataset.shape[0] === rowsOfFirst ? [rows, ...dataset.shape.slice(1)] : dataset.shape,
+    }));
+    return true;
   }
 
   datasetNode(dataset, path) {
