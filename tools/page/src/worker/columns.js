@@ -23,13 +23,19 @@ const breathe = () =>
  * @property {number} rows
  * @property {number} block rows that are read at a time without reading any twice
  * @property {(from: number, to: number) => Float64Array} read
+ * @property {() => Promise<void>} [advance] requests what the next rows need
  */
 
 /** @returns {Column} column of a dataset */
 function datasetColumn(file, path, index) {
   const rows = file.dataset(path).shape[0] ?? 1;
   const chunk = Math.max(1, file.chunkRows(path));
-  return { rows, block: Math.max(1, Math.round(BLOCK / chunk)) * chunk, read: (from, to) => file.read(path, index, from, to) };
+  return {
+    rows,
+    block: Math.max(1, Math.round(BLOCK / chunk)) * chunk,
+    read: (from, to) => file.read(path, index, from, to),
+    advance: () => file.paged.advance(),
+  };
 }
 
 /** @returns {Column} number of the row, counted from 1 */
@@ -47,7 +53,7 @@ function magnitudeColumn(parts) {
     }
     return sum.map(Math.sqrt);
   };
-  return { rows: parts[0].rows, block: parts[0].block, read };
+  return { rows: parts[0].rows, block: parts[0].block, read, advance: parts[0].advance };
 }
 
 async function readAll(column, report) {
@@ -210,6 +216,7 @@ async function build(columns, report) {
       report(to - from);
       await breathe();
     }
+    if (from + block < rows) await columns.at(-1).advance?.();
   }
   return builders.map((builder) => builder.finish());
 }

@@ -7,6 +7,7 @@
 // columns between them, and a large page holds several at little more time.
 const PAGE = 1 << 22;
 const MAX_PAGES = 20; // 80 MB
+const MAX_AHEAD = 8; // pages
 
 /** Reads bytes of a Blob. */
 class BlobBytes {
@@ -22,6 +23,11 @@ class BlobBytes {
     } catch {
       throw new Error("cannot be read: it was changed or removed after it was chosen; open it again");
     }
+  }
+
+  /** The same without waiting. */
+  async fetch(from, to) {
+    return new Uint8Array(await this.blob.slice(from, to).arrayBuffer());
   }
 }
 
@@ -48,6 +54,12 @@ class ServedBytes {
     }
     return new Uint8Array(request.response);
   }
+
+  async fetch(from, to) {
+    const answer = await fetch(this.url, { headers: { Range: `bytes=${from}-${to - 1}` } });
+    if (answer.status !== 206) throw new Error(`status ${answer.status}`);
+    return new Uint8Array(await answer.arrayBuffer());
+  }
 }
 
 /** Pages of a file, the last used ones kept. Looks like a Blob to the file system of the HDF5 library. */
@@ -59,6 +71,8 @@ export class PagedFile {
     this.lastModifiedDate = new Date(0);
     /** @type {Map<number, Uint8Array>} in the order of their use */
     this.pages = new Map();
+    /** @type {Set<number>} pages that were needed since the last advance */
+    this.needed = new Set();
     this.fault = undefined;
   }
 
@@ -79,16 +93,38 @@ export class PagedFile {
   }
 
   page(number) {
+    this.needed.add(number);
     const known = this.pages.get(number);
     if (known) {
       this.pages.delete(number);
       this.pages.set(number, known);
       return known;
     }
-    const page = this.load(number);
+    return this.keep(number, this.load(number));
+  }
+
+  keep(number, page) {
     this.pages.set(number, page);
     if (this.pages.size > MAX_PAGES) this.pages.delete(this.pages.keys().next().value);
     return page;
+  }
+
+  /**
+   * Called between the blocks of a column that is read from its begin to its end: requests as many pages as the last
+   * block needed, behind it, all at once. Each of them would wait for the one before it if the library asked for it.
+   */
+  async advance() {
+    const needed = [...this.needed];
+    this.needed.clear();
+    const [first, last] = [Math.min(...needed), Math.max(...needed)];
+    const count = Math.min(last - first + 1, MAX_AHEAD, Math.ceil(this.size / PAGE) - last - 1);
+    const wanted = Array.from({ length: Math.max(0, count) }, (_, i) => last + 1 + i).filter((number) => !this.pages.has(number));
+    await Promise.allSettled(
+      wanted.map(async (number) => {
+        const page = await this.bytes.fetch(number * PAGE, Math.min(this.size, (number + 1) * PAGE));
+        if (!this.pages.has(number)) this.keep(number, page); // a fault shows when the page is needed
+      }),
+    );
   }
 
   load(number) {
