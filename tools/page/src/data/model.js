@@ -46,6 +46,8 @@
 
 const HIDDEN_GROUPS = /^\/(comparison|sweep|inputs|bode|parameters|unfinished)/;
 const CASE = /^\/cases\/([^/]+)(\/.*)?$/;
+/** Signals at the head of the tree: errors; the others as the file has them. */
+const WANTED_FIRST = /^(contour_error|tool_deviation|following_error)/;
 const MAX_COLUMNS = 9; // of a dataset whose columns are signals
 
 /** One open file. */
@@ -184,6 +186,9 @@ export function familiesOf(results, cases) {
         family.signals.push(...datasets.map(signalOf).filter((signal) => !known.has(signal.name)));
       }
     }
+  }
+  for (const family of families.values()) {
+    if (family.servo) family.signals.sort((a, b) => Number(WANTED_FIRST.test(b.name)) - Number(WANTED_FIRST.test(a.name)));
   }
   const rank = (family) => (family.servo ? 0 : family.scale === "time" ? 1 : 2);
   return [...families.values()].sort((a, b) => rank(a) - rank(b));
