@@ -9,6 +9,8 @@ FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-p
   python3-h5netcdf)
 # Other programs that open result files: tested with them.
 READER_PACKAGES=(octave python3-netcdf4)
+# The Python module (tools/python), and what runs its notebooks in the tests (24 MB).
+PYTHON_PACKAGES=(python3-dev pybind11-dev python3-pybind11 python3-nbclient python3-ipykernel)
 TEST_PACKAGES=(git libgtest-dev libbenchmark-dev clang-format clang-tidy hdf5-tools shellcheck)
 # Fuzz targets with libFuzzer (tools/fuzz); clang-tidy brings most of it along.
 FUZZ_PACKAGES=(clang-14 libclang-rt-14-dev)
