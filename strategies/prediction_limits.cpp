@@ -186,11 +186,10 @@ std::vector<std::string> check_prediction(const IdentifiedMachine& identified,
     }
     if (reading == 0.0) continue;
     const double factor = noise_factor(prediction, i, period);
-    noise +=
-        fmt::format("{}{} {:.2g} {} ({:.2g} of the noise times the slope of the errors), {:.2g} mA",
-                    noise.empty() ? "" : "; ", identified.layout.letter_of(i),
-                    factor * reading / nm, i < kLinearJoints ? "nm" : "nrad", factor,
-                    current_noise(*loop, prediction, joint, period, reading) / 1e-3);
+    noise += fmt::format("{}{} {:.2g} {} (factor {:.2g}), {:.2g} mA", noise.empty() ? "" : "; ",
+                         identified.layout.letter_of(i), factor * reading / nm,
+                         i < kLinearJoints ? "nm" : "nrad", factor,
+                         current_noise(*loop, prediction, joint, period, reading) / 1e-3);
   }
   const double radius = spectral_radius(gains);
   if (radius >= 1.0) {
@@ -205,7 +204,10 @@ std::vector<std::string> check_prediction(const IdentifiedMachine& identified,
   if (prediction.knows_friction && !knows_any) {
     notes.emplace_back("the machine that it knows has no friction to compensate");
   }
-  if (!noise.empty()) notes.push_back("rms that noise of the scales adds at most: " + noise);
+  if (!noise.empty())
+    notes.push_back(
+        "noise of the scales adds at most, rms (factor to noise times slope of the errors): " +
+        noise);
   return notes;
 }
 

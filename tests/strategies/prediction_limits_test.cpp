@@ -127,7 +127,7 @@ TEST(PredictionLimits, ReportLoopAndNoise) {
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_EQ(notes[0].rfind("the loop through the identified errors has a gain of 0.00", 0), 0U)
       << notes[0];
-  EXPECT_NE(notes[1].find("of the noise times the slope of the errors"), std::string::npos)
+  EXPECT_NE(notes[1].find("factor to noise times slope of the errors"), std::string::npos)
       << notes[1];
 }
 
