@@ -209,6 +209,34 @@ describe("zoom and cursor", () => {
   });
 });
 
+describe("a recording of windows", () => {
+  it("is drawn with its gaps, and moves through them", async () => {
+    const other = await newPage(browser);
+    await choose(other, file("windows"));
+    const window = columnOf(file("windows"), "/cases/table/servo/window");
+    const time = columnOf(file("windows"), "/cases/table/servo/time");
+    const gaps = window.filter((value, row) => row > 0 && value !== window[row - 1]).length;
+    const drawn = () =>
+      other.evaluate(() => {
+        const [plot] = servomill.stack.plots.values();
+        const { curve } = [...plot.curves.values()].find(({ label }) => label === "table");
+        const { x, y } = curve.points(servomill.store.state.ranges.time);
+        return { x: [...x], y: [...y] };
+      });
+    const all = await drawn();
+    assert.equal(all.y.filter((value) => value === null).length, gaps); // NaN in the page
+    assert.ok(all.x.every((value, i) => i === 0 || value >= all.x[i - 1]));
+    const row = window.findIndex((value, i) => i > 0 && value !== window[i - 1]);
+    await other.evaluate((low, high) => servomill.store.setRange("time", [low, high]), time[row - 1] - 0.05, time[row] + 0.05);
+    await settled(other);
+    const near = await drawn();
+    const gap = near.y.indexOf(null);
+    assert.deepEqual([near.x[gap - 1], near.x[gap + 1]], [time[row - 1], time[row]]);
+    assert.deepEqual(other.faults, []);
+    await other.close();
+  });
+});
+
 describe("abscissa, cases and differences", () => {
   it("is time, arc length, or the position of an axis, where curves return", async () => {
     await choice("over", "s");

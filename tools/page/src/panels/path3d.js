@@ -150,6 +150,10 @@ export class PathView {
     return this.store.state.results[this.case.file].has(`${this.case.servo}/${name}`);
   }
 
+  unitOf(name) {
+    return this.store.state.results[this.case.file].dataset(`${this.case.servo}/${name}`).attributes.units;
+  }
+
   async loadPath() {
     const one = this.case;
     if (!one || !this.renderer) return;
@@ -183,7 +187,7 @@ export class PathView {
     if (first || this.framed !== this.case.file) this.orbit.frame(center.toArray(), radius || 1);
     this.framed = this.case.file;
     const [low, high] = this.lines.range;
-    const unit = unitText("um");
+    const unit = unitText(this.unitOf(this.colour));
     this.scale.children[1].style.background = shadeGradient(this.store.state.theme);
     this.scale.firstChild.textContent = `${short(low, 3)} ${unit}`;
     this.scale.lastChild.textContent = `${short(high, 3)} ${unit}`;

@@ -84,6 +84,23 @@ function addExtremes(points, [from, to], x, y, step) {
   }
 }
 
+/** Whole buckets of an interval, and the extremes of the rows before and behind them: a bucket may contain a gap. */
+function addBetweenGaps(points, [from, to], level, xLevel, x, y) {
+  const first = Math.min(to, Math.ceil(from / level.size) * level.size);
+  const last = Math.max(first, Math.floor(to / level.size) * level.size);
+  addEnds(points, [from, first], x, y);
+  if (last > first) addBuckets(points, [first, last], level, xLevel);
+  addEnds(points, [last, to], x, y);
+}
+
+/** First and last row of an interval and, between them, those of its extremes. */
+function addEnds(points, [from, to], x, y) {
+  if (to <= from) return;
+  addRows(points, [from, from + 1], x, y);
+  if (to > from + 2) addExtremes(points, [from + 1, to - 1], x, y, to - from);
+  if (to > from + 1) addRows(points, [to - 1, to], x, y);
+}
+
 /**
  * A curve as it is seen.
  * @param {import("./columns.js").Columns} columns
@@ -121,7 +138,8 @@ export async function curve(columns, { x, y, monotone, gaps, range, pixels }) {
   const xLevel = xPyramid.levels.find((one) => one.size === level.size);
   for (const interval of intervals) {
     points.lift();
-    addBuckets(points, interval, level, xLevel);
+    if (gaps) addBetweenGaps(points, interval, level, xLevel, xColumn, yColumn);
+    else addBuckets(points, interval, level, xLevel);
   }
   return { ...points.arrays(), rows, exact: false, extent };
 }
