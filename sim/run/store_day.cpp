@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -55,7 +57,11 @@ void write_cycles(records::Hdf5Group group, const DayCourse& day) {
 void write_datums(records::Hdf5Group group, const DayCourse& day) {
   std::vector<double> hours;
   for (const double t : day.datums) hours.push_back(t / kHour);
+  std::vector<double> numbers(hours.size());
+  std::iota(numbers.begin(), numbers.end(), 1.0);
   group.list("time", hours, {"h", "time of each datum since the start of the day"});
+  group.counts("number", numbers, {"1", "number of the datum"}, "time");
+  records::make_nexus_data(group, {"number", {"time"}, {}});
   group.scalar("measuring", day.measuring / kMinute, {"min", "time of datums in between cycles"});
 }
 

@@ -46,8 +46,8 @@ SIM_ROOMS = {
     "run": ["controllers", "strategies", "config", "engine", "evaluation", "frequency", "input", "metrology", "model",
             "preparation", "records", "standards", "system"],
     "sweep": ["config", "evaluation", "input", "model", "preparation", "records", "run", "system"],
-    "programs": ["controllers", "strategies", "config", "evaluation", "input", "model", "preparation", "readings", "run", "sweep",
-                 "system"],
+    "programs": ["controllers", "strategies", "config", "evaluation", "input", "model", "preparation", "readings", "records", "run",
+                 "sweep", "system"],
 }
 standing = ["plant", "controllers", "strategies", *SIM_ROOMS]
 faults = [f"{room} may include {lower}, which stands no lower" for room, seen in SIM_ROOMS.items() for lower in seen

@@ -119,10 +119,10 @@ def known_drives(job, knowledge):
     if knowledge.startswith(DRAW):
         random = generator(knowledge, job.machine)
         for key, one in data.items():
-            deviates.setdefault(one.get("together", key), random.standard_normal())
+            deviates.setdefault(one.get("group", key), random.standard_normal())
     out = {}
     for key, one in data.items():
-        share = one["off"] * deviates.get(one.get("together", key), 1.0)
+        share = one["off"] * deviates.get(one.get("group", key), 1.0)
         value = f"{one['value'] * (1.0 + share):.6g}"
         out[key] = f'"{value} {one["unit"]}"' if "unit" in one else value
     return out
