@@ -1,0 +1,23 @@
+/// Scenarios by name: "guevel2025/experiment1" is a file below the current folder or of an
+/// installation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace servomill::sim::input {
+
+/// Folders of scenarios that exist: `scenarios` of the current folder, then that which was
+/// installed with the running program (there is none with one in a build folder).
+std::vector<std::string> scenario_folders();
+
+/// Names of the scenarios in a folder, relative to it and without ".toml", sorted; machines and
+/// other files that cases refer to are none.
+std::vector<std::string> scenario_names(const std::string& folder);
+
+/// File of a scenario: `word` where it exists, else `word`.toml, else that of this name in the
+/// first of the folders that has one. A word that is near to no name is returned as it is.
+/// @throws InputError with the nearest names, if there are any
+std::string scenario_file(const std::string& word, const std::vector<std::string>& folders);
+
+}  // namespace servomill::sim::input
