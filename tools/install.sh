@@ -20,6 +20,9 @@ PARALLEL_PACKAGES=(parallel)
 # The page that shows result files (tools/page): a browser for its tests; node_packages prints the others.
 PAGE_TEST_PACKAGES=(chromium)
 
+# The Debian package (tools/deb): made, checked, and tried out on a Debian of its own.
+DEB_PACKAGES=(dpkg-dev file lintian mmdebstrap)
+
 # The comment at the head of the command, before it does anything.
 help_if_asked() {
   case "${1:-}" in -h | --help)

@@ -16,7 +16,7 @@ import readmes
 COMMANDS = ("run", "compare", "sweep", "merge", "budget", "converge", "bode", "step", "tune", "lobes", "table", "compensate", "check", "canon",
             "post", "recording", "calibrate", "plan-calibration", "evaluate", "identify", "response", "list")
 FOREIGN = {  # options of other programs that READMEs show
-    "preset", "build", "sshlogin", "workdir", "time", "partition", "cpus-per-task", "requeue", "nodes", "mem", "array", "export", "target",
+    "preset", "build", "install", "prefix", "complete", "sshlogin", "workdir", "time", "partition", "cpus-per-task", "requeue", "nodes", "mem", "array", "export", "target",
 }
 OPTION = re.compile(r"(?<![\w-])--([a-z][\w-]*\w)(?![\w-])")
 SYMBOL = re.compile(r"^[A-Za-z]{1,3}_[A-Z]{2}$|_[A-Z]_")  # of a formula; a name with a placeholder

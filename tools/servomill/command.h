@@ -59,7 +59,7 @@ class Options {
 
   boost::program_options::options_description_easy_init add() { return description_.add_options(); }
 
-  /// @return false if the help was asked for, and printed
+  /// @return false if the help was asked for, or another form of it (command_pages.h), and printed
   /// @throws InputError for options that there are not
   bool parse(const Arguments& arguments);
 
@@ -71,12 +71,15 @@ class Options {
   std::vector<std::string> list(const std::string& name) const {
     return has(name) ? get<std::vector<std::string>>(name) : std::vector<std::string>{};
   }
+  /// Words as they were given; those that name a scenario as its file (sim/input/scenario_name.h).
   std::vector<std::string> words() const { return list("words"); }
   /// The only word. @throws InputError if there are none or several
   std::string word() const;
 
  private:
   void remember_files() const;
+  void find_scenarios();
+  bool print_other_form(const Arguments& arguments) const;
 
   std::string command_, synopsis_, summary_, words_;
   boost::program_options::options_description description_{"Options"};

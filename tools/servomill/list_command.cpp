@@ -7,6 +7,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/key_text.h"
 #include "sim/input/listings.h"
+#include "sim/input/scenario_name.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -27,6 +28,21 @@ void list_files(const std::string& folder, bool machines) {
   }
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) fmt::print("{:<50} {}\n", file, sim::input::title_of(file));
+}
+
+// Lists the folder of the options, or the first one that there is.
+void list_files_of(const Options& options, bool machines) {
+  const std::vector<std::string> folders = sim::input::scenario_folders();
+  if (options.has("folder") || folders.empty()) {
+    list_files(options.has("folder") ? options.get<std::string>("folder") : "scenarios", machines);
+  } else if (machines) {
+    list_files(folders.front(), machines);
+  } else {  // by the names that commands take
+    for (const std::string& name : sim::input::scenario_names(folders.front())) {
+      const std::string file = fmt::format("{}/{}.toml", folders.front(), name);
+      fmt::print("{:<40} {}\n", name, sim::input::title_of(file));
+    }
+  }
 }
 
 void list_keys_of(const Options& options) {
@@ -58,8 +74,10 @@ int list_command(const Arguments& arguments) {
       "outside "
       "of sections. Machine files leave out 'machine.'. Required keys are so where they apply.",
       "strategies|machines|scenarios|quantities|rules|keys");
-  options.add()("folder", po::value<std::string>()->default_value("scenarios")->value_name("DIR"),
-                "folder of machines and scenarios");
+  options.add()(
+      "folder", po::value<std::string>()->value_name("DIR"),
+      "folder of machines and scenarios, whose files are printed; default: scenarios in the "
+      "current folder, or those that are installed");
   options.add()("json", "keys: prints one JSON object per key");
   options.add()("markdown", "keys: prints a page with one table a section");
   add_plugin_option(options);
@@ -80,7 +98,7 @@ int list_command(const Arguments& arguments) {
   } else if (what == "rules") {
     fmt::print("{}", sim::input::describe_reader_rules());
   } else if (what == "machines" || what == "scenarios") {
-    list_files(options.get<std::string>("folder"), what == "machines");
+    list_files_of(options, what == "machines");
   } else {
     constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios",
                                           "quantities", "rules",    "keys"};

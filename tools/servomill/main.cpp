@@ -20,6 +20,7 @@
 #include "sim/system/system_error.h"
 #include "sim/version.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/command_pages.h"
 #include "tools/servomill/interrupt.h"
 
 namespace servomill::tools {
@@ -73,18 +74,50 @@ constexpr std::array<Command, 23> kCommands = {{
      "prints strategies, machines, scenarios, quantities, rules or keys", list_command},
 }};
 
+constexpr std::string_view kAbout = "five-axis milling machine and servo loop simulator";
+
 void print_usage(std::FILE* to) {
   fmt::print(to,
-             "servomill {}: five-axis milling machine and servo loop simulator\n\n"
+             "servomill {}: {}\n\n"
              "Usage: servomill COMMAND [...]\n\n",
-             sim::kVersion);
+             sim::kVersion, kAbout);
   for (const Command& command : kCommands) {
     fmt::print(to, "  {:<10} {:<50} {}\n", command.name, command.synopsis, command.summary);
   }
-  fmt::print(to,
-             "\n`servomill COMMAND --help` explains a command.\n"
-             "Exit status: 0 done, 1 ran but the machine stopped, 2 the input is wrong, 3 the "
-             "system failed, 130 interrupted.\n");
+  fmt::print(to, "\n`servomill COMMAND --help` explains a command.\n{}\n", exit_status_line());
+}
+
+// Manual page of the program: its commands, each with a page of its own.
+void print_manual_page() {
+  std::string text(kAbout);
+  for (const Command& command : kCommands) {
+    text += fmt::format("\n\nservomill {} {}\n    {}; see servomill-{}(1)", command.name,
+                        command.synopsis, command.summary, command.name);
+  }
+  const boost::program_options::options_description none;
+  fmt::print("{}", manual_page({"", "COMMAND [...]", text, "", none}, kAbout));
+}
+
+const Command* command_of(const std::string& name) {
+  const auto command = std::find_if(kCommands.begin(), kCommands.end(),
+                                    [&](const Command& one) { return one.name == name; });
+  return command == kCommands.end() ? nullptr : &*command;
+}
+
+// Candidates for the last of the words behind "servomill": for the completion of shells.
+int complete(const Arguments& words) {
+  if (words.size() > 1) {
+    const Command* command = command_of(words.front());
+    if (command == nullptr) return kDone;
+    Arguments line = words;
+    line.front() = kComplete;
+    return command->run(line);
+  }
+  for (const Command& command : kCommands) {
+    fmt::print("{}", candidate(command.name, command.summary));
+  }
+  for (const char* option : {"--help", "--version"}) fmt::print("{}", candidate(option, ""));
+  return kDone;
 }
 
 int dispatch(const Arguments& arguments) {
@@ -101,9 +134,13 @@ int dispatch(const Arguments& arguments) {
     fmt::print("servomill {}\n", sim::run::build_identity());
     return kDone;
   }
-  const auto command = std::find_if(kCommands.begin(), kCommands.end(),
-                                    [&](const Command& one) { return one.name == name; });
-  if (command == kCommands.end()) {
+  if (name == kManualPage) {
+    print_manual_page();
+    return kDone;
+  }
+  if (name == kComplete) return complete({arguments.begin() + 1, arguments.end()});
+  const Command* command = command_of(name);
+  if (command == nullptr) {
     std::array<std::string_view, kCommands.size()> names;
     std::transform(kCommands.begin(), kCommands.end(), names.begin(),
                    [](const Command& one) { return one.name; });
@@ -113,6 +150,9 @@ int dispatch(const Arguments& arguments) {
   stop_on_interrupt();
   const InputRecord inputs;
   simd_level();  // refuses what SERVOMILL_SIMD must not be
+  if (arguments.size() > 1 && arguments[1] == kManualPage) {
+    return command->run({std::string(kManualPage), std::string(command->summary)});
+  }
   return command->run({arguments.begin() + 1, arguments.end()});
 }
 

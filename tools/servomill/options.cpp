@@ -10,8 +10,10 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/input/plugins.h"
+#include "sim/input/scenario_name.h"
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/command_pages.h"
 
 namespace servomill::tools {
 namespace {
@@ -50,6 +52,7 @@ Options::Options(std::string_view command, std::string_view synopsis, std::strin
 }
 
 bool Options::parse(const Arguments& arguments) {
+  if (print_other_form(arguments)) return false;
   const Place place{"servomill " + command_};
   po::options_description all = description_;
   all.add_options()("words", po::value<std::vector<std::string>>());
@@ -72,6 +75,7 @@ bool Options::parse(const Arguments& arguments) {
     throw InputError(place, error.what());
   }
   if (!has("help")) {
+    find_scenarios();
     remember_files();
     for (const std::string& one : words()) {
       if (one.empty())
@@ -82,6 +86,29 @@ bool Options::parse(const Arguments& arguments) {
   std::cout << fmt::format("Usage: servomill {} {}\n\n{}\n\n", command_, synopsis_, summary_)
             << description_;
   return false;
+}
+
+void Options::find_scenarios() {
+  if (words_.find("SCENARIO") == std::string::npos || !has("words")) return;
+  const std::vector<std::string> folders = sim::input::scenario_folders();
+  auto& words = values_.at("words").as<std::vector<std::string>>();
+  for (std::string& word : words) {
+    if (!word.empty()) word = sim::input::scenario_file(word, folders);
+  }
+}
+
+bool Options::print_other_form(const Arguments& arguments) const {
+  if (arguments.empty()) return false;
+  const CommandTexts texts{command_, synopsis_, summary_, words_, description_};
+  const Arguments more(arguments.begin() + 1, arguments.end());
+  if (arguments.front() == kManualPage) {
+    fmt::print("{}", manual_page(texts, more.empty() ? "" : more.front()));
+  } else if (arguments.front() == kComplete) {
+    fmt::print("{}", candidates(texts, more));
+  } else {
+    return false;
+  }
+  return true;
 }
 
 // A word or a value that is a file's name is an input, unless results go there.
