@@ -11,6 +11,11 @@ namespace servomill::sim::calibration {
 /// Everything that `servomill calibrate` prints.
 std::string report(const Calibration& calibration);
 
+/// The same as one JSON object: groups, errors with U (k = 2), sentences on errors that the
+/// readings do not determine, and the given suggestions.
+std::string report_json(const Calibration& calibration,
+                        const std::vector<std::string>& suggestions);
+
 /// CSV of every error along the travel: name, position (mm or deg; empty for location errors),
 /// value, standard uncertainty (um or urad), and whether it holds others or a part of it is left
 /// out.

@@ -11,6 +11,9 @@ namespace servomill::sim::identification {
 /// Everything that `servomill identify` prints.
 std::string report(const Experiment& experiment, const Identification& result);
 
+/// Parameters with U (k = 2), recordings, friction laws and warnings as one JSON object.
+std::string report_json(const Identification& result);
+
 /// Sentences on what the recordings do not tell: parameters without effect, and those of which only
 /// combinations can be identified.
 std::vector<std::string> unidentifiable_sentences(const Identification& result);

@@ -43,4 +43,7 @@ std::size_t missing_samples(const Channel& channel);
 /// The text that `servomill recording` prints.
 std::string survey(const Recording& recording);
 
+/// The same as one JSON object.
+std::string survey_json(const Recording& recording);
+
 }  // namespace servomill::sim::recordings

@@ -3,6 +3,7 @@
 
     calibrate.py SERVOMILL
 """
+import json
 import os
 import re
 import shutil
@@ -56,6 +57,18 @@ class Way(unittest.TestCase):
         for key, actual in {"errors.identified.EC0Y.constant_urad": 180.0, "errors.identified.EYY.harmonic[0].amplitude_um": 12.0}.items():
             k = table["keys"].index(key)
             self.assertLess(abs(table["values"][k] - actual), 3 * np.sqrt(table["covariance"][k][k]), key)
+
+    def test_json_holds_what_the_report_prints(self):
+        found = json.loads(self.run_in("router", "calibrate", "readings.toml", "--json").stdout)
+        for one in found["errors"]:
+            shown = f"{one['value']:.3f}" if "value" in one else f"{one['min']:.3f} to {one['max']:.3f}"
+            wanted = [one["error"], *shown.split(), f"{one['U']:.2g}", one["unit"]]
+            self.assertTrue([line for line in self.printed.splitlines() if line.split()[:len(wanted)] == wanted], wanted)
+        squareness = next(one for one in found["errors"] if one["error"] == "EC0Y")
+        self.assertLess(abs(squareness["value"] - 180.0), 1.5 * squareness["U"])
+        self.assertGreater(len(found["groups"]), 3)
+        for sentence in found["undetermined"]:
+            self.assertIn(sentence.split()[0], self.printed)
 
     def test_the_report_names_what_the_instruments_cannot_tell(self):
         self.assertIn("no reading depends on ECY and ECZ", self.printed)

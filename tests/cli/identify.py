@@ -3,6 +3,7 @@
 
     identify.py SERVOMILL
 """
+import json
 import os
 import re
 import shutil
@@ -98,6 +99,24 @@ class Way(unittest.TestCase):
             np.testing.assert_allclose(parameters["half_width"][:], 2 * np.sqrt(np.diag(parameters["covariance"][:])))
             colour = record["residual_autocovariance"][0]
             self.assertAlmostEqual(colour / np.mean(residual ** 2), 1.0, delta=0.2)
+
+    def test_json_holds_the_parameters_of_the_report(self):
+        found = json.loads(self.run_in_folder("identify", "identify.toml", "--json").stdout)
+        with h5py.File(self.path("signals.h5")) as file:
+            values, halves = (file["parameters"][name][:] for name in ("value", "half_width"))
+        np.testing.assert_allclose([one["value"] for one in found["parameters"]], values, rtol=1e-8)
+        np.testing.assert_allclose([one["U"] for one in found["parameters"]], halves, rtol=1e-8)
+        self.assertEqual(found["parameters"][0]["keys"], ["axis.Y.moving_mass"])
+        self.assertEqual({one["use"] for one in found["recordings"]} - {"estimation", "validation"}, set())
+
+    def test_a_recording_is_surveyed_as_json(self):
+        found = json.loads(self.run_in_folder("recording", "recording.csv", "--json").stdout)
+        table = np.genfromtxt(self.path("recording.csv"), delimiter=",", names=True)
+        (base,) = found["bases"]
+        self.assertEqual((base["samples"], base["unit"], base["gaps"]), (len(table), "s", []))
+        self.assertEqual(len(found["channels"]), len(table.dtype.names) - 1)
+        first = table[table.dtype.names[1]]
+        np.testing.assert_allclose([found["channels"][0]["min"], found["channels"][0]["max"]], [first.min(), first.max()], rtol=1e-8)
 
     def test_the_report_names_values_intervals_and_the_residual(self):
         self.assertRegex(self.printed, r"axis\.Y\.moving_mass +64\d\.\d +[\d.]+ +kg")

@@ -13,7 +13,7 @@ const modules = (name) => import(pathToFileURL(join(folder, 'node_modules', name
 const esbuild = await modules('esbuild/lib/main.js');
 const { launch } = await modules('puppeteer-core/lib/esm/puppeteer/puppeteer-core.js');
 
-const kPatience = 15_000; // ms, of a busy machine
+const kPatience = 60_000; // ms, of a busy machine
 
 async function bundle() {
   const built = await esbuild.build({

@@ -34,6 +34,7 @@ void add_calibrate_options(Options& options) {
   options.add()("seed", po::value<int>()->default_value(1)->value_name("N"),
                 "seed of the noise of --make-up");
   options.add()("force,f", "replaces outputs that exist");
+  options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only faults and warnings");
 }
 
@@ -92,7 +93,11 @@ int calibrate_command(const Arguments& arguments) {
   }
   const calibration::Calibration result =
       calibration::calibrate(std::move(readings), chain, settings);
-  if (!options.has("quiet")) {
+  const bool prints = !options.has("quiet") && !options.has("json");
+  if (options.has("json")) {
+    const auto suggestions = calibration::suggestions(result, description.machine);
+    fmt::print("{}\n", calibration::report_json(result, suggestions));
+  } else if (prints) {
     fmt::print("{}", calibration::report(result));
     print_suggestions(calibration::suggestions(result, description.machine));
   }
@@ -101,12 +106,12 @@ int calibrate_command(const Arguments& arguments) {
   }
   if (!table.empty()) {
     sim::system::write_text_file(table, calibration::function_table(result), options.has("force"));
-    if (!options.has("quiet")) fmt::print("written to {}\n", table);
+    if (prints) fmt::print("written to {}\n", table);
   }
   if (!out.empty()) {
     calibration::write_identified_errors(out, result, machine_file,
                                          options.get<std::string>("model"), options.has("force"));
-    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+    if (prints) fmt::print("written to {}\n", out);
   }
   return kDone;
 }

@@ -41,6 +41,7 @@ void add_identify_options(Options& options) {
   options.add()("force,f", "replaces outputs that exist");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one per core); results do not depend on it");
+  options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only faults");
 }
 
@@ -111,16 +112,21 @@ int identify_command(const Arguments& arguments) {
   }
   const sim::identification::Identification result = sim::identification::identify(
       experiment, thread_count(options), intervals_of(options, experiment));
-  if (!options.has("quiet")) fmt::print("{}", sim::identification::report(experiment, result));
+  const bool prints = !options.has("quiet") && !options.has("json");
+  if (options.has("json")) {
+    fmt::print("{}\n", sim::identification::report_json(result));
+  } else if (prints) {
+    fmt::print("{}", sim::identification::report(experiment, result));
+  }
   if (!out.empty()) {
     sim::input::write_identified_file(
         out, sim::identification::identified_machine(experiment, result, out),
         options.has("force"));
-    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+    if (prints) fmt::print("written to {}\n", out);
   }
   if (!signals.empty()) {
     sim::identification::store_identification(experiment, result, signals, options.has("force"));
-    if (!options.has("quiet")) fmt::print("written to {}\n", signals);
+    if (prints) fmt::print("written to {}\n", signals);
   }
   return kDone;
 }

@@ -36,6 +36,7 @@ int recording_command(const Arguments& arguments) {
   options.add()("time-unit", po::value<std::string>()->value_name("us"),
                 "unit of times without a unit in the file; default: s");
   options.add()("force,f", "replaces OUT if it exists");
+  options.add()("json", "prints one JSON object per FILE");
   options.add()("quiet,q", "prints only faults");
   if (!options.parse(arguments)) return kDone;
   const Place place{"servomill recording"};
@@ -48,12 +49,17 @@ int recording_command(const Arguments& arguments) {
   }
   const std::string time_unit =
       options.has("time-unit") ? options.get<std::string>("time-unit") : "";
+  const bool prints = !options.has("quiet") && !options.has("json");
   for (const std::string& file : files) {
     const sim::recordings::Recording recording = sim::recordings::read_recording(file, time_unit);
-    if (!options.has("quiet")) fmt::print("{}", sim::recordings::survey(recording));
+    if (options.has("json")) {
+      fmt::print("{}\n", sim::recordings::survey_json(recording));
+    } else if (prints) {
+      fmt::print("{}", sim::recordings::survey(recording));
+    }
     if (out.empty()) continue;
     sim::recordings::write_recording(recording, out, options.has("force"));
-    if (!options.has("quiet")) fmt::print("written to {}\n", out);
+    if (prints) fmt::print("written to {}\n", out);
   }
   return kDone;
 }
