@@ -4,6 +4,7 @@
 install_test.py CMAKE BUILD_FOLDER
 """
 import gzip
+import json
 import os
 import pathlib
 import re
@@ -76,6 +77,8 @@ class Installed(unittest.TestCase):
         self.assertIn("guevel2025/experiment1", names)
         self.assertGreater(len(names), 30)
         self.assertFalse([name for name in names if name.startswith("machines/")])
+        objects = [json.loads(line) for line in self.run_program("list", "scenarios", "--json").stdout.splitlines()]
+        self.assertEqual([one["name"] for one in objects], names)
 
     def test_has_a_page_for_every_command(self):
         pages = {page.name: gzip.decompress(page.read_bytes()).decode() for page in (self.prefix / "share/man/man1").iterdir()}

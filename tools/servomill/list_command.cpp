@@ -8,6 +8,7 @@
 #include "sim/input/key_text.h"
 #include "sim/input/listings.h"
 #include "sim/input/scenario_name.h"
+#include "sim/system/json.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -15,7 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void list_files(const std::string& folder, bool machines) {
+// A file by the name that commands take, with its title.
+void print_file(const std::string& name, const std::string& file, bool as_json) {
+  const std::string title = sim::input::title_of(file);
+  if (as_json) {
+    fmt::print("{}\n", sim::system::JsonObject().text("name", name).text("title", title).line());
+  } else {
+    fmt::print("{:<50} {}\n", name, title);
+  }
+}
+
+void list_files(const std::string& folder, bool machines, bool as_json) {
   if (!fs::is_directory(folder)) {
     throw InputError({folder}, "is not a folder; set the scenario folder with --folder");
   }
@@ -27,20 +38,21 @@ void list_files(const std::string& folder, bool machines) {
     }
   }
   std::sort(files.begin(), files.end());
-  for (const std::string& file : files) fmt::print("{:<50} {}\n", file, sim::input::title_of(file));
+  for (const std::string& file : files) print_file(file, file, as_json);
 }
 
 // Lists the folder of the options, or the first one that there is.
 void list_files_of(const Options& options, bool machines) {
   const std::vector<std::string> folders = sim::input::scenario_folders();
+  const bool as_json = options.has("json");
   if (options.has("folder") || folders.empty()) {
-    list_files(options.has("folder") ? options.get<std::string>("folder") : "scenarios", machines);
+    const bool has_folder = options.has("folder");
+    list_files(has_folder ? options.get<std::string>("folder") : "scenarios", machines, as_json);
   } else if (machines) {
-    list_files(folders.front(), machines);
-  } else {  // by the names that commands take
+    list_files(folders.front(), machines, as_json);
+  } else {
     for (const std::string& name : sim::input::scenario_names(folders.front())) {
-      const std::string file = fmt::format("{}/{}.toml", folders.front(), name);
-      fmt::print("{:<40} {}\n", name, sim::input::title_of(file));
+      print_file(name, fmt::format("{}/{}.toml", folders.front(), name), as_json);
     }
   }
 }
@@ -78,7 +90,7 @@ int list_command(const Arguments& arguments) {
       "folder", po::value<std::string>()->value_name("DIR"),
       "folder of machines and scenarios, whose files are printed; default: scenarios in the "
       "current folder, or those that are installed");
-  options.add()("json", "keys: prints one JSON object per key");
+  options.add()("json", "keys, machines, scenarios: prints one JSON object per line");
   options.add()("markdown", "keys: prints a page with one table a section");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
@@ -88,8 +100,10 @@ int list_command(const Arguments& arguments) {
     return kDone;
   }
   const std::string what = options.word();
-  for (const char* form : {"json", "markdown"}) {
-    if (options.has(form)) throw InputError({std::string("--") + form}, "applies to 'keys' only");
+  const bool is_of_files = what == "machines" || what == "scenarios";
+  if (options.has("markdown")) throw InputError({"--markdown"}, "applies to 'keys' only");
+  if (options.has("json") && !is_of_files) {
+    throw InputError({"--json"}, "applies to 'keys', 'machines' and 'scenarios' only");
   }
   if (what == "strategies") {
     fmt::print("{}", sim::input::describe_strategies());
@@ -97,7 +111,7 @@ int list_command(const Arguments& arguments) {
     fmt::print("{}", sim::input::describe_quantities());
   } else if (what == "rules") {
     fmt::print("{}", sim::input::describe_reader_rules());
-  } else if (what == "machines" || what == "scenarios") {
+  } else if (is_of_files) {
     list_files_of(options, what == "machines");
   } else {
     constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios",
