@@ -122,6 +122,8 @@ describe("path and machine", () => {
 
   it("draws the path with its error magnified by the slider, in the colours chosen", async () => {
     await side(page, "Path");
+    await page.evaluate(() => servomill.store.set({ cursor: undefined })); // its mark would move with the slider, too
+    await settled(page);
     const pictures = [await picture()];
     await slide(page, 0, 3);
     pictures.push(await picture());
@@ -205,19 +207,19 @@ describe("studies", () => {
     const axis = await page.evaluate(() => {
       const { x, top, tall } = servomill.main.current.brushes.scales[0];
       const { left, top: above } = document.querySelector(".main svg").getBoundingClientRect();
-      return { x: left + x, from: above + top, to: above + top + 0.5 * tall };
+      return { x: left + x, from: above + top + 0.5 * tall, to: above + top + tall };
     });
     await page.mouse.move(axis.x, axis.from);
     await page.mouse.down();
     await page.mouse.move(axis.x, axis.to, { steps: 3 });
     await page.mouse.up();
     await settled(page);
-    assert.equal(await count(page, "path.chosen"), 8); // blocks of 3.2 and 4 mm
+    assert.equal(await count(page, "path.chosen"), 12); // blocks of 0.5, 1 and 2 mm
     await page.$eval("[data-brush=least]", (one) => {
-      one.value = "3.5";
+      one.value = "0.7";
       one.dispatchEvent(new Event("change"));
     });
-    assert.equal(await count(page, "path.chosen"), 4);
+    assert.equal(await count(page, "path.chosen"), 8);
     await press(page, "Clear");
     assert.equal(await count(page, "path.chosen"), 20);
     assert.deepEqual(page.faults, []);
