@@ -59,8 +59,8 @@ export function polarDrawing({ circles, magnification, size, colours }) {
     ),
     ...circles.map((circle) => curveOf(circle, magnification, place)),
     ...rings.map(([um, share]) => label(`${short(um, 3)}${um === 0 ? " µm" : ""}`, place(Math.PI / 2 - 0.13, share))),
-    label(`+${plane[0]}`, place(0, 1.24)),
-    label(`+${plane[1]}`, place(Math.PI / 2, 1.24)),
+    label(`+${plane[0]}`, place(0, 1.2)),
+    label(`+${plane[1]}`, place(Math.PI / 2, 1.2)),
   );
 }
 
