@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "plant/vocabulary/interrupt.h"
+
 namespace servomill::python {
 namespace {
 
@@ -20,6 +22,7 @@ constexpr double kNoPeriod = std::numeric_limits<double>::quiet_NaN();
 // Calls `ask` with the GIL; why it failed, or nothing.
 template <class Ask>
 std::string why_not(const Made& made, const char* function, Ask ask) {
+  if (interrupt_wanted) return "interrupted";  // many calls lie between two looks of the run
   const py::gil_scoped_acquire acquired;
   const auto said = [&](const std::string& why) {
     return "strategy " + made->declared->name + ": " + function + why;

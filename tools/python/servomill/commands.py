@@ -7,6 +7,7 @@ may be repeated; `servomill COMMAND --help` explains each.
 """
 import json
 import os
+import shutil
 import tempfile
 from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Union
 
@@ -71,13 +72,14 @@ def sweep(scenario: Loadable, *, set: Changes = None, output: Optional[Path] = N
     path = os.path.join(temporary, "sweep.h5") if temporary else _path(output)
     try:
         written = _core.sweep(loaded._core, path, force, points, shard, threads, progress)
-        table = _open(written)
     except BaseException:
         if temporary:
-            Sweep.remove(temporary)
+            shutil.rmtree(temporary, ignore_errors=True)
         raise
+    table = _open(written)
     assert isinstance(table, Sweep)
-    table.keep_until_closed(temporary)
+    if temporary:
+        table.remove_when_closed(temporary)
     return table
 
 

@@ -1,7 +1,8 @@
 """Result files, read when something of them is asked for."""
 import os
 import shutil
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Union
+import weakref
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Union
 
 import numpy as np
 
@@ -83,18 +84,15 @@ class Sweep(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, path: str, file):
-        self.path, self.file, self._temporary = path, file, None
+        self.path, self.file = path, file
+        self._remove: Callable[[], object] = lambda: None
         table = self._table
         self._names: List[str] = sorted((name for name, data in table.items() if "role" in data.attrs),
                                         key=lambda name: table[name].attrs["role"] != "parameter")
 
-    @staticmethod
-    def remove(temporary: str) -> None:
-        shutil.rmtree(temporary, ignore_errors=True)
-
-    def keep_until_closed(self, temporary: Optional[str]) -> None:
-        """Takes over the folder of the file: it is removed with the sweep."""
-        self._temporary: Optional[str] = temporary
+    def remove_when_closed(self, folder: str) -> None:
+        """Takes over the folder of the file: it is removed with the sweep, or when Python ends."""
+        self._remove = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
 
     @property
     def _table(self):
@@ -159,19 +157,13 @@ class Sweep(Mapping[str, np.ndarray]):
 
     def close(self) -> None:
         self.file.close()
-        if self._temporary is not None:
-            self.remove(self._temporary)
-            self._temporary = None
+        self._remove()
 
     def __enter__(self) -> "Sweep":
         return self
 
     def __exit__(self, *_) -> None:
         self.close()
-
-    def __del__(self) -> None:
-        if self._temporary is not None:
-            self.close()
 
     def __repr__(self) -> str:
         return f"<sweep of {len(self.points)} points: {', '.join(self._names)}>" if self.file else "<closed sweep>"

@@ -1,6 +1,8 @@
 """Results of runs, in memory or in a file."""
 from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
+import numpy as np
+
 from .signals import Signals
 
 
@@ -79,6 +81,12 @@ class Case:
         self.simulated_s: Optional[float] = description.get("simulated_s")
         self.computing_s: Optional[float] = description.get("computing_s")
         self.servo, self.last_ticks = servo, last_ticks
+
+    def in_section(self, name: str) -> np.ndarray:
+        """The rows of `servo` (rows; bool) that lie in the sections of this name: comments (MSG, NAME) begin them."""
+        if name not in self.sections:
+            raise KeyError(f"no section {name!r}; there are {', '.join(map(repr, self.sections))}")
+        return np.isin(self.servo["section"], [n for n, one in enumerate(self.sections) if one == name])
 
     def to_xarray(self):
         """`servo` as a Dataset of xarray."""
