@@ -63,6 +63,7 @@ class Results(unittest.TestCase):
                 self.assertEqual((case.blocks, case.duration_s, case.sections, case.program),
                                  (stored[name].blocks, stored[name].duration_s, stored[name].sections, stored[name].program))
             self.assertEqual([row[:9] for row in self.result.comparison], [row[:9] for row in stored.comparison])
+            self.assertEqual(str(stored.comparison), str(self.result.comparison))
 
     def test_closes(self):
         with servomill.open(self.path) as stored:

@@ -27,6 +27,26 @@ py::tuple compare(const std::string& path) {
   return py::make_tuple(out.title, rows_of(out.rows), sim::evaluation::format_table(out.rows));
 }
 
+// The table of lines that Python has, without tolerances.
+std::string format_rows(const py::list& rows) {
+  std::vector<sim::evaluation::ComparisonRow> out;
+  for (const py::handle row : rows) {
+    const auto field = row.cast<py::tuple>();
+    const auto text = [&](std::size_t n) { return field[n].cast<std::string>(); };
+    out.push_back({.case_name = text(0),
+                   .quantity = text(1),
+                   .axis = text(2),
+                   .statistic = text(3),
+                   .unit = text(6),
+                   .reference = text(7),
+                   .basis = text(8),
+                   .sections = text(4),
+                   .value = field[5].cast<double>(),
+                   .note = text(9)});
+  }
+  return sim::evaluation::format_table(out);
+}
+
 py::object tolerance_of(const sim::evaluation::ComparisonRow& row) {
   if (!row.tolerance) return py::none();
   return py::str(sim::evaluation::tolerance_text(*row.tolerance));
@@ -44,6 +64,9 @@ py::list rows_of(std::span<const sim::evaluation::ComparisonRow> rows) {
   return out;
 }
 
-void bind_comparison(py::module_& module) { module.def("compare", &compare, py::arg("path")); }
+void bind_comparison(py::module_& module) {
+  module.def("compare", &compare, py::arg("path"));
+  module.def("format_rows", &format_rows, py::arg("rows"));
+}
 
 }  // namespace servomill::python

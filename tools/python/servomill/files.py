@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Union
 
 import numpy as np
 
+from . import _core
 from .results import Case, Comparison, Row, Run
 from .signals import Signals
 
@@ -70,8 +71,7 @@ class StoredRun(Run):
     def __init__(self, path: str, file):
         self.file = file
         rows = _stored_rows(file)
-        text = "\n".join(f"{row.quantity} {row.axis} {row.statistic} {row.sections} {row.case}: {row.value:.6g} {row.unit}"
-                         for row in rows)
+        text = _core.format_rows([tuple(row) for row in rows])
         cases = [_stored_case(name, group) for name, group in file["cases"].items()]
         super().__init__(cases, Comparison(rows, text, file.attrs["title"]), file.attrs["title"], path, file.close)
 
