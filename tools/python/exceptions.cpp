@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <utility>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
@@ -34,7 +35,7 @@ void set_input_error(const InputError& error) {
 void translate(std::exception_ptr thrown) {
   if (!thrown) return;
   try {
-    std::rethrow_exception(thrown);
+    std::rethrow_exception(std::move(thrown));
   } catch (const InputError& error) {
     set_input_error(error);
   } catch (const Interrupted&) {

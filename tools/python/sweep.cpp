@@ -50,7 +50,7 @@ std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, u
   const sim::sweep::Sweep sweep(loaded.path, loaded.changes, loaded.text);
   const sim::sweep::Selection selection =
       sim::sweep::read_selection(sweep.design().size(), target.points, target.shard);
-  const std::string path = table_target(target, selection);
+  std::string path = table_target(target, selection);
   sweep.refuse_hopeless();
   sim::sweep::SweepTable table(path, target.force, sweep.base(),
                                sim::sweep::columns_of(sweep.base()), selection);
