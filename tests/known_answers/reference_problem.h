@@ -143,6 +143,7 @@ inline std::unique_ptr<strategies::Strategy> make_virtual_encoder() {
   parameters.set("max_rate_mm_per_s", 1e6);  // m/s
   parameters.set("extrapolation_time_ms", 0.0);
   parameters.set("velocity_window_ms", 0.0);
+  parameters.set("prediction", "lag");
   parameters.set("iterations", "converged");  // one step is exact when errors are corrected
   parameters.set("axes", "linear");
   return strategies::find("feedback")->make(parameters, strategies::Action::compensate, identified);

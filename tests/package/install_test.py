@@ -106,7 +106,7 @@ class Installed(unittest.TestCase):
         self.assertEqual(self.completions("run", "--qu"), ["--quiet"])
         self.assertIn("machine.nc.Kv=", self.completions("run", "--set", "machine.nc.K"))
         self.assertEqual(self.completions("budget", "guevel2025/experiment1", "--case", "gcode_"), ["gcode_blocks"])
-        self.assertEqual(self.completions("run", "guevel2025/experiment1_fr"), ["guevel2025/experiment1_friction"])
+        self.assertEqual(self.completions("run", "guevel2025/experiment1_fr"), ["guevel2025/experiment1_friction", "guevel2025/experiment1_friction_observer"])
         (self.here / "mine.toml").write_text("", encoding="ascii")
         self.assertEqual(self.completions("run", "min"), ["mine.toml"])
         self.assertEqual(self.completions("list", "sc"), ["scenarios"])

@@ -178,7 +178,7 @@ describe("path and machine", () => {
 
   it("draws what strategies have learnt, and errors over the travel", async () => {
     for (const [family, signal, rows] of [
-      ["/cases/*/learnt/precompensation@", "rms", 4],
+      ["/cases/*/learnt/precompensation@run", "rms", 4],
       ["/errors/machine/X@position", "EXX", 1601],
     ]) {
       await set(page, { plots: [{ family, signal, column: 0 }] });

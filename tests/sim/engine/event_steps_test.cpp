@@ -48,6 +48,7 @@ struct FiveAxisCase {
     p.set("max_rate_mm_per_s", 10.0 * mm);
     p.set("extrapolation_time_ms", "auto");
     p.set("velocity_window_ms", 3.0 * ms);
+    p.set("prediction", "lag");
     p.set("iterations", "1");
     p.set("axes", "linear");
     strategy = entry->make(p, strategies::Action::impose, identified);

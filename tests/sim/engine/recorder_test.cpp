@@ -132,9 +132,12 @@ TEST_F(Recording, LeavesAloneWhatIsTooLargeToRoundOrNoNumber) {
 TEST_F(Recording, KeepsInSinglePrecisionAllButPlaceAndCounts) {
   const records::Series exact = record(), single = record({.storage = records::Storage::float32});
   for (const records::Signal& signal : single.signals()) {
-    const bool exempt = signal.name == "time" || signal.name == "s" || signal.name == "line" ||
-                        signal.name == "section" || signal.name == "rapid";
-    EXPECT_EQ(signal.storage, exempt ? records::Storage::float64 : records::Storage::float32)
+    const bool is_place = signal.name == "time" || signal.name == "s";
+    const bool counts = signal.name == "line" || signal.name == "section" || signal.name == "rapid";
+    const bool exempt = is_place || counts;
+    EXPECT_EQ(signal.storage, is_place ? records::Storage::float64
+                              : counts ? records::Storage::int32
+                                       : records::Storage::float32)
         << signal.name;
     for (std::size_t n = 0; n < kRows; n += 100) {
       for (std::size_t c = signal.offset; c < signal.offset + signal.columns(); ++c) {

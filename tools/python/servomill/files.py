@@ -26,7 +26,10 @@ class _StoredSignals:
             if name != "time" and data.attrs.get("CLASS") == b"DIMENSION_SCALE":
                 continue
             scale = data.dims[1][0].name.rsplit("/", 1)[-1] if data.ndim == 2 else ""
-            out[name] = (data.attrs["units"], data.attrs["long_name"], data.attrs.get("columns", ""), scale)
+            units = data.attrs["units"]
+            # behind the long name of what NeXus viewers draw stands its unit, too
+            long_name = data.attrs["long_name"].removesuffix(f" [{units}]")
+            out[name] = (units, long_name, data.attrs.get("columns", ""), scale)
         return out
 
     def array(self, name: str) -> np.ndarray:

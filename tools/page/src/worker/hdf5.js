@@ -42,6 +42,13 @@ function attributesOf(node) {
   return out;
 }
 
+/** What NeXus viewers draw has its unit behind its long name, too. */
+function unlabelled(attributes) {
+  const { units, long_name: label } = attributes;
+  const unit = ` [${units}]`;
+  return typeof label === "string" && label.endsWith(unit) ? { ...attributes, long_name: label.slice(0, -unit.length) } : attributes;
+}
+
 /** One open result file. */
 export class ResultFile {
   /** @param {string} name @param {{blob?: Blob, url?: string, size?: number}} place */
@@ -130,7 +137,7 @@ export class ResultFile {
       path,
       shape: shape ?? [],
       numeric: type === 0 || type === 1, // H5T_INTEGER, H5T_FLOAT
-      attributes: attributesOf(dataset),
+      attributes: unlabelled(attributesOf(dataset)),
       scale: scales.length > 0 ? scales[0].split("/").at(-1) : "",
     };
   }
