@@ -88,7 +88,8 @@ Encoder::Encoder(const EncoderParams& params, const NoiseKey& key)
       signal_noise_(params.signal_noise),
       position_noise_(params.position_noise),
       frequency_limit_(params.frequency_limit),
-      key_(key) {
+      key_(key),
+      params_(params) {
   assert(implausible(params).empty());
   const Signals signals = signals_of(params);
   ellipse_ = signals.counter_turning / signals.turning;

@@ -106,6 +106,9 @@ class Encoder {
   /// The same encoder with the noise of another run; run 0: its own.
   Encoder in_run(std::uint64_t run) const;
   std::uint64_t seed() const { return key_.seed; }
+  /// Description and noise from which an equal encoder can be made.
+  const EncoderParams& params() const { return params_; }
+  const NoiseKey& noise() const { return key_; }
 
   double step() const { return step_; }
   double frequency_limit() const { return frequency_limit_; }
@@ -126,6 +129,7 @@ class Encoder {
   double signal_noise_ = 0.0, position_noise_ = 0.0;
   double frequency_limit_ = std::numeric_limits<double>::infinity();
   NoiseKey key_;
+  EncoderParams params_;
 };
 
 }  // namespace servomill::plant
