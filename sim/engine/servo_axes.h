@@ -114,6 +114,19 @@ class ServoAxes {
     advance(step, [] { assert(false); });
   }
 
+  /// Moves the drives by a step that the schedule contains, wherever it stands there: for a caller
+  /// with a clock of its own. Not to be mixed with `advance`.
+  void advance_by(Tick step) {
+    move(step);
+    now_ += step;
+  }
+
+  /// Everything that changes with time: axes that restore it go on with the same bits.
+  struct Memory;
+  Memory memory() const;
+  /// @pre the memory is that of axes constructed from the same arguments, without CVODE
+  void restore(const Memory& memory);
+
   /// Positions as read_scales read them.
   Joints Q_meas(std::size_t run = 0) const { return joints_of(&ServoState::scale, run); }
   /// The same of eight runs side by side, from run `first` on, a multiple of eight. Joints that do
@@ -163,6 +176,22 @@ class ServoAxes {
     controllers::SupervisionState supervision;
     std::optional<plant::MarkMonitor> marks;
     std::optional<plant::MarkFault> mark_fault;
+
+    template <class Visit>
+    void each_part(Visit visit) {
+      visit(std::span(&friction, 1));
+      visit(std::span(&backlash.farthest, 1));
+      visit(std::span(&backlash.direction, 1));
+      visit(std::span(&backlash.offset, 1));
+      visit(std::span(&backlash_velocity, 1));
+      visit(std::span(&supervision, 1));
+      if (!marks) return;
+      visit(std::span(&*marks, 1));
+      bool any_fault = mark_fault.has_value();
+      visit(std::span(&any_fault, 1));
+      if (any_fault != mark_fault.has_value()) mark_fault.emplace();
+      if (any_fault) visit(std::span(&*mark_fault, 1));
+    }
   };
   struct Axis {
     std::size_t run;
@@ -298,6 +327,31 @@ class ServoAxes {
       with_friction_;
   const ServoKernel& kernel_;
   Tick now_ = 0;
+};
+
+struct ServoAxes::Memory {
+  plant::DriveState drives;
+  plant::DriveInput inputs;
+  std::vector<ServoInputs> servo_inputs;
+  std::vector<ServoState> servo_state;
+  std::vector<Functions> functions;
+  std::size_t leg = 0;
+  bool beyond_limits = false;
+  Tick now = 0;
+
+  /// Visits the parts as spans of values without pointers and gaps, which may be copied byte by
+  /// byte; into a memory of the same axes, too.
+  template <class Visit>
+  void each_part(Visit visit) {
+    visit(std::span(drives.blocks));
+    visit(std::span(inputs.blocks));
+    visit(std::span(servo_inputs));
+    visit(std::span(servo_state));
+    for (Functions& own : functions) own.each_part(visit);
+    visit(std::span(&leg, 1));
+    visit(std::span(&beyond_limits, 1));
+    visit(std::span(&now, 1));
+  }
 };
 
 template <class Visit>
