@@ -35,6 +35,7 @@ SIM_ROOMS = {
     "responses": ["numerics", "recordings", "records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "numerics", "records", "standards"],
     "engine": ["controllers", "strategies", "model", "records", "system"],
+    "fmu": ["controllers", "engine", "model"],
     "tables": ["controllers", "strategies", "model"],
     "frequency": ["engine", "model", "numerics", "records", "system"],
     "evaluation": ["engine", "metrology", "model", "records", "system"],
