@@ -4,7 +4,7 @@
 # equations of the drives, as a reference or where a scenario asks for it.
 BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libdeflate-dev
   libboost-dev libboost-program-options-dev libtomlplusplus-dev libsundials-dev libxsimd-dev
-  libnanoflann-dev libmatio-dev libpugixml-dev libceres-dev)
+  libnanoflann-dev libmatio-dev libpugixml-dev libceres-dev libzip-dev)
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray
   python3-h5netcdf)
 # Other programs that open result files: tested with them.

@@ -36,6 +36,7 @@ int merge_command(const Arguments& arguments);
 int bode_command(const Arguments& arguments);
 int step_command(const Arguments& arguments);
 int lobes_command(const Arguments& arguments);
+int fmu_command(const Arguments& arguments);
 int tune_command(const Arguments& arguments);
 int budget_command(const Arguments& arguments);
 int converge_command(const Arguments& arguments);

@@ -41,6 +41,8 @@ constexpr std::array<Command, 23> kCommands = {{
      "frequency responses of an axis, exact and measured", bode_command},
     {"step", "SCENARIO.toml --axis Y [-o OUT.h5]", "step responses of an axis", step_command},
     {"tune", "SCENARIO.toml --axis Y|all", "gains of an axis for given margins", tune_command},
+    {"fmu", "SCENARIO.toml --axis Y [--fmi 2|3] -o DRIVE.fmu",
+     "exports an axis with its loops for other simulators (FMI co-simulation)", fmu_command},
     {"lobes", "[MACHINE.toml|SCENARIO.toml] [--teeth N] [--material NAME]",
      "stability lobes: depth of cut at which a cutter begins to chatter, over its speed",
      lobes_command},

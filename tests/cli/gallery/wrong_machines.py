@@ -145,6 +145,7 @@ MACHINE_REFUSES = [
 ]
 
 BODE, STEP, TUNE = (f"servomill {command} scenario.toml --axis Y" for command in ("bode", "step", "tune"))
+FMU = "servomill fmu scenario.toml --axis Y -o y.fmu"
 SERVO = [
     typed("an axis that the machine lacks", "servomill bode scenario.toml", "servomill bode scenario.toml --axis y,Q",
           "servomill step scenario.toml --axis A", "servomill step scenario.toml --axis ''",
@@ -160,6 +161,10 @@ SERVO = [
     typed("a step that cannot be", STEP + " --kind load --amplitude '0 N'", STEP + " --amplitude '1 mm'",
           STEP + " --kind load --amplitude '1 mm'", STEP + " --band 100", STEP + " --duration '0 s'",
           STEP + " --duration '1 h'"),
+    typed("an axis that cannot be exported", "servomill fmu scenario.toml --axis Y", "servomill fmu scenario.toml -o y.fmu",
+          FMU.replace(" Y ", " A "), FMU.replace(" Y ", " X,Y "), FMU + " --fmi 1", FMU + " --case tabel",
+          FMU.replace(".fmu", ".zip"), FMU + " --set case='[{name=\"ideal\", servo=\"ideal\"}]'",
+          FMU + " --set machine_override.integrator='\"cvode\"'"),
     typed("margins that cannot be", TUNE + " --phase-margin 90", TUNE + " --gain-margin 0", TUNE + " --overshoot 100",
           TUNE + " --bandwidth -5", TUNE + " --phase-margin 85"),
     typed("a file to write responses to that cannot be had", BODE + " --method none -o scenario.toml",

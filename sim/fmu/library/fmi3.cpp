@@ -1,0 +1,212 @@
+/// The functions of FMI 3.0 for co-simulation: an axis in the form that the standard asks for.
+#include "sim/fmu/library/component.h"
+#include "sim/fmu/library/fmi3_functions.h"
+
+namespace servomill::sim::fmu {
+namespace {
+
+Component& component_of(fmi3Instance instance) { return *static_cast<Component*>(instance); }
+
+// Status of `run`, which is bool(Component&).
+template <class Run>
+fmi3Status status_of(fmi3Instance instance, Run run) {
+  if (instance == nullptr) return fmi3Error;
+  Component& component = component_of(instance);
+  return component.does([&] { return run(component); }) ? fmi3OK : fmi3Error;
+}
+
+fmi3Status unsupported(fmi3Instance instance, const char* what) {
+  return status_of(
+      instance, [&](Component& it) { return it.refuse(std::string(what) + " is not supported"); });
+}
+
+Component::Log log_of(fmi3LogMessageCallback logger, fmi3InstanceEnvironment environment) {
+  if (logger == nullptr) return [](Severity, const std::string&) {};
+  return [logger, environment](Severity severity, const std::string& message) {
+    constexpr fmi3Status kStatus[] = {fmi3OK, fmi3Warning, fmi3Error};
+    constexpr const char* kCategory[] = {"logEvents", "logStatusDiscard", "logStatusError"};
+    const auto n = static_cast<std::size_t>(severity);
+    logger(environment, kStatus[n], kCategory[n], message.c_str());
+  };
+}
+
+}  // namespace
+
+SERVOMILL_FMI const char* fmi3GetVersion() { return "3.0"; }
+
+SERVOMILL_FMI fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, std::size_t count,
+                                             const fmi3String categories[]) {
+  return status_of(c, [&](Component& it) { return it.log_events(on, count, categories); });
+}
+
+SERVOMILL_FMI fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean /*visible*/,
+    fmi3Boolean logging, fmi3Boolean event_mode, fmi3Boolean /*early_return*/,
+    const fmi3ValueReference /*intermediate*/[], std::size_t intermediate_count,
+    fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger, void (*)()) {
+  Component::Log log;
+  const auto fail = [&](const std::string& why) -> fmi3Instance {
+    if (log) log(Severity::error, why);
+    return nullptr;
+  };
+  return guarded(
+      [&]() -> fmi3Instance {
+        log = log_of(logger, environment);
+        if (name == nullptr || *name == '\0') return fail("an instance needs a name");
+        if (token == nullptr || resources == nullptr) return fail("token and resources are needed");
+        if (event_mode) return fail("event mode is not supported");
+        if (intermediate_count > 0) return fail("intermediate variables are not supported");
+        return std::make_unique<Component>(log, logging, resources, token).release();
+      },
+      fail);
+}
+SERVOMILL_FMI fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String,
+                                                        fmi3Boolean, fmi3Boolean,
+                                                        fmi3InstanceEnvironment,
+                                                        fmi3LogMessageCallback) {
+  return nullptr;
+}
+SERVOMILL_FMI fmi3Instance fmi3InstantiateScheduledExecution(fmi3String, fmi3String, fmi3String,
+                                                             fmi3Boolean, fmi3Boolean,
+                                                             fmi3InstanceEnvironment,
+                                                             fmi3LogMessageCallback, void (*)(),
+                                                             void (*)(), void (*)()) {
+  return nullptr;
+}
+SERVOMILL_FMI void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
+
+SERVOMILL_FMI fmi3Status fmi3EnterInitializationMode(
+    fmi3Instance c, fmi3Boolean /*tolerance_defined*/, fmi3Float64 /*tolerance*/,
+    fmi3Float64 start_time, fmi3Boolean /*stop_defined*/, fmi3Float64 /*stop_time*/) {
+  return status_of(c, [&](Component& it) {
+    return it.axis().set_up(start_time) && it.axis().enter_initialization();
+  });
+}
+SERVOMILL_FMI fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
+  return status_of(c, [](Component& it) { return it.axis().exit_initialization(); });
+}
+SERVOMILL_FMI fmi3Status fmi3Terminate(fmi3Instance c) {
+  return status_of(c, [](Component& it) { return it.axis().terminate(); });
+}
+SERVOMILL_FMI fmi3Status fmi3Reset(fmi3Instance c) {
+  return status_of(c, [](Component& it) {
+    it.axis().reset();
+    return true;
+  });
+}
+
+SERVOMILL_FMI fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference references[],
+                                        std::size_t count, fmi3Float64 values[],
+                                        std::size_t value_count) {
+  return status_of(c, [&](Component& it) {
+    if (count != value_count) return it.refuse("all variables are scalars");
+    return it.get(references, count, values);
+  });
+}
+SERVOMILL_FMI fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference references[],
+                                        std::size_t count, const fmi3Float64 values[],
+                                        std::size_t value_count) {
+  return status_of(c, [&](Component& it) {
+    if (count != value_count) return it.refuse("all variables are scalars");
+    return it.set(references, count, values);
+  });
+}
+
+SERVOMILL_FMI fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
+  return status_of(c, [&](Component& it) { return it.get_state(state); });
+}
+SERVOMILL_FMI fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
+  return status_of(c, [&](Component& it) { return it.set_state(state); });
+}
+SERVOMILL_FMI fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState* state) {
+  return status_of(c, [&](Component& it) { return it.free_state(state); });
+}
+SERVOMILL_FMI fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state,
+                                                    std::size_t* size) {
+  return status_of(c, [&](Component& it) { return it.state_size(state, size); });
+}
+SERVOMILL_FMI fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[],
+                                               std::size_t size) {
+  return status_of(c, [&](Component& it) {
+    return it.write_state(state, reinterpret_cast<char*>(bytes), size);
+  });
+}
+SERVOMILL_FMI fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[],
+                                                 std::size_t size, fmi3FMUState* state) {
+  return status_of(c, [&](Component& it) {
+    return it.read_state(reinterpret_cast<const char*>(bytes), size, state);
+  });
+}
+
+// Where the NC stops the machine, the FMU asks to end the simulation at the time that it reached.
+SERVOMILL_FMI fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 step,
+                                    fmi3Boolean /*no_state_before*/, fmi3Boolean* event_needed,
+                                    fmi3Boolean* terminate, fmi3Boolean* early_return,
+                                    fmi3Float64* last_time) {
+  return status_of(c, [&](Component& it) {
+    const Step done = it.axis().step(current, step);
+    *event_needed = *early_return = false;
+    *terminate = done == Step::stopped;
+    *last_time = it.axis().time();
+    return done != Step::refused;
+  });
+}
+
+// Functions for what an axis does not have. The importer passes arguments that are not looked at.
+#define SERVOMILL_UNSUPPORTED(name, what) \
+  SERVOMILL_FMI fmi3Status name(fmi3Instance c) { return unsupported(c, what); }
+#define SERVOMILL_NONE_OF(type)                                                      \
+  SERVOMILL_FMI fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference[], \
+                                         std::size_t count) {                        \
+    return count == 0 ? fmi3OK : unsupported(c, "a variable of type " #type);        \
+  }                                                                                  \
+  SERVOMILL_FMI fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference[], \
+                                         std::size_t count) {                        \
+    return count == 0 ? fmi3OK : unsupported(c, "a variable of type " #type);        \
+  }
+
+SERVOMILL_NONE_OF(Float32)
+SERVOMILL_NONE_OF(Int8)
+SERVOMILL_NONE_OF(UInt8)
+SERVOMILL_NONE_OF(Int16)
+SERVOMILL_NONE_OF(UInt16)
+SERVOMILL_NONE_OF(Int32)
+SERVOMILL_NONE_OF(UInt32)
+SERVOMILL_NONE_OF(Int64)
+SERVOMILL_NONE_OF(UInt64)
+SERVOMILL_NONE_OF(Boolean)
+SERVOMILL_NONE_OF(String)
+SERVOMILL_NONE_OF(Binary)
+SERVOMILL_NONE_OF(Clock)
+SERVOMILL_UNSUPPORTED(fmi3GetNumberOfVariableDependencies, "the query of dependencies")
+SERVOMILL_UNSUPPORTED(fmi3GetVariableDependencies, "the query of dependencies")
+SERVOMILL_UNSUPPORTED(fmi3GetDirectionalDerivative, "a directional derivative")
+SERVOMILL_UNSUPPORTED(fmi3GetAdjointDerivative, "an adjoint derivative")
+SERVOMILL_UNSUPPORTED(fmi3GetOutputDerivatives, "a derivative of an output")
+SERVOMILL_UNSUPPORTED(fmi3EnterEventMode, "event mode")
+SERVOMILL_UNSUPPORTED(fmi3EnterStepMode, "event mode")
+SERVOMILL_UNSUPPORTED(fmi3EnterConfigurationMode, "configuration mode")
+SERVOMILL_UNSUPPORTED(fmi3ExitConfigurationMode, "configuration mode")
+SERVOMILL_UNSUPPORTED(fmi3GetIntervalDecimal, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3GetIntervalFraction, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3GetShiftDecimal, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3GetShiftFraction, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3SetIntervalDecimal, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3SetIntervalFraction, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3SetShiftDecimal, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3SetShiftFraction, "a clock")
+SERVOMILL_UNSUPPORTED(fmi3EvaluateDiscreteStates, "event mode")
+SERVOMILL_UNSUPPORTED(fmi3UpdateDiscreteStates, "event mode")
+SERVOMILL_UNSUPPORTED(fmi3EnterContinuousTimeMode, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3CompletedIntegratorStep, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3SetTime, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3SetContinuousStates, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetContinuousStateDerivatives, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetEventIndicators, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetContinuousStates, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetNominalsOfContinuousStates, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetNumberOfEventIndicators, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3GetNumberOfContinuousStates, "model exchange")
+SERVOMILL_UNSUPPORTED(fmi3ActivateModelPartition, "scheduled execution")
+
+}  // namespace servomill::sim::fmu
