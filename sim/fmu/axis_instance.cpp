@@ -51,7 +51,7 @@ struct Taking {
   }
 };
 
-// What comes before the simulation in the bytes of a memory.
+// Beginning of the bytes of a memory, before the simulation.
 struct Head {
   char name[16] = "servomill state";
   std::uint64_t axis = 0;  // checksum of its constants

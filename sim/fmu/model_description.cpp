@@ -47,7 +47,7 @@ std::string_view name_of(Variability variability) {
   return kNames[static_cast<std::size_t>(variability)];
 }
 
-// What has a start value: all but the outputs, which are calculated, and time.
+// True for all but the outputs, which are calculated, and time.
 bool has_start(const Variable& variable) {
   return variable.causality != Causality::output && variable.causality != Causality::independent;
 }

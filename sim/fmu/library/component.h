@@ -1,4 +1,4 @@
-/// What the functions of both versions of FMI do with an instance.
+/// An instance as the functions of both versions of FMI use it.
 #pragma once
 
 #include <cstddef>

@@ -20,7 +20,7 @@ fmi2Status status_of(fmi2Component c, Run run) {
   return component.does([&] { return run(component); }) ? fmi2OK : fmi2Error;
 }
 
-// Of functions for kinds of variables that there are not.
+// Status of functions for kinds of variables that there are not.
 fmi2Status none_of(fmi2Component c, std::size_t count, const char* kind) {
   return status_of(c, [&](Component& it) {
     return count == 0 || it.refuse(std::string("an axis has no variables of type ") + kind);

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+namespace servomill::sim::fmu {
+
 extern "C" {
 
 using fmi2Component = void*;
@@ -29,3 +31,5 @@ struct fmi2CallbackFunctions {
 };
 
 }  // extern "C"
+
+}  // namespace servomill::sim::fmu

@@ -1,24 +1,8 @@
 /// The functions of FMI 3.0 for co-simulation: an axis in the form that the standard asks for.
-#include "sim/fmu/library/component.h"
-#include "sim/fmu/library/fmi3_functions.h"
+#include "sim/fmu/library/fmi3_status.h"
 
 namespace servomill::sim::fmu {
 namespace {
-
-Component& component_of(fmi3Instance instance) { return *static_cast<Component*>(instance); }
-
-// Status of `run`, which is bool(Component&).
-template <class Run>
-fmi3Status status_of(fmi3Instance instance, Run run) {
-  if (instance == nullptr) return fmi3Error;
-  Component& component = component_of(instance);
-  return component.does([&] { return run(component); }) ? fmi3OK : fmi3Error;
-}
-
-fmi3Status unsupported(fmi3Instance instance, const char* what) {
-  return status_of(
-      instance, [&](Component& it) { return it.refuse(std::string(what) + " is not supported"); });
-}
 
 Component::Log log_of(fmi3LogMessageCallback logger, fmi3InstanceEnvironment environment) {
   if (logger == nullptr) return [](Severity, const std::string&) {};
@@ -138,7 +122,7 @@ SERVOMILL_FMI fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte 
   });
 }
 
-// Where the NC stops the machine, the FMU asks to end the simulation at the time that it reached.
+// A machine that the NC stops: the FMU asks to end the simulation at the time that it reached.
 SERVOMILL_FMI fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 step,
                                     fmi3Boolean /*no_state_before*/, fmi3Boolean* event_needed,
                                     fmi3Boolean* terminate, fmi3Boolean* early_return,
@@ -151,62 +135,5 @@ SERVOMILL_FMI fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Flo
     return done != Step::refused;
   });
 }
-
-// Functions for what an axis does not have. The importer passes arguments that are not looked at.
-#define SERVOMILL_UNSUPPORTED(name, what) \
-  SERVOMILL_FMI fmi3Status name(fmi3Instance c) { return unsupported(c, what); }
-#define SERVOMILL_NONE_OF(type)                                                      \
-  SERVOMILL_FMI fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference[], \
-                                         std::size_t count) {                        \
-    return count == 0 ? fmi3OK : unsupported(c, "a variable of type " #type);        \
-  }                                                                                  \
-  SERVOMILL_FMI fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference[], \
-                                         std::size_t count) {                        \
-    return count == 0 ? fmi3OK : unsupported(c, "a variable of type " #type);        \
-  }
-
-SERVOMILL_NONE_OF(Float32)
-SERVOMILL_NONE_OF(Int8)
-SERVOMILL_NONE_OF(UInt8)
-SERVOMILL_NONE_OF(Int16)
-SERVOMILL_NONE_OF(UInt16)
-SERVOMILL_NONE_OF(Int32)
-SERVOMILL_NONE_OF(UInt32)
-SERVOMILL_NONE_OF(Int64)
-SERVOMILL_NONE_OF(UInt64)
-SERVOMILL_NONE_OF(Boolean)
-SERVOMILL_NONE_OF(String)
-SERVOMILL_NONE_OF(Binary)
-SERVOMILL_NONE_OF(Clock)
-SERVOMILL_UNSUPPORTED(fmi3GetNumberOfVariableDependencies, "the query of dependencies")
-SERVOMILL_UNSUPPORTED(fmi3GetVariableDependencies, "the query of dependencies")
-SERVOMILL_UNSUPPORTED(fmi3GetDirectionalDerivative, "a directional derivative")
-SERVOMILL_UNSUPPORTED(fmi3GetAdjointDerivative, "an adjoint derivative")
-SERVOMILL_UNSUPPORTED(fmi3GetOutputDerivatives, "a derivative of an output")
-SERVOMILL_UNSUPPORTED(fmi3EnterEventMode, "event mode")
-SERVOMILL_UNSUPPORTED(fmi3EnterStepMode, "event mode")
-SERVOMILL_UNSUPPORTED(fmi3EnterConfigurationMode, "configuration mode")
-SERVOMILL_UNSUPPORTED(fmi3ExitConfigurationMode, "configuration mode")
-SERVOMILL_UNSUPPORTED(fmi3GetIntervalDecimal, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3GetIntervalFraction, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3GetShiftDecimal, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3GetShiftFraction, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3SetIntervalDecimal, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3SetIntervalFraction, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3SetShiftDecimal, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3SetShiftFraction, "a clock")
-SERVOMILL_UNSUPPORTED(fmi3EvaluateDiscreteStates, "event mode")
-SERVOMILL_UNSUPPORTED(fmi3UpdateDiscreteStates, "event mode")
-SERVOMILL_UNSUPPORTED(fmi3EnterContinuousTimeMode, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3CompletedIntegratorStep, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3SetTime, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3SetContinuousStates, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetContinuousStateDerivatives, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetEventIndicators, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetContinuousStates, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetNominalsOfContinuousStates, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetNumberOfEventIndicators, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3GetNumberOfContinuousStates, "model exchange")
-SERVOMILL_UNSUPPORTED(fmi3ActivateModelPartition, "scheduled execution")
 
 }  // namespace servomill::sim::fmu

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+namespace servomill::sim::fmu {
+
 extern "C" {
 
 using fmi3Instance = void*;
@@ -21,3 +23,5 @@ using fmi3LogMessageCallback = void (*)(fmi3InstanceEnvironment, fmi3Status, fmi
                                         fmi3String message);
 
 }  // extern "C"
+
+}  // namespace servomill::sim::fmu
