@@ -3,54 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "plant/vocabulary/units.h"
-#include "sim/engine/reference.h"
-#include "sim/engine/setpoint.h"
-#include "sim/engine/simulate.h"
 #include "tests/sim/fmu/exported.h"
+#include "tests/sim/fmu/recorded.h"
 
 namespace servomill::sim::fmu::axis_simulation_test {
 namespace {
-
-constexpr Tick kPosition = 20;  // ticks, of the position loop of the HSM 600U
-
-// Setpoints of a case, one a position period, and its recording.
-struct Recorded {
-  std::vector<engine::AxisSetpoint> setpoints;  // the first: at rest
-  engine::CaseResult result;
-};
-
-Recorded recorded_of(const model::Scenario& scenario, const std::string& name) {
-  const preparation::PreparedCase prepared(scenario, *scenario.find_case(name));
-  Recorded out;
-  engine::CaseInputs in = prepared.inputs();
-  engine::Setpoint setpoint(scenario.machine.nc, in.reference, std::move(in.setpoints));
-  out.setpoints.push_back(setpoint.settle());
-  engine::References references;
-  engine::Reference& reference = references.of(in.reference, 0.0);
-  const double end = in.reference.duration() + in.settle_time + 1 * ms;
-  for (Tick n = 0; scenario.machine.nc.periods.seconds(n) < end; n += kPosition) {
-    const double t = scenario.machine.nc.periods.seconds(n);
-    out.setpoints.push_back(setpoint.advance(reference.at(t), t));
-  }
-  engine::CaseInputs inputs = prepared.inputs();
-  std::atomic<float> progress = 0.0F;
-  out.result = engine::simulate(inputs, engine::StopFlag(false), progress);
-  EXPECT_TRUE(out.result.outcome.finished) << out.result.outcome.reason;
-  return out;
-}
-
-AxisInputs inputs_at(const Recorded& recorded, Tick n, int joint) {
-  const engine::AxisSetpoint& set =
-      recorded.setpoints.at(static_cast<std::size_t>(n / kPosition) + 1);
-  return {set.Q_cmd[joint], set.dQ_ff[joint], set.ddQ_ff[joint], 0.0, 0.0};
-}
-
-AxisInputs at_rest(const Recorded& recorded, int joint) {
-  return {.setpoint = recorded.setpoints.front().Q_cmd[joint]};
-}
 
 // Moves on to the tick `to` in steps of `step`, with the setpoints of each position period.
 void follow(AxisSimulation& axis, const Recorded& recorded, int joint, Tick to, Tick step) {
@@ -92,6 +50,17 @@ TEST(AxisSimulation, GivesTheBitsOfARun) {
   for (int joint = 0; joint < kJoints; ++joint) {
     expect_same_bits(scenario, recorded, joint, kPosition);
   }
+}
+
+TEST(AxisSimulation, GivesThemBehindATable) {
+  const model::Scenario scenario = rich_scenario(
+      "[errors.imposed]\nEYX = { harmonic = { amplitude_um = 150.0, period_mm = 62.0 } }\n"
+      "[[case]]\nname = \"table\"\n[[case.strategy]]\ntype = \"table\"\nmodel = \"imposed\"\n"
+      "action = \"impose\"\nbase_axis = \"X\"\nfrom_mm = -50.0\nto_mm = 50.0\n"
+      "spacing_mm = 1.6384\n");
+  const Recorded recorded = recorded_of(scenario, "table");
+  EXPECT_NE(recorded.setpoints.back().Q_cmd[1], recorded.setpoints.back().Q_ref[1]);
+  expect_same_bits(scenario, recorded, 1, kPosition);
 }
 
 TEST(AxisSimulation, GivesThemForAnyCommunicationStep) {
