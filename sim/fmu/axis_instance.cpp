@@ -15,6 +15,8 @@ namespace {
 // of a base period.
 constexpr double kSameTick = 0.1;  // of the base period
 
+constexpr double kMaxTicks = 1e14;  // whose tenths a double still resolves
+
 // Ticks that have passed after `seconds`.
 Tick ticks_after(double seconds, double base) {
   return static_cast<Tick>(std::floor(seconds / base + kSameTick));
@@ -175,8 +177,9 @@ Step AxisInstance::step(double current, double step) {
     return Step::refused;
   }
   const double end = current + step;
-  if (!(step > 0.0) || !std::isfinite(end)) {
-    refuse(fmt::format("a step of {} s; must be > 0", step));
+  if (!(step > 0.0 && (end - start_time_) / base < kMaxTicks)) {
+    refuse(fmt::format("a step of {} s; must be > 0, and end within {:g} base periods", step,
+                       kMaxTicks));
     return Step::refused;
   }
   const Tick to = std::max(ticks_after(end - start_time_, base), simulation_->now());

@@ -236,14 +236,16 @@ static int refuses_wrong_calls(const struct Unit* unit) {
   struct Axis axis = initialised_axis(unit);
   double value;
   void* c = axis.instance;
-  const int fine =
-      unit->api.step(unit, c, 0.5, kMs) == kRefused &&
-      unit->api.step(unit, c, 0.0, -kMs) == kRefused &&
-      unit->api.step(unit, c, 0.0, NAN) == kRefused && unit->api.enter(unit, c, 0.0) == kRefused &&
-      unit->api.leave(unit, c) == kRefused && unit->api.get(unit, c, 9999, &value) == kRefused &&
-      unit->api.set(unit, c, 9999, 0.0) == kRefused && !set(&axis, "position", 0.0) &&
-      !set(&axis, "base_period", 1.0) && !set(&axis, "position_setpoint", NAN) &&
-      unit->api.step(unit, c, 0.0, kMs) == kOk;
+  const int fine = unit->api.step(unit, c, 0.5, kMs) == kRefused &&
+                   unit->api.step(unit, c, 0.0, -kMs) == kRefused &&
+                   unit->api.step(unit, c, 0.0, NAN) == kRefused &&
+                   unit->api.step(unit, c, 0.0, 1e300) == kRefused &&
+                   unit->api.enter(unit, c, 0.0) == kRefused &&
+                   unit->api.leave(unit, c) == kRefused &&
+                   unit->api.get(unit, c, 9999, &value) == kRefused &&
+                   unit->api.set(unit, c, 9999, 0.0) == kRefused && !set(&axis, "position", 0.0) &&
+                   !set(&axis, "base_period", 1.0) && !set(&axis, "position_setpoint", NAN) &&
+                   unit->api.step(unit, c, 0.0, kMs) == kOk;
   end(&axis);
   return fine;
 }

@@ -1,5 +1,6 @@
 #include "sim/fmu/library/component.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace servomill::sim::fmu {
@@ -85,7 +86,7 @@ bool Component::write_state(void* state, char bytes[], std::size_t size) {
   if (state == nullptr) return refuse("there is no state");
   const std::string all = axis_->bytes_of(*memory_of(state));
   if (all.size() > size) return refuse("the serialized state is larger than its place");
-  std::memcpy(bytes, all.data(), all.size());
+  std::copy(all.begin(), all.end(), bytes);
   return true;
 }
 

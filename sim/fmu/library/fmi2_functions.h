@@ -5,6 +5,7 @@
 
 namespace servomill::sim::fmu {
 
+// NOLINTBEGIN(readability-identifier-naming): names of the standard
 extern "C" {
 
 using fmi2Component = void*;
@@ -31,5 +32,6 @@ struct fmi2CallbackFunctions {
 };
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace servomill::sim::fmu

@@ -6,6 +6,7 @@
 
 namespace servomill::sim::fmu {
 
+// NOLINTBEGIN(readability-identifier-naming): names of the standard
 extern "C" {
 
 using fmi3Instance = void*;
@@ -23,5 +24,6 @@ using fmi3LogMessageCallback = void (*)(fmi3InstanceEnvironment, fmi3Status, fmi
                                         fmi3String message);
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace servomill::sim::fmu

@@ -50,7 +50,7 @@ TEST_F(AxisInstances, NameTheTimesOfAWrongStep) {
   EXPECT_EQ(axis.step(2.1, 1 * ms), Step::refused);
   EXPECT_EQ(message_, "a step from 2.1 s: the last communication point is 2 s");
   EXPECT_EQ(axis.step(2.0, 0.0), Step::refused);
-  EXPECT_EQ(message_, "a step of 0 s; must be > 0");
+  EXPECT_EQ(message_, "a step of 0 s; must be > 0, and end within 1e+14 base periods");
 }
 
 TEST_F(AxisInstances, StopWhereTheNcStopsTheMachine) {
