@@ -136,6 +136,26 @@ AxisConstants read_axis_constants(std::string_view text, const std::string& name
   return axis;
 }
 
+std::string text_of(const std::vector<AxisConstants>& axes) {
+  std::string text;
+  for (const AxisConstants& axis : axes) text += text_of(axis);
+  return text;
+}
+
+// Each text ends with the line of its checksum.
+std::vector<AxisConstants> read_axes(std::string_view text, const std::string& name) {
+  std::vector<AxisConstants> axes;
+  do {
+    const std::size_t checksum = text.find(fmt::format("\n{}", kChecksum));
+    const std::size_t end =
+        checksum == std::string_view::npos ? checksum : text.find('\n', checksum + 1);
+    const std::size_t size = end == std::string_view::npos ? text.size() : end + 1;
+    axes.push_back(read_axis_constants(text.substr(0, size), name));
+    text.remove_prefix(size);
+  } while (!text.empty());
+  return axes;
+}
+
 std::string token_of(std::string_view text) {
   return fmt::format("{{{:016x}-{:016x}}}", crc64(text), crc64(fmt::format("servomill {}", text)));
 }

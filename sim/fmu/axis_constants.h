@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/model/machine.h"
 
@@ -48,6 +49,10 @@ std::string text_of(const AxisConstants& axis);
 /// @param name  of the file, for messages
 /// @throws InputError for another version, a line that is not as written, or a wrong checksum
 AxisConstants read_axis_constants(std::string_view text, const std::string& name);
+
+/// The same of several axes, one text behind the other.
+std::string text_of(const std::vector<AxisConstants>& axes);
+std::vector<AxisConstants> read_axes(std::string_view text, const std::string& name);
 
 /// Name of the file among the resources of an FMU.
 inline constexpr std::string_view kAxisFile = "axis.txt";

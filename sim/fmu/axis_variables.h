@@ -44,6 +44,9 @@ struct Variable {
   std::string_view description;
 };
 
+/// Distance between the value references of several axes.
+inline constexpr std::uint32_t kAxisStride = 100;
+
 /// Sorted by reference, which are 0, 1, ...
 std::span<const Variable> variables();
 /// The number of one of them. @pre there is one of that name

@@ -76,9 +76,10 @@ class Archive {
 
 }  // namespace
 
-std::string fmu_bytes(FmiVersion version, const AxisConstants& axis, std::string_view library) {
-  const std::string constants = text_of(axis);
-  const std::string description = model_description(version, axis, token_of(constants));
+std::string fmu_bytes(FmiVersion version, const std::vector<AxisConstants>& axes,
+                      std::string_view library) {
+  const std::string constants = text_of(axes);
+  const std::string description = model_description(version, axes, token_of(constants));
   const char* platform = version == FmiVersion::fmi2 ? "linux64" : "x86_64-linux";
   Archive archive;
   archive.add("modelDescription.xml", description);

@@ -3,16 +3,18 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/fmu/model_description.h"
 
 namespace servomill::sim::fmu {
 
-/// Bytes of the FMU: model description, constants of the axis, library for Linux on x86-64. The
-/// same axis and library give the same bytes.
+/// Bytes of the FMU: model description, constants of the axes, library for Linux on x86-64. The
+/// same axes and library give the same bytes.
 /// @param library  bytes of the shared library
-/// @pre why_not_exported(axis) is empty
+/// @pre there is an axis; why_not_exported is empty for each
 /// @throws std::runtime_error if libzip fails
-std::string fmu_bytes(FmiVersion version, const AxisConstants& axis, std::string_view library);
+std::string fmu_bytes(FmiVersion version, const std::vector<AxisConstants>& axes,
+                      std::string_view library);
 
 }  // namespace servomill::sim::fmu

@@ -77,19 +77,25 @@ std::string unit_and_start(const Variable& variable, const AxisConstants& axis,
   return out;
 }
 
-std::string units(const AxisConstants& axis) {
+std::string unit_element(const Unit& unit) {
+  std::string out = fmt::format("    <Unit name=\"{}\"><BaseUnit", unit.name);
+  const std::pair<const char*, int> powers[] = {
+      {"kg", unit.kg}, {"m", unit.m}, {"s", unit.s}, {"A", unit.A}, {"rad", unit.rad}};
+  for (const auto& [base, power] : powers) {
+    if (power != 0) out += fmt::format(" {}=\"{}\"", base, power);
+  }
+  return out + "/></Unit>\n";
+}
+
+std::string units(const std::vector<AxisConstants>& axes) {
   std::string out = "  <UnitDefinitions>\n";
   std::set<std::string_view> defined;
-  for (const Variable& variable : variables()) {
-    const Unit& unit = unit_of(variable.kind, axis);
-    if (variable.kind == Kind::ratio || !defined.insert(unit.name).second) continue;
-    out += fmt::format("    <Unit name=\"{}\"><BaseUnit", unit.name);
-    const std::pair<const char*, int> powers[] = {
-        {"kg", unit.kg}, {"m", unit.m}, {"s", unit.s}, {"A", unit.A}, {"rad", unit.rad}};
-    for (const auto& [base, power] : powers) {
-      if (power != 0) out += fmt::format(" {}=\"{}\"", base, power);
+  for (const AxisConstants& axis : axes) {
+    for (const Variable& variable : variables()) {
+      const Unit& unit = unit_of(variable.kind, axis);
+      if (variable.kind == Kind::ratio || !defined.insert(unit.name).second) continue;
+      out += unit_element(unit);
     }
-    out += "/></Unit>\n";
   }
   return out + "  </UnitDefinitions>\n";
 }
@@ -107,88 +113,106 @@ std::string log_categories() {
 }
 
 // Parts of both versions: units, log categories, default experiment.
-std::string common_parts(const AxisConstants& axis) {
-  const model::LoopPeriods& periods = axis.machine.nc.periods;
-  return units(axis) + log_categories() +
+std::string common_parts(const std::vector<AxisConstants>& axes) {
+  const model::LoopPeriods& periods = axes.front().machine.nc.periods;
+  return units(axes) + log_categories() +
          fmt::format("  <DefaultExperiment startTime=\"0\" stepSize=\"{:.12g}\"/>\n",
                      periods.seconds(periods.position));
 }
 
-std::string variables2(const AxisConstants& axis) {
-  const Values values = start_values(axis);
-  std::string out = "  <ModelVariables>\n";
-  for (const Variable& one : variables()) {
-    out += fmt::format(
-        "    <ScalarVariable name=\"{}\" valueReference=\"{}\" causality=\"{}\" "
-        "variability=\"{}\"{} "
-        "description=\"{}\"><Real{}/></ScalarVariable>\n",
-        one.name, one.reference, name_of(one.causality), name_of(one.variability), initial_of(one),
-        escaped(one.description), unit_and_start(one, axis, values));
+// A variable of one of the axes, in the order of the description.
+struct Listed {
+  const Variable& variable;
+  const AxisConstants& axis;
+  std::uint32_t reference;
+  std::string name;  // with several axes behind that of its axis: Y.position
+};
+
+// Time is listed once.
+std::vector<Listed> listed_variables(const std::vector<AxisConstants>& axes) {
+  std::vector<Listed> out;
+  std::uint32_t first = 0;
+  for (const AxisConstants& axis : axes) {
+    for (const Variable& one : variables()) {
+      const bool is_time = one.causality == Causality::independent;
+      if (is_time && first > 0) continue;
+      const bool plain = axes.size() == 1 || is_time;
+      out.push_back({one, axis, first + one.reference,
+                     plain ? std::string(one.name) : fmt::format("{}.{}", axis.axis, one.name)});
+    }
+    first += kAxisStride;
   }
-  return out + "  </ModelVariables>\n";
+  return out;
+}
+
+std::string variable_element(FmiVersion version, const Listed& one) {
+  const std::string common = fmt::format(
+      "name=\"{}\" valueReference=\"{}\" causality=\"{}\" variability=\"{}\"{} description=\"{}\"",
+      one.name, one.reference, name_of(one.variable.causality), name_of(one.variable.variability),
+      initial_of(one.variable), escaped(one.variable.description));
+  const std::string values = unit_and_start(one.variable, one.axis, start_values(one.axis));
+  return version == FmiVersion::fmi2
+             ? fmt::format("    <ScalarVariable {}><Real{}/></ScalarVariable>\n", common, values)
+             : fmt::format("    <Float64 {}{}/>\n", common, values);
 }
 
 // Outputs depend on no input of the same communication point: it acts from there on. When
 // initialised they depend on all that was set.
-std::string structure2() {
+std::string structure(FmiVersion version, const std::vector<Listed>& all) {
   std::string outputs, initial;
-  for (const Variable& one : variables()) {
-    if (one.causality != Causality::output) continue;
-    const std::uint32_t index = one.reference + 1;  // variables are listed by reference
-    outputs += fmt::format("      <Unknown index=\"{}\" dependencies=\"\"/>\n", index);
-    initial += fmt::format("      <Unknown index=\"{}\"/>\n", index);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (all[n].variable.causality != Causality::output) continue;
+    if (version == FmiVersion::fmi2) {
+      outputs += fmt::format("      <Unknown index=\"{}\" dependencies=\"\"/>\n", n + 1);
+      initial += fmt::format("      <Unknown index=\"{}\"/>\n", n + 1);
+    } else {
+      outputs +=
+          fmt::format("    <Output valueReference=\"{}\" dependencies=\"\"/>\n", all[n].reference);
+      initial += fmt::format("    <InitialUnknown valueReference=\"{}\"/>\n", all[n].reference);
+    }
   }
-  return "  <ModelStructure>\n    <Outputs>\n" + outputs +
-         "    </Outputs>\n    <InitialUnknowns>\n" + initial +
-         "    </InitialUnknowns>\n  </ModelStructure>\n";
-}
-
-std::string variables3(const AxisConstants& axis) {
-  const Values values = start_values(axis);
-  std::string out = "  <ModelVariables>\n";
-  for (const Variable& one : variables()) {
-    out += fmt::format(
-        "    <Float64 name=\"{}\" valueReference=\"{}\" causality=\"{}\" variability=\"{}\"{} "
-        "description=\"{}\"{}/>\n",
-        one.name, one.reference, name_of(one.causality), name_of(one.variability), initial_of(one),
-        escaped(one.description), unit_and_start(one, axis, values));
-  }
-  return out + "  </ModelVariables>\n";
-}
-
-std::string structure3() {
-  std::string outputs, initial;
-  for (const Variable& one : variables()) {
-    if (one.causality != Causality::output) continue;
-    outputs +=
-        fmt::format("    <Output valueReference=\"{}\" dependencies=\"\"/>\n", one.reference);
-    initial += fmt::format("    <InitialUnknown valueReference=\"{}\"/>\n", one.reference);
+  if (version == FmiVersion::fmi2) {
+    outputs = "    <Outputs>\n" + outputs + "    </Outputs>\n";
+    initial = "    <InitialUnknowns>\n" + initial + "    </InitialUnknowns>\n";
   }
   return "  <ModelStructure>\n" + outputs + initial + "  </ModelStructure>\n";
 }
 
-std::string model_name(const AxisConstants& axis) {
-  return fmt::format("{}.{}", axis.scenario, axis.axis);
+std::string variables_and_structure(FmiVersion version, const std::vector<AxisConstants>& axes) {
+  const std::vector<Listed> all = listed_variables(axes);
+  std::string out = "  <ModelVariables>\n";
+  for (const Listed& one : all) out += variable_element(version, one);
+  return out + "  </ModelVariables>\n" + structure(version, all);
 }
 
-std::string description(const AxisConstants& axis) {
-  std::string out =
-      fmt::format("servo axis {} of {}, scenario {}", axis.axis, axis.machine.name, axis.scenario);
-  if (!axis.case_name.empty()) out += fmt::format(", case {}", axis.case_name);
+// Letters of the axes: "XYZ".
+std::string letters(const std::vector<AxisConstants>& axes) {
+  std::string out;
+  for (const AxisConstants& axis : axes) out += axis.axis;
+  return out;
+}
+
+std::string description(const std::vector<AxisConstants>& axes) {
+  const AxisConstants& first = axes.front();
+  std::string out = fmt::format("servo {} {} of {}, scenario {}", axes.size() > 1 ? "axes" : "axis",
+                                letters(axes), first.machine.name, first.scenario);
+  if (!first.case_name.empty()) out += fmt::format(", case {}", first.case_name);
   return out;
 }
 
 }  // namespace
 
-std::string model_description(FmiVersion version, const AxisConstants& axis,
+std::string model_description(FmiVersion version, const std::vector<AxisConstants>& axes,
                               std::string_view token) {
   const bool two = version == FmiVersion::fmi2;
   return fmt::format(
              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
              "<fmiModelDescription fmiVersion=\"{}\" modelName=\"{}\" {}=\"{}\" description=\"{}\" "
-             "generationTool=\"servomill {}\" variableNamingConvention=\"flat\">\n",
-             two ? "2.0" : "3.0", escaped(model_name(axis)), two ? "guid" : "instantiationToken",
-             escaped(token), escaped(description(axis)), escaped(axis.program)) +
+             "generationTool=\"servomill {}\" variableNamingConvention=\"{}\">\n",
+             two ? "2.0" : "3.0",
+             escaped(fmt::format("{}.{}", axes.front().scenario, letters(axes))),
+             two ? "guid" : "instantiationToken", escaped(token), escaped(description(axes)),
+             escaped(axes.front().program), axes.size() > 1 ? "structured" : "flat") +
          fmt::format(
              "  <CoSimulation modelIdentifier=\"{}\" "
              "canHandleVariableCommunicationStepSize=\"true\" {} {}/>\n",
@@ -198,9 +222,7 @@ std::string model_description(FmiVersion version, const AxisConstants& axis,
                  : "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"",
              two ? "providesDirectionalDerivative=\"false\""
                  : "providesDirectionalDerivatives=\"false\"") +
-         common_parts(axis) +
-         (two ? variables2(axis) + structure2() : variables3(axis) + structure3()) +
-         "</fmiModelDescription>\n";
+         common_parts(axes) + variables_and_structure(version, axes) + "</fmiModelDescription>\n";
 }
 
 }  // namespace servomill::sim::fmu

@@ -102,6 +102,13 @@ class Fmu(unittest.TestCase):
             with self.subTest(axis, fmi=fmi):
                 self.assert_rules_hold(self.unpacked(axis, fmi))
 
+    def test_several_axes_keep_all_rules(self):
+        for axes, fmi in (("Y,X", "2"), ("all", "3")):
+            with self.subTest(axes, fmi=fmi):
+                folder = self.unpacked(axes, fmi)
+                self.assert_rules_hold(folder)
+                self.assertIn('name="X.position"', (folder / "modelDescription.xml").read_text())
+
     def test_friction_keeps_all_rules(self):
         self.assert_rules_hold(self.unpacked("Y", name="friction", more=("--set", 'machine_override.friction_model="lugre"')))
 

@@ -32,10 +32,16 @@ void close_unit(struct Unit* unit) {
   free(unit->functions);
 }
 
+/* True for "position" and, of several axes, "X.position". */
+static int is_called(const struct Variable* v, const char* name) {
+  const char* point = strrchr(v->name, '.');
+  return equal(v->name, name) || (point != NULL && equal(point + 1, name));
+}
+
 unsigned reference_of(const struct Unit* unit, const char* name) {
   for (int n = 0; n < unit->model->variable_count; ++n) {
     const struct Variable* v = &unit->model->variables[n];
-    if (equal(v->name, name)) return (unsigned)strtoul(v->reference, NULL, 10);
+    if (is_called(v, name)) return (unsigned)strtoul(v->reference, NULL, 10);
   }
   printf("no variable %s\n", name);
   exit(2);

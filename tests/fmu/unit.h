@@ -52,7 +52,8 @@ int load_fmi3(struct Unit* unit);
 extern char logged_category[64];
 extern int logged_messages;
 
-/* Value reference of a variable by its name; ends the program if there is none. */
+/* Value reference of a variable by its name, of several axes that of the first; ends the program if
+   there is none. */
 unsigned reference_of(const struct Unit* unit, const char* name);
 
 extern const struct Behaviour {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <vector>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/fmu/axis_variables.h"
@@ -27,13 +28,6 @@ std::string library_file() {
   return (program.parent_path() / (std::string(sim::fmu::kModelIdentifier) + ".so")).string();
 }
 
-int only_joint(const Options& options, const sim::model::MachineSettings& machine) {
-  const std::vector<int> joints = chosen_joints(options, machine);
-  if (joints.size() == 1) return joints.front();
-  throw InputError({"--axis"},
-                   fmt::format("'{}': an FMU is one axis", options.get<std::string>("axis")));
-}
-
 // Delay of the reading, which the cases must agree on. @throws InputError
 Tick reading_delay(const sim::model::Scenario& scenario) {
   std::optional<Tick> delay;
@@ -51,19 +45,24 @@ Tick reading_delay(const sim::model::Scenario& scenario) {
                    "axes of an ideal servo have no loops: there is nothing to export");
 }
 
-sim::fmu::AxisConstants chosen_axis(const Options& options) {
+std::vector<sim::fmu::AxisConstants> chosen_axes(const Options& options) {
   const sim::model::Scenario scenario = scenario_for_axes(options);
-  sim::fmu::AxisConstants axis = sim::fmu::exported_axis(
-      scenario, only_joint(options, scenario.machine), reading_delay(scenario));
-  axis.program = sim::run::build_identity();
-  if (options.has("case")) axis.case_name = options.get<std::string>("case");
-  const std::string why = sim::fmu::why_not_exported(axis);
-  if (!why.empty()) throw InputError({options.word()}, fmt::format("axis {}: {}", axis.axis, why));
-  return axis;
+  std::vector<sim::fmu::AxisConstants> axes;
+  for (const int joint : chosen_joints(options, scenario.machine)) {
+    sim::fmu::AxisConstants& axis =
+        axes.emplace_back(sim::fmu::exported_axis(scenario, joint, reading_delay(scenario)));
+    axis.program = sim::run::build_identity();
+    if (options.has("case")) axis.case_name = options.get<std::string>("case");
+    const std::string why = sim::fmu::why_not_exported(axis);
+    if (!why.empty()) {
+      throw InputError({options.word()}, fmt::format("axis {}: {}", axis.axis, why));
+    }
+  }
+  return axes;
 }
 
 std::string list_of_variables() {
-  std::string out = "\nVariables (m or rad, N or N m, s, A):\n";
+  std::string out = "\nVariables (m or rad, N or N m, s, A); of several axes Y.position, ...:\n";
   for (const sim::fmu::Variable& one : sim::fmu::variables()) {
     constexpr std::string_view kNames[] = {"", "parameter", "input", "output", "constant"};
     const std::string_view role = kNames[static_cast<std::size_t>(one.causality)];
@@ -86,28 +85,29 @@ void add_fmu_options(Options& options) {
 }  // namespace
 
 int fmu_command(const Arguments& arguments) {
-  Options options("fmu", "SCENARIO.toml --axis Y [--case NAME] [--fmi 2|3] -o DRIVE.fmu",
-                  "Exports an axis, drive and NC loops, as a co-simulation unit (FMU) for other "
-                  "simulators.\nIt gives the bits of servomill run for the same setpoints; "
-                  "strategies stay outside: their\ncorrections enter at the inputs.\n" +
-                      list_of_variables(),
-                  "SCENARIO.toml");
+  Options options(
+      "fmu", "SCENARIO.toml --axis Y|X,Y|all [--case NAME] [--fmi 2|3] -o DRIVE.fmu",
+      "Exports an axis, drive and NC loops, or several, as a co-simulation unit (FMU) for other "
+      "simulators.\nIt gives the bits of servomill run for the same setpoints; "
+      "strategies stay outside: their\ncorrections enter at the inputs.\n" +
+          list_of_variables(),
+      "SCENARIO.toml");
   add_fmu_options(options);
   if (!options.parse(arguments)) return kDone;
   const std::size_t version = choice_option(options, "fmi", kVersions);
   const std::string out = output_of(options, "output", ".fmu");
   if (out.empty()) throw InputError({"--output"}, "is missing");
-  const sim::fmu::AxisConstants axis = chosen_axis(options);
+  const std::vector<sim::fmu::AxisConstants> axes = chosen_axes(options);
   const std::string library =
       sim::system::read_file(library_file(), {}, "library of exported axes");
   sim::system::write_text_file(
-      out, sim::fmu::fmu_bytes(static_cast<sim::fmu::FmiVersion>(version), axis, library),
+      out, sim::fmu::fmu_bytes(static_cast<sim::fmu::FmiVersion>(version), axes, library),
       options.has("force"));
-  if (!options.has("quiet")) {
-    fmt::print("{}\nwritten to {} (FMI {}.0, co-simulation)\n",
-               axis_headline(axis.machine, axis.joint, axis.reading_delay), out,
-               kVersions[version]);
+  if (options.has("quiet")) return kDone;
+  for (const sim::fmu::AxisConstants& axis : axes) {
+    fmt::print("{}\n", axis_headline(axis.machine, axis.joint, axis.reading_delay));
   }
+  fmt::print("written to {} (FMI {}.0, co-simulation)\n", out, kVersions[version]);
   return kDone;
 }
 

@@ -6,7 +6,7 @@
 namespace servomill::sim::fmu {
 namespace {
 
-using Memory = AxisInstance::Memory;
+using Memory = MachineInstance::Memory;
 
 Memory* memory_of(void* state) { return static_cast<Memory*>(state); }
 
@@ -23,10 +23,10 @@ Component::Component(Log log, bool logs_events, const std::string& resources,
                      const std::string& token)
     : log_(std::move(log)),
       logs_events_(logs_events),
-      axis_(std::make_unique<AxisInstance>(axis_in(resources, token),
-                                           [this](Severity severity, const std::string& message) {
-                                             this->log(severity, message);
-                                           })) {}
+      machine_(std::make_unique<MachineInstance>(
+          axes_in(resources, token), [this](Severity severity, const std::string& message) {
+            this->log(severity, message);
+          })) {}
 
 void Component::log(Severity severity, const std::string& message) const {
   if (severity != Severity::event || logs_events_) log_(severity, message);
@@ -48,25 +48,25 @@ bool Component::log_events(bool on, std::size_t count, const char* const categor
 
 bool Component::get(const unsigned references[], std::size_t count, double values[]) {
   for (std::size_t n = 0; n < count; ++n) {
-    if (!axis_->get(references[n], values[n])) return false;
+    if (!machine_->get(references[n], values[n])) return false;
   }
   return true;
 }
 
 bool Component::set(const unsigned references[], std::size_t count, const double values[]) {
   for (std::size_t n = 0; n < count; ++n) {
-    if (!axis_->set(references[n], values[n])) return false;
+    if (!machine_->set(references[n], values[n])) return false;
   }
   return true;
 }
 
 bool Component::get_state(void** state) {
-  replace(state, axis_->memory());
+  replace(state, machine_->memory());
   return true;
 }
 
 bool Component::set_state(void* state) {
-  return state != nullptr ? axis_->restore(*memory_of(state)) : refuse("there is no state");
+  return state != nullptr ? machine_->restore(*memory_of(state)) : refuse("there is no state");
 }
 
 bool Component::free_state(void** state) {
@@ -78,20 +78,20 @@ bool Component::free_state(void** state) {
 
 bool Component::state_size(void* state, std::size_t* size) {
   if (state == nullptr) return refuse("there is no state");
-  *size = axis_->bytes_of(*memory_of(state)).size();
+  *size = machine_->bytes_of(*memory_of(state)).size();
   return true;
 }
 
 bool Component::write_state(void* state, char bytes[], std::size_t size) {
   if (state == nullptr) return refuse("there is no state");
-  const std::string all = axis_->bytes_of(*memory_of(state));
+  const std::string all = machine_->bytes_of(*memory_of(state));
   if (all.size() > size) return refuse("the serialized state is larger than its place");
   std::copy(all.begin(), all.end(), bytes);
   return true;
 }
 
 bool Component::read_state(const char bytes[], std::size_t size, void** state) {
-  auto memory = axis_->memory_from({bytes, size});
+  auto memory = machine_->memory_from({bytes, size});
   if (memory) replace(state, std::move(*memory));
   return memory.has_value();
 }

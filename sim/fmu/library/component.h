@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "sim/fmu/axis_instance.h"
 #include "sim/fmu/library/fmu_files.h"
+#include "sim/fmu/machine_instance.h"
 
 #define SERVOMILL_FMI extern "C" __attribute__((visibility("default")))
 
@@ -16,14 +16,14 @@ namespace servomill::sim::fmu {
 /// An instance with its logger. The functions return false where the standard has an error.
 class Component {
  public:
-  using Log = AxisInstance::Log;
+  using Log = MachineInstance::Log;
 
   /// @throws InputError
   Component(Log log, bool logs_events, const std::string& resources, const std::string& token);
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
 
-  AxisInstance& axis() { return *axis_; }
+  MachineInstance& machine() { return *machine_; }
   void log(Severity severity, const std::string& message) const;
   bool refuse(const std::string& why) const;
   /// Switches the logging of events; errors and stops are logged always. Without categories: all.
@@ -49,7 +49,7 @@ class Component {
  private:
   Log log_;
   bool logs_events_;
-  std::unique_ptr<AxisInstance> axis_;
+  std::unique_ptr<MachineInstance> machine_;
 };
 
 }  // namespace servomill::sim::fmu

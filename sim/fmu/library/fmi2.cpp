@@ -82,20 +82,20 @@ SERVOMILL_FMI void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instan
 SERVOMILL_FMI fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean /*tolerance_defined*/,
                                              fmi2Real /*tolerance*/, fmi2Real start_time,
                                              fmi2Boolean /*stop_defined*/, fmi2Real /*stop_time*/) {
-  return status_of(c, [&](Component& it) { return it.axis().set_up(start_time); });
+  return status_of(c, [&](Component& it) { return it.machine().set_up(start_time); });
 }
 SERVOMILL_FMI fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return status_of(c, [](Component& it) { return it.axis().enter_initialization(); });
+  return status_of(c, [](Component& it) { return it.machine().enter_initialization(); });
 }
 SERVOMILL_FMI fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return status_of(c, [](Component& it) { return it.axis().exit_initialization(); });
+  return status_of(c, [](Component& it) { return it.machine().exit_initialization(); });
 }
 SERVOMILL_FMI fmi2Status fmi2Terminate(fmi2Component c) {
-  return status_of(c, [](Component& it) { return it.axis().terminate(); });
+  return status_of(c, [](Component& it) { return it.machine().terminate(); });
 }
 SERVOMILL_FMI fmi2Status fmi2Reset(fmi2Component c) {
   return status_of(c, [&](Component& it) {
-    it.axis().reset();
+    it.machine().reset();
     instance_of(c).step_status = fmi2OK;
     return true;
   });
@@ -176,7 +176,7 @@ SERVOMILL_FMI fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real 
                                     fmi2Boolean /*no_state_before*/) {
   Step done = Step::refused;
   const fmi2Status status = status_of(c, [&](Component& it) {
-    done = it.axis().step(current, step);
+    done = it.machine().step(current, step);
     return done != Step::refused;
   });
   if (c == nullptr) return fmi2Error;
@@ -194,7 +194,7 @@ SERVOMILL_FMI fmi2Status fmi2GetStatus(fmi2Component c, fmi2StatusKind kind, fmi
 }
 SERVOMILL_FMI fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind, fmi2Real* value) {
   if (c == nullptr || kind != fmi2LastSuccessfulTime) return fmi2Discard;
-  *value = instance_of(c).component->axis().time();
+  *value = instance_of(c).component->machine().time();
   return fmi2OK;
 }
 SERVOMILL_FMI fmi2Status fmi2GetIntegerStatus(fmi2Component, fmi2StatusKind, fmi2Integer*) {
@@ -203,7 +203,7 @@ SERVOMILL_FMI fmi2Status fmi2GetIntegerStatus(fmi2Component, fmi2StatusKind, fmi
 SERVOMILL_FMI fmi2Status fmi2GetBooleanStatus(fmi2Component c, fmi2StatusKind kind,
                                               fmi2Boolean* value) {
   if (c == nullptr || kind != fmi2Terminated) return fmi2Discard;
-  *value = instance_of(c).component->axis().is_stopped() ? 1 : 0;
+  *value = instance_of(c).component->machine().is_stopped() ? 1 : 0;
   return fmi2OK;
 }
 SERVOMILL_FMI fmi2Status fmi2GetStringStatus(fmi2Component, fmi2StatusKind, fmi2String*) {

@@ -63,18 +63,18 @@ SERVOMILL_FMI fmi3Status fmi3EnterInitializationMode(
     fmi3Instance c, fmi3Boolean /*tolerance_defined*/, fmi3Float64 /*tolerance*/,
     fmi3Float64 start_time, fmi3Boolean /*stop_defined*/, fmi3Float64 /*stop_time*/) {
   return status_of(c, [&](Component& it) {
-    return it.axis().set_up(start_time) && it.axis().enter_initialization();
+    return it.machine().set_up(start_time) && it.machine().enter_initialization();
   });
 }
 SERVOMILL_FMI fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-  return status_of(c, [](Component& it) { return it.axis().exit_initialization(); });
+  return status_of(c, [](Component& it) { return it.machine().exit_initialization(); });
 }
 SERVOMILL_FMI fmi3Status fmi3Terminate(fmi3Instance c) {
-  return status_of(c, [](Component& it) { return it.axis().terminate(); });
+  return status_of(c, [](Component& it) { return it.machine().terminate(); });
 }
 SERVOMILL_FMI fmi3Status fmi3Reset(fmi3Instance c) {
   return status_of(c, [](Component& it) {
-    it.axis().reset();
+    it.machine().reset();
     return true;
   });
 }
@@ -128,10 +128,10 @@ SERVOMILL_FMI fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Flo
                                     fmi3Boolean* terminate, fmi3Boolean* early_return,
                                     fmi3Float64* last_time) {
   return status_of(c, [&](Component& it) {
-    const Step done = it.axis().step(current, step);
+    const Step done = it.machine().step(current, step);
     *event_needed = *early_return = false;
     *terminate = done == Step::stopped;
-    *last_time = it.axis().time();
+    *last_time = it.machine().time();
     return done != Step::refused;
   });
 }

@@ -8,18 +8,17 @@
 
 namespace servomill::sim::fmu {
 
-std::shared_ptr<const AxisConstants> axis_in(const std::string& resources,
-                                             const std::string& token) {
+std::vector<AxisConstants> axes_in(const std::string& resources, const std::string& token) {
   const std::string name =
       resources + (resources.ends_with('/') ? "" : "/") + std::string(kAxisFile);
   std::ifstream file(name, std::ios::binary);
   if (!file) throw InputError({name}, "cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  auto axis = std::make_shared<const AxisConstants>(read_axis_constants(text, name));
+  std::vector<AxisConstants> axes = read_axes(text, name);
   if (token_of(text) != token) {
     throw InputError({name}, "belongs to another model description than " + token);
   }
-  return axis;
+  return axes;
 }
 
 std::string path_of(const std::string& uri) {

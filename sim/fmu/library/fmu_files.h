@@ -1,9 +1,9 @@
-/// Constants of the axis as an unpacked FMU has them, and the guard of its functions.
+/// Constants of the axes as an unpacked FMU has them, and the guard of its functions.
 #pragma once
 
 #include <exception>
-#include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/fmu/axis_constants.h"
 
@@ -12,8 +12,7 @@ namespace servomill::sim::fmu {
 /// Reads RESOURCES/axis.txt.
 /// @param token  that the model description has
 /// @throws InputError if there is none, or it belongs to another model description
-std::shared_ptr<const AxisConstants> axis_in(const std::string& resources,
-                                             const std::string& token);
+std::vector<AxisConstants> axes_in(const std::string& resources, const std::string& token);
 
 /// Path of the URI of a local file: file:///a%20b, file:/a or file://localhost/a; a text without
 /// "file:" is a path already.
