@@ -1,4 +1,5 @@
 /* FMI 2.0 for co-simulation, declared from chapters 2.1 and 4.2 of the standard. */
+#include <ctype.h>
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -105,10 +106,21 @@ static void log_message(void* environment, const char* instance, Fmi2Status stat
 
 static const struct Callbacks kCallbacks = {log_message, calloc, free, NULL, NULL};
 
+/* Appends a path to a URI, other characters than those of RFC 3986 as %XX. */
+static void append_path(char* uri, size_t size, const char* path) {
+  size_t end = strlen(uri);
+  for (; *path != '\0' && end + 4 < size; ++path) {
+    const unsigned char c = (unsigned char)*path;
+    const int plain = isalnum(c) || strchr("/-_.~", c) != NULL;
+    end += (size_t)snprintf(uri + end, size - end, plain ? "%c" : "%%%02X", c);
+  }
+}
+
 static void* instantiate(const struct Unit* u, const char* token) {
-  char path[kPathSize], uri[kPathSize + 32];
+  char path[kPathSize], uri[3 * kPathSize] = "file://";
   if (realpath(u->model->folder, path) == NULL) return NULL;
-  snprintf(uri, sizeof uri, "file://%s/resources", path);
+  append_path(uri, sizeof uri, path);
+  append_path(uri, sizeof uri, "/resources");
   return functions_of(u)->instantiate("axis", kCoSimulation, token, uri, &kCallbacks, 0, 1);
 }
 static void free_instance(const struct Unit* u, void* c) { functions_of(u)->free_instance(c); }

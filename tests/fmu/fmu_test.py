@@ -102,6 +102,10 @@ class Fmu(unittest.TestCase):
             with self.subTest(axis, fmi=fmi):
                 self.assert_rules_hold(self.unpacked(axis, fmi))
 
+    def test_any_folder_will_do(self):
+        for fmi in "23":
+            self.assert_rules_hold(self.unpacked("Y", fmi, name=f"100 % of {fmi}, größer"))
+
     def test_several_axes_keep_all_rules(self):
         for axes, fmi in (("Y,X", "2"), ("all", "3")):
             with self.subTest(axes, fmi=fmi):
