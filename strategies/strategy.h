@@ -23,7 +23,7 @@ namespace servomill::strategies {
 /// them.
 enum class Action : std::int8_t { impose = 1, compensate = -1 };
 
-struct IdentifiedHeat;  // strategies/identified_heat.h
+struct IdentifiedHeat;   // strategies/identified_heat.h
 struct IdentifiedLoops;  // strategies/identified_loops.h
 
 /// Knowledge of a strategy. Never the actual errors: its errors are an identified model.

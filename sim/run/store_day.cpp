@@ -125,6 +125,23 @@ DriftRange read_range(const records::InputFile& file, const std::string& group,
   return out;
 }
 
+// Cycles and datums.
+void read_parts(const records::InputFile& file, const std::string& group, DayCourse& out) {
+  if (file.has(group + "/cycles")) {
+    const std::string path = group + "/cycles";
+    const std::size_t count = file.values(path + "/begin").size();
+    const auto begin = read_list(file, path + "/begin", kHour, count),
+               rms = read_list(file, path + "/rms", um, count),
+               most = read_list(file, path + "/largest", um, count);
+    for (std::size_t n = 0; n < count; ++n) out.cycles.push_back({begin[n], rms[n], most[n]});
+  }
+  if (file.has(group + "/datums")) {
+    const std::string path = group + "/datums";
+    out.datums = read_list(file, path + "/time", kHour, file.values(path + "/time").size());
+    out.measuring = read_list(file, path + "/measuring", kMinute, 1)[0];
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const DayCourse> read_day(const records::InputFile& file,
@@ -153,19 +170,7 @@ std::shared_ptr<const DayCourse> read_day(const records::InputFile& file,
       }
     }
   }
-  if (file.has(group + "/cycles")) {
-    const std::string path = group + "/cycles";
-    const std::size_t count = file.values(path + "/begin").size();
-    const auto begin = read_list(file, path + "/begin", kHour, count),
-               rms = read_list(file, path + "/rms", um, count),
-               most = read_list(file, path + "/largest", um, count);
-    for (std::size_t n = 0; n < count; ++n) out->cycles.push_back({begin[n], rms[n], most[n]});
-  }
-  if (file.has(group + "/datums")) {
-    const std::string path = group + "/datums";
-    out->datums = read_list(file, path + "/time", kHour, file.values(path + "/time").size());
-    out->measuring = read_list(file, path + "/measuring", kMinute, 1)[0];
-  }
+  read_parts(file, group, *out);
   if (file.has_attribute(group, "stopped")) out->stopped = file.text(group, "stopped");
   return out;
 }

@@ -27,9 +27,8 @@ records::Series series_of(const std::vector<Row>& rows, bool has_windows) {
 }
 
 TEST(PassesOfSections, OfARepeatedSectionAreSeveral) {
-  const auto passes =
-      passes_of(series_of({{0, 0, 0, 0}, {1, 5, 1, 0}, {2, 9, 1, 0}, {3, 9, 0, 0}, {4, 12, 1, 0}},
-                          false));
+  const auto passes = passes_of(
+      series_of({{0, 0, 0, 0}, {1, 5, 1, 0}, {2, 9, 1, 0}, {3, 9, 0, 0}, {4, 12, 1, 0}}, false));
   ASSERT_EQ(passes.size(), 4u);
   EXPECT_EQ(passes[1].section, 1);
   EXPECT_EQ(passes[1].begin, 1.0);
@@ -48,9 +47,7 @@ TEST(PassesOfSections, EndWhereWindowsLeftRowsOut) {
   EXPECT_EQ(passes[1].begin, 7.0);
 }
 
-TEST(PassesOfSections, OfNoRowsAreNone) {
-  EXPECT_TRUE(passes_of(series_of({}, false)).empty());
-}
+TEST(PassesOfSections, OfNoRowsAreNone) { EXPECT_TRUE(passes_of(series_of({}, false)).empty()); }
 
 }  // namespace
 }  // namespace servomill::sim::run::store_sections_test
