@@ -74,7 +74,7 @@ class Day {
         long_step_(long_step(heat_)),
         power_(VectorXd::Zero(static_cast<Index>(heat_.network.bodies.size()))),
         correction_(parts, averaged(cycle.known_heat)),
-        now_(std::make_unique<plant::VolumetricModel>(errors_now())),
+        now_(errors_now()),
         at_start_(errors_now()) {
     for (const auto& body : heat_.network.bodies) out_.bodies.push_back(body.name);
     for (const auto& place : day_.places) out_.places.push_back(place.name);
@@ -110,7 +110,7 @@ class Day {
       case model::Activity::program:
         for (int n = 0; n < phase.cycles && out_.stopped.empty(); ++n) {
           remeasure();
-          run_cycle();
+          if (out_.stopped.empty()) run_cycle();
         }
         return;
       case model::Activity::probe:
@@ -145,7 +145,7 @@ class Day {
   void take_datum(int number) {
     const auto k = static_cast<std::size_t>(number);
     const model::DayPlace& place = day_.places[k];
-    *now_ = errors_now();
+    now_ = errors_now();
     datum_ = displaced(place.Q, place.p_ST) - place_at_start_[k] + probe_noise();
     out_.datums.push_back(t_);
   }
@@ -183,6 +183,7 @@ class Day {
     t_ += h;
     if (t_ >= next_reading_) read();
     out_.stopped = engine::fault_of(heat_, network_.temperatures());
+    if (out_.stopped.empty()) out_.stopped = correction_.failure();
     if (!out_.stopped.empty()) {
       out_.stopped += fmt::format(", {:.2f} h after the start", t_ / kHour);
     }
@@ -199,7 +200,7 @@ class Day {
     const auto reading = static_cast<Tick>(out_.time.size());
     const auto sensed = engine::readings_of(heat_, network_.temperatures(), reading, kNoiseOfDay);
     for (std::size_t i = 0; i < sensed.size(); ++i) out_.readings[i].push_back(sensed[i]);
-    *now_ = errors_now();
+    now_ = errors_now();
     for (std::size_t k = 0; k < day_.places.size(); ++k) {
       out_.drift[k].push_back(in_machine_axes(k));
     }
@@ -212,7 +213,7 @@ class Day {
     const Eigen::Matrix3d J = plant::linear_jacobian(machine_.chain, place.Q);
     const Vector3d axis = plant::forward(machine_.chain, place.Q, place.p_ST).k_W;
     const Vector3d tilt =
-        now_->error(place.Q, place.p_ST).dk_W - at_start_.error(place.Q, place.p_ST).dk_W;
+        now_.error(place.Q, place.p_ST).dk_W - at_start_.error(place.Q, place.p_ST).dk_W;
     const Vector3d shift = J.transpose() * (displaced(place.Q, place.p_ST) - place_at_start_[k]);
     const Vector3d turn = J.transpose() * axis.cross(tilt);
     return {shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z()};
@@ -220,12 +221,12 @@ class Day {
 
   // Displacement of the tip (3; m) by errors `now_` and what the strategies make of it.
   Vector3d displaced(const Joints& Q, const Vector3d& p_ST) {
-    return now_->error(Q, p_ST).dp_W +
+    return now_.error(Q, p_ST).dp_W +
            plant::linear_jacobian(machine_.chain, Q) * correction_.offset(Q).head<kLinearJoints>();
   }
 
   void judge_cycle() {
-    *now_ = errors_now();
+    now_ = errors_now();
     DayCycle cycle{t_, 0.0, 0.0};
     for (std::size_t n = 0; n < path_.size(); ++n) {
       const Vector3d d = displaced(path_[n].Q, path_[n].p_ST) - path_at_start_[n] - datum_;
@@ -234,7 +235,6 @@ class Day {
     }
     cycle.rms = std::sqrt(cycle.rms);
     out_.cycles.push_back(cycle);
-    if (out_.stopped.empty()) out_.stopped = correction_.failure();
   }
 
   plant::VolumetricModel errors_now() const {
@@ -269,7 +269,7 @@ class Day {
   double duration_, long_step_;
   VectorXd power_;
   DayCorrection correction_;
-  std::unique_ptr<plant::VolumetricModel> now_;
+  plant::VolumetricModel now_;  // errors at the temperatures of the last look
   plant::VolumetricModel at_start_;
   std::vector<Vector3d> place_at_start_, path_at_start_;  // m, displaced()
   Vector3d datum_ = Vector3d::Zero();

@@ -135,8 +135,7 @@ TEST(DayCorrection, LagsBehindByItsFilter) {
   const DayCourse day = day_of({.strategy = thermal("filter_s = 300.0")});
   for (const DayCycle& cycle : day.cycles) {
     const double lag = kGrowth * kRise * kFilter / (kTau - kFilter) *
-                       (std::exp(-cycle.begin / kTau) - std::exp(-cycle.begin / kFilter)) * kTau /
-                       kTau;
+                       (std::exp(-cycle.begin / kTau) - std::exp(-cycle.begin / kFilter));
     EXPECT_NEAR(cycle.most, lag, 2e-3 * kGrowth);  // steps of 1 s, linear in between
   }
 }
