@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,18 @@ class MarkMonitor {
       return std::nullopt;
     }
     return pass_marks(x, y);
+  }
+
+  /// Calls visit(span) with each part of what it remembers: values without pointers and gaps.
+  template <class Visit>
+  void each_part(Visit visit) {
+    for (double* one : {&x_, &y_, &below_, &above_, &y_last_}) visit(std::span(one, 1));
+    visit(std::span(&next_, 1));
+    bool any = last_.has_value();
+    std::int64_t last = last_.value_or(0);
+    visit(std::span(&any, 1));
+    visit(std::span(&last, 1));
+    last_ = any ? std::optional(last) : std::nullopt;
   }
 
  private:

@@ -186,10 +186,11 @@ class ServoAxes {
       visit(std::span(&backlash_velocity, 1));
       visit(std::span(&supervision, 1));
       if (!marks) return;
-      visit(std::span(&*marks, 1));
+      marks->each_part(visit);
       bool any_fault = mark_fault.has_value();
       visit(std::span(&any_fault, 1));
-      if (any_fault != mark_fault.has_value()) mark_fault.emplace();
+      if (!any_fault) mark_fault.reset();
+      if (any_fault && !mark_fault) mark_fault.emplace();
       if (any_fault) visit(std::span(&*mark_fault, 1));
     }
   };
