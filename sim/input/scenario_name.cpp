@@ -10,6 +10,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/machine_document.h"
+#include "sim/system/program_folder.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -45,9 +46,9 @@ std::vector<std::string> scenario_folders() {
   std::vector<std::string> out;
   std::error_code fault;
   if (fs::is_directory(kFolder, fault)) out.emplace_back(kFolder);
-  const fs::path program = fs::read_symlink("/proc/self/exe", fault);
-  if (fault) return out;
-  const fs::path installed = (program.parent_path() / SERVOMILL_SHARE / kFolder).lexically_normal();
+  const fs::path program = system::program_folder();
+  if (program.empty()) return out;
+  const fs::path installed = (program / SERVOMILL_SHARE / kFolder).lexically_normal();
   if (fs::is_directory(installed, fault)) out.push_back(installed.string());
   return out;
 }

@@ -93,6 +93,9 @@ class Installed(unittest.TestCase):
             for option in re.findall(r"--([a-z][a-z0-9-]+)", self.run_program(name, "--help").stdout.split("Options:")[1]):
                 self.assertIn(option.replace("-", "\\-"), text, name)
 
+    def test_exports_axes_with_the_installed_library(self):
+        self.run_program("fmu", "iso/circular", "--axis", "X", "-o", "x.fmu")
+
     @unittest.skipUnless(shutil.which("man"), "man is not installed")
     def test_man_reads_every_page_without_warning(self):
         for page in sorted((self.prefix / "share/man/man1").iterdir()):

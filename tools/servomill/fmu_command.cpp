@@ -10,6 +10,7 @@
 #include "sim/fmu/exported_axis.h"
 #include "sim/fmu/fmu_package.h"
 #include "sim/run/build_identity.h"
+#include "sim/system/program_folder.h"
 #include "sim/system/read_file.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
@@ -21,11 +22,13 @@ namespace po = boost::program_options;
 
 constexpr std::array<std::string_view, 2> kVersions = {"2", "3"};
 
-// The library is beside the program, wherever that was copied to.
+// The library is in the folder of the program, or, of an installed one, in that of libraries.
 std::string library_file() {
-  std::error_code unknown;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  return (program.parent_path() / (std::string(sim::fmu::kModelIdentifier) + ".so")).string();
+  const std::string name = std::string(sim::fmu::kModelIdentifier) + ".so";
+  const std::filesystem::path program = sim::system::program_folder();
+  const std::filesystem::path installed = program / SERVOMILL_LIBRARIES / name;
+  if (std::filesystem::exists(installed)) return installed.lexically_normal().string();
+  return (program / name).string();
 }
 
 // Delay of the reading, which the cases must agree on. @throws InputError
@@ -47,10 +50,11 @@ Tick reading_delay(const sim::model::Scenario& scenario) {
 
 std::vector<sim::fmu::AxisConstants> chosen_axes(const Options& options) {
   const sim::model::Scenario scenario = scenario_for_axes(options);
+  const Tick delay = reading_delay(scenario);
   std::vector<sim::fmu::AxisConstants> axes;
   for (const int joint : chosen_joints(options, scenario.machine)) {
     sim::fmu::AxisConstants& axis =
-        axes.emplace_back(sim::fmu::exported_axis(scenario, joint, reading_delay(scenario)));
+        axes.emplace_back(sim::fmu::exported_axis(scenario, joint, delay));
     axis.program = sim::run::build_identity();
     if (options.has("case")) axis.case_name = options.get<std::string>("case");
     const std::string why = sim::fmu::why_not_exported(axis);

@@ -1,0 +1,12 @@
+#include "sim/system/program_folder.h"
+
+#include <system_error>
+
+namespace servomill::sim::system {
+
+std::filesystem::path program_folder() {
+  std::error_code unknown;
+  return std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+}
+
+}  // namespace servomill::sim::system
