@@ -60,6 +60,13 @@ class Commands(unittest.TestCase):
             for name in ours:
                 numpy.testing.assert_array_equal(ours[name], theirs[name])
 
+    def test_options_that_would_have_no_effect_are_refused(self):
+        with self.assertRaisesRegex(servomill.InputError, "the scenario has no case 'nowhere'"):
+            servomill.bode(SCENARIO, "Y", case="nowhere", method="none")
+        for option in ("output", "json", "quiet"):
+            with self.assertRaisesRegex(servomill.InputError, "is an option of the command only"):
+                servomill.bode(SCENARIO, "Y", method="none", **{option: "x"})
+
     def test_bode(self):
         (ours,) = servomill.bode(SCENARIO, "Y", loop="velocity", method="sine", points=3)
         *points, loop = map(json.loads, printed("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--method", "sine", "--points",

@@ -63,12 +63,14 @@ py::dict loop_of(char axis, const frequency::BodeResult& result) {
 }
 
 py::list bode(const LoadedScenario& loaded, const py::object& progress, const py::kwargs& given) {
-  tools::Options options("bode", "", "", "SCENARIO.toml");
+  tools::Options options("bode", "", "", "FILE");
   tools::add_bode_options(options);
-  options.parse(arguments_of(loaded.path, given));
-  const sim::model::MachineSettings& machine = loaded.scenario.machine;
+  options.parse(arguments_of(loaded.path, given, {"json", "output", "plugin"}));
+  sim::model::Scenario scenario = loaded.scenario;
+  tools::restrict_to_case(options, scenario);
+  const sim::model::MachineSettings& machine = scenario.machine;
   const std::vector<tools::BodeTask> tasks = tools::bode_tasks(options, machine);
-  const Tick delay = frequency::reading_delay_of(loaded.scenario);
+  const Tick delay = frequency::reading_delay_of(scenario);
   const auto results = computed(progress, [&](Watch& watch) {
     std::vector<frequency::BodeResult> out;
     for (const auto& [joint, settings] : tasks) {

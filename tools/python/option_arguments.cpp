@@ -2,6 +2,8 @@
 
 #include <pybind11/stl.h>
 
+#include "plant/vocabulary/input_error.h"
+
 namespace servomill::python {
 namespace {
 
@@ -21,10 +23,16 @@ std::vector<std::string> changes_of(const py::object& set) {
       .cast<std::vector<std::string>>();
 }
 
-tools::Arguments arguments_of(const std::string& word, const py::kwargs& options) {
+tools::Arguments arguments_of(const std::string& word, const py::kwargs& options,
+                              const std::set<std::string>& without) {
+  static const std::set<std::string> kOfCommands = {"force", "help", "quiet"};
   tools::Arguments out;
   for (const auto& [key, value] : options) {
-    const std::string option = option_of(key.cast<std::string>());
+    const auto name = key.cast<std::string>();
+    if (without.contains(name) || kOfCommands.contains(name)) {
+      throw InputError({name}, "is an option of the command only");
+    }
+    const std::string option = option_of(name);
     if (value.is_none() || value.ptr() == Py_False) continue;
     if (value.ptr() == Py_True) {
       out.push_back(option);

@@ -62,7 +62,7 @@ py::dict compensate(const std::string& program, const py::object& progress,
 py::dict post(const std::string& locations, const py::object& progress, const py::kwargs& given) {
   tools::Options options("post", "", "", "PART.cls");
   tools::add_post_options(options);
-  options.parse(arguments_of(locations, given));
+  options.parse(arguments_of(locations, given, {"json", "output"}));
   sim::programs::PostRequest request = tools::post_request(options);
   const sim::programs::PostProcessedFile done =
       computed(progress, [&](Watch&) { return sim::programs::post_file(std::move(request)); });

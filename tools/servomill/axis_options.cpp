@@ -28,10 +28,8 @@ void add_axis_options(Options& options) {
                 "machine_override.axis.Y.Kv=\"4 m/min/mm\"");
 }
 
-sim::model::Scenario scenario_for_axes(const Options& options) {
-  load_plugins(options);
-  sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
-  if (!options.has("case")) return scenario;
+void restrict_to_case(const Options& options, sim::model::Scenario& scenario) {
+  if (!options.has("case")) return;
   const auto& name = options.get<std::string>("case");
   const sim::model::CaseSpec* found = scenario.find_case(name);
   if (found == nullptr) {
@@ -43,6 +41,12 @@ sim::model::Scenario scenario_for_axes(const Options& options) {
   const sim::model::CaseSpec one = *found;
   scenario.machine = scenario.machine_of(one);
   scenario.cases = {one};
+}
+
+sim::model::Scenario scenario_for_axes(const Options& options) {
+  load_plugins(options);
+  sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
+  restrict_to_case(options, scenario);
   return scenario;
 }
 

@@ -14,6 +14,10 @@ namespace servomill::tools {
 /// Adds --axis, --case and --set.
 void add_axis_options(Options& options);
 
+/// Machine and feedback hardware of a scenario as --case has them.
+/// @throws InputError for a case that there is not
+void restrict_to_case(const Options& options, sim::model::Scenario& scenario);
+
 /// The scenario of the command, its machine and feedback hardware as --case has them.
 /// @throws InputError for a case that there is not
 sim::model::Scenario scenario_for_axes(const Options& options);
