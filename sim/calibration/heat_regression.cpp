@@ -39,6 +39,7 @@ std::vector<HeatTerm> terms_of(const HeatReadings& readings, const JointLayout& 
   for (int sensor = 0; sensor < static_cast<int>(readings.sensors.size()); ++sensor) {
     for (const plant::ErrorName& error : errors) {
       out.push_back({sensor, error, false});
+      if (error.is_location || !is_linear(error.direction)) continue;  // files have no such slope
       const int j = layout.joint_of(error.axis).value();
       const auto [low, high] = std::minmax_element(
           readings.rows.begin(), readings.rows.end(),
@@ -224,10 +225,8 @@ std::string key_of(const HeatTerm& term, const std::string& sensor) {
   const std::string base =
       fmt::format("heat.sensor.{}.errors_per_K.{}", sensor, to_string(term.error));
   if (term.error.is_location) return base;
-  const char* unit = is_linear(term.error.direction) ? "um" : "urad";
-  return fmt::format(
-      "{}.{}", base,
-      term.is_slope ? fmt::format("{}_per_m", unit) : fmt::format("constant_{}", unit));
+  if (term.is_slope) return base + ".um_per_m";
+  return fmt::format("{}.constant_{}", base, is_linear(term.error.direction) ? "um" : "urad");
 }
 
 }  // namespace
@@ -305,8 +304,9 @@ std::string heat_json(const HeatRegression& found) {
     out.raw(key_of(term, found.sensors[static_cast<std::size_t>(term.sensor)]), one.line());
   }
   for (Index k = 0; k < 3; ++k) {
+    if (!(found.before[k] > 0.0)) continue;
     out.number(fmt::format("drift_{}_um", "XYZ"[k]), found.before[k] / um);
-    out.number(fmt::format("left_{}_um", "XYZ"[k]), found.after[k] / um);
+    out.number(fmt::format("residual_{}_um", "XYZ"[k]), found.after[k] / um);
   }
   return out.line();
 }

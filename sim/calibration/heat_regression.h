@@ -33,8 +33,8 @@ struct HeatRegression {
   Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;  // m, rms about its mean
 };
 
-/// @param errors  of linear axes; a slope is sought where the readings stand at least
-///                kSlopeSpan apart along the axis
+/// @param errors  a slope is sought of component errors along X, Y, Z over linear axes along which
+///                the readings span at least kSlopeSpan
 /// @throws InputError if the readings are too few, or do not tell the unknowns apart
 HeatRegression regress(const HeatReadings& readings, const plant::MachineChain& chain,
                        const std::vector<plant::ErrorName>& errors);

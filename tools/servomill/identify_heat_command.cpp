@@ -125,6 +125,9 @@ int identify_heat_command(const Arguments& arguments) {
   const auto& machine_path = options.get<std::string>("machine");
   const auto machine = sim::input::read_machine_description(machine_path).machine;
   if (machine.heat == nullptr) throw InputError({machine_path}, "has no [heat]");
+  if (!path.ends_with(".h5") && options.has("case")) {
+    throw InputError({"--case"}, "is of result files (DAY.h5) only");
+  }
   const HeatReadings readings = path.ends_with(".h5")
                                     ? readings_of_day(path, options)
                                     : sim::calibration::read_heat_readings(path, machine);

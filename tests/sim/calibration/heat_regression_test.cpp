@@ -108,6 +108,14 @@ TEST(HeatRegression, StatesItsUncertainty) {
   for (const double sum : squares) EXPECT_NEAR(sum / kDraws, 1.0, 0.35);  // 3.5 sigma of chi^2
 }
 
+// Tilts and location errors have no slope.
+TEST(HeatRegression, SeeksSlopesOfErrorsAlongAxesOnly) {
+  const HeatRegression found =
+      regress(made_up(0.1 * um, 3), machine().chain, {"EZZ"_err, "EAX"_err, "EC0Y"_err});
+  EXPECT_EQ(found.terms.size(), 6U);
+  for (const HeatTerm& term : found.terms) EXPECT_FALSE(term.is_slope);
+}
+
 TEST(HeatRegression, TakesReadingsOfSomeDirectionsOnly) {
   HeatReadings readings = made_up(0.0);
   for (HeatReading& one : readings.rows) one.drift.head<2>().setConstant(std::nan(""));
@@ -204,7 +212,9 @@ TEST(HeatReadings, NamesAllFaultsOfATable) {
 TEST(HeatRegression, IsReadBackFromItsFile) {
   const Folder folder;
   const HeatReadings readings = made_up(0.2 * um, 7);
-  const HeatRegression found = regress(readings, machine().chain, kSought);
+  std::vector<plant::ErrorName> sought = kSought;
+  sought.insert(sought.end(), {"EAX"_err, "EC0Y"_err});
+  const HeatRegression found = regress(readings, machine().chain, sought);
   const std::string path = folder.path + "sensors.toml";
   input::write_identified_file(
       path,
@@ -217,8 +227,10 @@ TEST(HeatRegression, IsReadBackFromItsFile) {
     const plant::ThermalError& of = read.heat->sensor_errors[static_cast<std::size_t>(term.sensor)];
     EXPECT_EQ(read.heat->sensors[static_cast<std::size_t>(of.body)].name,
               found.sensors[static_cast<std::size_t>(term.sensor)]);
-    const auto& polynomial = of.per_kelvin.component(term.error).polynomial;
-    const double value = polynomial.at(term.is_slope ? 1 : 0);
+    const double value =
+        term.error.is_location
+            ? of.per_kelvin.location(term.error)
+            : of.per_kelvin.component(term.error).polynomial.at(term.is_slope ? 1 : 0);
     EXPECT_NEAR(value, term.value, 1e-15 * (1.0 + std::abs(value)));
   }
 }
