@@ -12,6 +12,7 @@
 #include "sim/calibration/short_waves.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
+#include "sim/input/write_identified.h"
 #include "sim/system/write_file.h"
 
 namespace servomill::sim::calibration {
@@ -266,12 +267,6 @@ class Collector {
   IdentifiedErrors out_;
 };
 
-std::string relative_to(const std::string& machine, const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
-  return fs::absolute(machine).lexically_normal().lexically_relative(folder).string();
-}
-
 std::string text_of(const Calibration& calibration, const IdentifiedErrors& errors,
                     const std::string& machine, const std::string& model) {
   std::string out =
@@ -340,7 +335,8 @@ void write_identified_errors(const std::string& path, const Calibration& calibra
   if (errors.values.keys.empty()) {
     throw InputError({calibration.readings.path}, "does not determine any error");
   }
-  const std::string text = text_of(calibration, errors, relative_to(machine, path), model);
+  const std::string text =
+      text_of(calibration, errors, input::machine_seen_from(path, machine), model);
   refuse_unreadable(text, path, calibration, errors, model);
   system::write_text_file(path, text, force);
 }
