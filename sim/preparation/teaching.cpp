@@ -48,7 +48,11 @@ class Lessons {
     std::vector<strategies::TrialFigures> trials;
     if (setup_.feed != 1.0) plan(limits);
     for (int plans = 1; learn(trials, limits, plans == kPlans); ++plans) plan(limits);
-    if (setup_.feed != 1.0) one_.motion = unhindered;
+    if (setup_.feed != 1.0) {
+      const bool lowers = setup_.limit == strategies::OffsetLimit::slow;
+      one_.motion =
+          lowers ? one_.prepare.motion(planned_->moves, *one_.program, limits) : unhindered;
+    }
     if (one_.motion != unhindered) one_.warnings.push_back(other_duration(*unhindered));
     return trials;
   }
