@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -118,19 +119,7 @@ double loop_gain(const LoopResponse& loop, const Prediction& prediction, int joi
   return largest;
 }
 
-// Power iteration; a matrix whose powers vanish has 0. The shift keeps cycles from alternating.
-double spectral_radius(const Gains& gains) {
-  constexpr int kSteps = 200;
-  const Gains shifted = gains + Gains::Identity();
-  Joints x = Joints::Ones();
-  double radius = 1.0;
-  for (int n = 0; n < kSteps; ++n) {
-    const Joints next = shifted * x;
-    radius = next.maxCoeff() / x.maxCoeff();
-    x = next / next.maxCoeff();
-  }
-  return radius - 1.0;
-}
+double spectral_radius(const Gains& gains) { return gains.eigenvalues().cwiseAbs().maxCoeff(); }
 
 double noise_factor(const Prediction& prediction, int joint, double model_period) {
   const auto j = static_cast<std::size_t>(joint);

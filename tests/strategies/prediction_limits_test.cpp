@@ -44,6 +44,7 @@ TEST(PredictionLimits, TakeTheSpectralRadius) {
   EXPECT_NEAR(spectral_radius(gains), 0.3, 1e-9);
   gains.setZero();
   gains(0, 1) = 4.0;
+  EXPECT_NEAR(spectral_radius(gains), 0.0, 1e-6);
   gains(1, 0) = 0.01;
   EXPECT_NEAR(spectral_radius(gains), 0.2, 1e-9);
 }
