@@ -35,8 +35,13 @@ struct Entry {
   bool corrects_heat = false;     ///< true: errors by temperature, of a machine with heat
   bool imposes = true;            ///< false: its `action` can only be to compensate
   bool runs_program = false;      ///< true: it has the program run before it acts
+  /// True if the thermal network of the known machine is computed for it
+  /// (TemperatureReading::bodies); nullptr: it never is.
+  bool (*computes_heat)(const Parameters&) = nullptr;
   /// True if it may know a machine of its own (key `machine`).
-  bool knows_machine() const { return runs_program || corrects_heat; }
+  bool knows_machine(const Parameters& p) const {
+    return runs_program || corrects_heat || (reads_loops != nullptr && reads_loops(p));
+  }
   /// Use of the feedback hardware by its signals: a case has one, and so one such
   /// strategy. True exactly where Strategy::displaces_feedback() is.
   bool uses_feedback_hardware = false;

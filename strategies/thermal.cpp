@@ -49,7 +49,7 @@ struct Knowledge {
   double reference = 0.0;  // K
   bool of_sensors = true;
   double filter = 0.0;  // s, time constant
-  double most = 0.0;    // m
+  double max = 0.0;     // m
 };
 
 // Filter of first order of values that are linear between readings,
@@ -108,10 +108,10 @@ class TemperatureOffset final : public SetpointPart {
   Joints advance(const Reading& now) override {
     const Joints out = offset(now.Q_ref);
     for (int j = 0; j < kLinearJoints && failure_.empty(); ++j) {
-      if (!(std::abs(out[j]) > knowledge_.most)) continue;
+      if (!(std::abs(out[j]) > knowledge_.max)) continue;
       failure_ =
           fmt::format("strategy thermal: offset of {} by {:.4g} um; must be <= max_um = {:g}",
-                      identified_.layout.letter_of(j), out[j] / um, knowledge_.most / um);
+                      identified_.layout.letter_of(j), out[j] / um, knowledge_.max / um);
     }
     return out;
   }
@@ -144,7 +144,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
   Knowledge knowledge;
   knowledge.of_sensors = p.word("temperatures") == "sensors";
   knowledge.filter = p.number("filter_s");
-  knowledge.most = p.number("max_um");
+  knowledge.max = p.number("max_um");
   if (identified.heat != nullptr) {
     knowledge.errors = knowledge.of_sensors ? identified.heat->by_sensor : identified.heat->by_body;
     knowledge.reference = identified.heat->reference;
@@ -168,6 +168,7 @@ Entry thermal_entry() {
                  kSpecs, make};
   entry.once = true;
   entry.corrects_heat = true;
+  entry.computes_heat = [](const Parameters& p) { return p.word("temperatures") == "network"; };
   entry.reads_errors = false;
   entry.imposes = false;
   return entry;

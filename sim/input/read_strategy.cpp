@@ -124,11 +124,6 @@ bool repeats_start(const model::StrategySpec& strategy,
          });
 }
 
-bool knows_loops(const model::StrategySpec& strategy) {
-  const auto reads = strategy.entry->reads_loops;
-  return reads != nullptr && reads(strategy.parameters);
-}
-
 }  // namespace
 
 const config::Value* read_strategy(config::Reader& table, std::span<const std::string> error_models,
@@ -162,7 +157,7 @@ const config::Value* read_strategy(config::Reader& table, std::span<const std::s
                     strategy.entry->name));
   }
   const config::Value* machine = nullptr;
-  const bool knows_machine = strategy.entry->knows_machine() || knows_loops(strategy);
+  const bool knows_machine = strategy.entry->knows_machine(strategy.parameters);
   if (table.has("machine") && !knows_machine && strategy.entry->reads_loops != nullptr) {
     table.raw("machine");
     table.fault("machine", fmt::format("is read by the strategy {} only where it predicts with "

@@ -18,6 +18,11 @@ const model::MachineSettings& known_by(const model::StrategySpec& strategy,
   return strategy.machine ? *strategy.machine : machine;
 }
 
+bool computes_heat(const model::StrategySpec& strategy) {
+  const auto computes = strategy.entry->computes_heat;
+  return computes != nullptr && computes(strategy.parameters);
+}
+
 // Place of a sensor of the known machine among those that are read.
 int place_of(const model::HeatSensor& sensor, const model::HeatSettings& read) {
   const auto found = std::find_if(read.sensors.begin(), read.sensors.end(),
@@ -37,7 +42,7 @@ int place_of(const model::HeatSensor& sensor, const model::HeatSettings& read) {
 const model::MachineSettings* known_heat_of(const model::CaseSpec& spec,
                                             const model::MachineSettings& machine) {
   for (const model::StrategySpec& strategy : spec.strategies) {
-    if (!strategy.entry->corrects_heat) continue;
+    if (!computes_heat(strategy)) continue;
     const model::MachineSettings& known = known_by(strategy, machine);
     return machine.heat && known.heat ? &known : nullptr;
   }
@@ -52,6 +57,7 @@ std::shared_ptr<const strategies::IdentifiedHeat> identified_heat(
   auto out = std::make_shared<strategies::IdentifiedHeat>();
   out->by_body = heat->errors;
   out->reference = heat->reference;
+  if (computes_heat(strategy)) return out;  // reads no sensor
   try {
     for (const plant::ThermalError& one : heat->sensor_errors) {
       const model::HeatSensor& sensor = heat->sensors[static_cast<std::size_t>(one.body)];
