@@ -73,7 +73,7 @@ class DayReader {
     one.place = read_datum(table);
     one.every = table.real("every_min", config::kTime,
                            {config::above(0.0), config::at_most(kLongestPhase)});
-    one.duration = table.real_or("duration_min", 120.0, config::kTime,
+    one.duration = table.real_or("duration_min", one.duration, config::kTime,
                                  {config::at_least(0.0), config::at_most(kLongestPhase)});
     out_.remeasuring = one;
   }

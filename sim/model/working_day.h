@@ -35,9 +35,9 @@ struct DayPlace {
 
 /// Datums in between the cycles of a program, as soon as the last one is older than `every`.
 struct Remeasuring {
-  int place = 0;          // index of the place
-  double every = 0.0;     // s
-  double duration = 0.0;  // s, of each, axes and spindle at rest
+  int place = 0;            // index of the place
+  double every = 0.0;       // s
+  double duration = 120.0;  // s, of each, axes and spindle at rest
 };
 
 struct WorkingDay {
