@@ -93,3 +93,11 @@ export async function press(page, name, within = "body") {
 
 /** A file that files.py has made. */
 export const file = (name) => join(resolve(process.env.SERVOMILL_PAGE_FILES ?? "build/dev/tests/page/files"), `${name}.h5`);
+
+/** What the page would save: its name is not seen, its content is. */
+export async function exported(page, format) {
+  await press(page, format);
+  await page.waitForFunction((type) => servomill.lastExport?.type.includes(type), {}, format.toLowerCase());
+  const bytes = await page.evaluate(async () => [...new Uint8Array(await servomill.lastExport.arrayBuffer())]);
+  return Buffer.from(bytes);
+}

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { fileURLToPath } from "node:url";
-import { choose, file, launch, newPage, press, settled } from "./browser.mjs";
+import { choose, exported, file, launch, newPage, press, settled } from "./browser.mjs";
 import { columnOf } from "./reference.mjs";
 
 const VIEW = join(dirname(fileURLToPath(import.meta.url)), "../../tools/view");
@@ -17,14 +17,6 @@ before(async () => {
   browser = await launch();
 });
 after(() => browser?.close());
-
-/** What the page would save: its name is not seen, its content is. */
-async function exported(page, format) {
-  await press(page, format);
-  await page.waitForFunction((type) => servomill.lastExport?.type.includes(type), {}, format.toLowerCase());
-  const bytes = await page.evaluate(async () => [...new Uint8Array(await servomill.lastExport.arrayBuffer())]);
-  return Buffer.from(bytes);
-}
 
 describe("export", () => {
   let page;
@@ -160,8 +152,20 @@ describe("looks and keys", () => {
   });
 });
 
-describe("files that cannot be read", () => {
-  it("are named with the reason; the others open", async () => {
+describe("files", () => {
+  it("that are chosen while others open do not take their place", async () => {
+    const page = await newPage(browser);
+    const input = await page.$("#files");
+    await input.uploadFile(file("circle"));
+    await input.uploadFile(file("sweep"));
+    await page.waitForFunction(() => servomill.store.state.results.filter(Boolean).length === 2);
+    const indices = await page.evaluate(() => servomill.store.state.results.map((one) => one.index));
+    assert.deepEqual(indices, [0, 1]);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+  });
+
+  it("that cannot be read are named with the reason; the others open", async () => {
     const page = await newPage(browser);
     await choose(page, file("text"), file("circle"), file("cut"));
     const message = await page.$eval(".message", (one) => one.textContent);

@@ -17,6 +17,13 @@ describe("ticks", () => {
     assert.deepEqual(tickTexts([0, 0.25, 0.5]), ["0.00", "0.25", "0.50"]);
     assert.deepEqual(tickTexts([-20, 0, 20]), ["−20", "0", "20"]);
     assert.deepEqual(tickTexts([1e-6, 2e-6]), ["1e−6", "2e−6"]);
+    for (const close of [
+      [1200000, 1200100, 1200200],
+      [0.00001234, 0.000012341],
+      [1e6, 1000001],
+    ]) {
+      assert.equal(new Set(tickTexts(close)).size, close.length);
+    }
   });
 
   it("of a logarithmic axis are decades", () => {

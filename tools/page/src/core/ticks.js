@@ -48,12 +48,15 @@ export function short(value, digits = 4) {
 
 const minus = (text) => text.replaceAll("-", "−");
 
-/** Texts of ticks, all with the decimals that tell them apart. */
+/** Texts of ticks, all with the decimals that distinguish them. */
 export function tickTexts(ticks) {
   if (ticks.length < 2) return ticks.map((tick) => short(tick, 6));
   const step = Math.abs(ticks[1] - ticks[0]);
   const largest = Math.max(...ticks.map(Math.abs));
-  if (largest >= 1e6 || largest < 1e-4) return ticks.map((tick) => short(tick, 3));
+  if (largest >= 1e6 || largest < 1e-4) {
+    const digits = Math.max(1, Math.ceil(Math.log10(largest / step) + 1e-9) + 1);
+    return ticks.map((tick) => short(tick, digits));
+  }
   let decimals = 0;
   while (decimals < 12 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 * step * 10 ** decimals)
     ++decimals;

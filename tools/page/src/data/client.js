@@ -12,7 +12,7 @@ export class Client {
     this.last = 0;
     this.onProgress = onProgress;
     this.worker.onmessage = ({ data }) => this.receive(data);
-    this.worker.onerror = (event) => this.onFault?.(`the reader of the files stopped: ${event.message}`);
+    this.worker.onerror = (event) => this.stop(`the reader of the files stopped: ${event.message}`);
   }
 
   receive({ id, result, fault, progress, ready }) {
@@ -25,6 +25,13 @@ export class Client {
     this.waiting.delete(id);
     if (fault === undefined) resolve(result);
     else reject(new Error(fault));
+  }
+
+  /** No request will be answered any more. */
+  stop(why) {
+    for (const { reject } of this.waiting.values()) reject(new Error(why));
+    this.waiting.clear();
+    this.onFault?.(why);
   }
 
   /** @returns {Promise<any>} what the method of the worker returns */

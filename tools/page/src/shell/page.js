@@ -117,6 +117,11 @@ export class Page {
       const views = tabs.views.filter((view) => view.available());
       if (views.length) tabs.open(views[(views.indexOf(tabs.current) + by + views.length) % views.length]);
     };
+    addEventListener("unhandledrejection", (event) => {
+      event.preventDefault();
+      console.error(event.reason);
+      this.say(event.reason?.message ?? String(event.reason));
+    });
     listenToKeys({
       "?": showHelp,
       o: () => this.input.click(),
@@ -156,7 +161,18 @@ export class Page {
     return this.openPlaces(files.map((file) => ({ name: file.name, place: { blob: file } })));
   }
 
-  async openPlaces(places) {
+  /** Changes of the list of files, one after another: each begins with the list that the one before has left. */
+  queued(change) {
+    const done = (this.changes ?? Promise.resolve()).then(change);
+    this.changes = done.catch(() => {});
+    return done;
+  }
+
+  openPlaces(places) {
+    return this.queued(() => this.openNow(places));
+  }
+
+  async openNow(places) {
     this.say("");
     const results = [...this.store.state.results];
     const faults = [];
@@ -177,7 +193,11 @@ export class Page {
     this.adopt(results);
   }
 
-  async close(index) {
+  close(index) {
+    return this.queued(() => this.closeNow(index));
+  }
+
+  async closeNow(index) {
     const results = [...this.store.state.results];
     results[index] = undefined;
     this.adopt(results);
