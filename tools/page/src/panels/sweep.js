@@ -10,6 +10,8 @@ import { Brushes } from "./brushes.js";
 import { mapDrawing } from "./sweep_drawings.js";
 
 const CHART_HEIGHT = 300; // pixels
+const MAX_LINES = 12; // of one quantity, for the values of another parameter
+const MAX_AXES = 16; // of parallel coordinates
 const MODES = [
   ["curves", "curves"],
   ["map", "map"],
@@ -63,6 +65,22 @@ export class SweepView {
     return Array.from({ length: points }, (_, i) => i).filter((i) => done.length === 0 || done[i]);
   }
 
+  /** Parameters beside the abscissa. */
+  get others() {
+    return this.parameters.filter((one) => one !== this.x);
+  }
+
+  /** What a drawing leaves out, in words. */
+  get omitted() {
+    if (this.mode === "parallel") {
+      const all = this.parameters.length + this.quantities.length;
+      return all > MAX_AXES ? `the first ${MAX_AXES} of ${all} columns are drawn` : "";
+    }
+    const joined = this.mode === "curves" ? this.others.filter((one) => !hasFewLevels(one)) : [];
+    if (joined.length === 0) return "";
+    return `a line joins points of all values of ${joined.map((one) => one.label).join(", ")}: more than ${MAX_LINES} each`;
+  }
+
   showControls() {
     const name = (column) => column?.name ?? "";
     const choice = (label, key, columns) =>
@@ -101,6 +119,7 @@ export class SweepView {
           this.draw();
         }),
       );
+    if (this.omitted) parts.push(html("span", { class: "hint" }, this.omitted));
     this.controls.replaceChildren(...parts);
   }
 
@@ -147,7 +166,7 @@ export class SweepView {
   }
 
   linesOf(quantity) {
-    const others = this.parameters.filter((one) => one !== this.x && levelsOf(one).length <= 12);
+    const others = this.others.filter(hasFewLevels);
     const groups = groupBy(this.rows, (row) =>
       others.map((one) => `${one.label} ${textOf(one, one.values[row], short)}`).join(", "),
     );
@@ -178,7 +197,7 @@ export class SweepView {
   }
 
   parallel(width) {
-    const columns = [...this.parameters, ...this.quantities].slice(0, 16);
+    const columns = [...this.parameters, ...this.quantities].slice(0, MAX_AXES);
     return this.brushes.drawing(columns, this.rows, width, { colours: inks(), theme: this.store.state.theme });
   }
 
@@ -193,6 +212,11 @@ export class SweepView {
     if (this.mode === "curves") return this.charts(width);
     return [{ title: "sweep", drawing: this.mode === "map" ? this.map(width) : this.parallel(width), table }];
   }
+}
+
+/** A line for each value of such a parameter can be distinguished. */
+function hasFewLevels(parameter) {
+  return levelsOf(parameter).length <= MAX_LINES;
 }
 
 /** Label of a quantity without its case. */
