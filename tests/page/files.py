@@ -4,8 +4,10 @@
     files.py SERVOMILL FOLDER
 """
 import pathlib
+import shutil
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SIDE = "scenarios/guevel2025/experiment1.toml"
@@ -20,16 +22,30 @@ COMMANDS = {
 }
 
 
+def run(*words, cwd):
+    done = subprocess.run(words, cwd=cwd, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{words}: status {done.returncode}: {done.stderr}")
+
+
+def identify(servomill, signals):
+    """Recordings that are made up, and what they identify, in a copy of their folder."""
+    with tempfile.TemporaryDirectory() as copy:
+        for name in ("identification", "machines"):
+            shutil.copytree(ROOT / "scenarios" / name, pathlib.Path(copy) / name)
+        cwd = pathlib.Path(copy) / "identification" / "experiments"
+        run(servomill, "run", "../motion.toml", "-o", "motion.h5", "-q", cwd=cwd)
+        run(servomill, "identify", "record.toml", "--make-up", "recording.csv", cwd=cwd)
+        run(servomill, "identify", "identify.toml", "--signals", signals, "--force", cwd=cwd)
+
+
 def main():
-    servomill, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
+    servomill, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     for name, (command, scenario, *options) in COMMANDS.items():
         # Names of scenarios are relative to the source tree, as users type them.
-        done = subprocess.run([servomill, command, scenario, *options, "-o", folder / f"{name}.h5", "--force"],
-                              cwd=ROOT, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            print(f"{name}: status {done.returncode}: {done.stderr}")
-            return 1
+        run(servomill, command, scenario, *options, "-o", folder / f"{name}.h5", "--force", cwd=ROOT)
+    identify(servomill, folder / "identified.h5")
     (folder / "text.h5").write_text("not HDF5, whatever its name\n", encoding="utf-8")
     (folder / "cut.h5").write_bytes((folder / "run.h5").read_bytes()[:300_000])
     return 0

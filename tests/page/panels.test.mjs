@@ -1,7 +1,7 @@
 /** Views of what belongs to a run or a study: comparison, path, machine, circles, sweep, budget, frequency responses. */
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
-import { choose, file, launch, newPage, press, settled } from "./browser.mjs";
+import { choose, exported, file, launch, newPage, press, settled } from "./browser.mjs";
 import { column, columnOf, valueOf } from "./reference.mjs";
 
 let browser;
@@ -254,6 +254,31 @@ describe("studies", () => {
     await page.click(".main .controls input[type=checkbox]");
     assert.equal(await count(page, ".main svg:first-child .lines > path"), curves - 1);
     assert.match(await page.$eval(".main table", (one) => one.textContent), /phase margin/);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+  });
+
+  it("of an identification are its parameters, and the recording beside its simulation", async () => {
+    const page = await opened("identified");
+    await press(page, "Parameters", ".tabs");
+    const values = columnOf(file("identified"), "/parameters/value");
+    const rows = await page.$$eval(".main tbody tr", (all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+    assert.equal(rows.length, values.length);
+    assert.deepEqual(rows[0].slice(0, 2), ["axis.Y.moving_mass", `${Number(values[0].toPrecision(5))} kg`]);
+    const [head, first] = (await exported(page, "CSV")).toString().split("\n");
+    assert.equal(head, "key,unit,value,half_width,half_width_counted,identifiable");
+    assert.equal(Number(first.split(",")[2]), values[0]);
+    assert.match((await exported(page, "SVG")).toString(), /<text[^>]*>axis\.Y\.moving_mass<\/text>/);
+    await set(page, {
+      plots: [
+        { family: "/recording_001@time", signal: "feedback", column: 0 },
+        { family: "/recording_001@time", signal: "simulated_feedback", column: 0 },
+      ],
+    });
+    const curves = await page.evaluate(() =>
+      [...servomill.stack.plots.values()].map((plot) => [...plot.curves.values()][0].curve.overview.y.length),
+    );
+    assert.ok(curves.length === 2 && curves.every((points) => points > 100), `${curves}`);
     assert.deepEqual(page.faults, []);
     await page.close();
   });

@@ -1,9 +1,13 @@
 /** Parameters of an identification: value, expanded uncertainty, and those that the recordings do not determine. */
 import { short } from "../core/ticks.js";
 import { unitText } from "../core/units.js";
+import { tableDrawing } from "../plots/table.js";
 import { html } from "../shell/dom.js";
+import { inks } from "../shell/theme.js";
 
 const HEAD = ["key", "value", "U (k = 2)", "if all samples were independent", "identifiable"];
+const VALUES = ["value", "half_width", "half_width_counted"];
+const valueText = (value) => (value === undefined ? "" : short(value, 5));
 const numbered = (name, i) => `${name}_${String(i).padStart(2, "0")}`;
 
 export class ParametersView {
@@ -38,7 +42,7 @@ export class ParametersView {
               {},
               html("td", {}, key),
               ...values.map((value) =>
-                html("td", { class: "number", title: String(value) }, `${short(value, 5)} ${unitText(unit)}`),
+                html("td", { class: "number", title: String(value) }, `${valueText(value)} ${unitText(unit)}`),
               ),
               html("td", {}, identifiable),
             ),
@@ -51,9 +55,9 @@ export class ParametersView {
   async rowsOf(result) {
     const { attributes } = result.groups.get("/parameters");
     const columns = await Promise.all(
-      ["value", "half_width", "half_width_counted"]
-        .filter((name) => result.has(`/parameters/${name}`))
-        .map((name) => this.client.ask("values", result.index, `/parameters/${name}`)),
+      VALUES.map((name) => `/parameters/${name}`).map((path) =>
+        result.has(path) ? this.client.ask("values", result.index, path) : [],
+      ),
     );
     return Array.from(columns[0], (_, i) => ({
       key: attributes[numbered("key", i)],
@@ -64,19 +68,14 @@ export class ParametersView {
   }
 
   figures() {
+    if (this.rows.length === 0) return [];
+    const head = ["key", "unit", ...VALUES, "identifiable"];
+    const rows = (text) => this.rows.map((row) => [row.key, row.unit, ...row.values.map(text), row.identifiable]);
     return [
       {
         title: "parameters",
-        drawing: undefined,
-        lines: [],
-        x: { label: "", min: 0, max: 1 },
-        y: { label: "", min: 0, max: 1 },
-        width: 900,
-        height: 120,
-        table: {
-          head: ["key", "unit", "value", "half_width", "half_width_counted", "identifiable"],
-          rows: this.rows.map((row) => [row.key, row.unit, ...row.values, row.identifiable]),
-        },
+        drawing: tableDrawing(head, rows(valueText), inks()),
+        table: { head, rows: rows((value) => value ?? "") },
       },
     ];
   }
