@@ -3,14 +3,16 @@
  * HDF5 library reads in small pieces, and neither a file of a gigabyte nor its pages stay in memory.
  */
 
-// A request takes longer than its bytes: the chunks of a column lie about a megabyte apart, those of other
-// columns between them, and a large page holds several at little more time.
-const PAGE = 1 << 22;
-const MAX_PAGES = 20; // 80 MB
-const MAX_AHEAD = 8; // pages
+const KEPT = 80 << 20; // bytes of all pages
 
-/** Reads bytes of a Blob. */
+/**
+ * Reads bytes of a Blob. The chunks of a column lie about a megabyte apart, those of other columns between them: small
+ * pages leave most of the file unread, and each is there as soon as it is asked for.
+ */
 class BlobBytes {
+  pageSize = 1 << 17;
+  maxAhead = 0; // pages that are requested before they are needed
+
   constructor(blob) {
     this.size = blob.size;
     this.blob = blob;
@@ -25,14 +27,16 @@ class BlobBytes {
     }
   }
 
-  /** The same without waiting. */
-  async fetch(from, to) {
-    return new Uint8Array(await this.blob.slice(from, to).arrayBuffer());
-  }
 }
 
-/** Reads bytes from the server by range requests. */
+/**
+ * Reads bytes from the server by range requests. A request takes longer than its bytes: a large page holds the chunks of
+ * several rows at little more time, and several at once take little longer than one.
+ */
 class ServedBytes {
+  pageSize = 1 << 22;
+  maxAhead = 8;
+
   constructor(url, size) {
     this.url = url;
     this.size = size;
@@ -55,6 +59,7 @@ class ServedBytes {
     return new Uint8Array(request.response);
   }
 
+  /** The same without waiting. */
   async fetch(from, to) {
     const answer = await fetch(this.url, { headers: { Range: `bytes=${from}-${to - 1}` } });
     if (answer.status !== 206) throw new Error(`status ${answer.status}`);
@@ -64,10 +69,11 @@ class ServedBytes {
 
 /** Pages of a file, the last used ones kept. Looks like a Blob to the file system of the HDF5 library. */
 export class PagedFile {
-  /** @param {{size: number, read(from: number, to: number): Uint8Array}} bytes */
+  /** @param {BlobBytes | ServedBytes} bytes */
   constructor(bytes) {
     this.bytes = bytes;
     this.size = bytes.size;
+    this.pageSize = bytes.pageSize;
     this.lastModifiedDate = new Date(0);
     /** @type {Map<number, Uint8Array>} in the order of their use */
     this.pages = new Map();
@@ -83,10 +89,10 @@ export class PagedFile {
   read(from, to) {
     const out = new Uint8Array(to - from);
     for (let at = from; at < to;) {
-      const number = Math.floor(at / PAGE);
+      const number = Math.floor(at / this.pageSize);
       const page = this.page(number);
-      const end = Math.min(to, (number + 1) * PAGE);
-      out.set(page.subarray(at - number * PAGE, end - number * PAGE), at - from);
+      const end = Math.min(to, (number + 1) * this.pageSize);
+      out.set(page.subarray(at - number * this.pageSize, end - number * this.pageSize), at - from);
       at = end;
     }
     return out;
@@ -105,7 +111,7 @@ export class PagedFile {
 
   keep(number, page) {
     this.pages.set(number, page);
-    if (this.pages.size > MAX_PAGES) this.pages.delete(this.pages.keys().next().value);
+    if (this.pages.size * this.pageSize > KEPT) this.pages.delete(this.pages.keys().next().value);
     return page;
   }
 
@@ -116,12 +122,13 @@ export class PagedFile {
   async advance() {
     const needed = [...this.needed];
     this.needed.clear();
+    if (this.bytes.maxAhead === 0) return;
     const [first, last] = [Math.min(...needed), Math.max(...needed)];
-    const count = Math.min(last - first + 1, MAX_AHEAD, Math.ceil(this.size / PAGE) - last - 1);
+    const count = Math.min(last - first + 1, this.bytes.maxAhead, Math.ceil(this.size / this.pageSize) - last - 1);
     const wanted = Array.from({ length: Math.max(0, count) }, (_, i) => last + 1 + i).filter((number) => !this.pages.has(number));
     await Promise.allSettled(
       wanted.map(async (number) => {
-        const page = await this.bytes.fetch(number * PAGE, Math.min(this.size, (number + 1) * PAGE));
+        const page = await this.bytes.fetch(number * this.pageSize, Math.min(this.size, (number + 1) * this.pageSize));
         if (!this.pages.has(number)) this.keep(number, page); // a fault shows when the page is needed
       }),
     );
@@ -129,7 +136,7 @@ export class PagedFile {
 
   load(number) {
     try {
-      return this.bytes.read(number * PAGE, Math.min(this.size, (number + 1) * PAGE));
+      return this.bytes.read(number * this.pageSize, Math.min(this.size, (number + 1) * this.pageSize));
     } catch (fault) {
       this.fault = fault; // the HDF5 library only reports that it could not read
       throw fault;
