@@ -4,7 +4,7 @@
 h5web_test.py SERVOMILL FOLDER
 
 FOLDER keeps the packages of package-lock.json from one run to the next. Ends with 77 (skipped) where node, npm or
-Chromium is missing, or where the packages cannot be had.
+Chromium is missing.
 """
 import json
 import os
@@ -13,10 +13,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 GALLERY = HERE.parent / "cli" / "gallery" / "scenario.toml"
 PATIENCE = 120   # s, of each command on a busy machine
+ATTEMPTS = 4     # to install the packages: servers refuse now and then
 SKIPPED = 77
 
 
@@ -34,9 +36,12 @@ def install(folder):
         return
     for name in ("package.json", "package-lock.json", ".npmrc"):
         shutil.copy(HERE / name, folder)
-    npm = subprocess.run(["npm", "ci", "--no-progress"], cwd=folder, capture_output=True, text=True, check=False, timeout=600)
-    if npm.returncode != 0:
-        skip(f"npm ci failed: {npm.stderr.strip()[-300:]}")
+    for attempt in range(1, ATTEMPTS + 1):
+        npm = subprocess.run(["npm", "ci", "--no-progress"], cwd=folder, capture_output=True, text=True, check=False, timeout=600)
+        if npm.returncode == 0:
+            break
+        time.sleep(3 * attempt)
+    assert npm.returncode == 0, f"npm ci failed: {npm.stderr.strip()[-300:]}"
     done.write_text(wanted, encoding="utf-8")
 
 

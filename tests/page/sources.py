@@ -22,11 +22,11 @@ def lock_faults(folder):
     package = json.loads((folder / "package.json").read_text(encoding="utf-8"))
     for name, one in lock["packages"].items():
         if name and "resolved" in one:
-            yield f"package-lock.json: {name}: has the address of a server; tools/page/.npmrc leaves it out"
+            yield f"package-lock.json: {name}: has the address of a server; .npmrc leaves it out"
         if name and "integrity" not in one:
             yield f"package-lock.json: {name}: has no checksum"
     for kind in ("dependencies", "devDependencies"):
-        for name, version in package[kind].items():
+        for name, version in package.get(kind, {}).items():
             if not EXACT.fullmatch(version):
                 yield f"package.json: {name}: {version} is not one version"
             if lock["packages"][""][kind].get(name) != version:
@@ -65,7 +65,7 @@ def import_faults(root, file, text):
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
-    faults = [*lock_faults(root / "tools" / "page"), *source_faults(root)]
+    faults = [*lock_faults(root / "tools" / "page"), *lock_faults(root / "tests" / "h5web"), *source_faults(root)]
     print("\n".join(faults))
     return 1 if faults else 0
 
