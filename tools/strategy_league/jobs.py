@@ -19,9 +19,12 @@ def draws(samples):
     return [f"{DRAW}{number}" for number in range(1, samples + 1)]
 
 
-def generator(knowledge, machine):
+DRIVES, ERRORS = 0, 1   # streams of random numbers
+
+
+def generator(knowledge, machine, stream):
     """The random numbers of a draw: the same for every strategy and program on a machine."""
-    return np.random.default_rng([int(knowledge.removeprefix(DRAW)), zlib.crc32(machine["title"].encode())])
+    return np.random.default_rng([int(knowledge.removeprefix(DRAW)), zlib.crc32(machine["title"].encode()), stream])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -117,7 +120,7 @@ def known_drives(job, knowledge):
     data = job.machine["drives"] | (job.machine.get("unkind_drives", {}) if job.unkind else {})
     deviates = {}
     if knowledge.startswith(DRAW):
-        random = generator(knowledge, job.machine)
+        random = generator(knowledge, job.machine, DRIVES)
         for key, one in data.items():
             deviates.setdefault(one.get("group", key), random.standard_normal())
     out = {}
@@ -132,8 +135,7 @@ def residual_errors(machine, knowledge):
     """Errors that a calibration leaves; of a draw each number of them times a normal deviate."""
     if not knowledge.startswith(DRAW):
         return machine["identified"]
-    random = generator(knowledge, machine)
-    random.standard_normal(100)   # those of the drives come before
+    random = generator(knowledge, machine, ERRORS)
 
     def drawn(key, value):
         if isinstance(value, dict):
