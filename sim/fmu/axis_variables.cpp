@@ -82,7 +82,7 @@ constexpr std::array<Variable, kVariables> kVariableTable = {{
      "factor on the friction of the guideway: Coulomb, breakaway, viscous of a direction, "
      "bristles"},
     {kBasePeriod, "base_period", kLocal, kConstant, Kind::time,
-     "base period: communication points are whole multiples of it"},
+     "base period, at whole multiples of which the loops are sampled"},
     {kPositionPeriod, "position_period", kLocal, kConstant, Kind::time,
      "period of the position loop"},
     {kReadingDelay, "reading_delay", kLocal, kConstant, Kind::time,

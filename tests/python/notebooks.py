@@ -20,7 +20,7 @@ except ImportError:
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "tools/python/notebooks"
 CELL_TIMEOUT = 120  # s, on a shared machine
 EXPECTED = {  # text of the outputs
-    "the_paper": ["Figure 9", "realised_ratio", "feedback_lead  99.9", "Kv = 120 1/s: 9"],
+    "the_paper": ["realised_ratio", "feedback_lead  99.9", "Kv = 120 1/s: 9"],
     "my_machine": ["EC0Y", "only in combination", "verified", "squareness"],
     "my_strategy": ["12.0 ms ahead", "largest difference"],
 }
@@ -34,7 +34,6 @@ def texts(notebook):
     for cell in notebook.cells:
         for one in cell.get("outputs", []):
             out.append(one.get("text", "") + str(one.get("data", {}).get("text/plain", "")))
-        out.append(cell.source)
     return "\n".join(out)
 
 
