@@ -1,9 +1,8 @@
-/// Constants of one exported axis, and the text file in which an FMU carries them.
+/// Constants of one exported axis, and the text in which an FMU carries them.
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sim/model/machine.h"
 
@@ -17,7 +16,6 @@ struct AxisConstants {
   std::string case_name;  // empty: the machine of the scenario
   std::string axis;       // its letter
   int joint = 0;
-  double start = 0.0;      // m or rad, default setpoint
   Tick reading_delay = 0;  // ticks between the scale and what the position loop reads
   Tick record_period = 1;  // ticks; the drives of a run stop at each of them
   model::MachineSettings machine;
@@ -40,24 +38,12 @@ struct AxisConstants {
 /// Why an axis cannot be exported, to be put behind its name; empty if it can.
 std::string why_not_exported(const AxisConstants& axis);
 
-/// The file: `servomill axis 1`, then one line `key = value` for each constant, SI, in the order of
-/// this version, decimal with as many digits as give the same bits again, and the CRC-64 (ECMA-182)
-/// of all lines before it as `checksum = 0123456789abcdef`.
+/// The constants (sim/fmu/constants_text.h) behind the headline `servomill axis 2`, SI.
 std::string text_of(const AxisConstants& axis);
 
-/// Reads the file again, bit for bit.
+/// Reads them again, bit for bit.
 /// @param name  of the file, for messages
 /// @throws InputError for another version, a line that is not as written, or a wrong checksum
 AxisConstants read_axis_constants(std::string_view text, const std::string& name);
-
-/// The same of several axes, one text behind the other.
-std::string text_of(const std::vector<AxisConstants>& axes);
-std::vector<AxisConstants> read_axes(std::string_view text, const std::string& name);
-
-/// Name of the file among the resources of an FMU.
-inline constexpr std::string_view kAxisFile = "axis.txt";
-
-/// Token that ties a model description to the constants: FMI's guid and instantiationToken.
-std::string token_of(std::string_view text);
 
 }  // namespace servomill::sim::fmu

@@ -7,18 +7,19 @@
 #include <vector>
 
 #include "sim/fmu/axis_constants.h"
+#include "sim/fmu/error_fields.h"
 
 namespace servomill::sim::fmu {
 
 /// Version of the file: to be raised with every change of the fields.
-inline constexpr int kAxisFileVersion = 1;
+inline constexpr int kAxisFileVersion = 2;
 
 /// Calls visit(key, field) with a reference to each field; vectors and optional parts are visited
 /// after their sizes, which a reader has set by then.
 template <class Visit>
 class AxisFields {
  public:
-  explicit AxisFields(Visit visit) : visit_(visit) {}
+  explicit AxisFields(Visit& visit) : visit_(visit) {}
 
   void all(AxisConstants& axis) {
     visit_("program", axis.program);
@@ -26,8 +27,9 @@ class AxisFields {
     visit_("case", axis.case_name);
     visit_("machine", axis.machine.name);
     visit_("axis", axis.axis);
-    visit_("joint", axis.joint);
-    visit_("start", axis.start);
+    Count joint{static_cast<std::size_t>(axis.joint), kJoints - 1};
+    visit_("joint", joint);
+    axis.joint = static_cast<int>(joint.value);
     visit_("reading_delay", axis.reading_delay);
     visit_("record_period", axis.record_period);
     model::LoopPeriods& periods = axis.machine.nc.periods;
@@ -35,7 +37,7 @@ class AxisFields {
     visit_("position_period", periods.position);
     visit_("velocity_period", periods.velocity);
     visit_("current_period", periods.current);
-    const auto j = static_cast<std::size_t>(axis.joint);
+    const std::size_t j = joint.value;
     drive(axis.machine.drives[j]);
     encoder("scale.", axis.machine.scale[j]);
     encoder("motor.", axis.machine.motor[j]);
@@ -122,36 +124,8 @@ class AxisFields {
     visit_("marks.allowed", marks->allowed);
   }
 
-  void list(const std::string& name, std::vector<double>& values) {
-    sized(name, values);
-    for (std::size_t n = 0; n < values.size(); ++n) {
-      visit_(name + "." + std::to_string(n), values[n]);
-    }
-  }
-
-  template <class T>
-  void sized(const std::string& name, std::vector<T>& values) {
-    std::size_t size = values.size();
-    visit_(name, size);
-    values.resize(size);
-  }
-
   void screw(plant::ScrewError& screw) {
-    plant::ErrorFunction& lead = screw.lead;
-    list("screw.polynomial", lead.polynomial);
-    sized("screw.harmonics", lead.harmonics);
-    for (std::size_t n = 0; n < lead.harmonics.size(); ++n) {
-      const std::string name = "screw.harmonics." + std::to_string(n);
-      visit_(name + ".amplitude", lead.harmonics[n].amplitude);
-      visit_(name + ".period", lead.harmonics[n].period);
-      visit_(name + ".phase", lead.harmonics[n].phase);
-    }
-    sized("screw.tables", lead.tables);
-    for (std::size_t n = 0; n < lead.tables.size(); ++n) {
-      const std::string name = "screw.tables." + std::to_string(n);
-      list(name + ".s", lead.tables[n].s);
-      list(name + ".error", lead.tables[n].error);
-    }
+    ErrorFields<Visit>(visit_).function("screw", screw.lead);
     visit_("screw.growth.alpha", screw.growth.alpha);
     visit_("screw.growth.x_fixed", screw.growth.x_fixed);
     visit_("screw.growth.dT_end", screw.growth.dT_end);
@@ -172,8 +146,10 @@ class AxisFields {
     visit_("cascade.v_max", c.v_max);
     visit_("cascade.tau_max", c.tau_max);
     visit_("cascade.di_max", c.di_max);
-    visit_("filters", c.filters.count);
-    for (std::size_t n = 0; n < std::min(c.filters.count, controllers::kMaxSections); ++n) {
+    Count filters{c.filters.count, controllers::kMaxSections};
+    visit_("filters", filters);
+    c.filters.count = filters.value;
+    for (std::size_t n = 0; n < c.filters.count; ++n) {
       const std::string name = "filters." + std::to_string(n);
       controllers::Biquad& section = c.filters.sections[n];
       visit_(name + ".b0", section.b0);
@@ -210,7 +186,7 @@ class AxisFields {
     visit_("supervision.Tp", f.supervision.Tp);
   }
 
-  Visit visit_;
+  Visit& visit_;
 };
 
 }  // namespace servomill::sim::fmu

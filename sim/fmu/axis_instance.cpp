@@ -63,7 +63,22 @@ struct Head {
   double start_time = 0.0, time = 0.0;
 };
 
+bool is_before_stepping(Stage stage) {
+  return stage == Stage::instantiated || stage == Stage::initialising;
+}
+
 }  // namespace
+
+std::string set_fault(const Variable& variable, Stage stage, double value) {
+  const bool is_input = variable.causality == Causality::input;
+  if (!is_input && variable.causality != Causality::parameter) {
+    return fmt::format("'{}' cannot be set", variable.name);
+  }
+  if (!is_input && !is_before_stepping(stage)) {
+    return fmt::format("'{}' is fixed after initialization", variable.name);
+  }
+  return std::isfinite(value) ? std::string() : fmt::format("'{}' must be finite", variable.name);
+}
 
 AxisInstance::AxisInstance(std::shared_ptr<const AxisConstants> axis, Log log)
     : axis_(std::move(axis)), log_(std::move(log)), values_(start_values(*axis_)) {}
@@ -152,17 +167,10 @@ bool AxisInstance::set(std::uint32_t reference, double value) {
     return refuse(fmt::format("no variable has the value reference {}", reference));
   }
   const Variable& variable = variables()[reference];
-  const bool before = stage_ == Stage::instantiated || stage_ == Stage::initialising;
-  const bool is_input = variable.causality == Causality::input;
-  if (!is_input && variable.causality != Causality::parameter) {
-    return refuse(fmt::format("'{}' cannot be set", variable.name));
-  }
-  if (!is_input && !before) {
-    return refuse(fmt::format("'{}' is fixed after initialization", variable.name));
-  }
-  if (!std::isfinite(value)) return refuse(fmt::format("'{}' must be finite", variable.name));
+  const std::string fault = set_fault(variable, stage_, value);
+  if (!fault.empty()) return refuse(fault);
   values_[reference] = value;
-  if (before) settled_ = false;
+  if (is_before_stepping(stage_)) settled_ = false;
   return true;
 }
 

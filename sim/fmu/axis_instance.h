@@ -20,6 +20,9 @@ enum class Step : std::uint8_t { done, stopped, refused };
 /// Importance of a message.
 enum class Severity : std::uint8_t { event, stop, error };
 
+/// Why a variable cannot be set to a value; empty if it can.
+std::string set_fault(const Variable& variable, Stage stage, double value);
+
 /// Functions return false where FMI has an error, after it was logged; the instance stays as it
 /// was.
 class AxisInstance {
@@ -44,6 +47,7 @@ class AxisInstance {
   Step step(double current, double step);
   /// s: of the last communication point, or where the machine was stopped.
   double time() const;
+  Stage stage() const { return stage_; }
   bool is_stopped() const { return stopped_; }
 
   /// All that changes with time, for a step back.

@@ -178,9 +178,10 @@ const Unit& unit_of(Kind kind, const AxisConstants& axis) {
   return units[static_cast<std::size_t>(kind)];
 }
 
+const Unit& linear_unit_of(Kind kind) { return kLinearUnits[static_cast<std::size_t>(kind)]; }
+
 Values start_values(const AxisConstants& axis) {
   Values values{};
-  values[kSetpoint] = axis.start;
   const controllers::CascadeParams& c = axis.cascade();
   values[kKv] = c.Kv;
   values[kKvf] = c.kvf;

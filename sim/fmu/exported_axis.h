@@ -1,7 +1,7 @@
-/// The axis of a scenario that is exported.
+/// What is exported of a scenario.
 #pragma once
 
-#include "sim/fmu/axis_constants.h"
+#include "sim/fmu/machine_constants.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::fmu {
@@ -9,5 +9,10 @@ namespace servomill::sim::fmu {
 /// Constants of one joint of the machine of a scenario, without the name of a case.
 /// @param reading_delay  ticks between the scale and what the position loop reads
 AxisConstants exported_axis(const model::Scenario& scenario, int joint, Tick reading_delay);
+
+/// Kinematics of the machine of a scenario with its true errors: those of its case if it has only
+/// one, which may have its own.
+/// @throws InputError if the cases do not agree on the errors
+KinematicConstants exported_kinematics(const model::Scenario& scenario);
 
 }  // namespace servomill::sim::fmu

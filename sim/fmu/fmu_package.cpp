@@ -76,14 +76,14 @@ class Archive {
 
 }  // namespace
 
-std::string fmu_bytes(FmiVersion version, const std::vector<AxisConstants>& axes,
+std::string fmu_bytes(FmiVersion version, const MachineConstants& machine,
                       std::string_view library) {
-  const std::string constants = text_of(axes);
-  const std::string description = model_description(version, axes, token_of(constants));
+  const std::string constants = text_of(machine);
+  const std::string description = model_description(version, machine, token_of(constants));
   const char* platform = version == FmiVersion::fmi2 ? "linux64" : "x86_64-linux";
   Archive archive;
   archive.add("modelDescription.xml", description);
-  archive.add("resources/" + std::string(kAxisFile), constants);
+  archive.add("resources/" + std::string(kConstantsFile), constants);
   archive.add("binaries/" + std::string(platform) + "/" + std::string(kModelIdentifier) + ".so",
               library);
   return archive.bytes();

@@ -3,19 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstring>
 #include <limits>
+#include <type_traits>
+
+#include "plant/vocabulary/checksum.h"
 
 namespace servomill::sim::fmu {
+namespace {
 
-MachineInstance::MachineInstance(const std::vector<AxisConstants>& axes, const Log& log)
-    : log_(log) {
-  assert(!axes.empty());
-  for (const AxisConstants& axis : axes) {
+// The tip as bytes.
+struct Tip {
+  std::array<double, 3> p_ST{};
+  std::uint64_t checksum = 0;
+
+  static std::uint64_t checksum_of(const std::array<double, 3>& p) {
+    return crc64({reinterpret_cast<const char*>(p.data()), sizeof p});
+  }
+  static Tip of(const Eigen::Vector3d& p_ST) {
+    Tip tip{{p_ST.x(), p_ST.y(), p_ST.z()}, 0};
+    tip.checksum = checksum_of(tip.p_ST);
+    return tip;
+  }
+  bool is_whole() const { return checksum == checksum_of(p_ST); }
+};
+
+template <class Part>
+void append(std::string& bytes, const Part& part) {
+  static_assert(std::has_unique_object_representations_v<Part> || std::is_same_v<Part, Tip>);
+  bytes.append(reinterpret_cast<const char*>(&part), sizeof part);
+}
+
+// From the front of the bytes; false if there are too few.
+template <class Part>
+bool take(std::string_view& bytes, Part& part) {
+  if (bytes.size() < sizeof part) return false;
+  std::memcpy(&part, bytes.data(), sizeof part);
+  bytes.remove_prefix(sizeof part);
+  return true;
+}
+
+}  // namespace
+
+MachineInstance::MachineInstance(const MachineConstants& machine, const Log& log) : log_(log) {
+  assert(!machine.axes.empty());
+  for (const AxisConstants& axis : machine.axes) {
     axes_.push_back(
         std::make_unique<AxisInstance>(std::make_shared<const AxisConstants>(axis), log));
+    joints_.push_back(axis.joint);
   }
+  if (!machine.kinematics) return;
+  tool_.emplace(*machine.kinematics);
+  default_p_ST_ = p_ST_ = machine.kinematics->p_ST;
 }
 
 template <class Do>
@@ -52,6 +93,7 @@ bool MachineInstance::terminate() {
 
 void MachineInstance::reset() {
   stopped_ = false;
+  p_ST_ = default_p_ST_;
   for (const auto& axis : axes_) axis->reset();
 }
 
@@ -62,12 +104,39 @@ AxisInstance* MachineInstance::axis_of(std::uint32_t reference) {
   return nullptr;
 }
 
+bool MachineInstance::is_of_tool(std::uint32_t reference) const {
+  return tool_ && reference >= kToolReference && reference - kToolReference < kToolVariables;
+}
+
+bool MachineInstance::get_of_tool(std::uint32_t n, double& value) {
+  if (n < kTipCoordinates) {
+    value = p_ST_[static_cast<int>(n)];
+    return true;
+  }
+  static const std::uint32_t kPosition = reference_of("position");
+  Joints Q = Joints::Zero();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (!axes_[i]->get(kPosition, Q[joints_[i]])) return false;
+  }
+  value = tool_->values(Q, p_ST_)[n];
+  return true;
+}
+
+bool MachineInstance::set_of_tool(std::uint32_t n, double value) {
+  const std::string fault = set_fault(tool_variables()[n], axes_.front()->stage(), value);
+  if (!fault.empty()) return refuse(fault);
+  p_ST_[static_cast<int>(n)] = value;
+  return true;
+}
+
 bool MachineInstance::get(std::uint32_t reference, double& value) {
+  if (is_of_tool(reference)) return get_of_tool(reference - kToolReference, value);
   AxisInstance* const axis = axis_of(reference);
   return axis != nullptr && axis->get(reference % kAxisStride, value);
 }
 
 bool MachineInstance::set(std::uint32_t reference, double value) {
+  if (is_of_tool(reference)) return set_of_tool(reference - kToolReference, value);
   AxisInstance* const axis = axis_of(reference);
   return axis != nullptr && axis->set(reference % kAxisStride, value);
 }
@@ -103,7 +172,7 @@ Step MachineInstance::stop_at(double current, double end, const Memory& before) 
 }
 
 MachineInstance::Memory MachineInstance::memory() const {
-  Memory memory{stopped_, {}};
+  Memory memory{stopped_, {}, p_ST_};
   for (const auto& axis : axes_) memory.axes.push_back(axis->memory());
   return memory;
 }
@@ -113,18 +182,20 @@ bool MachineInstance::restore(const Memory& memory) {
     if (!axes_[n]->restore(memory.axes.at(n))) return false;
   }
   stopped_ = memory.stopped;
+  p_ST_ = memory.p_ST;
   return true;
 }
 
-// "1" or "0" for stopped; then of each axis the number of its bytes, and these.
+// "1" or "0" for stopped; then of each axis the number of its bytes, and these; last the tip of the
+// tool with its checksum.
 std::string MachineInstance::bytes_of(const Memory& memory) const {
   std::string bytes = memory.stopped ? "1" : "0";
   for (std::size_t n = 0; n < axes_.size(); ++n) {
     const std::string own = axes_[n]->bytes_of(memory.axes.at(n));
-    const std::uint64_t size = own.size();
-    bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
+    append(bytes, std::uint64_t{own.size()});
     bytes += own;
   }
+  append(bytes, Tip::of(memory.p_ST));
   return bytes;
 }
 
@@ -134,20 +205,20 @@ std::optional<MachineInstance::Memory> MachineInstance::memory_from(std::string_
     return std::nullopt;
   };
   if (bytes.empty() || (bytes[0] != '0' && bytes[0] != '1')) return damaged();
-  Memory memory{bytes[0] == '1', {}};
+  Memory memory{bytes[0] == '1', {}, {}};
   bytes.remove_prefix(1);
   for (const auto& axis : axes_) {
     std::uint64_t size = 0;
-    if (bytes.size() < sizeof size) return damaged();
-    std::memcpy(&size, bytes.data(), sizeof size);
-    bytes.remove_prefix(sizeof size);
-    if (bytes.size() < size) return damaged();
+    if (!take(bytes, size) || bytes.size() < size) return damaged();
     auto own = axis->memory_from(bytes.substr(0, size));
     if (!own) return std::nullopt;
     memory.axes.push_back(std::move(*own));
     bytes.remove_prefix(size);
   }
-  return bytes.empty() ? std::optional(std::move(memory)) : damaged();
+  Tip tip;
+  if (!take(bytes, tip) || !tip.is_whole() || !bytes.empty()) return damaged();
+  memory.p_ST = Eigen::Vector3d::Map(tip.p_ST.data());
+  return memory;
 }
 
 }  // namespace servomill::sim::fmu

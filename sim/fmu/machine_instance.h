@@ -1,4 +1,4 @@
-/// Life of one instance of an FMU: one axis, or several of one machine.
+/// Life of one instance of an FMU: one axis, several of one machine, or the whole machine.
 #pragma once
 
 #include <memory>
@@ -7,17 +7,21 @@
 #include <vector>
 
 #include "sim/fmu/axis_instance.h"
+#include "sim/fmu/machine_constants.h"
+#include "sim/fmu/tool.h"
 
 namespace servomill::sim::fmu {
 
 /// Axes that are stepped together. They do not act on one another, but the NC stops all of them in
 /// the position period in which it stops the first. A variable of axis number n has the value
-/// reference n kAxisStride + that of the axis; time is that of the first.
+/// reference n kAxisStride + that of the axis; time is that of the first. A whole machine has the
+/// variables of its tool, too.
 class MachineInstance {
  public:
   using Log = AxisInstance::Log;
 
-  MachineInstance(const std::vector<AxisConstants>& axes, const Log& log);
+  /// @pre machine has an axis
+  MachineInstance(const MachineConstants& machine, const Log& log);
 
   bool set_up(double start_time);
   bool enter_initialization();
@@ -36,6 +40,7 @@ class MachineInstance {
   struct Memory {
     bool stopped = false;
     std::vector<AxisInstance::Memory> axes;
+    Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();
   };
   Memory memory() const;
   bool restore(const Memory& memory);
@@ -47,11 +52,17 @@ class MachineInstance {
   template <class Do>
   bool all(Do what);
   AxisInstance* axis_of(std::uint32_t reference);
+  bool is_of_tool(std::uint32_t reference) const;
+  bool get_of_tool(std::uint32_t n, double& value);
+  bool set_of_tool(std::uint32_t n, double value);
   bool refuse(const std::string& why) const;
   Step stop_at(double current, double end, const Memory& before);
 
   Log log_;
   std::vector<std::unique_ptr<AxisInstance>> axes_;
+  std::vector<int> joints_;   // of the axes
+  std::optional<Tool> tool_;  // of a whole machine
+  Eigen::Vector3d default_p_ST_ = Eigen::Vector3d::Zero(), p_ST_ = default_p_ST_;
   bool stopped_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/fmu/axis_variables.h"
+#include "sim/fmu/tool.h"
 
 namespace servomill::sim::fmu {
 namespace {
@@ -65,15 +66,54 @@ std::string initial_of(const Variable& variable) {
   }
 }
 
-// unit=... start=... of a variable.
-std::string unit_and_start(const Variable& variable, const AxisConstants& axis,
-                           const Values& values) {
-  std::string out;
-  if (variable.kind != Kind::ratio) {
-    out += fmt::format(" unit=\"{}\"", unit_of(variable.kind, axis).name);
+// A variable of one of the axes or of the tool, in the order of the description.
+struct Listed {
+  const Variable& variable;
+  const Unit& unit;
+  double start;
+  std::uint32_t reference;
+  std::string name;  // of one of several axes behind its letter: Y.position
+};
+
+// Time is listed once.
+void list_axes(const std::vector<AxisConstants>& axes, std::vector<Listed>& out) {
+  std::uint32_t first = 0;
+  for (const AxisConstants& axis : axes) {
+    const Values start = start_values(axis);
+    for (const Variable& one : variables()) {
+      const bool is_time = one.causality == Causality::independent;
+      if (is_time && first > 0) continue;
+      const bool plain = axes.size() == 1 || is_time;
+      out.push_back({one, unit_of(one.kind, axis), start[one.reference], first + one.reference,
+                     plain ? std::string(one.name) : fmt::format("{}.{}", axis.axis, one.name)});
+    }
+    first += kAxisStride;
   }
-  if (variable.causality == Causality::parameter) out += " min=\"0\"";
-  if (has_start(variable)) out += fmt::format(" start=\"{}\"", number(values[variable.reference]));
+}
+
+std::vector<Listed> listed_variables(const MachineConstants& machine) {
+  std::vector<Listed> out;
+  list_axes(machine.axes, out);
+  if (!machine.kinematics) return out;
+  for (const Variable& one : tool_variables()) {
+    const std::uint32_t n = one.reference - kToolReference;
+    const double start = n < kTipCoordinates ? machine.kinematics->p_ST[static_cast<int>(n)] : 0.0;
+    out.push_back({one, linear_unit_of(one.kind), start, one.reference, std::string(one.name)});
+  }
+  return out;
+}
+
+// The tip of a tool may lie anywhere.
+bool is_not_negative(const Variable& variable) {
+  return variable.causality == Causality::parameter && variable.reference < kToolReference;
+}
+
+// unit=... start=... of a variable.
+std::string unit_and_start(const Listed& one) {
+  std::string out;
+  if (one.variable.kind != Kind::ratio) out += fmt::format(" unit=\"{}\"", one.unit.name);
+  if (is_not_negative(one.variable)) out += " min=\"0\"";
+  if (has_start(one.variable)) out += fmt::format(" start=\"{}\"", number(one.start));
   return out;
 }
 
@@ -87,15 +127,12 @@ std::string unit_element(const Unit& unit) {
   return out + "/></Unit>\n";
 }
 
-std::string units(const std::vector<AxisConstants>& axes) {
+std::string units(const std::vector<Listed>& all) {
   std::string out = "  <UnitDefinitions>\n";
   std::set<std::string_view> defined;
-  for (const AxisConstants& axis : axes) {
-    for (const Variable& variable : variables()) {
-      const Unit& unit = unit_of(variable.kind, axis);
-      if (variable.kind == Kind::ratio || !defined.insert(unit.name).second) continue;
-      out += unit_element(unit);
-    }
+  for (const Listed& one : all) {
+    if (one.variable.kind == Kind::ratio || !defined.insert(one.unit.name).second) continue;
+    out += unit_element(one.unit);
   }
   return out + "  </UnitDefinitions>\n";
 }
@@ -112,37 +149,9 @@ std::string log_categories() {
   return out + "  </LogCategories>\n";
 }
 
-// Parts of both versions: units, log categories, default experiment.
-std::string common_parts(const std::vector<AxisConstants>& axes) {
-  const model::LoopPeriods& periods = axes.front().machine.nc.periods;
-  return units(axes) + log_categories() +
-         fmt::format("  <DefaultExperiment startTime=\"0\" stepSize=\"{:.12g}\"/>\n",
+std::string default_experiment(const model::LoopPeriods& periods) {
+  return fmt::format("  <DefaultExperiment startTime=\"0\" stepSize=\"{:.12g}\"/>\n",
                      periods.seconds(periods.position));
-}
-
-// A variable of one of the axes, in the order of the description.
-struct Listed {
-  const Variable& variable;
-  const AxisConstants& axis;
-  std::uint32_t reference;
-  std::string name;  // with several axes behind that of its axis: Y.position
-};
-
-// Time is listed once.
-std::vector<Listed> listed_variables(const std::vector<AxisConstants>& axes) {
-  std::vector<Listed> out;
-  std::uint32_t first = 0;
-  for (const AxisConstants& axis : axes) {
-    for (const Variable& one : variables()) {
-      const bool is_time = one.causality == Causality::independent;
-      if (is_time && first > 0) continue;
-      const bool plain = axes.size() == 1 || is_time;
-      out.push_back({one, axis, first + one.reference,
-                     plain ? std::string(one.name) : fmt::format("{}.{}", axis.axis, one.name)});
-    }
-    first += kAxisStride;
-  }
-  return out;
 }
 
 std::string variable_element(FmiVersion version, const Listed& one) {
@@ -150,7 +159,7 @@ std::string variable_element(FmiVersion version, const Listed& one) {
       "name=\"{}\" valueReference=\"{}\" causality=\"{}\" variability=\"{}\"{} description=\"{}\"",
       one.name, one.reference, name_of(one.variable.causality), name_of(one.variable.variability),
       initial_of(one.variable), escaped(one.variable.description));
-  const std::string values = unit_and_start(one.variable, one.axis, start_values(one.axis));
+  const std::string values = unit_and_start(one);
   return version == FmiVersion::fmi2
              ? fmt::format("    <ScalarVariable {}><Real{}/></ScalarVariable>\n", common, values)
              : fmt::format("    <Float64 {}{}/>\n", common, values);
@@ -178,8 +187,7 @@ std::string structure(FmiVersion version, const std::vector<Listed>& all) {
   return "  <ModelStructure>\n" + outputs + initial + "  </ModelStructure>\n";
 }
 
-std::string variables_and_structure(FmiVersion version, const std::vector<AxisConstants>& axes) {
-  const std::vector<Listed> all = listed_variables(axes);
+std::string variables_and_structure(FmiVersion version, const std::vector<Listed>& all) {
   std::string out = "  <ModelVariables>\n";
   for (const Listed& one : all) out += variable_element(version, one);
   return out + "  </ModelVariables>\n" + structure(version, all);
@@ -192,37 +200,50 @@ std::string letters(const std::vector<AxisConstants>& axes) {
   return out;
 }
 
-std::string description(const std::vector<AxisConstants>& axes) {
-  const AxisConstants& first = axes.front();
-  std::string out = fmt::format("servo {} {} of {}, scenario {}", axes.size() > 1 ? "axes" : "axis",
-                                letters(axes), first.machine.name, first.scenario);
+std::string description(const MachineConstants& machine) {
+  const AxisConstants& first = machine.axes.front();
+  const char* const what = machine.kinematics        ? "servo axes and kinematics"
+                           : machine.axes.size() > 1 ? "servo axes"
+                                                     : "servo axis";
+  std::string out = fmt::format("{} {} of {}, scenario {}", what, letters(machine.axes),
+                                first.machine.name, first.scenario);
   if (!first.case_name.empty()) out += fmt::format(", case {}", first.case_name);
   return out;
 }
 
+std::string root_element(FmiVersion version, const MachineConstants& machine,
+                         std::string_view token) {
+  const bool two = version == FmiVersion::fmi2;
+  const AxisConstants& first = machine.axes.front();
+  return fmt::format(
+      "<fmiModelDescription fmiVersion=\"{}\" modelName=\"{}\" {}=\"{}\" description=\"{}\" "
+      "generationTool=\"servomill {}\" variableNamingConvention=\"{}\">\n",
+      two ? "2.0" : "3.0", escaped(fmt::format("{}.{}", first.scenario, letters(machine.axes))),
+      two ? "guid" : "instantiationToken", escaped(token), escaped(description(machine)),
+      escaped(first.program), machine.axes.size() > 1 ? "structured" : "flat");
+}
+
+std::string interface_element(FmiVersion version) {
+  return fmt::format(
+      "  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" "
+      "{}/>\n",
+      kModelIdentifier,
+      version == FmiVersion::fmi2
+          ? "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
+            "canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"false\""
+          : "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" "
+            "providesDirectionalDerivatives=\"false\"");
+}
+
 }  // namespace
 
-std::string model_description(FmiVersion version, const std::vector<AxisConstants>& axes,
+std::string model_description(FmiVersion version, const MachineConstants& machine,
                               std::string_view token) {
-  const bool two = version == FmiVersion::fmi2;
-  return fmt::format(
-             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-             "<fmiModelDescription fmiVersion=\"{}\" modelName=\"{}\" {}=\"{}\" description=\"{}\" "
-             "generationTool=\"servomill {}\" variableNamingConvention=\"{}\">\n",
-             two ? "2.0" : "3.0",
-             escaped(fmt::format("{}.{}", axes.front().scenario, letters(axes))),
-             two ? "guid" : "instantiationToken", escaped(token), escaped(description(axes)),
-             escaped(axes.front().program), axes.size() > 1 ? "structured" : "flat") +
-         fmt::format(
-             "  <CoSimulation modelIdentifier=\"{}\" "
-             "canHandleVariableCommunicationStepSize=\"true\" {} {}/>\n",
-             kModelIdentifier,
-             two ? "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
-                   "canSerializeFMUstate=\"true\""
-                 : "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"",
-             two ? "providesDirectionalDerivative=\"false\""
-                 : "providesDirectionalDerivatives=\"false\"") +
-         common_parts(axes) + variables_and_structure(version, axes) + "</fmiModelDescription>\n";
+  const std::vector<Listed> all = listed_variables(machine);
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + root_element(version, machine, token) +
+         interface_element(version) + units(all) + log_categories() +
+         default_experiment(machine.axes.front().machine.nc.periods) +
+         variables_and_structure(version, all) + "</fmiModelDescription>\n";
 }
 
 }  // namespace servomill::sim::fmu

@@ -1,12 +1,11 @@
-/// modelDescription.xml of an exported axis.
+/// modelDescription.xml of an FMU.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "sim/fmu/axis_constants.h"
+#include "sim/fmu/machine_constants.h"
 
 namespace servomill::sim::fmu {
 
@@ -17,7 +16,7 @@ inline constexpr std::string_view kModelIdentifier = "servomill_axis";
 
 /// The description as FMI 2.0.4 (chapters 2.2 and 4.3) or 3.0.2 (2.4 and 4.3) asks for it.
 /// @param token  of the constants, see token_of
-std::string model_description(FmiVersion version, const std::vector<AxisConstants>& axes,
+std::string model_description(FmiVersion version, const MachineConstants& machine,
                               std::string_view token);
 
 }  // namespace servomill::sim::fmu

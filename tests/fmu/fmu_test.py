@@ -82,7 +82,8 @@ class Fmu(unittest.TestCase):
 
     def export(self, axis="Y", fmi="2", name=None, more=(), scenario=SCENARIO):
         file = self.folder / f"{name or axis + fmi}.fmu"
-        servomill("fmu", scenario, "--axis", axis, "--fmi", fmi, "-o", file, "--force", "--quiet",
+        what = ("--axis", axis) if axis else ("--machine",)
+        servomill("fmu", scenario, *what, "--fmi", fmi, "-o", file, "--force", "--quiet",
                   *(() if scenario != SCENARIO else ("--case", "nominal")), *more)
         return file
 
@@ -112,6 +113,25 @@ class Fmu(unittest.TestCase):
                 folder = self.unpacked(axes, fmi)
                 self.assert_rules_hold(folder)
                 self.assertIn('name="X.position"', (folder / "modelDescription.xml").read_text())
+
+    def test_a_whole_machine_keeps_all_rules(self):
+        for fmi in "23":
+            with self.subTest(fmi=fmi):
+                folder = self.unpacked(None, fmi, name=f"whole{fmi}")
+                self.assert_rules_hold(folder)
+                text = (folder / "modelDescription.xml").read_text()
+                self.assertRegex(text, r'name="tool\.position_x" valueReference="1003" causality="output"')
+                self.assertRegex(text, r'name="C\.position"')
+
+    def test_a_machine_that_cannot_be_exported_whole_is_refused(self):
+        for words, message in (
+                (("--machine", "--axis", "X"), "--axis: error: cannot be given with --machine, which exports all axes"),
+                (("--axis", "X", "--tool", "1"), "--tool: error: needs --machine"),
+                (("--machine", "--tool", "77"), "--tool: error: the scenario has no tool 77; it has"),
+                ((), "--axis: error: is missing")):
+            with self.subTest(words=words):
+                self.assertIn(message, servomill("fmu", SCENARIO, "--case", "nominal", *words, "-o", self.folder / "none.fmu", status=2))
+        self.assertFalse((self.folder / "none.fmu").exists())
 
     def test_friction_keeps_all_rules(self):
         self.assert_rules_hold(self.unpacked("Y", name="friction", more=("--set", 'machine_override.friction_model="lugre"')))

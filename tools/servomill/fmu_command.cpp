@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/units.h"
 #include "sim/fmu/axis_variables.h"
 #include "sim/fmu/exported_axis.h"
 #include "sim/fmu/fmu_package.h"
+#include "sim/fmu/tool.h"
 #include "sim/run/build_identity.h"
 #include "sim/system/program_folder.h"
 #include "sim/system/read_file.h"
@@ -48,26 +52,61 @@ Tick reading_delay(const sim::model::Scenario& scenario) {
                    "axes of an ideal servo have no loops: there is nothing to export");
 }
 
-std::vector<sim::fmu::AxisConstants> chosen_axes(const Options& options) {
-  const sim::model::Scenario scenario = scenario_for_axes(options);
+void refuse_if(const std::string& why, const Options& options, const std::string& what) {
+  if (!why.empty()) throw InputError({options.word()}, fmt::format("{}: {}", what, why));
+}
+
+std::vector<sim::fmu::AxisConstants> axes_of(const Options& options,
+                                             const sim::model::Scenario& scenario,
+                                             const std::vector<int>& joints) {
   const Tick delay = reading_delay(scenario);
   std::vector<sim::fmu::AxisConstants> axes;
-  for (const int joint : chosen_joints(options, scenario.machine)) {
+  for (const int joint : joints) {
     sim::fmu::AxisConstants& axis =
         axes.emplace_back(sim::fmu::exported_axis(scenario, joint, delay));
     axis.program = sim::run::build_identity();
     if (options.has("case")) axis.case_name = options.get<std::string>("case");
-    const std::string why = sim::fmu::why_not_exported(axis);
-    if (!why.empty()) {
-      throw InputError({options.word()}, fmt::format("axis {}: {}", axis.axis, why));
-    }
+    refuse_if(sim::fmu::why_not_exported(axis), options, "axis " + axis.axis);
   }
   return axes;
 }
 
-std::string list_of_variables() {
-  std::string out = "\nVariables (m or rad, N or N m, s, A); of several axes Y.position, ...:\n";
-  for (const sim::fmu::Variable& one : sim::fmu::variables()) {
+// Tip of a tool of the scenario; without --tool the spindle nose.
+Eigen::Vector3d chosen_tip(const Options& options, const sim::model::Scenario& scenario) {
+  if (!options.has("tool")) return Eigen::Vector3d::Zero();
+  const int number = options.get<int>("tool");
+  const controllers::ToolEntry* tool = scenario.program.tools.find(number);
+  if (tool != nullptr) return -tool->offset.head<3>();
+  std::vector<int> numbers;
+  for (const auto& [its, entry] : scenario.program.tools.entries()) numbers.push_back(its);
+  throw InputError(
+      {"--tool"},
+      fmt::format("the scenario has no tool {}; {}", number,
+                  numbers.empty() ? std::string("it has none")
+                                  : fmt::format("it has {}", fmt::join(numbers, ", "))));
+}
+
+sim::fmu::MachineConstants chosen_parts(const Options& options) {
+  const sim::model::Scenario scenario = scenario_for_axes(options);
+  const bool whole = options.has("machine");
+  if (whole && options.has("axis")) {
+    throw InputError({"--axis"}, "cannot be given with --machine, which exports all axes");
+  }
+  if (!whole && options.has("tool")) throw InputError({"--tool"}, "needs --machine");
+  sim::fmu::MachineConstants out;
+  if (whole) {
+    out.kinematics = sim::fmu::exported_kinematics(scenario);
+    out.kinematics->p_ST = chosen_tip(options, scenario);
+    refuse_if(sim::fmu::why_not_exported(*out.kinematics, scenario.machine), options, "--machine");
+  }
+  out.axes = axes_of(options, scenario,
+                     whole ? scenario.machine.joints() : chosen_joints(options, scenario.machine));
+  return out;
+}
+
+std::string lines_of(std::span<const sim::fmu::Variable> variables) {
+  std::string out;
+  for (const sim::fmu::Variable& one : variables) {
     constexpr std::string_view kNames[] = {"", "parameter", "input", "output", "constant"};
     const std::string_view role = kNames[static_cast<std::size_t>(one.causality)];
     if (!role.empty()) {
@@ -77,8 +116,19 @@ std::string list_of_variables() {
   return out;
 }
 
+std::string list_of_variables() {
+  return "\nVariables (m or rad, N or N m, s, A); of several axes Y.position, ...:\n" +
+         lines_of(sim::fmu::variables()) + "of --machine besides:\n" +
+         lines_of(sim::fmu::tool_variables());
+}
+
 void add_fmu_options(Options& options) {
   add_axis_options(options);
+  options.add()("machine", "all axes, and where kinematics and geometric errors put the tool");
+  options.add()(
+      "tool", po::value<int>()->value_name("T"),
+      "with --machine: tool of the scenario whose tip is followed (else the spindle nose; "
+      "parameters tool.tip_x, _y, _z)");
   options.add()("fmi", po::value<std::string>()->default_value("2")->value_name("2|3"),
                 "version of the Functional Mock-up Interface");
   options.add()("output,o", po::value<std::string>()->value_name("DRIVE.fmu"), "the FMU");
@@ -90,9 +140,9 @@ void add_fmu_options(Options& options) {
 
 int fmu_command(const Arguments& arguments) {
   Options options(
-      "fmu", "SCENARIO.toml --axis Y|X,Y|all [--case NAME] [--fmi 2|3] -o DRIVE.fmu",
-      "Exports an axis, drive and NC loops, or several, as a co-simulation unit (FMU) for other "
-      "simulators.\nIt gives the bits of servomill run for the same setpoints; "
+      "fmu", "SCENARIO.toml --axis Y|X,Y|all or --machine [--case NAME] [--fmi 2|3] -o DRIVE.fmu",
+      "Exports an axis, drive and NC loops, several, or the whole machine as a co-simulation unit "
+      "(FMU)\nfor other simulators. It gives the bits of servomill run for the same setpoints; "
       "strategies stay outside: their\ncorrections enter at the inputs.\n" +
           list_of_variables(),
       "SCENARIO.toml");
@@ -101,15 +151,20 @@ int fmu_command(const Arguments& arguments) {
   const std::size_t version = choice_option(options, "fmi", kVersions);
   const std::string out = output_of(options, "output", ".fmu");
   if (out.empty()) throw InputError({"--output"}, "is missing");
-  const std::vector<sim::fmu::AxisConstants> axes = chosen_axes(options);
+  const sim::fmu::MachineConstants machine = chosen_parts(options);
   const std::string library =
       sim::system::read_file(library_file(), {}, "library of exported axes");
   sim::system::write_text_file(
-      out, sim::fmu::fmu_bytes(static_cast<sim::fmu::FmiVersion>(version), axes, library),
+      out, sim::fmu::fmu_bytes(static_cast<sim::fmu::FmiVersion>(version), machine, library),
       options.has("force"));
   if (options.has("quiet")) return kDone;
-  for (const sim::fmu::AxisConstants& axis : axes) {
+  for (const sim::fmu::AxisConstants& axis : machine.axes) {
     fmt::print("{}\n", axis_headline(axis.machine, axis.joint, axis.reading_delay));
+  }
+  if (machine.kinematics) {
+    const Eigen::Vector3d tip = machine.kinematics->p_ST / mm;
+    fmt::print("tool centre point at X{:g} Y{:g} Z{:g} mm in the spindle nose\n", tip.x(), tip.y(),
+               tip.z());
   }
   fmt::print("written to {} (FMI {}.0, co-simulation)\n", out, kVersions[version]);
   return kDone;

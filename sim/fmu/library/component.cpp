@@ -24,7 +24,7 @@ Component::Component(Log log, bool logs_events, const std::string& resources,
     : log_(std::move(log)),
       logs_events_(logs_events),
       machine_(std::make_unique<MachineInstance>(
-          axes_in(resources, token), [this](Severity severity, const std::string& message) {
+          machine_in(resources, token), [this](Severity severity, const std::string& message) {
             this->log(severity, message);
           })) {}
 

@@ -8,17 +8,18 @@
 
 namespace servomill::sim::fmu {
 
-std::vector<AxisConstants> axes_in(const std::string& resources, const std::string& token) {
+MachineConstants machine_in(const std::string& resources, const std::string& token) {
   const std::string name =
-      resources + (resources.ends_with('/') ? "" : "/") + std::string(kAxisFile);
+      resources + (resources.ends_with('/') ? "" : "/") + std::string(kConstantsFile);
   std::ifstream file(name, std::ios::binary);
   if (!file) throw InputError({name}, "cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::vector<AxisConstants> axes = read_axes(text, name);
+  MachineConstants machine = read_machine_constants(text, name);
   if (token_of(text) != token) {
     throw InputError({name}, "belongs to another model description than " + token);
   }
-  return axes;
+  if (machine.axes.empty()) throw InputError({name}, "has no axis");
+  return machine;
 }
 
 std::string path_of(const std::string& uri) {

@@ -1,18 +1,17 @@
-/// Constants of the axes as an unpacked FMU has them, and the guard of its functions.
+/// Constants as an unpacked FMU has them, and the guard of its functions.
 #pragma once
 
 #include <exception>
 #include <string>
-#include <vector>
 
-#include "sim/fmu/axis_constants.h"
+#include "sim/fmu/machine_constants.h"
 
 namespace servomill::sim::fmu {
 
 /// Reads RESOURCES/axis.txt.
 /// @param token  that the model description has
 /// @throws InputError if there is none, or it belongs to another model description
-std::vector<AxisConstants> axes_in(const std::string& resources, const std::string& token);
+MachineConstants machine_in(const std::string& resources, const std::string& token);
 
 /// Path of the URI of a local file: file:///a%20b, file:/a or file://localhost/a; a text without
 /// "file:" is a path already.

@@ -26,7 +26,7 @@ class Drive {
       : folder_(std::filesystem::path(testing::TempDir()) / "fmu_library_test") {
     std::filesystem::create_directories(folder_);
     const std::string text = text_of(axis);
-    std::ofstream(folder_ / kAxisFile) << text;
+    std::ofstream(folder_ / kConstantsFile) << text;
     if (library_ == nullptr) throw std::runtime_error(dlerror());
     Instantiate* const instantiate = function<Instantiate>("fmi2Instantiate");
     const fmi2CallbackFunctions callbacks{};

@@ -5,6 +5,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "tests/sim/fmu/exported.h"
+#include "tests/sim/fmu/recorded.h"
 
 namespace servomill::sim::fmu::machine_instance_test {
 namespace {
@@ -12,11 +13,11 @@ namespace {
 const std::uint32_t kSetpoint = reference_of("position_setpoint"),
                     kPositionOf = reference_of("position");
 
-std::vector<AxisConstants> axes_of(const std::vector<int>& joints) {
+MachineConstants axes_of(const std::vector<int>& joints) {
   const model::Scenario scenario = rich_scenario();
-  std::vector<AxisConstants> axes;
-  for (const int joint : joints) axes.push_back(exported_axis(scenario, joint, 0));
-  return axes;
+  MachineConstants out;
+  for (const int joint : joints) out.axes.push_back(exported_axis(scenario, joint, 0));
+  return out;
 }
 
 MachineInstance stepping(const std::vector<int>& joints) {
@@ -78,9 +79,87 @@ TEST(MachineInstance, GoesOnFromBytes) {
   EXPECT_FALSE(stepping({1, 0}).memory_from(bytes).has_value());
 }
 
-TEST(MachineInstance, ReadsTheConstantsOfItsAxes) {
-  const std::string text = text_of(axes_of({2, 0, 4}));
-  EXPECT_EQ(text_of(read_axes(text, "axis.txt")), text);
+constexpr const char* kErrors =
+    "[errors.e]\nEYX = { harmonic = { amplitude_um = 50.0, period_mm = 20.0 } }\n"
+    "EZY = { grid = { axes = \"YX\", at_mm = [[-400, 400], [-500, 0, 500]], "
+    "value_um = [[0, 5, 0], [10, 0, 10]] } }\nEC0Y = \"30 urad\"\nEAB = { constant_urad = 20.0 }\n";
+
+// All five axes move, the errors are those of the scenario: the tool is where the run has it.
+TEST(MachineInstance, PutsTheToolWhereARunHasIt) {
+  const model::Scenario scenario =
+      small_scenario("G21 G90 G94\nG1 X12 Y10 Z-5 B20 C30 F3000\nG1 X3 Y-8 Z4 B-5 C10\nM30\n",
+                     "machine_errors = \"e\"\n[record]\nresolution_nm = 0\nperiod_ms = 0.7\n" +
+                         std::string(kErrors) + "[[case]]\nname = \"plain\"\n");
+  const Recorded recorded = recorded_of(scenario, "plain");
+  MachineConstants constants;
+  for (int joint = 0; joint < kJoints; ++joint) {
+    constants.axes.push_back(exported_axis(scenario, joint, 0));
+  }
+  constants.kinematics = exported_kinematics(scenario);
+  MachineInstance machine(constants, [](Severity severity, const std::string& why) {
+    if (severity != Severity::event) ADD_FAILURE() << why;
+  });
+  const auto set = [&](const auto& inputs_of_joint) {
+    for (int joint = 0; joint < kJoints; ++joint) {
+      const AxisInputs in = inputs_of_joint(joint);
+      const std::uint32_t first = static_cast<std::uint32_t>(joint) * kAxisStride;
+      EXPECT_TRUE(machine.set(first + kSetpoint, in.setpoint) &&
+                  machine.set(first + reference_of("velocity_setpoint"), in.velocity) &&
+                  machine.set(first + reference_of("acceleration_setpoint"), in.acceleration));
+    }
+  };
+  const auto seconds = [&](Tick n) { return scenario.machine.nc.periods.seconds(n); };
+  set([&](int joint) { return at_rest(recorded, joint); });
+  ASSERT_TRUE(machine.set_up(0.0) && machine.enter_initialization() &&
+              machine.exit_initialization());
+  const records::Series& servo = recorded.result.servo;
+  Tick now = 0;
+  double largest = 0.0;
+  for (std::size_t row = 0; row < servo.rows(); ++row) {
+    for (const Tick end = static_cast<Tick>(row) * scenario.record_period; now < end;) {
+      set([&](int joint) { return inputs_at(recorded, now, joint); });
+      const Tick next = std::min((now / kPosition + 1) * kPosition, end);
+      ASSERT_EQ(machine.step(seconds(now), seconds(next) - seconds(now)), Step::done);
+      now = next;
+    }
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t first = kToolReference + kTipCoordinates;
+      ASSERT_EQ(value(machine, first + k) / mm,
+                servo.at(row, *servo.column("tool_position_true", "XYZ"[k])))
+          << row;
+      ASSERT_EQ(value(machine, first + 3 + k),
+                servo.at(row, *servo.column("tool_axis_true", "IJK"[k])))
+          << row;
+      largest = std::max(largest, std::abs(value(machine, first + 6 + k)));
+    }
+  }
+  EXPECT_GT(largest, 10 * um);
+}
+
+TEST(MachineInstance, FixesTheTipAfterInitialization) {
+  MachineConstants constants = axes_of({0, 1, 2, 3, 4});
+  constants.kinematics = exported_kinematics(rich_scenario());
+  std::string message;
+  MachineInstance machine(constants, [&](Severity, const std::string& why) { message = why; });
+  constexpr std::uint32_t kTipZ = kToolReference + 2, kZ = kToolReference + 5;
+  double z = 0.0;
+  EXPECT_FALSE(machine.get(kZ, z));
+  EXPECT_EQ(message, "'position' has no value before initialization");
+  EXPECT_TRUE(machine.set(kTipZ, -0.1));
+  EXPECT_FALSE(machine.set(kZ, 0.0));
+  EXPECT_EQ(message, "'tool.position_z' cannot be set");
+  ASSERT_TRUE(machine.set_up(0.0) && machine.enter_initialization() &&
+              machine.exit_initialization());
+  EXPECT_FALSE(machine.set(kTipZ, -0.2));
+  EXPECT_EQ(message, "'tool.tip_z' is fixed after initialization");
+  EXPECT_NEAR(value(machine, kZ), -0.1, 1 * um);
+  const std::string bytes = machine.bytes_of(machine.memory());
+  machine.reset();
+  EXPECT_EQ(value(machine, kTipZ), 0.0);
+  ASSERT_TRUE(machine.restore(*machine.memory_from(bytes)));
+  EXPECT_EQ(value(machine, kTipZ), -0.1);
+  EXPECT_FALSE(machine.get(kToolReference + kToolVariables, z));
+  EXPECT_EQ(message, "no variable has the value reference 1012");
 }
 
 }  // namespace
