@@ -11,10 +11,6 @@
 namespace servomill::sim::fmu {
 namespace {
 
-// Sums of steps such as 1 ms miss a tick by their rounding, after a million of them by thousandths
-// of a base period.
-constexpr double kSameTick = 0.1;  // of the base period
-
 constexpr double kMaxTicks = 1e14;  // whose tenths a double still resolves
 
 // Ticks that have passed after `seconds`.
@@ -179,7 +175,7 @@ Step AxisInstance::step(double current, double step) {
     refuse(stopped_ ? "the NC has stopped the machine" : "no step outside of the simulation");
     return Step::refused;
   }
-  const double base = axis_->machine.nc.periods.base;
+  const double base = periods().base;
   if (!(std::abs(current - time_) <= kSameTick * base)) {
     refuse(fmt::format("a step from {} s: the last communication point is {} s", current, time_));
     return Step::refused;
@@ -201,6 +197,15 @@ Step AxisInstance::step(double current, double step) {
 }
 
 double AxisInstance::time() const { return time_; }
+
+double AxisInstance::time_of(Tick tick) const { return start_time_ + periods().seconds(tick); }
+
+std::optional<Tick> AxisInstance::tick() const {
+  const double since_start = time_ - start_time_;
+  const Tick tick = ticks_after(since_start, periods().base);
+  const bool is_at = since_start - periods().seconds(tick) <= kSameTick * periods().base;
+  return is_at ? std::optional(tick) : std::nullopt;
+}
 
 AxisInstance::Memory AxisInstance::memory() const {
   Memory memory{stage_, stopped_, start_time_, time_, values_, {}};

@@ -20,6 +20,10 @@ enum class Step : std::uint8_t { done, stopped, refused };
 /// Importance of a message.
 enum class Severity : std::uint8_t { event, stop, error };
 
+/// An instant closer than this to a tick is that tick (base periods): sums of steps such as 1 ms
+/// miss a tick by their rounding, after a million of them by thousandths of a base period.
+inline constexpr double kSameTick = 0.1;
+
 /// Why a variable cannot be set to a value; empty if it can.
 std::string set_fault(const Variable& variable, Stage stage, double value);
 
@@ -48,6 +52,11 @@ class AxisInstance {
   /// s: of the last communication point, or where the machine was stopped.
   double time() const;
   Stage stage() const { return stage_; }
+  /// Base periods since the start; nullopt between two of them.
+  std::optional<Tick> tick() const;
+  /// s: of a tick since the start.
+  double time_of(Tick tick) const;
+  const model::LoopPeriods& periods() const { return axis_->machine.nc.periods; }
   bool is_stopped() const { return stopped_; }
 
   /// All that changes with time, for a step back.

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>
 
 #include "plant/vocabulary/checksum.h"
+#include "sim/fmu/clocks.h"
 
 namespace servomill::sim::fmu {
 namespace {
@@ -80,7 +82,10 @@ bool MachineInstance::enter_initialization() {
 // An axis that cannot be initialised leaves all as they were.
 bool MachineInstance::exit_initialization() {
   const Memory before = memory();
-  if (all([](AxisInstance& axis) { return axis.exit_initialization(); })) return true;
+  if (all([](AxisInstance& axis) { return axis.exit_initialization(); })) {
+    in_event_mode_ = events_used_;
+    return true;
+  }
   for (std::size_t n = 0; n < axes_.size(); ++n) {
     if (axes_[n]->memory().stage != before.axes[n].stage) axes_[n]->restore(before.axes[n]);
   }
@@ -92,7 +97,7 @@ bool MachineInstance::terminate() {
 }
 
 void MachineInstance::reset() {
-  stopped_ = false;
+  stopped_ = in_event_mode_ = false;
   p_ST_ = default_p_ST_;
   for (const auto& axis : axes_) axis->reset();
 }
@@ -141,7 +146,60 @@ bool MachineInstance::set(std::uint32_t reference, double value) {
   return axis != nullptr && axis->set(reference % kAxisStride, value);
 }
 
+void MachineInstance::use_events(bool early_return) {
+  events_used_ = true;
+  early_return_ = early_return;
+}
+
+bool MachineInstance::enter_event_mode() {
+  const bool may = events_used_ && !in_event_mode_ && axes_.front()->stage() == Stage::stepping;
+  if (!may) return refuse("event mode follows a step, of an instance that uses it");
+  in_event_mode_ = true;
+  return true;
+}
+
+bool MachineInstance::enter_step_mode() {
+  if (!in_event_mode_) return refuse("step mode follows event mode");
+  in_event_mode_ = false;
+  return true;
+}
+
+bool MachineInstance::ticks(std::uint32_t reference, bool& value) {
+  if (!in_event_mode_) return refuse("clocks are read in event mode");
+  if (reference < kClockReference || reference - kClockReference >= kClocks.size()) {
+    return refuse(fmt::format("no clock has the value reference {}", reference));
+  }
+  const Tick period = axes_.front()->periods().*kClocks[reference - kClockReference].period;
+  const auto tick = axes_.front()->tick();
+  value = tick && *tick % period == 0;
+  return true;
+}
+
+bool MachineInstance::event_is_due() const {
+  const auto tick = axes_.front()->tick();
+  return events_used_ && tick && any_ticks(axes_.front()->periods(), *tick);
+}
+
+double MachineInstance::next_event_time() const {
+  const AxisInstance& axis = *axes_.front();
+  const double base = axis.periods().base;
+  const Tick now =
+      axis.tick().value_or(static_cast<Tick>(std::floor((axis.time() - axis.time_of(0)) / base)));
+  return axis.time_of(next_tick(axis.periods(), now));
+}
+
 Step MachineInstance::step(double current, double step) {
+  if (in_event_mode_) {
+    refuse("no step in event mode");
+    return Step::refused;
+  }
+  if (!early_return_ || axes_.front()->stage() != Stage::stepping) return step_all(current, step);
+  const double to_event = next_event_time() - current;
+  const double rounding = kSameTick * axes_.front()->periods().base;
+  return step_all(current, step > to_event + rounding ? to_event : step);
+}
+
+Step MachineInstance::step_all(double current, double step) {
   if (stopped_) {
     refuse("the NC has stopped the machine");
     return Step::refused;
@@ -172,7 +230,7 @@ Step MachineInstance::stop_at(double current, double end, const Memory& before) 
 }
 
 MachineInstance::Memory MachineInstance::memory() const {
-  Memory memory{stopped_, {}, p_ST_};
+  Memory memory{stopped_, in_event_mode_, {}, p_ST_};
   for (const auto& axis : axes_) memory.axes.push_back(axis->memory());
   return memory;
 }
@@ -182,14 +240,15 @@ bool MachineInstance::restore(const Memory& memory) {
     if (!axes_[n]->restore(memory.axes.at(n))) return false;
   }
   stopped_ = memory.stopped;
+  in_event_mode_ = memory.in_event_mode;
   p_ST_ = memory.p_ST;
   return true;
 }
 
-// "1" or "0" for stopped; then of each axis the number of its bytes, and these; last the tip of the
-// tool with its checksum.
+// "1" or "0" for stopped, and for event mode; then of each axis the number of its bytes, and these;
+// last the tip of the tool with its checksum.
 std::string MachineInstance::bytes_of(const Memory& memory) const {
-  std::string bytes = memory.stopped ? "1" : "0";
+  std::string bytes = {memory.stopped ? '1' : '0', memory.in_event_mode ? '1' : '0'};
   for (std::size_t n = 0; n < axes_.size(); ++n) {
     const std::string own = axes_[n]->bytes_of(memory.axes.at(n));
     append(bytes, std::uint64_t{own.size()});
@@ -204,9 +263,10 @@ std::optional<MachineInstance::Memory> MachineInstance::memory_from(std::string_
     refuse("the serialized state is damaged, or of another axis or version");
     return std::nullopt;
   };
-  if (bytes.empty() || (bytes[0] != '0' && bytes[0] != '1')) return damaged();
-  Memory memory{bytes[0] == '1', {}, {}};
-  bytes.remove_prefix(1);
+  const auto is_flag = [](char c) { return c == '0' || c == '1'; };
+  if (bytes.size() < 2 || !is_flag(bytes[0]) || !is_flag(bytes[1])) return damaged();
+  Memory memory{bytes[0] == '1', bytes[1] == '1', {}, {}};
+  bytes.remove_prefix(2);
   for (const auto& axis : axes_) {
     std::uint64_t size = 0;
     if (!take(bytes, size) || bytes.size() < size) return damaged();

@@ -32,13 +32,26 @@ class MachineInstance {
   bool get(std::uint32_t reference, double& value);
   bool set(std::uint32_t reference, double value);
 
-  /// As AxisInstance::step.
+  /// As AxisInstance::step. In an instance with events that may return early, the step ends at the
+  /// next tick of a clock.
   Step step(double current, double step);
   double time() const { return axes_.front()->time(); }
   bool is_stopped() const { return stopped_; }
 
+  /// FMI 3: clocks are read in event mode, which follows initialization and then whatever step ends
+  /// where a clock ticks.
+  /// @param early_return  steps end where the next clock ticks
+  void use_events(bool early_return);
+  bool enter_event_mode();
+  bool enter_step_mode();
+  bool is_in_event_mode() const { return in_event_mode_; }
+  /// Whether a clock ticks now; only in event mode.
+  bool ticks(std::uint32_t reference, bool& value);
+  bool event_is_due() const;
+  double next_event_time() const;
+
   struct Memory {
-    bool stopped = false;
+    bool stopped = false, in_event_mode = false;
     std::vector<AxisInstance::Memory> axes;
     Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();
   };
@@ -56,6 +69,7 @@ class MachineInstance {
   bool get_of_tool(std::uint32_t n, double& value);
   bool set_of_tool(std::uint32_t n, double value);
   bool refuse(const std::string& why) const;
+  Step step_all(double current, double step);
   Step stop_at(double current, double end, const Memory& before);
 
   Log log_;
@@ -64,6 +78,8 @@ class MachineInstance {
   std::optional<Tool> tool_;  // of a whole machine
   Eigen::Vector3d default_p_ST_ = Eigen::Vector3d::Zero(), p_ST_ = default_p_ST_;
   bool stopped_ = false;
+  bool events_used_ = false, early_return_ = false;
+  bool in_event_mode_ = false;
 };
 
 }  // namespace servomill::sim::fmu

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/fmu/axis_variables.h"
+#include "sim/fmu/clocks.h"
 #include "sim/fmu/tool.h"
 
 namespace servomill::sim::fmu {
@@ -165,32 +166,53 @@ std::string variable_element(FmiVersion version, const Listed& one) {
              : fmt::format("    <Float64 {}{}/>\n", common, values);
 }
 
+std::string clock_elements() {
+  std::string out;
+  for (const Clock& clock : kClocks) {
+    out += fmt::format(
+        "    <Clock name=\"{}\" valueReference=\"{}\" causality=\"output\" "
+        "variability=\"discrete\" "
+        "intervalVariability=\"triggered\" description=\"{}\"/>\n",
+        clock.name, clock.reference, escaped(clock.description));
+  }
+  return out;
+}
+
 // Outputs depend on no input of the same communication point: it acts from there on. When
 // initialised they depend on all that was set.
-std::string structure(FmiVersion version, const std::vector<Listed>& all) {
+std::string structure_of_fmi2(const std::vector<Listed>& all) {
   std::string outputs, initial;
   for (std::size_t n = 0; n < all.size(); ++n) {
     if (all[n].variable.causality != Causality::output) continue;
-    if (version == FmiVersion::fmi2) {
-      outputs += fmt::format("      <Unknown index=\"{}\" dependencies=\"\"/>\n", n + 1);
-      initial += fmt::format("      <Unknown index=\"{}\"/>\n", n + 1);
-    } else {
-      outputs +=
-          fmt::format("    <Output valueReference=\"{}\" dependencies=\"\"/>\n", all[n].reference);
-      initial += fmt::format("    <InitialUnknown valueReference=\"{}\"/>\n", all[n].reference);
-    }
+    outputs += fmt::format("      <Unknown index=\"{}\" dependencies=\"\"/>\n", n + 1);
+    initial += fmt::format("      <Unknown index=\"{}\"/>\n", n + 1);
   }
-  if (version == FmiVersion::fmi2) {
-    outputs = "    <Outputs>\n" + outputs + "    </Outputs>\n";
-    initial = "    <InitialUnknowns>\n" + initial + "    </InitialUnknowns>\n";
+  return "    <Outputs>\n" + outputs + "    </Outputs>\n    <InitialUnknowns>\n" + initial +
+         "    </InitialUnknowns>\n";
+}
+
+// Clocks have no initial value.
+std::string structure_of_fmi3(const std::vector<Listed>& all) {
+  std::string outputs, initial;
+  const auto add = [&](std::uint32_t reference) {
+    outputs += fmt::format("    <Output valueReference=\"{}\" dependencies=\"\"/>\n", reference);
+  };
+  for (const Listed& one : all) {
+    if (one.variable.causality != Causality::output) continue;
+    add(one.reference);
+    initial += fmt::format("    <InitialUnknown valueReference=\"{}\"/>\n", one.reference);
   }
-  return "  <ModelStructure>\n" + outputs + initial + "  </ModelStructure>\n";
+  for (const Clock& clock : kClocks) add(clock.reference);
+  return outputs + initial;
 }
 
 std::string variables_and_structure(FmiVersion version, const std::vector<Listed>& all) {
+  const bool two = version == FmiVersion::fmi2;
   std::string out = "  <ModelVariables>\n";
   for (const Listed& one : all) out += variable_element(version, one);
-  return out + "  </ModelVariables>\n" + structure(version, all);
+  if (!two) out += clock_elements();
+  return out + "  </ModelVariables>\n  <ModelStructure>\n" +
+         (two ? structure_of_fmi2(all) : structure_of_fmi3(all)) + "  </ModelStructure>\n";
 }
 
 // Letters of the axes: "XYZ".
@@ -232,7 +254,8 @@ std::string interface_element(FmiVersion version) {
           ? "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
             "canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"false\""
           : "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" "
-            "providesDirectionalDerivatives=\"false\"");
+            "providesDirectionalDerivatives=\"false\" hasEventMode=\"true\" "
+            "mightReturnEarlyFromDoStep=\"true\"");
 }
 
 }  // namespace

@@ -31,6 +31,10 @@ struct Functions {
   Fmi3Status (*write_state)(Instance, void*, uint8_t*, size_t);
   Fmi3Status (*read_state)(Instance, const uint8_t*, size_t, void**);
   Fmi3Status (*do_step)(Instance, double, double, bool, bool*, bool*, bool*, double*);
+  Fmi3Status (*enter_event_mode)(Instance);
+  Fmi3Status (*enter_step_mode)(Instance);
+  Fmi3Status (*get_clock)(Instance, const uint32_t*, size_t, bool*);
+  Fmi3Status (*update)(Instance, bool*, bool*, bool*, bool*, bool*, double*);
 };
 
 #define PLACE(member) (offsetof(struct Functions, member) + 1)
@@ -54,22 +58,26 @@ static const struct {
     {"fmi3SerializeFMUState", PLACE(write_state)},
     {"fmi3DeserializeFMUState", PLACE(read_state)},
     {"fmi3DoStep", PLACE(do_step)},
+    {"fmi3EnterEventMode", PLACE(enter_event_mode)},
+    {"fmi3EnterStepMode", PLACE(enter_step_mode)},
+    {"fmi3GetClock", PLACE(get_clock)},
+    {"fmi3UpdateDiscreteStates", PLACE(update)},
 };
 
 /* Functions that are exported and not called here. */
 static const char* const kOthers =
-    "SetDebugLogging InstantiateModelExchange InstantiateScheduledExecution EnterEventMode "
+    "SetDebugLogging InstantiateModelExchange InstantiateScheduledExecution "
     "GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetInt32 GetUInt32 GetInt64 GetUInt64 "
-    "GetBoolean GetString GetBinary GetClock SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 "
+    "GetBoolean GetString GetBinary SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 "
     "SetInt32 SetUInt32 SetInt64 SetUInt64 SetBoolean SetString SetBinary SetClock "
     "GetNumberOfVariableDependencies GetVariableDependencies GetDirectionalDerivative "
     "GetAdjointDerivative EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal "
     "GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction "
-    "SetShiftDecimal SetShiftFraction EvaluateDiscreteStates UpdateDiscreteStates "
+    "SetShiftDecimal SetShiftFraction EvaluateDiscreteStates "
     "EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates "
     "GetContinuousStateDerivatives GetEventIndicators GetContinuousStates "
     "GetNominalsOfContinuousStates GetNumberOfEventIndicators GetNumberOfContinuousStates "
-    "EnterStepMode GetOutputDerivatives ActivateModelPartition";
+    "GetOutputDerivatives ActivateModelPartition";
 
 static const struct Functions* functions_of(const struct Unit* unit) { return unit->functions; }
 
@@ -84,12 +92,15 @@ static void log_message(void* environment, Fmi3Status status, const char* catego
   if (getenv("VERBOSE") != NULL) printf("%s: %s\n", category, message);
 }
 
-static void* instantiate(const struct Unit* u, const char* token) {
+static void* instantiate_with(const struct Unit* u, const char* token, bool events) {
   char path[kPathSize], resources[kPathSize + 16];
   if (realpath(u->model->folder, path) == NULL) return NULL;
   snprintf(resources, sizeof resources, "%s/resources/", path);
-  return functions_of(u)->instantiate("axis", token, resources, false, true, false, false, NULL, 0,
+  return functions_of(u)->instantiate("axis", token, resources, false, true, events, events, NULL, 0,
                                       NULL, log_message, NULL);
+}
+static void* instantiate(const struct Unit* u, const char* token) {
+  return instantiate_with(u, token, false);
 }
 static void free_instance(const struct Unit* u, void* c) { functions_of(u)->free_instance(c); }
 static enum Status enter(const struct Unit* u, void* c, double start_time) {
@@ -170,4 +181,88 @@ int load_fmi3(struct Unit* unit) {
                            step,        get_state,     set_state,  free_state,
                            state_size,  write_state,   read_state, names_its_version};
   return missing;
+}
+
+enum { kClocks = 3 };
+static const double kRounding = 1e-9; /* s, of sums of steps */
+static const char* const kClockNames[kClocks] = {"position_clock", "velocity_clock",
+                                                 "current_clock"};
+
+/* An instance in event mode, driven by the ticks of its clocks. */
+struct Clocked {
+  const struct Unit* unit;
+  Instance instance;
+  uint32_t clocks[kClocks];
+  unsigned setpoint, position;
+  long ticks[kClocks];
+  int fine;
+};
+
+/* Of a tick of the position loop. */
+static double setpoint_at(long tick) { return 1e-10 * (double)tick * (double)tick; }
+
+/* Event mode: counts the ticks, and sets the setpoint where the position loop samples it. */
+static void handle_events(struct Clocked* it, double t) {
+  const struct Functions* f = functions_of(it->unit);
+  bool ticks[kClocks], more, ends, nominals, states, defined;
+  double next;
+  it->fine &= f->get_clock(it->instance, it->clocks, kClocks, ticks) == 0;
+  for (int n = 0; n < kClocks; ++n) it->ticks[n] += ticks[n];
+  if (ticks[0]) it->fine &= set(it->unit, it->instance, it->setpoint, setpoint_at(it->ticks[0] - 1)) == kOk;
+  it->fine &=
+      f->update(it->instance, &more, &ends, &nominals, &states, &defined, &next) == 0;
+  it->fine &= !more && !ends && defined && next > t;
+  it->fine &= f->enter_step_mode(it->instance) == 0;
+}
+
+/* Steps to the end, as far each time as the FMU lets; the position there. */
+static double run_clocked(struct Clocked* it, double end) {
+  const struct Functions* f = functions_of(it->unit);
+  double t = 0.0, position = 0.0;
+  bool event = false, ends = false, early = false;
+  handle_events(it, t);
+  while (it->fine && t < end - kRounding) {
+    it->fine &= f->do_step(it->instance, t, end - t, true, &event, &ends, &early, &t) == 0;
+    it->fine &= !ends && event && early == (t < end - kRounding);
+    it->fine &= f->enter_event_mode(it->instance) == 0;
+    handle_events(it, t);
+  }
+  it->fine &= f->enter_step_mode(it->instance) != 0; /* it is in step mode */
+  it->fine &= f->get_clock(it->instance, it->clocks, 1, &event) != 0;
+  it->fine &= get(it->unit, it->instance, it->position, &position) == kOk;
+  return position;
+}
+
+/* The same motion in steps of the position period, without events. */
+static double run_stepwise(const struct Unit* u, const char* token, unsigned setpoint,
+                           unsigned position, double end, long steps) {
+  void* plain = instantiate(u, token);
+  double value = 0.0;
+  int fine = enter(u, plain, 0.0) == kOk && leave(u, plain) == kOk;
+  for (long n = 0; fine && n < steps; ++n) {
+    const double from = end * (double)n / (double)steps;
+    fine = set(u, plain, setpoint, setpoint_at(n)) == kOk &&
+           step(u, plain, from, end * (double)(n + 1) / (double)steps - from) == kOk;
+  }
+  fine = fine && get(u, plain, position, &value) == kOk;
+  free_instance(u, plain);
+  return fine ? value : -1.0;
+}
+
+int check_clocks(const struct Unit* u, const char* token, double end) {
+  struct Clocked it = {.unit = u,
+                       .instance = instantiate_with(u, token, true),
+                       .setpoint = reference_of(u, "position_setpoint"),
+                       .position = reference_of(u, "position"),
+                       .fine = 1};
+  for (int n = 0; n < kClocks; ++n) it.clocks[n] = reference_of(u, kClockNames[n]);
+  it.fine = it.instance != NULL && enter(u, it.instance, 0.0) == kOk && leave(u, it.instance) == kOk;
+  const double position = it.fine ? run_clocked(&it, end) : 0.0;
+  for (int n = 0; n < kClocks; ++n) printf("%s %ld\n", kClockNames[n], it.ticks[n]);
+  const double expected =
+      run_stepwise(u, token, it.setpoint, it.position, end, it.ticks[0] - 1);
+  const int same = it.fine && position == expected && position > 0.0;
+  if (same) puts("the same bits");
+  if (it.instance != NULL) free_instance(u, it.instance);
+  return !same;
 }

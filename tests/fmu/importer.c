@@ -4,6 +4,7 @@
      importer describe FOLDER       rules of the model description only
      importer rules                 names of all rules
      importer time FOLDER STEPS     communication steps of 1 ms: factor to real time
+     importer clocks FOLDER END     FMI 3: event mode until END (s), ticks of the clocks
 
    FOLDER is an unpacked FMU. Each broken rule is a line "broken: NAME (clause): rule"; exit
    status 1. */
@@ -66,6 +67,18 @@ static int check_behaviour(const struct Model* model) {
   return broken;
 }
 
+static const char* token_of(const struct Model* model) {
+  return xml_attribute(model->root, model->fmi == 2 ? "guid" : "instantiationToken");
+}
+
+static int clocks_until(const struct Model* model, double end) {
+  struct Unit unit;
+  const int broken =
+      load_unit(model, &unit) > 0 || check_clocks(&unit, token_of(model), end);
+  close_unit(&unit);
+  return broken;
+}
+
 static double seconds_now(void) {
   struct timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -75,8 +88,7 @@ static double seconds_now(void) {
 static int time_steps(const struct Model* model, long steps) {
   struct Unit u;
   if (load_unit(model, &u) > 0) return 1;
-  const char* token = xml_attribute(model->root, model->fmi == 2 ? "guid" : "instantiationToken");
-  void* axis = u.api.instantiate(&u, token);
+  void* axis = u.api.instantiate(&u, token_of(model));
   const unsigned setpoint = reference_of(&u, "position_setpoint"),
                  position = reference_of(&u, "position");
   const double begin = seconds_now(), ms = 1e-3;
@@ -110,6 +122,8 @@ int main(int count, char** words) {
   if (broken == 0 && equal(command, "check")) broken = check_behaviour(&model);
   if (broken == 0 && equal(command, "time"))
     broken = time_steps(&model, count > 3 ? atol(words[3]) : 1000);
+  if (broken == 0 && equal(command, "clocks") && model.fmi == 3)
+    broken = clocks_until(&model, count > 3 ? atof(words[3]) : 0.1);
   xml_free(model.root);
   return broken != 0;
 }

@@ -260,6 +260,7 @@ static int lists_exactly(const struct Model* m, const char* list2, const char* e
 static int is_output(const struct Variable* v) { return equal(v->causality, "output"); }
 static int is_initial_unknown(const struct Variable* v) {
   if (equal(v->causality, "calculatedParameter")) return 1;
+  if (equal(v->type, "Clock")) return 0;
   return is_output(v) && (is_initially(v, "calculated") || is_initially(v, "approx"));
 }
 
@@ -299,6 +300,19 @@ static int has_known_dependencies(const struct Model* m) {
   return 1;
 }
 
+/* Here all clocks are outputs, which are triggered, and are read in event mode. */
+static int has_triggered_clocks(const struct Model* m) {
+  const struct Element* all = xml_child(m->root, "ModelVariables");
+  if (m->interface == NULL) return 1; /* another rule */
+  for (const struct Element* one = all ? all->first_child : NULL; one; one = one->next) {
+    if (!equal(one->name, "Clock")) continue;
+    if (!equal(xml_attribute(one, "intervalVariability"), "triggered")) return 0;
+    if (!equal(xml_attribute(one, "causality"), "output")) return 0;
+    if (!equal(xml_attribute(m->interface, "hasEventMode"), "true")) return 0;
+  }
+  return 1;
+}
+
 const struct Rule kDescriptionRules[] = {
     {"version", "2.2.1", "2.4.1", "the root is fmiModelDescription of this version", has_version},
     {"name_and_token", "2.2.1", "2.4.1", "model name and guid (token) are there",
@@ -331,5 +345,7 @@ const struct Rule kDescriptionRules[] = {
     {"initial_order", "2.2.8", "2.4.8", "initial unknowns are sorted by index",
      sorts_initial_unknowns},
     {"dependencies", "2.2.8", "2.4.8", "dependencies name variables", has_known_dependencies},
+    {"clocks", "-", "2.2.8", "output clocks are triggered, and there is an event mode",
+     has_triggered_clocks},
     {NULL, NULL, NULL, NULL, NULL},
 };

@@ -48,6 +48,10 @@ void close_unit(struct Unit* unit);
 int load_fmi2(struct Unit* unit);
 int load_fmi3(struct Unit* unit);
 
+/* FMI 3 only: prints how often each clock ticks until `end` (s), and "the same bits" if the axis
+   moves in event mode as it does without; 0 then. */
+int check_clocks(const struct Unit* unit, const char* token, double end);
+
 /* Last message of a logger: its category; "" before the first. */
 extern char logged_category[64];
 extern int logged_messages;

@@ -53,6 +53,13 @@ bool Component::get(const unsigned references[], std::size_t count, double value
   return true;
 }
 
+bool Component::ticks(const unsigned references[], std::size_t count, bool values[]) {
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!machine_->ticks(references[n], values[n])) return false;
+  }
+  return true;
+}
+
 bool Component::set(const unsigned references[], std::size_t count, const double values[]) {
   for (std::size_t n = 0; n < count; ++n) {
     if (!machine_->set(references[n], values[n])) return false;

@@ -25,7 +25,7 @@ SERVOMILL_FMI fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, std
 
 SERVOMILL_FMI fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean /*visible*/,
-    fmi3Boolean logging, fmi3Boolean event_mode, fmi3Boolean /*early_return*/,
+    fmi3Boolean logging, fmi3Boolean event_mode, fmi3Boolean early_return,
     const fmi3ValueReference /*intermediate*/[], std::size_t intermediate_count,
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger, void (*)()) {
   Component::Log log;
@@ -38,9 +38,10 @@ SERVOMILL_FMI fmi3Instance fmi3InstantiateCoSimulation(
         log = log_of(logger, environment);
         if (name == nullptr || *name == '\0') return fail("an instance needs a name");
         if (token == nullptr || resources == nullptr) return fail("token and resources are needed");
-        if (event_mode) return fail("event mode is not supported");
         if (intermediate_count > 0) return fail("intermediate variables are not supported");
-        return std::make_unique<Component>(log, logging, resources, token).release();
+        auto component = std::make_unique<Component>(log, logging, resources, token);
+        if (event_mode) component->machine().use_events(early_return);
+        return component.release();
       },
       fail);
 }
@@ -122,16 +123,55 @@ SERVOMILL_FMI fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte 
   });
 }
 
+SERVOMILL_FMI fmi3Status fmi3EnterEventMode(fmi3Instance c) {
+  return status_of(c, [](Component& it) { return it.machine().enter_event_mode(); });
+}
+SERVOMILL_FMI fmi3Status fmi3EnterStepMode(fmi3Instance c) {
+  return status_of(c, [](Component& it) { return it.machine().enter_step_mode(); });
+}
+SERVOMILL_FMI fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference references[],
+                                      std::size_t count, fmi3Boolean values[]) {
+  return status_of(c, [&](Component& it) { return it.ticks(references, count, values); });
+}
+SERVOMILL_FMI fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference[], std::size_t count,
+                                      const fmi3Boolean[]) {
+  return count == 0 ? fmi3OK : unsupported(c, "the activation of an output clock");
+}
+
+// One update is enough: nothing but clocks changes in event mode.
+SERVOMILL_FMI fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* needs_update,
+                                                  fmi3Boolean* terminate,
+                                                  fmi3Boolean* nominals_changed,
+                                                  fmi3Boolean* states_changed,
+                                                  fmi3Boolean* next_event_defined,
+                                                  fmi3Float64* next_event) {
+  return status_of(c, [&](Component& it) {
+    if (!it.machine().is_in_event_mode()) return it.refuse("only event mode updates states");
+    *needs_update = *nominals_changed = *states_changed = false;
+    *terminate = it.machine().is_stopped();
+    *next_event_defined = true;
+    *next_event = it.machine().next_event_time();
+    return true;
+  });
+}
+SERVOMILL_FMI fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
+  return status_of(c, [](Component& it) {
+    return it.machine().is_in_event_mode() || it.refuse("only event mode evaluates states");
+  });
+}
+
 // A machine that the NC stops: the FMU asks to end the simulation at the time that it reached.
 SERVOMILL_FMI fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 step,
                                     fmi3Boolean /*no_state_before*/, fmi3Boolean* event_needed,
                                     fmi3Boolean* terminate, fmi3Boolean* early_return,
                                     fmi3Float64* last_time) {
   return status_of(c, [&](Component& it) {
-    const Step done = it.machine().step(current, step);
-    *event_needed = *early_return = false;
+    MachineInstance& machine = it.machine();
+    const Step done = machine.step(current, step);
     *terminate = done == Step::stopped;
-    *last_time = it.machine().time();
+    *event_needed = done == Step::done && machine.event_is_due();
+    *last_time = machine.time();
+    *early_return = done == Step::done && *last_time < current + step;
     return done != Step::refused;
   });
 }

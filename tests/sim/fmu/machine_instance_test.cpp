@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/fmu/clocks.h"
 #include "tests/sim/fmu/exported.h"
 #include "tests/sim/fmu/recorded.h"
 
@@ -77,6 +78,39 @@ TEST(MachineInstance, GoesOnFromBytes) {
   }
   EXPECT_FALSE(other.memory_from(bytes + "x").has_value());
   EXPECT_FALSE(stepping({1, 0}).memory_from(bytes).has_value());
+}
+
+TEST(MachineInstance, ReadsClocksInEventMode) {
+  std::string message;
+  MachineInstance machine(axes_of({1}), [&](Severity, const std::string& why) { message = why; });
+  machine.use_events(true);
+  bool ticks = false;
+  EXPECT_FALSE(machine.ticks(kClockReference, ticks));
+  EXPECT_EQ(message, "clocks are read in event mode");
+  EXPECT_FALSE(machine.enter_event_mode());
+  EXPECT_EQ(message, "event mode follows a step, of an instance that uses it");
+  ASSERT_TRUE(machine.set_up(3.0) && machine.enter_initialization() &&
+              machine.exit_initialization());
+  EXPECT_TRUE(machine.ticks(kClockReference, ticks) && ticks);
+  EXPECT_FALSE(machine.ticks(kClockReference + 3, ticks));
+  EXPECT_EQ(message, "no clock has the value reference 2003");
+  EXPECT_EQ(machine.step(3.0, 1 * ms), Step::refused);
+  EXPECT_EQ(message, "no step in event mode");
+  const std::string bytes = machine.bytes_of(machine.memory());
+  EXPECT_TRUE(machine.enter_step_mode());
+  EXPECT_EQ(machine.step(3.0, 1 * ms), Step::done);
+  EXPECT_NEAR(machine.time(), 3.0 + 0.1 * ms, 1e-12);  // the current loop
+  EXPECT_TRUE(machine.event_is_due() && machine.enter_event_mode());
+  EXPECT_TRUE(machine.ticks(kClockReference, ticks) && !ticks);
+  EXPECT_TRUE(machine.ticks(kClockReference + 2, ticks) && ticks);
+  EXPECT_NEAR(machine.next_event_time(), 3.0 + 0.2 * ms, 1e-12);
+  EXPECT_TRUE(machine.enter_step_mode());
+  const double from = machine.time();
+  EXPECT_EQ(machine.step(from, 0.03 * ms), Step::done);  // shorter than to the next tick
+  EXPECT_NEAR(machine.time(), from + 0.03 * ms, 1e-12);
+  EXPECT_FALSE(machine.event_is_due());
+  ASSERT_TRUE(machine.restore(*machine.memory_from(bytes)));
+  EXPECT_TRUE(machine.is_in_event_mode());
 }
 
 constexpr const char* kErrors =
