@@ -3,8 +3,8 @@
  *
  *     node tests/page/measure.mjs FILE.h5 [--served]     with the page in build/page, built by tools/page/build
  *
- * Prints the load of the machine, the time from choosing the file to the first complete plot and to all of them, the
- * memory of all processes of the browser, and frames a second while zooming, moving the cursor and turning the path.
+ * Prints the load of the machine, the time until the page can read files, that from choosing the file to the first
+ * complete plot and to all of them, the memory of all processes of the browser, and frames a second while zooming, moving the cursor and turning the path.
  */
 import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
@@ -115,10 +115,16 @@ if (place) {
 }
 const root = browser.process().pid;
 let spent = processorTime(root);
-begin = performance.now();
-if (!place) await (await page.$("#files")).uploadFile(path);
 const since = () => ((performance.now() - begin) / 1000).toFixed(2);
 const taken = () => `s, processors ${(processorTime(root) - spent).toFixed(2)} s`;
+if (!place) {
+  begin = performance.now();
+  await page.waitForFunction(() => globalThis.servomill?.client.isReady, POLLING);
+  say("page", since(), taken());
+  spent = processorTime(root);
+}
+begin = performance.now();
+if (!place) await (await page.$("#files")).uploadFile(path);
 /** Prints frames a second and the time of processors that each of them takes. */
 async function sayFrames(name, move, counter) {
   const before = counter ? await counter() : 0;

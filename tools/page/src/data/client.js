@@ -9,6 +9,7 @@ export class Client {
     const url = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
     this.worker = new Worker(url);
     this.waiting = new Map();
+    this.isReady = false; // the library of the worker is compiled
     this.last = 0;
     this.onProgress = onProgress;
     this.worker.onmessage = ({ data }) => this.receive(data);
@@ -16,7 +17,10 @@ export class Client {
   }
 
   receive({ id, result, fault, progress, ready }) {
-    if (ready) return;
+    if (ready) {
+      this.isReady = true;
+      return;
+    }
     if (progress) {
       this.onProgress(progress);
       return;

@@ -8,6 +8,9 @@ const INTERNAL = new Set(["DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME"]);
 const SIGNALS = /^\/cases\/[^/]+\/servo$/;
 const LONG_TEXT = 4096; // characters of an attribute that are part of the tree; longer ones are read on demand
 
+/** Fulfilled once the HDF5 library is compiled. */
+export const libraryReady = h5wasm.ready;
+
 let mounted = 0;
 
 /**

@@ -2,7 +2,7 @@
 import { rangeOf } from "../core/pyramid.js";
 import { Columns } from "./columns.js";
 import { curve, rowAt, valuesAt } from "./curves.js";
-import { ResultFile } from "./hdf5.js";
+import { libraryReady, ResultFile } from "./hdf5.js";
 import { circle, path, sections } from "./sections.js";
 
 /** @type {Map<number, ResultFile>} */
@@ -74,4 +74,4 @@ onmessage = async ({ data: { id, method, args } }) => {
     postMessage({ id, fault: textOf(fault, typeof args[0] === "number" ? args[0] : args[0]?.file) });
   }
 };
-postMessage({ ready: true });
+libraryReady.then(() => postMessage({ ready: true }));
