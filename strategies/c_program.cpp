@@ -24,6 +24,7 @@ std::int32_t kind_of(MoveKind kind) {
     case MoveKind::rapid:
       return SERVOMILL_RAPID;
     case MoveKind::arc:
+    case MoveKind::spline:
       return SERVOMILL_ARC;
     default:
       return SERVOMILL_LINE;
@@ -169,11 +170,13 @@ class Replacing {
     }
   }
 
-  // A motion without blocks: the same end. An arc must begin where it did, too.
+  // A motion without blocks: the same end. A curve must begin where it did, too.
   void leave(const Move& move, const AxisWords& from) {
-    if (move.kind == MoveKind::arc && at_ != from) {
-      wrong_ = fmt::format(
-          "the arc of line {} has no blocks, and the blocks before it end elsewhere", move.line);
+    const bool is_curve = move.kind == MoveKind::arc || move.kind == MoveKind::spline;
+    if (is_curve && at_ != from) {
+      wrong_ =
+          fmt::format("the {} of line {} has no blocks, and the blocks before it end elsewhere",
+                      move.kind == MoveKind::arc ? "arc" : "spline", move.line);
     }
     at_ = move.end_machine;
     out_.push_back(move);
@@ -220,7 +223,8 @@ class Replacing {
     // rotary axes alone keep their angular feed
     if (stands && turns) end.head<3>() = at_.head<3>();
     Move out = move;
-    if (out.kind == MoveKind::arc) out.kind = MoveKind::feed;
+    if (out.kind != MoveKind::rapid) out.kind = MoveKind::feed;
+    out.spline.reset();
     // work offsets do not rotate here: what displaces the machine displaces the work coordinates
     out.end += end - out.end_machine;
     out.end_machine = end;

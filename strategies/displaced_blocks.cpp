@@ -169,7 +169,8 @@ class Rewriter {
 
   void emit(const Place& target) {
     Move block = *move_;
-    if (block.kind == MoveKind::arc) block.kind = MoveKind::feed;
+    if (block.kind != MoveKind::rapid) block.kind = MoveKind::feed;
+    block.spline.reset();
     // work offsets do not rotate here: what displaces the machine displaces the work coordinates
     block.end += target.words - block.end_machine;
     block.end_machine = target.words;

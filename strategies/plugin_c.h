@@ -74,7 +74,7 @@ typedef struct servomill_setup {
 enum { SERVOMILL_RAPID = 0, SERVOMILL_LINE = 1, SERVOMILL_ARC = 2 };
 typedef struct servomill_move {
   size_t size;
-  int32_t kind; /* one of these */
+  int32_t kind; /* one of these; SERVOMILL_ARC is any curve: its way is that of position() */
   int32_t line; /* of the program */
   double end[SERVOMILL_JOINTS];
   double s_begin, s_end; /* m, arc length on the path of the original program */

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "controllers/gcode/modal_state.h"
+#include "plant/vocabulary/spline_curve.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -106,6 +107,8 @@ std::string_view kind_name(const Move& move) {
       return move.number == 0 ? "feed" : "probe";
     case MoveKind::arc:
       return "arc";
+    case MoveKind::spline:
+      return "nurbs";
     case MoveKind::dwell:
       return "dwell";
     case MoveKind::tool:
@@ -125,7 +128,8 @@ std::string_view kind_name(const Move& move) {
 }
 
 void add_feed(const Move& move, std::string& out) {
-  const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
+  const bool is_curve = move.kind == MoveKind::arc || move.kind == MoveKind::spline;
+  const bool moves_xyz = is_curve || move.s_end > move.s_begin;
   const bool per_revolution = move.feed_mode == FeedMode::units_per_revolution;
   out += R"(,"feed":)";
   add_number(per_revolution ? move.value / (moves_xyz ? mm : deg)
@@ -148,6 +152,22 @@ void add_arc(const Move& move, std::string& out) {
   out += R"(,"mcenter":)";
   add_array({m[0] / mm, m[1] / mm, m[2] / mm}, out);
   fmt::format_to(std::back_inserter(out), R"(,"turns":{})", move.arc.turns);
+}
+
+void add_spline(const Spline& spline, std::string& out) {
+  const auto add = [&](std::string_view name, auto&& value) {
+    fmt::format_to(std::back_inserter(out), R"(,"{}":)", name);
+    for (std::size_t i = 0; i < spline.points.size(); ++i) {
+      out += i == 0 ? '[' : ',';
+      add_number(value(i), out);
+    }
+    out += ']';
+  };
+  fmt::format_to(std::back_inserter(out), R"(,"npts":{},"order":{})", spline.points.size(),
+                 spline.curve.order());
+  add("x", [&](std::size_t i) { return spline.points[i].x() / mm; });
+  add("y", [&](std::size_t i) { return spline.points[i].y() / mm; });
+  add("weights", [&](std::size_t i) { return spline.curve.weights()[i]; });
 }
 
 // Coordinates of X Y Z in "mend"; left out where they are positions of the axes.
@@ -179,6 +199,9 @@ void add_own_fields(const Move& move, std::string& out) {
     case MoveKind::arc:
       add_feed(move, out);
       return add_arc(move, out);
+    case MoveKind::spline:
+      add_feed(move, out);
+      return add_spline(*move.spline, out);
     case MoveKind::dwell:
       out += R"(,"sec":)";
       return add_number(move.value, out);

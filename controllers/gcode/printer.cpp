@@ -12,6 +12,7 @@
 #include "controllers/gcode/number_text.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/spline_curve.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -87,6 +88,7 @@ class Printer {
       case MoveKind::rapid:
       case MoveKind::feed:
       case MoveKind::arc:
+      case MoveKind::spline:
         return print_motion(move);
       case MoveKind::dwell:
         print_modes(move);
@@ -284,6 +286,7 @@ class Printer {
     }
     print_modes(move);
     const Steps steps = steps_of(move.end);
+    if (move.kind == MoveKind::spline) return print_spline(move, steps);
     const std::optional<double> slow = slow_feed(move, steps);
     print_feed_mode(slow ? FeedMode::units_per_minute : move.feed_mode);
     const bool is_arc = move.kind == MoveKind::arc && !vanishes(move, steps);
@@ -308,6 +311,24 @@ class Printer {
     line(text);
     if (is_absolute) line("G91.1");
     steps_ = steps;
+  }
+
+  // A NURBS has no feed in inverse time: its own is that of G94.
+  void print_spline(const Move& move, const Steps& steps) {
+    const bool per_revolution = move.feed_mode == FeedMode::units_per_revolution;
+    print_feed_mode(per_revolution ? move.feed_mode : FeedMode::units_per_minute);
+    change(plane_, "G17", false);
+    const SplineCurve& curve = move.spline->curve;
+    line(fmt::format("G5.2 P{} L{}{}", significant_text(curve.weights()[0]), curve.order(),
+                     feed_word(per_revolution ? move.value / mm : move.feed / mm_per_min)));
+    for (std::size_t i = 1; i < curve.weights().size(); ++i) {
+      const Eigen::Vector3d& p = move.spline->points[i];
+      line(fmt::format("X{} Y{} P{}", linear_.text(linear_.step_count(p.x() / mm)),
+                       linear_.text(linear_.step_count(p.y() / mm)),
+                       significant_text(curve.weights()[i])));
+    }
+    line("G5.3");
+    if (steps_) steps_ = steps;  // else the next motion names all axes
   }
 
   const PrintOptions& options_;

@@ -13,7 +13,8 @@ namespace {
 // Time that a block asks for, s; 0: as fast as the joints can.
 double time_of(const Move& move, const AxisWords& from, const PathOptions& options) {
   const AxisWords step = move.end_machine - from;
-  const double way = move.kind == MoveKind::arc                  ? move.s_end - move.s_begin
+  const bool is_curve = move.kind == MoveKind::arc || move.kind == MoveKind::spline;
+  const double way = is_curve                                    ? move.s_end - move.s_begin
                      : step.head<3>() != Eigen::Vector3d::Zero() ? step.head<3>().norm()
                                                                  : step.tail<3>().norm();
   return move.feed > 0.0 ? way / (move.feed * options.feed_override) : 0.0;

@@ -11,6 +11,20 @@ constexpr double kLongLeg = 3.0;    // windows, below it corners share their cur
 
 }  // namespace
 
+Leg leg_of(const Move& move) {
+  Leg leg;
+  leg.rapid = move.kind == MoveKind::rapid;
+  leg.stop_after = move.path_mode == PathMode::exact_stop;
+  leg.exact_corners = move.path_mode == PathMode::exact_path;
+  return leg;
+}
+
+Joints scale_of(const PathOptions& options) {
+  Joints scale = Joints::Ones();
+  scale.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
+  return scale;
+}
+
 double LegRules::tolerance_of(const Move& move) const {
   if (move.path_mode != PathMode::continuous) return options_.exact_tolerance;
   const double programmed = options_.tolerance_share * move.path_tolerance;

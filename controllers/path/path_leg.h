@@ -18,6 +18,12 @@ struct Leg {
   double feed = 0.0;                  // m/s along the scaled path
 };
 
+/// The leg of a move, but for its length and its tangents.
+Leg leg_of(const Move& move);
+
+/// Metres of the scaled path per unit of each joint.
+Joints scale_of(const PathOptions& options);
+
 /// Speeds and tolerances of legs, and the corners at which the motion stops.
 class LegRules {
  public:

@@ -8,6 +8,7 @@
 
 #include "controllers/path/chain_memory.h"
 #include "controllers/path/chain_speeds.h"
+#include "controllers/path/curve_points.h"
 #include "controllers/path/path_leg.h"
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/arc_sweep.h"
@@ -16,39 +17,8 @@
 namespace servomill::controllers {
 namespace {
 
-constexpr double kMinChord = 1e-9;      // m, points closer than this to the last are skipped
-constexpr double kMinChain = 1e-12;     // m, below this there is no motion
-constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
-constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
-constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
-
-// Metres of the scaled path per unit of each joint.
-Joints scale_of(const PathOptions& options) {
-  Joints scale = Joints::Ones();
-  scale.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
-  return scale;
-}
-
-// Returns true if an arc continues another one, on the same circle and in the same direction.
-bool is_same_circle(const ArcSweep& one, const ArcSweep& next, const Joints& step) {
-  const auto near = [](double a, double b) { return std::abs(a - b) < kSameCircle; };
-  const bool is_flat = near(one.along_begin, one.along_end) &&
-                       near(next.along_begin, next.along_end) &&
-                       step.tail<kJoints - kLinearJoints>().isZero(0.0);
-  return is_flat && one.c == next.c && (one.sweep > 0.0) == (next.sweep > 0.0) &&
-         near(one.centre_a, next.centre_a) && near(one.centre_b, next.centre_b) &&
-         near(one.r_begin, next.r_begin) && near(one.r_end, next.r_end) &&
-         near(one.r_begin, one.r_end);
-}
-
-// The leg of a move, but for its length and its tangents.
-Leg leg_of(const Move& move) {
-  Leg leg;
-  leg.rapid = move.kind == MoveKind::rapid;
-  leg.stop_after = move.path_mode == PathMode::exact_stop;
-  leg.exact_corners = move.path_mode == PathMode::exact_path;
-  return leg;
-}
+constexpr double kMinChord = 1e-9;   // m, points closer than this to the last are skipped
+constexpr double kMinChain = 1e-12;  // m, below this there is no motion
 
 }  // namespace
 
@@ -85,7 +55,10 @@ class Planner {
         case MoveKind::rapid:
         case MoveKind::feed:
         case MoveKind::arc:
-          if (move.tool_control == ToolControl::none)
+        case MoveKind::spline:
+          if (move.kind == MoveKind::spline)
+            add_spline(move, i);
+          else if (move.tool_control == ToolControl::none)
             add_motion(move, i);
           else
             add_tip_motion(move, i);
@@ -140,10 +113,9 @@ class Planner {
     ChainSpeeds::Span span = begin_span(index, leg);
     span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
     if (arc) {
-      const bool continues = last_ && last_arc_ && is_same_circle(*last_arc_, *arc, step);
-      if (!continues) arc_index_ = static_cast<int>(index);
-      // on one circle the joint of two arcs is a point like any other
-      if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
+      const auto begin = end_of_circle(*arc, step, 0.0);
+      join_curve(index, last_arc_ ? is_same_circle(*last_arc_, *arc, step)
+                                  : last_end_ && begin && goes_on(*last_end_, *begin));
       add_arc(*arc, move, step, arc_index_);
     } else {
       add_point(u_end, move, leg.feed, -1);
@@ -156,6 +128,53 @@ class Planner {
     words_ = move.end_machine;
     last_ = leg;
     last_arc_ = arc;
+    last_end_ = arc ? end_of_circle(*arc, step, 1.0) : std::nullopt;
+    if (leg.stop_after) finish_chain();
+  }
+
+  // On one circle, or on curves that go on in each other, the joint is a point like any other.
+  void join_curve(std::size_t index, bool continues) {
+    continues = continues && last_;
+    if (!continues) arc_index_ = static_cast<int>(index);
+    if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
+  }
+
+  // X and Y on a spline; the other axes stand.
+  void add_spline(const Move& move, std::size_t index) {
+    assert(move.tool_control == ToolControl::none && move.feed > 0.0);
+    const SplineCurve& curve = move.spline->curve;
+    if (curve.length() == 0.0) {
+      if (move.path_mode == PathMode::exact_stop) finish_chain();
+      return;
+    }
+    const SplineCurve::State begin = curve.state(0.0), end = curve.state(curve.length());
+    Leg leg = leg_of(move);
+    leg.tangent_begin = leg.tangent_end = Joints::Zero();
+    leg.tangent_begin.head<kLinearJoints>() = linear_joints(begin.tangent);
+    leg.tangent_end.head<kLinearJoints>() = linear_joints(end.tangent);
+    leg.length = curve.length();
+    leg.tolerance = rules_.tolerance_of(move);
+    leg.feed = rules_.speed_along(leg, move);
+    if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
+    ChainSpeeds::Span span = begin_span(index, leg);
+    span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
+    join_curve(index, last_end_ && goes_on(*last_end_, {begin.tangent, begin.curvature}));
+    const std::vector<CurvePoint> points = points_of(curve, leg.tolerance);
+    for (const CurvePoint& point : points) {
+      Joints u = u_;
+      u.head<kLinearJoints>() = linear_joints(point.p);
+      const bool is_inside = &point != &points.back() && !point.is_corner;
+      add_point(u, move, 0.0, is_inside ? arc_index_ : -1);
+    }
+    span.last = last_vertex();
+    if (span.last > span.first) speeds_.spans.push_back(span);
+    last_move_ = index;
+    Q_ = layout_.joints(move.end_machine);
+    u_ = scaled(Q_);
+    words_ = move.end_machine;
+    last_ = leg;
+    last_arc_.reset();
+    last_end_ = CurveEnd{end.tangent, end.curvature};
     if (leg.stop_after) finish_chain();
   }
 
@@ -194,6 +213,7 @@ class Planner {
     words_ = layout_.words(Q_);
     last_ = leg;
     last_arc_.reset();
+    last_end_.reset();
     if (leg.stop_after) finish_chain();
   }
 
@@ -257,8 +277,7 @@ class Planner {
 
   void add_arc(const ArcSweep& arc, const Move& move, const Joints& step, int index) {
     const double radius = std::max(arc.r_begin, arc.r_end), sweep = std::abs(arc.sweep);
-    const double window = std::sqrt(12.0 * rules_.tolerance_of(move) * radius);
-    const double chord = std::min(kChordAngle, window / kChordsPerWindow / radius);
+    const double chord = chord_angle(radius, rules_.tolerance_of(move));
     const int n = std::max(1, static_cast<int>(std::ceil(sweep / chord)));
     const Joints u_begin = u_;
     for (int i = 1; i <= n; ++i) {
@@ -301,6 +320,7 @@ class Planner {
     shares_.clear();
     last_.reset();
     last_arc_.reset();
+    last_end_.reset();
     skipped_ = false;
   }
 
@@ -360,6 +380,7 @@ class Planner {
   AxisWords words_;                   // where it is, machine coordinates
   Joints Q_, u_;                      // the same, joints; scaled
   std::optional<ArcSweep> last_arc_;  // of the leg before, if it was an arc
+  std::optional<CurveEnd> last_end_;  // of the leg before, if it was a circle or a spline
   int arc_index_ = -1;                // of the circle that is being followed
   Polyline vertices_;
   ChainSpeeds speeds_;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/spline_curve.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -41,6 +42,14 @@ Range<Joints> range_of(const Move& move, const Joints& from, const JointLayout& 
   Range<AxisWords> range{words, words};
   range.include(move.end_machine);
   if (move.kind == MoveKind::arc) include_extremes(range, move, words);
+  if (move.kind == MoveKind::spline) {
+    const auto [low, high] = move.spline->curve.extent();
+    for (const Eigen::Vector3d& corner : {low, high}) {
+      AxisWords at = words;
+      at.head<3>() = corner;
+      range.include(at);
+    }
+  }
   return {layout.joints(range.low), layout.joints(range.high)};
 }
 

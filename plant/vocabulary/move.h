@@ -10,11 +10,14 @@
 
 namespace servomill {
 
+struct Spline;
+
 enum class MoveKind : std::uint8_t {
   // motion
   rapid,
   feed,  // `number` 2 ... 5: with the probe armed, G38.2 ... G38.5
   arc,
+  spline,
   dwell,
   // everything else
   tool,     // M6: `number` is the tool now in the spindle
@@ -86,6 +89,7 @@ struct Move {
   int tool_offset = 0;      // H of G43; 0: none (G49)
   Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();  // G43.5: k_W at the end
   std::shared_ptr<const WorkPlane> plane;  // arcs in a tilted plane: where `arc` and `end` lie
+  std::shared_ptr<const Spline> spline;    // kind spline (spline_curve.h)
   std::string text;
 
   // Arc length on the path of the *original* program where this move begins and ends (m). The
@@ -94,6 +98,8 @@ struct Move {
   double s_end = 0.0;
 };
 
-constexpr bool is_motion(MoveKind kind) { return kind <= MoveKind::arc; }
+constexpr bool is_motion(MoveKind kind) { return kind <= MoveKind::spline; }
+/// A motion at the programmed feed.
+constexpr bool is_feed(MoveKind kind) { return is_motion(kind) && kind != MoveKind::rapid; }
 
 }  // namespace servomill

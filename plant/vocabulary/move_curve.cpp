@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/vocabulary/spline_curve.h"
+
 namespace servomill {
 namespace {
 
@@ -21,8 +23,12 @@ MoveCurve::MoveCurve(const AxisWords& from, const Move& move) : from_(from), to_
         ArcSweep(begin, move.end.head<3>(), move.arc.centre, move.arc.normal_axis, move.arc.turns);
   } else if (move.kind == MoveKind::arc) {
     arc_ = arc_sweep(move, from.head<3>());
+  } else if (move.kind == MoveKind::spline) {
+    spline_ = move.spline;
   }
-  length_ = arc_ ? arc_->length() : (to_ - from_).head<3>().norm();
+  length_ = arc_      ? arc_->length()
+            : spline_ ? spline_->curve.length()
+                      : (to_ - from_).head<3>().norm();
 }
 
 MoveCurve::MoveCurve(const AxisWords& from, const AxisWords& to)
@@ -32,6 +38,7 @@ AxisWords MoveCurve::at(double t) const {
   if (t >= 1.0) return to_;
   AxisWords p = from_ + t * (to_ - from_);
   if (arc_) p.head<3>() = arc_->point(t);
+  if (spline_) p.head<3>() = spline_->curve.point(t * length_);
   if (plane_) p.head<3>() = plane_->R * p.head<3>() + plane_->origin;
   return p;
 }
@@ -39,6 +46,7 @@ AxisWords MoveCurve::at(double t) const {
 double MoveCurve::sweep() const { return arc_ ? std::abs(arc_->sweep) : 0.0; }
 
 double MoveCurve::closest(const Eigen::Vector3d& point) const {
+  if (spline_) return length_ > 0.0 ? spline_->curve.closest(point) / length_ : 1.0;
   if (!arc_) {
     const Eigen::Vector3d d = (to_ - from_).head<3>();
     const double dd = d.squaredNorm();

@@ -1,5 +1,5 @@
-/// A canonical move as a curve in the coordinates of `Move::end_machine`: straight in all axes, or
-/// an arc or helix.
+/// A canonical move as a curve in the coordinates of `Move::end_machine`: straight in all axes, an
+/// arc or helix, or a spline.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,6 +38,7 @@ class MoveCurve {
   AxisWords from_ = AxisWords::Zero(), to_ = AxisWords::Zero();
   std::optional<ArcSweep> arc_;  // in the plane, if there is one
   std::shared_ptr<const WorkPlane> plane_;
+  std::shared_ptr<const Spline> spline_;
   double length_ = 0.0;
 };
 

@@ -37,15 +37,19 @@ struct Reader {
   }
 };
 
-// Complete: a member that is added to one of these does not compile here. Of plane and text there
-// are indices.
+// Where plane, spline and text of a move stand.
+struct Indices {
+  int plane = 0, spline = 0, text = 0;
+};
+
+// Complete: a member that is added to one of these does not compile here.
 template <class Each>
-void visit(Move& move, int& plane_index, int& text_index, Each each) {
+void visit(Move& move, Indices& at, Each each) {
   auto& [kind, line, end, end_machine, arc, centre_machine, feed, feed_mode, path_mode,
          path_tolerance, value, number, tool_control, direction, work_offset, is_shifted,
-         tool_offset, tool_axis, plane, text, s_begin, s_end] = move;
+         tool_offset, tool_axis, plane, spline, text, s_begin, s_end] = move;
   auto& [normal_axis, centre, turns] = arc;
-  (void)plane, (void)text;
+  (void)plane, (void)spline, (void)text;
   each.number(s_begin);
   each.integers(line, number);
   for (double& x : end) each.number(x);
@@ -56,8 +60,8 @@ void visit(Move& move, int& plane_index, int& text_index, Each each) {
   for (double* x : {&s_end, &feed, &path_tolerance, &value}) each.number(*x);
   each.integers(normal_axis, turns);
   each.integers(direction, work_offset);
-  each.integers(tool_offset, plane_index);
-  each.integers(text_index, text_index);
+  each.integers(tool_offset, at.plane);
+  each.integers(at.text, at.spline);
   each.small(kind, feed_mode, path_mode, tool_control, is_shifted);
 }
 constexpr std::size_t kBegin = 0, kLine = 1, kEnd = 23;  // places of s_begin, line, s_end
@@ -76,18 +80,17 @@ MoveList::MoveList(std::span<const Move> moves) {
 }
 
 MoveList::Words MoveList::words_of(const Move& given) {
-  int plane = 0, text = 0;
-  if (given.plane != nullptr) {
-    if (given.plane != planes_.back()) planes_.push_back(given.plane);
-    plane = static_cast<int>(planes_.size()) - 1;
-  }
-  if (!given.text.empty()) {
-    if (given.text != texts_.back()) texts_.push_back(given.text);
-    text = static_cast<int>(texts_.size()) - 1;
-  }
+  const auto index = [](auto& held, const auto& one) {
+    if (held.back() != one) held.push_back(one);
+    return static_cast<int>(held.size()) - 1;
+  };
+  Indices at;
+  if (given.plane != nullptr) at.plane = index(planes_, given.plane);
+  if (given.spline != nullptr) at.spline = index(splines_, given.spline);
+  if (!given.text.empty()) at.text = index(texts_, given.text);
   Words words;
   // only read, but the members are the same as those that are written
-  visit(const_cast<Move&>(given), plane, text, Writer{words.data()});
+  visit(const_cast<Move&>(given), at, Writer{words.data()});
   return words;
 }
 
@@ -148,20 +151,23 @@ MoveList::Iterator& MoveList::Iterator::operator++() {
   if (index_ % kChunk == 0) {
     at_ = 0;
     Move first;
-    int plane = 0, text = 0;
-    visit(first, plane, text, Writer{words_.data()});
+    Indices none;
+    visit(first, none, Writer{words_.data()});
   }
   const std::vector<std::uint64_t>& from = list_->chunk_of(index_);
   predict(words_);
   for (std::uint32_t mask = list_->masks_[index_]; mask != 0; mask &= mask - 1) {
     words_[static_cast<std::size_t>(std::countr_zero(mask))] = from[at_++];
   }
-  int plane = 0, text = 0;
-  visit(move_, plane, text, Reader{words_.data()});
-  const auto& plane_now = list_->planes_[static_cast<std::size_t>(plane)];
-  const std::string& text_now = list_->texts_[static_cast<std::size_t>(text)];
-  if (move_.plane != plane_now) move_.plane = plane_now;
-  if (move_.text != text_now) move_.text = text_now;
+  Indices at;
+  visit(move_, at, Reader{words_.data()});
+  const auto take = [](auto& now, const auto& held, int index) {
+    const auto& wanted = held[static_cast<std::size_t>(index)];
+    if (now != wanted) now = wanted;
+  };
+  take(move_.plane, list_->planes_, at.plane);
+  take(move_.spline, list_->splines_, at.spline);
+  take(move_.text, list_->texts_, at.text);
   ++index_;
   return *this;
 }

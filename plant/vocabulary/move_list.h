@@ -35,7 +35,7 @@ class MoveList {
   std::default_sentinel_t end() const { return {}; }
 
  private:
-  // All of a Move but plane and text, which are indices here.
+  // All of a Move but plane, spline and text, which are indices here.
   static constexpr std::size_t kWords = 32;
   using Words = std::array<std::uint64_t, kWords>;
 
@@ -50,6 +50,7 @@ class MoveList {
   std::vector<std::vector<std::uint64_t>> chunks_;  // those words
   std::vector<std::uint64_t> open_;                 // of the chunk that is being filled
   std::vector<std::shared_ptr<const WorkPlane>> planes_ = {nullptr};
+  std::vector<std::shared_ptr<const Spline>> splines_ = {nullptr};
   std::vector<std::string> texts_ = {""};
   std::size_t size_ = 0;
   Words last_{};

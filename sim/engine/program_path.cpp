@@ -64,7 +64,7 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
     if (piece.is_tip) piece.p_ST = tips.at(move.tool_offset);
     piece.begin = begin_of(piece, before ? &*before : nullptr, at);
     set_tool_axes(piece, move);
-    const bool is_straight = move.kind != MoveKind::arc && !piece.is_great_circle && before &&
+    const bool is_straight = move.kind < MoveKind::arc && !piece.is_great_circle && before &&
                              piece.s_begin == before->s_end &&
                              has_same_bits(piece.begin, before->end);
     hold(piece, is_straight ? nullptr : &move);

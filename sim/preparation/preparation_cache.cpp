@@ -99,9 +99,7 @@ bool controls_tip(const Move& move) {
 }  // namespace
 
 std::optional<Move> InterpretedProgram::first_shifted_feed() const {
-  return first_move(moves, [](const Move& move) {
-    return (move.kind == MoveKind::feed || move.kind == MoveKind::arc) && move.is_shifted;
-  });
+  return first_move(moves, [](const Move& move) { return is_feed(move.kind) && move.is_shifted; });
 }
 
 InterpretedProgram::InterpretedProgram(MoveList moves_in, std::vector<Fault> warnings_in,

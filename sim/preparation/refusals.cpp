@@ -62,8 +62,8 @@ void refuse_absent_axes(const InterpretedProgram& program, const model::Scenario
 
 void refuse_standing_spindle(const InterpretedProgram& program, const model::Scenario& scenario) {
   for (const Move& move : program.moves) {
-    const bool is_fed = move.kind == MoveKind::feed || move.kind == MoveKind::arc;
-    if (!is_fed || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0) continue;
+    if (!is_feed(move.kind) || move.feed_mode != FeedMode::units_per_revolution || move.feed > 0.0)
+      continue;
     throw InputError({scenario.program.file, move.line},
                      "feed per revolution (G95) with the spindle stopped would never end: start "
                      "the spindle (M3 S...) or use G94");

@@ -50,7 +50,7 @@ ToolPasses::ToolPasses(const CuttingPlanInputs& in)
     const bool turns = (p.end - p.begin).tail<3>() != Vector3d::Zero() || p.is_great_circle;
     stages_.push_back({piece++, in_spindle, cutter == in_.cutters.end() ? nullptr : &cutter->second,
                        direction == 0 ? 0.0 : std::abs(speed) / (2.0 * std::numbers::pi),
-                       direction >= 0, move.kind != MoveKind::arc && !turns});
+                       direction >= 0, move.kind < MoveKind::arc && !turns});
   }
 }
 

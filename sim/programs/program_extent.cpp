@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/vocabulary/spline_curve.h"
+
 namespace servomill::sim::programs {
 namespace {
 
@@ -28,6 +30,17 @@ void include_extremes(AxisRanges& ranges, const ArcSweep& arc, const AxisFlags& 
     const Eigen::Vector3d point = arc.point(((first + n) * kQuarter - arc.angle) / arc.sweep);
     ranges[a].include(point[arc.a]);
     ranges[b].include(point[arc.b]);
+  }
+}
+
+// The farthest X and Y, where they are known at both ends.
+void include_extremes(AxisRanges& ranges, const SplineCurve& curve, const Eigen::Vector3d& shift,
+                      const AxisFlags& begin, const AxisFlags& end) {
+  if (!begin[0] || !begin[1] || !end[0] || !end[1]) return;
+  const auto [low, high] = curve.extent();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    for (const Eigen::Vector3d& corner : {low, high}) ranges[i].include(corner[k] - shift[k]);
   }
 }
 
@@ -58,6 +71,10 @@ void ProgramExtent::add(const Move& move, const MoveKnowledge& known) {
     include_extremes(machine_, arc_sweep(move, known.begin_machine.head<3>()),
                      known.begin_machine_is_known, known.end_machine_is_known);
   }
+  if (move.kind == MoveKind::spline) {
+    include_extremes(machine_, move.spline->curve, Eigen::Vector3d::Zero(),
+                     known.begin_machine_is_known, known.end_machine_is_known);
+  }
   if (known.is_tilted && tilted_ == 0) tilted_ = move.line;
   if (known.is_place || known.is_tilted) return;
   WorkExtent& extent = work_[known.work_system];
@@ -69,6 +86,10 @@ void ProgramExtent::add(const Move& move, const MoveKnowledge& known) {
     if (ranges == &extent.feed && !is_feed) continue;
     if (ranges == &extent.feed) include(*ranges, begin, known.begin_work_is_known);
     include(*ranges, end, known.end_work_is_known);
+    if (move.kind == MoveKind::spline) {
+      include_extremes(*ranges, curve_in_work(*move.spline), offset, known.begin_work_is_known,
+                       known.end_work_is_known);
+    }
     if (!is_arc) continue;
     const ArcSweep arc(begin.head<3>(), end.head<3>(), move.arc.centre - offset,
                        move.arc.normal_axis, move.arc.turns);

@@ -48,8 +48,7 @@ double largest_feed(const preparation::PreparedParts& one) {
   double largest = 0.0;
   for (const Move& move : one.program.moves) {
     const bool moves_xyz = move.kind == MoveKind::arc || move.s_end > move.s_begin;
-    const bool feeds = move.kind == MoveKind::arc || move.kind == MoveKind::feed;
-    if (feeds && moves_xyz) largest = std::max(largest, move.feed);
+    if (is_feed(move.kind) && moves_xyz) largest = std::max(largest, move.feed);
   }
   return largest * one.scenario.program.feed_override;
 }

@@ -151,6 +151,11 @@ void ProgramCorrector::refuse(const Move& move, const AxisFlags& was_known) cons
                                  "cannot be compensated; {}",
                                  kWriteAxes));
   }
+  if (move.kind == MoveKind::spline) {
+    throw InputError({options_.file, move.line},
+                     "splines (G5, G5.1, G5.2) cannot be compensated; post-process them to short "
+                     "lines or arcs");
+  }
   std::string axes;
   for (const Axis axis : kAllAxes) {
     if (move.kind == MoveKind::rapid || was_known[static_cast<std::size_t>(index_of(axis))])
