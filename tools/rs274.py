@@ -3,12 +3,15 @@
 The records are those of controllers/gcode/canon_json.h (mm, degrees). rs274 prints four decimals and is a machine in
 inches: a private copy of it prints nine and is one in millimetres. It prints no line numbers but the N words of the
 program: the same program runs a second time with an N word before each line. Both times it runs on copies in a folder
-of their own, so that nothing is written beside the programs.
+of their own, so that nothing is written beside the programs. Of a spline it prints only how many control points it has:
+LinuxCNC's Python module `gcode`, the same interpreter, gives chords of it ("chord_x", "chord_y", where there is one).
 
 Left out are path modes and coolant (separate calls here, fields of other records and states in servomill), the pallet
 shuttle of M30, and stops at tool changes and ends of a spindle that stands already.
 """
 import functools
+import itertools
+import json
 import math
 import os
 import pathlib
@@ -29,6 +32,28 @@ MOST_OUTPUT = 1 << 28          # bytes; beyond it a program is taken to be witho
 LEAST_MOVE = 1e-7              # mm; nine decimals of an inch tell positions only so far
 MM_PER_INCH = 25.4
 UNPACKED = "~/.cache/rs274/root/usr/bin/rs274"
+PYTHON = "/usr/bin/python3"    # Debian's, for which the module gcode is built
+CHORDS_PER_POINT = 15          # of a spline, by the module gcode; sometimes there is one more, of no length
+# Prints [line, x, y] in inches for every straight feed of a program: splines are such feeds there. Lines count their visits.
+FEEDS = """
+import json, sys
+import gcode
+class Canon:
+    parameter_file = sys.argv[2]
+    visits = 0
+    def next_line(self, _): self.visits += 1
+    def straight_feed(self, x, y, *_): print(json.dumps([self.visits, x, y]))
+    def get_block_delete(self): return int(sys.argv[3])
+    def get_tool(self, _): return (-1,) + (0.0,) * 12 + (0,)
+    def check_abort(self): return False
+    def get_external_angular_units(self): return 1.0
+    def get_external_length_units(self): return 1.0
+    def get_axis_mask(self): return 0x3f
+    def __getattr__(self, name):
+        if name.startswith("__") or name in ("use_move_batches", "move_batch"): raise AttributeError(name)
+        return lambda *_: None
+gcode.parse(sys.argv[1], Canon(), "G21", "")
+"""
 
 
 class Missing(Exception):
@@ -53,7 +78,8 @@ class Canon:
     CALL = re.compile(r"\s*\d+ N(\d+|\.*)\s*([A-Z][A-Z0-9_]*(?:\.[0-9A-Z_]+)*)\((.*)\)(?:executing)?\s*$")
     PLANES = {"XY": (0, 1, 2), "YZ": (1, 2, 0), "XZ": (2, 0, 1)}
 
-    def __init__(self):
+    def __init__(self, splines=()):
+        self.splines = iter(splines)                  # chords of each, as lists of [x, y] in mm
         self.scale = 1.0                              # mm in a program unit
         self.system, self.shift, self.tool_offset = [0.0] * 6, [0.0] * 6, [0.0] * 6
         self.rotation = 0.0                           # degrees, about Z
@@ -130,7 +156,15 @@ class Canon:
                            mcenter=self.in_machine(centre)[:3], turns=int(turns))
 
     def on_nurbs_feed(self, arguments):
-        return {"t": "nurbs", "npts": int(arguments.split(",")[0])}
+        record = {"t": "nurbs", "npts": int(arguments.split(",")[0])}
+        chords = next(self.splines, None)
+        if chords is None:
+            self.at = [math.inf, math.inf, *self.at[2:]]
+            return record
+        feed = {} if self.feed_mode == "inv" else {"feed": self.feed["linear"], "fmode": self.feed_mode}
+        x, y = ([point[i] for point in chords] for i in (0, 1))
+        self.at = [x[-1], y[-1], *self.at[2:]]
+        return {**record, **feed, "chord_x": x, "chord_y": y}
 
     on_nurbs_g5_feed = on_nurbs_feed
 
@@ -283,6 +317,9 @@ class Interpreter:
         plain, with_lines = run("plain"), run("numbered")
         if plain is None or with_lines is None:
             return None
+        if any(record["t"] == "nurbs" for record in plain):
+            splines = self._splines(place / "plain" / program.name, plain, block_delete, timeout)
+            plain, with_lines = run("plain", splines=splines), run("numbered", splines=splines)
         records = [without(record, "line") for record in plain]
         if [without(r, *SAID) for r in records] == [without(r, "line", *SAID) for r in with_lines]:
             records = [{**record, **only(counted, "line")} for record, counted in zip(records, with_lines)]
@@ -302,7 +339,30 @@ class Interpreter:
         file = {} if self.files[index - 1] == program else {"file": self.files[index - 1].name}
         return {"t": record["t"], "line": line, **file, **without(record, "t", "line")}
 
-    def _run(self, name, place, kind, *, tools, parameter_file, subs, block_delete, timeout):
+    def _splines(self, program, records, block_delete, timeout):
+        """Chords of the splines among the records, as far as the straight feeds of the module can be told apart."""
+        command = [PYTHON, "-c", FEEDS, program.name, self.home / "module.var", str(int(block_delete))]
+        (self.home / "module.var").touch()
+        try:
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, env=self.environment,
+                                  cwd=program.parent, timeout=timeout, check=False)
+        except (subprocess.TimeoutExpired, OSError):
+            return []
+        feeds = [json.loads(line) for line in done.stdout.decode(errors="replace").splitlines() if line.startswith("[")]
+        splines = []
+        for record in records:
+            if record["t"] not in ("feed", "nurbs") or not feeds:
+                continue
+            visit = feeds[0][0]
+            count = 1 if record["t"] == "feed" else len(list(itertools.takewhile(lambda feed: feed[0] == visit, feeds)))
+            if record["t"] == "nurbs":
+                if count - CHORDS_PER_POINT * record["npts"] not in (0, 1):
+                    break
+                splines.append([[x * MM_PER_INCH, y * MM_PER_INCH] for _, x, y in feeds[:count]])
+            feeds = feeds[count:]
+        return splines
+
+    def _run(self, name, place, kind, *, tools, parameter_file, subs, block_delete, timeout, splines=()):
         for given, copy in ((tools, "tools.tbl"), (parameter_file, "parameters.var")):
             shutil.copyfile(given or os.devnull, self.home / copy)
         command = [self.precise, "-t", self.home / "tools.tbl", "-v", self.home / "parameters.var", "-g"]
@@ -321,7 +381,7 @@ class Interpreter:
             if run.returncode == -signal.SIGXFSZ:
                 return None
             out.seek(0)
-            records = list(Canon().records(out.read().decode(errors="replace")))
+            records = list(Canon(splines).records(out.read().decode(errors="replace")))
         return records + ([fault(run)] if run.returncode != 0 else [])
 
 

@@ -1,5 +1,4 @@
-/// The machine that the interpreter runs a program on: what it remembers, and the steps of a block.
-/// Private to the interpreter: interpreter.cpp, motion.cpp, offsets.cpp, flow_control.cpp, ...
+/// What the interpreter (interpreter.cpp, motion.cpp, ...) remembers, and the steps of a block.
 #pragma once
 
 #include <fmt/format.h>
@@ -34,11 +33,6 @@ namespace servomill::controllers {
 
 inline constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();  // in surveys
 inline constexpr double kIntegerTol = 1e-4;  // as LinuxCNC, for words that must be integers
-
-/// An axis word as it stands in a parameter, in mm or degrees, and back.
-/// @param axis  0 ... 5, X to C
-inline double in_parameter_unit(int axis, double value) { return value / (axis < 3 ? mm : deg); }
-inline double from_parameter_unit(int axis, double value) { return value * (axis < 3 ? mm : deg); }
 
 class Interpreter::Machine {
  public:
@@ -322,6 +316,12 @@ class Interpreter::Machine {
                            const Eigen::Vector2d& centre, const ArcTolerance& tolerance);
   ArcCentre arc_centre(const Eigen::Vector2d& start, const Eigen::Vector2d& end, bool clockwise);
   int arc_turns(bool clockwise) const;
+  void require_spline_modes(const Request::Chosen& chosen) const;
+  void refuse_inside_nurbs(int column, std::string_view name) const;
+  void bezier();
+  void nurbs_point();
+  void end_nurbs();
+  void spline(const OpenNurbs& curve, const AxisWords& end, const Request::Chosen& chosen);
 
   // canned cycles
   void canned_cycle(int motion_before);
@@ -344,7 +344,7 @@ class Interpreter::Machine {
   Eigen::Vector2d polar_end(const Eigen::Vector2d& begin) const;
   /// Feed of a move: m/s or rad/s; under G95 a revolution.
   double move_feed(double length, double angle) const;
-  void require_feed() const;
+  void require_feed(const Request::Chosen& chosen) const;
 
   // ---- output
   Move& emit(MoveKind kind);

@@ -148,6 +148,9 @@ void Interpreter::Machine::stop() {
   if (code == 990 && !flow_.calls.empty()) {
     fail(request().of(Group::m_stop).column, "M99 of a subprogram must stand alone in its block");
   }
+  if (code == 20 || code == 300 || code == 990) {
+    refuse_inside_nurbs(request().of(Group::m_stop).column, code_name('M', code));
+  }
   end_queue_at(state_.in_plane(state_.position));
   state_.compensation.begin.reset();
   if (code == 0 || code == 10 || code == 600) {

@@ -18,10 +18,10 @@ constexpr auto kGCodes = std::to_array<Code>({
     {20, g_motion, true, "IJKRP", true},
     {30, g_motion, true, "IJKRP", true},
     {40, g_non_modal, true, "P"},
-    {50, g_motion, false, ""},
-    {51, g_motion, false, ""},
-    {52, g_motion, false, ""},
-    {53, g_non_modal, false, ""},
+    {50, g_motion, true, "IJPQ", true},
+    {51, g_motion, true, "IJ", true},
+    {52, g_motion, true, "LP", true},
+    {53, g_non_modal, true, ""},
     {70, g_non_modal, false, ""},
     {80, g_non_modal, false, ""},
     {100, g_non_modal, true, "IJLPQR", true},
@@ -151,7 +151,6 @@ struct Refusal {
 };
 
 constexpr auto kGRefusals = std::to_array<Refusal>({
-    {50, 53, "splines are not interpolated here; post-process them to short lines or arcs"},
     {70, 80, "diameter and radius mode are for turning; this is a milling simulator"},
     {330, 331, "the spindle angle is not simulated, so the axes cannot follow it"},
     {700, 722, "turning cycles are for lathes; this is a milling simulator"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,11 @@ inline constexpr int kOtherToolOffset = -1;     // `Move::tool_offset` of G43.1 
 inline constexpr int kPrintMessage = 1;         // `Move::number` of (PRINT, ...); else 0
 inline constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute under G93: LinuxCNC
 inline constexpr int kMist = 1, kFlood = 2;     // bits of `Move::number` of a coolant move
+
+/// An axis word as it stands in a parameter, in mm or degrees, and back.
+/// @param axis  0 ... 5, X to C
+inline double in_parameter_unit(int axis, double value) { return value / (axis < 3 ? mm : deg); }
+inline double from_parameter_unit(int axis, double value) { return value * (axis < 3 ? mm : deg); }
 
 /// Cutter compensation in force, and the moves that wait until the next one is known.
 struct Compensation {
@@ -49,6 +55,17 @@ struct WorkZero {
 
   /// But for rounding of offsets that a program sets to what they are.
   bool is_at(const WorkZero& other) const;
+};
+
+/// Control points between G5.2 and G5.3.
+struct OpenNurbs {
+  int order = 3;
+  std::vector<Eigen::Vector2d> points;  // m, in work coordinates; first where the tool stands
+  std::vector<double> weights;
+  // what must not change until G5.3
+  AxisWords position = AxisWords::Zero();
+  WorkZero zero;
+  double unit = mm;
 };
 
 /// Positions are SI. Machine coordinates = R (position + shift) + work_offset + tool_offset, where
@@ -88,7 +105,9 @@ struct ModalState {
   bool is_incremental = false;
   bool is_centre_absolute = false;
   bool retracts_to_r = true;  // G99, as rs274 begins; false: G98
-  CycleMemory cycle;
+  CycleMemory cycle;          // its i and j are also where a G5 without I and J begins to
+  Eigen::Vector2d spline_end = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  OpenNurbs nurbs;
   FeedMode feed_mode = FeedMode::units_per_minute;
   double feed_linear = 0.0;  // m/s, or m per revolution under G95
   double feed_rotary = 0.0;  // rad/s, or rad per revolution

@@ -18,14 +18,22 @@ namespace {
 
 constexpr double kSpiralLimit = 0.5 * mm, kSpiralShare = 0.05;  // between the radii of an arc
 constexpr double kTurnsTol = 1e-3;                              // as LinuxCNC, for P of an arc
+constexpr int kNurbsPoint = 52, kNurbsEnd = 53;                 // G5.2 G5.3
+
+constexpr bool is_bezier(int code) { return code == 50 || code == 51; }
 
 }  // namespace
 
 void Interpreter::Machine::motion() {
+  if (request().code(Group::g_non_modal) == kNurbsEnd) return end_nurbs();
   const int motion_before = state_.motion;
   const int explicit_code = request().code(Group::g_motion);
-  if (explicit_code >= 0) state_.motion = explicit_code;
+  if (explicit_code >= 0 && !is_bezier(explicit_code)) state_.motion = explicit_code;
   const int code = request().motion_code();
+  if (std::max(code, explicit_code) >= 0 && code != kNurbsPoint) {
+    refuse_inside_nurbs(request().of(Group::g_motion).column,
+                        code_name('G', std::max(code, explicit_code)));
+  }
   if (std::max(code, explicit_code) >= 0 && !is_canned_cycle(code)) state_.cycle.has_level = false;
   if (request().code(Group::g_non_modal) == 530) {
     const int column = request().of(Group::g_non_modal).column;
@@ -35,6 +43,8 @@ void Interpreter::Machine::motion() {
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
+  if (is_bezier(code)) bezier();
+  if (code == kNurbsPoint) nurbs_point();
   if (code >= 382 && code <= 385) probe();
   if (is_canned_cycle(code)) canned_cycle(motion_before);
 }
@@ -84,8 +94,7 @@ AxisWords Interpreter::Machine::machine_end() const {
   return end;
 }
 
-void Interpreter::Machine::require_feed() const {
-  const Request::Chosen& chosen = request().motion;
+void Interpreter::Machine::require_feed(const Request::Chosen& chosen) const {
   const auto name = [&] { return code_name('G', chosen.code->tenths); };
   if (state_.feed_mode == FeedMode::inverse_time) {
     if (!request().has('F')) {
@@ -116,7 +125,7 @@ double Interpreter::Machine::move_feed(double length, double angle) const {
 void Interpreter::Machine::straight() {
   state_.compensation.refuses_arc = false;
   const bool is_rapid = request().motion_code() == 0;
-  if (!is_rapid) require_feed();
+  if (!is_rapid) require_feed(request().motion);
   const bool enters = state_.compensation.acts() && !state_.compensation.is_entered;
   const bool stands = !has_any_axis() && !request().has_polar() && !has_vector();
   if (stands && !enters && (state_.controls_tip() || state_.compensation.acts())) return;
@@ -217,7 +226,7 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
 }
 
 void Interpreter::Machine::arc() {
-  require_feed();
+  require_feed(request().motion);
   if (state_.compensation.refuses_arc) {
     fail(request().motion.column, fmt::format("{} is the first move after G40; must be G0 or G1",
                                               code_name('G', request().motion_code())));

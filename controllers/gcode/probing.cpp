@@ -30,7 +30,7 @@ void Interpreter::Machine::require_probing() const {
     refuse(" while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
   if (state_.feed_mode == FeedMode::inverse_time) refuse(" with G93; G94 first");
   if (state_.feed_mode == FeedMode::units_per_revolution) refuse(" with G95; G94 first");
-  require_feed();
+  require_feed(request().motion);
   if (!setup_.probed)
     refuse(": the probed surface is unknown here; simulate it with [touch_probe] of a scenario");
 }

@@ -10,6 +10,7 @@
 
 #include "controllers/gcode/canon_json.h"
 #include "tests/controllers/gcode/program.h"
+#include "tests/plant/vocabulary/cox_de_boor.h"
 
 namespace servomill::controllers::conformance_test {
 namespace {
@@ -132,9 +133,29 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   return records;
 }
 
+// Where the chords end in which LinuxCNC shows a spline: 15 for each control point, of equal steps
+// of the parameter; the last may have no length.
+void add_chords(Record& ours, const Record& theirs) {
+  const auto chords = theirs.find("chord_x");
+  if (chords == theirs.end() || ours.find("order") == ours.end()) return;
+  const std::vector<double>&x = ours["x"].numbers, &y = ours["y"].numbers;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < x.size(); ++i) points.emplace_back(x[i], y[i], 0.0);
+  const CoxDeBoor curve(static_cast<int>(ours["order"].numbers[0]), points,
+                        ours["weights"].numbers);
+  const std::size_t steps = 15 * x.size();
+  for (std::size_t i = 1; i <= chords->second.numbers.size(); ++i) {
+    const double share = static_cast<double>(std::min(i, steps)) / static_cast<double>(steps);
+    const Eigen::Vector3d p = curve.point(share * curve.last_knot());
+    ours["chord_x"].numbers.push_back(p.x());
+    ours["chord_y"].numbers.push_back(p.y());
+  }
+}
+
 // LinuxCNC names no rotation with S and no line with some records: what it names must agree, but
 // for the file in which a subroutine stands.
-std::string difference(const Record& ours, const Record& theirs) {
+std::string difference(Record ours, const Record& theirs) {
+  add_chords(ours, theirs);
   for (const auto& [key, wanted] : theirs) {
     if (key == "file") continue;
     const auto found = ours.find(key);

@@ -24,7 +24,8 @@ constexpr std::uint32_t kOffsets = bits("DH"), kAxisWordBits = bits("XYZABC@^"),
 
 // Codes of LinuxCNC that another control reads differently, or with other words.
 bool is_special(char letter, int tenths) {
-  constexpr std::array kG = {40, 100, 280, 281, 300, 301, 410, 420, 430, 530, 690, 921, 980, 990};
+  constexpr std::array kG = {40,  50,  51,  52,  53,  100, 280, 281, 300,
+                             301, 410, 420, 430, 530, 690, 921, 980, 990};
   constexpr std::array kM = {500, 510, 520, 530, 980};
   return letter == 'G' ? std::find(kG.begin(), kG.end(), tenths) != kG.end()
                        : std::find(kM.begin(), kM.end(), tenths) != kM.end();
@@ -172,6 +173,7 @@ void ReadingStep::run() {
   local_call();
   dwell();
   frame_codes();
+  curve_codes();
   inputs();
   presets();
   machine_coordinates();
@@ -253,6 +255,26 @@ void ReadingStep::fail(int column, std::string message) const {
 
 void ReadingStep::refuse(int column, std::string message) const {
   throw InputError({file_, block_.line, column}, std::move(message));
+}
+
+// G5 to G5.3 with coordinates, which only LinuxCNC has. What other controls have under these
+// numbers has been left out.
+void ReadingStep::curve_codes() {
+  constexpr int kFirst = 50, kLast = 53;
+  for (const BlockWord& word : words.all()) {
+    const int tenths = word.letter == 'G' && !word.is_erased ? tenths_of(word.value) : -1;
+    if (tenths < kFirst || tenths > kLast || options.reader == Reader::any) continue;
+    refuse(word.column,
+           fmt::format("{} with coordinates is not supported by {}", code_name('G', tenths),
+                       kReaders[static_cast<std::size_t>(options.reader)]));
+  }
+  const int motion = motion_in_block();
+  const bool is_moved = memory.frame.is_active() || memory.polar.is_on;
+  if (!is_moved || motion < kFirst || motion > kLast || !words.has_axis()) return;
+  fail(words.all().front().column,
+       fmt::format("{} under G16, G51, G51.1, G54.1 or G68, which no control with splines has; "
+                   "cancel that first",
+                   code_name('G', motion)));
 }
 
 int ReadingStep::motion_code() const {

@@ -38,6 +38,7 @@ class ReadingStep {
 
  private:
   void foreign_codes();
+  void curve_codes();
   // words_reading.cpp
   void decimal_points();
   void decimal_point(BlockWord& word) const;

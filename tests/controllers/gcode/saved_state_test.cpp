@@ -75,8 +75,6 @@ TEST(RefusedCodes, HaveAReasonEach) {
     const std::string text = fault_of(code);
     return text.substr(text.find(": error: ") + 9);
   };
-  EXPECT_EQ(fault("G5.2"),
-            "G5.2: splines are not interpolated here; post-process them to short lines or arcs");
   EXPECT_EQ(fault("G7"),
             "G7: diameter and radius mode are for turning; this is a milling simulator");
   EXPECT_EQ(fault("G33.1"),
