@@ -229,13 +229,36 @@ void skip_structure(config::Reader& table) {
   for (const char* key : {"inertial_deflection", "heat"}) table.raw(key);
 }
 
+// The reading and planning of programs.
+void read_planning(config::Reader& nc, model::NcSettings& out) {
+  out.program_reader =
+      static_cast<controllers::Reader>(nc.choice_or("reader", 0, controllers::kReaders));
+  out.decimal_point = static_cast<controllers::DecimalPoint>(
+      nc.choice_or("decimal_point", 0, controllers::kDecimalPoints));
+  out.ignored_codes = read_ignored_codes(nc, {});
+  out.path_tolerance =
+      nc.real_or("path_tolerance_um", 10 * um, config::kLength, {config::above(0.0)});
+  out.rotary_tolerance =
+      nc.real_or("rotary_tolerance_urad", 100 * urad, config::kAngle, {config::above(0.0)});
+  out.block_time = nc.real_or("block_processing_time_ms", 0.0, config::kTime,
+                              {config::at_least(0.0), config::at_most(kLongestPeriod)});
+  if (nc.has("tool_change_time_s")) {
+    out.tool_change_time = nc.real("tool_change_time_s", config::kTime, {config::at_least(0.0)});
+  }
+  if (nc.has("spindle_time_s")) {
+    out.spindle_time = nc.real("spindle_time_s", config::kTime, {config::at_least(0.0)});
+  }
+}
+
 // A machine file without drives: structure, travel, limits, errors.
 model::MachineSettings read_geometry(config::Reader& table, ErrorModels* errors) {
   model::MachineSettings machine;
   machine.name = table.text_or("name", "unnamed machine");
   table.text_or("source", "");
   machine.chain = read_chain(table);
-  table.raw("nc");
+  config::Reader nc = table.table_or_empty("nc");
+  read_planning(nc, machine.nc);
+  for (const std::string& key : nc.keys()) nc.raw(key);  // those of the loops
   skip_structure(table);
   machine.structural_modes = read_structural_modes(table, 0.0);
   if (machine.chain.layout == JointLayout{}) {  // a faulty structure: its axes are not known
@@ -311,17 +334,7 @@ model::MachineSettings read_machine(config::Reader& table, ErrorModels* errors) 
   config::Reader nc = table.table("nc");
   machine.nc.periods = read_periods(nc);
   machine.nc.filter = read_filter(nc, machine.nc.periods);
-  machine.nc.program_reader =
-      static_cast<controllers::Reader>(nc.choice_or("reader", 0, controllers::kReaders));
-  machine.nc.decimal_point = static_cast<controllers::DecimalPoint>(
-      nc.choice_or("decimal_point", 0, controllers::kDecimalPoints));
-  machine.nc.ignored_codes = read_ignored_codes(nc, {});
-  machine.nc.path_tolerance =
-      nc.real_or("path_tolerance_um", 10 * um, config::kLength, {config::above(0.0)});
-  machine.nc.rotary_tolerance =
-      nc.real_or("rotary_tolerance_urad", 100 * urad, config::kAngle, {config::above(0.0)});
-  machine.nc.block_time = nc.real_or("block_processing_time_ms", 0.0, config::kTime,
-                                     {config::at_least(0.0), config::at_most(kLongestPeriod)});
+  read_planning(nc, machine.nc);
   machine.nc.check_stability = nc.boolean_or("check_stability", true);
   machine.scale_delay = read_scale_delay(nc, machine.nc.periods.base);
 

@@ -76,6 +76,9 @@ struct NcSettings {
   double rotary_tolerance = 1e-4;  // rad
   double block_time = 0.0;         // s, least time of a block; 0: none
   double tolerance_share = 1.0;    // factor on tolerances of the program (G64 P)
+  // s, for cycle times; a simulation does not wait; none: unknown
+  std::optional<double> tool_change_time;
+  std::optional<double> spindle_time;  // of each start, stop and change of speed
   NominalFilter filter;
   std::array<GainPlaces, kJoints> gain_place;
   bool check_stability = true;  // refuse gains with which the linear loop diverges
