@@ -74,17 +74,6 @@ void add(system::MemoKey& key, const std::map<int, plant::Cutter>& cutters) {
   }
 }
 
-controllers::PathOptions path_options(const model::Scenario& scenario,
-                                      const model::MachineSettings& machine) {
-  controllers::PathOptions options;
-  options.tolerance = machine.nc.path_tolerance;
-  options.rotary_tolerance = machine.nc.rotary_tolerance;
-  options.feed_override = scenario.program.feed_override;
-  options.block_time = machine.nc.block_time;
-  options.tolerance_share = machine.nc.tolerance_share;
-  return options;
-}
-
 }  // namespace
 
 CasePreparation::CasePreparation(const model::Scenario& scenario, const model::CaseSpec& spec,
@@ -157,7 +146,7 @@ std::shared_ptr<TouchedBodies> CasePreparation::touched_bodies() const {
 
 double CasePreparation::least_time(const InterpretedProgram& program) const {
   return controllers::least_time(program.moves, machine_.chain.layout.words(start_),
-                                 path_options(scenario_, machine_));
+                                 path_options(machine_.nc, scenario_.program.feed_override));
 }
 
 const plant::ErrorModel& CasePreparation::errors(const std::string& name) const {
@@ -304,7 +293,7 @@ SharedMotion CasePreparation::motion(const SharedMoves& moves,
 
 SharedMotion CasePreparation::motion(const SharedMoves& moves, const InterpretedProgram& program,
                                      const controllers::JointLimits& limits, double feed) const {
-  controllers::PathOptions options = path_options(scenario_, machine_);
+  controllers::PathOptions options = path_options(machine_.nc, scenario_.program.feed_override);
   options.feed_override *= feed;
   system::MemoKey key;
   key.add_shared(moves.get());

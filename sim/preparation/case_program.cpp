@@ -45,6 +45,26 @@ std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
       controllers::kGreatCircleShare * machine.nc.rotary_tolerance);
 }
 
+std::map<int, Eigen::Vector3d> tips_of(const MoveList& moves, const controllers::ToolTable& tools) {
+  std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
+  for (const Move& move : moves) {
+    if (const auto* tool = tools.find(move.tool_offset)) {
+      tips[move.tool_offset] = -tool->offset.head<3>();
+    }
+  }
+  return tips;
+}
+
+controllers::PathOptions path_options(const model::NcSettings& nc, double feed_override) {
+  controllers::PathOptions options;
+  options.tolerance = nc.path_tolerance;
+  options.rotary_tolerance = nc.rotary_tolerance;
+  options.feed_override = feed_override;
+  options.block_time = nc.block_time;
+  options.tolerance_share = nc.tolerance_share;
+  return options;
+}
+
 MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& spec,
                       std::vector<Fault>* warnings,
                       const std::function<std::shared_ptr<controllers::Probed>()>& probed) {

@@ -1,12 +1,16 @@
 /// The program of a case as the NC of its machine reads it.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "controllers/gcode/program_setup.h"
 #include "controllers/gcode/program_text.h"
+#include "controllers/gcode/tool_table.h"
+#include "controllers/path/path_limits.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
@@ -36,5 +40,11 @@ MoveList read_program(const model::Scenario& scenario, const model::CaseSpec& sp
 /// Nominal kinematics and travel with which the NC of a machine does TCP control.
 std::shared_ptr<const controllers::ToolCentrePoint> tool_centre_point(
     const model::MachineSettings& machine);
+
+/// p_ST (3; m) by number of tool offset, of those that the moves use.
+std::map<int, Eigen::Vector3d> tips_of(const MoveList& moves, const controllers::ToolTable& tools);
+
+/// Tolerances and overrides with which the NC plans a program.
+controllers::PathOptions path_options(const model::NcSettings& nc, double feed_override);
 
 }  // namespace servomill::sim::preparation

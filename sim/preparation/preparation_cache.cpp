@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/frequency/margins.h"
+#include "sim/preparation/case_program.h"
 
 namespace servomill::sim::preparation {
 namespace {
@@ -76,20 +77,6 @@ void add(system::MemoKey& key, const controllers::FilterChain& filters) {
     const auto& [b0, b1, b2, a1, a2] = sections[n];
     for (const double coefficient : {b0, b1, b2, a1, a2}) key.add(coefficient);
   }
-}
-
-}  // namespace
-
-namespace {
-
-std::map<int, Eigen::Vector3d> tips_of(const MoveList& moves, const controllers::ToolTable& tools) {
-  std::map<int, Eigen::Vector3d> tips = {{0, Eigen::Vector3d::Zero()}};
-  for (const Move& move : moves) {
-    if (const auto* tool = tools.find(move.tool_offset)) {
-      tips[move.tool_offset] = -tool->offset.head<3>();
-    }
-  }
-  return tips;
 }
 
 bool controls_tip(const Move& move) {

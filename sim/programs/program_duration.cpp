@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+
+#include "controllers/path/travel.h"
+#include "sim/preparation/case_program.h"
 
 namespace servomill::sim::programs {
 namespace {
@@ -24,15 +28,26 @@ std::string missing_limits(const model::MachineSettings& machine) {
 
 }  // namespace
 
-ProgramDuration::ProgramDuration(const model::MachineSettings& machine)
-    : machine_(machine),
-      limits_{machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
-      why_unknown_(missing_limits(machine)) {
-  options_.tolerance = machine.nc.path_tolerance;
-  options_.rotary_tolerance = machine.nc.rotary_tolerance;
-  options_.block_time = machine.nc.block_time;
-  options_.tolerance_share = machine.nc.tolerance_share;
+controllers::TipMotions tip_motions_of(const MoveList& moves, const Joints& start,
+                                       const DurationSettings& settings,
+                                       const controllers::JointLimits& limits,
+                                       const controllers::PathOptions& options) {
+  const auto controls_tip = [](const Move& move) {
+    return is_motion(move.kind) && move.tool_control != ToolControl::none;
+  };
+  if (!settings.tool_centre_point || !first_move(moves, controls_tip)) return {};
+  return controllers::tip_motions(moves, *settings.tool_centre_point,
+                                  preparation::tips_of(moves, *settings.tools), start, limits,
+                                  options, settings.file);
 }
+
+ProgramDuration::ProgramDuration(const model::MachineSettings& machine, DurationSettings settings)
+    : machine_(machine),
+      settings_(std::move(settings)),
+      limits_{machine.nc.v_max, machine.nc.a_max, machine.nc.j_max},
+      options_(preparation::path_options(machine.nc, settings_.feed_override)),
+      start_(settings_.start),
+      why_unknown_(missing_limits(machine)) {}
 
 // Moves that cannot be planned make the time unknown.
 bool ProgramDuration::refuses(const Move& move) {
@@ -43,7 +58,7 @@ bool ProgramDuration::refuses(const Move& move) {
     why_unknown_ =
         fmt::format("line {} moves {}, but the machine has no such axis", move.line, letter(axis));
   }
-  if (move.tool_control != ToolControl::none) {
+  if (move.tool_control != ToolControl::none && !settings_.tool_centre_point) {
     why_unknown_ = fmt::format(
         "line {} is under tool-centre-point control or in a tilted plane; a scenario simulates it",
         move.line);
@@ -60,36 +75,56 @@ bool ProgramDuration::refuses(const Move& move) {
 }
 
 void ProgramDuration::plan() {
-  if (!moves_.empty()) {
-    duration_ +=
-        controllers::plan(moves_, machine_.chain.layout, start_, limits_, options_).duration();
+  if (moves_.empty()) return;
+  controllers::TipMotions tip = tip_motions_of(moves_, start_, settings_, limits_, options_);
+  const JointLayout& layout = machine_.chain.layout;
+  const controllers::Trajectory trajectory =
+      controllers::plan(moves_, layout, start_, limits_, options_, tip);
+  duration_ += trajectory.duration();
+  if (settings_.on_part) {
+    const auto slowed = controllers::slowed_inverse_time(moves_, layout, start_, limits_, options_);
+    if (slowed) tip.slowed.push_back(*slowed);
+    settings_.on_part({moves_, files_, start_, trajectory, tip.slowed,
+                       controllers::travel_faults(moves_, layout, start_, machine_.nc.lower,
+                                                  machine_.nc.upper, settings_.file, tip)});
   }
+  start_ = trajectory.end();
   moves_ = {};
-  start_ = at_;
+  files_.clear();
 }
 
-void ProgramDuration::add(const Move& move, const MoveKnowledge& known) {
+// Behind a move that is left out.
+Joints ProgramDuration::joints_at_end(const Move& move) const {
+  const JointLayout& layout = machine_.chain.layout;
+  if (move.tool_control == ToolControl::none) return layout.joints(move.end_machine);
+  const auto* tool = settings_.tools->find(move.tool_offset);
+  const Eigen::Vector3d p_ST =
+      tool != nullptr ? Eigen::Vector3d(-tool->offset.head<3>()) : Eigen::Vector3d::Zero();
+  const auto words = settings_.tool_centre_point->machine_words(move.end_machine, p_ST);
+  return layout.joints(words.value_or(move.end_machine));
+}
+
+void ProgramDuration::add(const Move& move, bool is_known, std::uint16_t file) {
   if (refuses(move)) return;
   const bool is_boundary = (move.kind == MoveKind::rapid) != (last_ == MoveKind::rapid);
   last_ = move.kind;
   if (moves_.size() >= kMovesAtOnce && is_boundary) plan();
-  if (known.distance_is_known) {
+  if (is_known) {
     moves_.push_back(move);
-    at_ = machine_.chain.layout.joints(move.end_machine);
+    files_.push_back(file);
     return;
   }
   plan();
   left_out_.push_back(move.line);
-  start_ = at_ = machine_.chain.layout.joints(move.end_machine);
+  start_ = joints_at_end(move);
 }
 
-void ProgramDuration::add(const Move& move) {
-  if (move.kind == MoveKind::tool) ++tool_changes_;
-  if (move.kind == MoveKind::stop) ++stops_;
+void ProgramDuration::add_other(const Move& move, std::uint16_t file) {
   const bool is_unknown = move.kind == MoveKind::dwell && std::isnan(move.value);
   if (is_unknown) ++unknown_dwells_;
-  if (is_unknown || move.kind == MoveKind::message) return;
-  if (why_unknown_.empty()) moves_.push_back(move);
+  if (is_unknown || !why_unknown_.empty()) return;
+  moves_.push_back(move);
+  files_.push_back(file);
 }
 
 void ProgramDuration::add_unknown_moves(std::string_view whose, int line) {

@@ -7,7 +7,6 @@
 #include <memory>
 #include <utility>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_groups.h"
 #include "controllers/gcode/readers/plane_frame.h"
@@ -15,6 +14,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/read_machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
+#include "sim/programs/given_setup.h"
 #include "sim/programs/program_duration.h"
 
 namespace servomill::sim::programs {
@@ -25,45 +25,18 @@ using controllers::Group;
 using controllers::ProgramSetup;
 using controllers::ProgramText;
 
-// Canned cycles compare their heights with the one before. Where nothing names that, it is above
-// the workpiece, and none that a program would name.
-constexpr double kSomeHeight = 1.23456789;  // m
-
-struct SurveyInputs {
-  ProgramSetup setup;
-  GivenPlaces given;
+struct SurveyInputs : GivenSetup {
   std::optional<model::MachineSettings> machine;
-  bool is_conversational = false;
 };
 
 SurveyInputs read_inputs(const SurveyRequest& request) {
   SurveyInputs out;
-  ProgramText program = ProgramText::of_file(request.program_file);
-  out.is_conversational =
-      controllers::conversational::is_conversational(program, controllers::Reader::any);
   if (!request.inputs.machine.empty()) {
     out.machine = input::read_machine_description(request.inputs.machine).machine;
-    out.given.has_machine = true;
   }
-  out.setup = program_setup(request.inputs, request.program_file);
   const JointLayout* layout = out.machine ? &out.machine->chain.layout : nullptr;
-  if (!request.inputs.parameter_file.empty()) {
-    out.given.has_stored_places = !out.is_conversational;  // M140 MB MAX is read as G28
-    for (AxisFlags& axes : out.given.work_offset) axes.fill(true);
-  }
-  const GivenWorkOffsets offsets = work_offsets(request.work_offsets, layout);
-  for (std::size_t k = 0; k < offsets.size(); ++k) {
-    if (!offsets[k]) continue;
-    out.setup.work_offset[k] = offsets[k]->words;
-    out.setup.work_rotation[k] = offsets[k]->rotation;
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      out.given.work_offset[k][i] = out.given.work_offset[k][i] || offsets[k]->given[i];
-    }
-  }
-  for (const std::string& text : request.tool_lengths) add_tool_length(text, out.setup.tools);
-  for (const auto& [number, tool] : out.setup.tools.entries()) {
-    out.given.tool_lengths.insert(number);
-  }
+  static_cast<GivenSetup&>(out) = given_setup(request.program_file, request.inputs,
+                                              request.work_offsets, request.tool_lengths, layout);
   return out;
 }
 
@@ -110,12 +83,12 @@ class Surveyor {
     if (move.kind == MoveKind::tool) ++out_.tool_changes;
     if (move.kind == MoveKind::stop) ++out_.stops;
     if (!is_motion(move.kind)) {
-      if (duration_) duration_->add(move);
+      if (duration_ && move.kind != MoveKind::message) duration_->add_other(move);
       return;
     }
     const MoveKnowledge known = positions_.next(move, block, is_last);
     out_.extent.add(move, known);
-    if (duration_) duration_->add(move, known);
+    if (duration_) duration_->add(move, known.distance_is_known);
     if (known.is_place) return;
     note_first(out_.work_systems, system_name(out_, known.work_system),
                work_system_lines_[known.work_system]);

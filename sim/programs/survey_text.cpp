@@ -40,16 +40,6 @@ std::string in_time(double seconds) {
   return hours > 0.0 ? fmt::format("{:.0f} h {}", hours, rest) : rest;
 }
 
-// "line 3", "lines 3, 7, 12, ...".
-std::string lines_text(const std::vector<int>& lines) {
-  constexpr std::size_t kMax = 5;
-  const std::size_t shown = std::min(lines.size(), kMax);
-  return fmt::format(
-      "{} {}{}", lines.size() == 1 ? "line" : "lines",
-      fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-      lines.size() > shown ? ", ..." : "");
-}
-
 std::string use_text(const FirstUse& use) {
   return use.line > 0 ? fmt::format("{} (line {})", use.word, use.line)
                       : fmt::format("{} (in force at the start)", use.word);
@@ -197,13 +187,13 @@ void add_cycle_time(const ProgramSurvey& survey, Text& text) {
   text.add("cycle time", fmt::format("{}{} on {}", least, in_time(time.duration), time.machine));
   for (const auto& [whose, lines] : time.unknown_moves) {
     text.add("cycle time",
-             fmt::format("the moves of {} are not known ({})", whose, lines_text(lines)));
+             fmt::format("the moves of {} are not known ({})", whose, system::line_numbers(lines)));
   }
   std::vector<std::string> without;
   if (!time.left_out.empty()) {
     without.push_back(fmt::format("{} from unknown positions ({})",
                                   system::counted(time.left_out.size(), "move"),
-                                  lines_text(time.left_out)));
+                                  system::line_numbers(time.left_out)));
   }
   if (time.unknown_dwells > 0) {
     without.push_back(system::counted(static_cast<std::size_t>(time.unknown_dwells), "dwell") +

@@ -29,6 +29,7 @@ struct Command {
 int run_command(const Arguments& arguments);
 int compare_command(const Arguments& arguments);
 int check_command(const Arguments& arguments);
+int time_command(const Arguments& arguments);
 int canon_command(const Arguments& arguments);
 int list_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);

@@ -26,7 +26,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 24> kCommands = {{
+constexpr std::array<Command, 25> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -52,6 +52,8 @@ constexpr std::array<Command, 24> kCommands = {{
      "writes a program corrected for the errors of a machine", compensate_command},
     {"check", "FILE...", "checks scenarios, machines, cutter locations and programs",
      check_command},
+    {"time", "PROGRAM --machine M.toml", "cycle time of a program, and what it is spent on",
+     time_command},
     {"canon", "PROGRAM", "prints the canonical moves of a program, one JSON object per line",
      canon_command},
     {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "post-processes cutter locations to G-code",

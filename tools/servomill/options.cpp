@@ -113,8 +113,8 @@ bool Options::print_other_form(const Arguments& arguments) const {
 
 // A word or a value that is a file's name is an input, unless results go there.
 void Options::remember_files() const {
-  constexpr std::array<std::string_view, 7> kOutputs = {
-      "make-up", "output", "point-uncertainty", "record", "signals", "table", "touches"};
+  constexpr std::array<std::string_view, 8> kOutputs = {
+      "csv", "make-up", "output", "point-uncertainty", "record", "signals", "table", "touches"};
   for (const auto& [name, value] : values_) {
     if (std::find(kOutputs.begin(), kOutputs.end(), name) != kOutputs.end()) continue;
     if (const auto* text = boost::any_cast<std::string>(&value.value())) remember_input(*text);

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/model/design.h"
+#include "sim/programs/cycle_time/cycle_time.h"
+#include "sim/system/write_file.h"
+#include "tools/servomill/axis_options.h"
+#include "tools/servomill/command.h"
+#include "tools/servomill/program_options.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+using sim::programs::CycleTimeReport;
+
+void declare(Options& options) {
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  const auto texts = [](const char* name) {
+    return po::value<std::vector<std::string>>()->value_name(name);
+  };
+  options.add()("machine,m", text("M.toml"),
+                "machine that runs the program; v_max, a_max and j_max of its axes are enough");
+  options.add()("by", text("line|tool|section"),
+                "table to print; default: tools and sections where there are several, and lines");
+  options.add()("top", po::value<int>()->default_value(10)->value_name("N"),
+                "prints the N lines that take longest");
+  options.add()("raise", text("PERCENT"),
+                "plans the program again with each limit raised by as much, such as 10, and prints "
+                "the time that this saves");
+  options.add()("csv", text("FILE.csv"), "writes the table of --by (default: line), all rows");
+  add_program_options(options);
+  options.add()("work-offset", texts("X=10,Y=-5"),
+                "position of G54 in the machine, mm and deg; G55:X=10,R=30 for another one and "
+                "with a rotation");
+  options.add()("tool-length", texts("1=50"),
+                "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
+  options.add()("start", text("X=0,Y=0,Z=50"),
+                "machine position before the program, mm and deg, 0 for axes without one: all "
+                "positions are known from there, and moves beyond the travel are reported");
+  options.add()("feed-override", po::value<double>()->value_name("0.5"), "factor on all feeds");
+  options.add()("set", texts("KEY=VALUE"),
+                "changes a key of the machine, such as axis.X.a_max=\"2 m/s^2\"; of the scenario, "
+                "as for servomill run");
+  options.add()("case", texts("NAME"), "scenarios: only this case");
+  options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
+                "threads of --raise (default: one per core)");
+  options.add()("json", "prints one JSON object for each motion; null for what is unknown");
+  options.add()("force,f", "replaces the file of --csv if it exists");
+  options.add()("quiet,q", "prints only warnings and faults");
+  add_plugin_option(options);
+}
+
+// A share above 0, given in percent: "10", "10 %"; 0 without the option.
+double raise_of(const Options& options) {
+  if (!options.has("raise")) return 0.0;
+  std::string text = options.get<std::string>("raise");
+  while (!text.empty() && (text.back() == '%' || text.back() == ' ')) text.pop_back();
+  const double percent = sim::model::number_of(text);
+  constexpr double kMax = 1000.0;
+  if (percent > 0.0 && percent <= kMax) return percent / 100.0;
+  throw InputError({"--raise " + options.get<std::string>("raise")},
+                   fmt::format("must be a number of percent, > 0 and <= {:g}", kMax));
+}
+
+sim::programs::CycleTimeRequest request_of(const Options& options) {
+  if (!options.has("machine")) {
+    throw InputError({"servomill time"}, "needs --machine M.toml; see --help");
+  }
+  sim::programs::CycleTimeRequest request;
+  request.program_file = options.word();
+  request.inputs = program_inputs(options);
+  request.changes = options.list("set");
+  request.work_offsets = options.list("work-offset");
+  request.tool_lengths = options.list("tool-length");
+  if (options.has("start")) request.start = options.get<std::string>("start");
+  if (options.has("feed-override")) {
+    request.feed_override = positive_number(options, "feed-override");
+  }
+  request.raise = raise_of(options);
+  request.threads = thread_count(options);
+  return request;
+}
+
+void refuse_options_of_programs(const Options& options) {
+  for (const char* name :
+       {"machine", "tools", "parameter", "parameter-file", "subs", "reader", "decimal-point",
+        "feed", "additional-offset", "ignore-code", "block-delete", "max-jumps", "work-offset",
+        "tool-length", "start", "feed-override"}) {
+    if (!options.has(name)) continue;
+    throw InputError({fmt::format("--{}", name)},
+                     "is for programs; a scenario has its own, see --set");
+  }
+}
+
+std::vector<CycleTimeReport> reports_of(const Options& options) {
+  if (options.word().ends_with(".toml")) {
+    refuse_options_of_programs(options);
+    return sim::programs::scenario_cycle_times(options.word(), options.list("set"),
+                                               options.list("case"), raise_of(options),
+                                               thread_count(options));
+  }
+  if (options.has("case")) throw InputError({"--case"}, "is for scenarios");
+  sim::programs::CycleTimeRequest request = request_of(options);
+  ProgressBar bar(options.has("quiet"));
+  const auto begin = std::chrono::steady_clock::now();
+  request.progress = [&](double share) {
+    constexpr std::chrono::seconds kPatience(2);
+    if (std::chrono::steady_clock::now() - begin > kPatience) bar.show(share);
+  };
+  std::vector<CycleTimeReport> out;
+  out.push_back(sim::programs::cycle_time(request));
+  bar.clear();
+  return out;
+}
+
+void print_warnings(const std::vector<CycleTimeReport>& reports) {
+  std::set<std::string> printed;
+  for (const CycleTimeReport& report : reports) {
+    for (const Fault& warning : report.warnings) {
+      const std::string line =
+          fmt::format("{}: warning: {}", to_string(warning.place), warning.message);
+      if (printed.insert(line).second) fmt::print(stderr, "{}\n", line);
+    }
+  }
+}
+
+}  // namespace
+
+int time_command(const Arguments& arguments) {
+  Options options(
+      "time",
+      "PROGRAM --machine M.toml [--by line|tool|section] [--raise PERCENT] [--csv FILE] [--json]",
+      "Cycle time of a program: its motion is planned as in a run, without the servo loops.\n"
+      "Prints where the time goes: feed, rapid, dwell; what bounds the motion (programmed feed,\n"
+      "velocity, acceleration, jerk, corners within the tolerance), axis by axis; tools, sections\n"
+      "(MSG comments) and the lines that take longest. --raise prints what higher limits save.\n\n"
+      "A limit bounds the motion where it is used by 90 % or more, and most of all. A corner\n"
+      "counts where the acceleration or jerk of rounding it between straight blocks does.\n\n"
+      "What is unknown is said, and never taken for 0: moves from positions that nothing names\n"
+      "(--start names the first), stops, and, unless the machine file has nc.tool_change_time_s\n"
+      "and nc.spindle_time_s, tool changes and changes of spindle speed.\n\n"
+      "Of a SCENARIO.toml: each motion of its cases, as their strategies rewrite the program.",
+      "PROGRAM|SCENARIO.toml");
+  declare(options);
+  if (!options.parse(arguments)) return kDone;
+  load_plugins(options);
+  sim::programs::TimeReportForm form;
+  if (options.has("by")) {
+    form.table = static_cast<sim::programs::TimeTable>(
+        choice_option(options, "by", sim::programs::kTimeTables));
+  }
+  const int top = options.get<int>("top");
+  if (top < 0) throw InputError({"--top"}, "must be >= 0");
+  form.top = static_cast<std::size_t>(top);
+  const std::string csv = output_of(options, "csv", ".csv");
+  const std::vector<CycleTimeReport> reports = reports_of(options);
+  print_warnings(reports);
+  if (!csv.empty()) {
+    if (reports.size() > 1) {
+      throw InputError({"--csv"}, "takes one motion; choose a case with --case");
+    }
+    const auto table = form.table.value_or(sim::programs::TimeTable::line);
+    sim::system::write_text_file(csv, sim::programs::to_csv(reports.front(), table),
+                                 options.has("force"));
+  }
+  if (options.has("quiet")) return kDone;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    if (options.has("json")) {
+      fmt::print("{}\n", sim::programs::to_json(reports[k], form));
+    } else {
+      fmt::print("{}{}", k == 0 ? "" : "\n", sim::programs::to_text(reports[k], form));
+    }
+  }
+  return kDone;
+}
+
+}  // namespace servomill::tools
