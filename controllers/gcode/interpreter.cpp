@@ -34,7 +34,7 @@ std::array<AxisWords, 9> ProgramSetup::zero_offsets() {
   return offsets;
 }
 
-const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = {{
+const std::array<Interpreter::Machine::Step, 22> Interpreter::Machine::kSteps = {{
     {&Machine::message, kAlways},
     {&Machine::feed_mode, bit(Group::g_feed_mode)},
     {&Machine::feed, bit('F')},
@@ -44,6 +44,7 @@ const std::array<Interpreter::Machine::Step, 21> Interpreter::Machine::kSteps = 
     {&Machine::spindle, bit(Group::m_spindle)},
     {&Machine::coolant, bit(Group::m_coolant)},
     {&Machine::override_switches, bit(Group::m_override)},
+    {&Machine::output, bit(Group::m_input_output)},
     {&Machine::dwell, bit(Group::g_non_modal)},
     {&Machine::plane, bit(Group::g_plane)},
     {&Machine::units, bit(Group::g_units)},
@@ -289,6 +290,14 @@ void Interpreter::Machine::override_switches() {
     default:
       return;
   }
+}
+
+// M62 ... M65 switch an output, which moves nothing.
+void Interpreter::Machine::output() {
+  const auto& code = request().of(Group::m_input_output);
+  if (request().has('P')) return;
+  fail(code.column, fmt::format("{} needs a P word (number of the output)",
+                                code_name('M', request().code(Group::m_input_output))));
 }
 
 // ------------------------------------------------------------------------------------- public API

@@ -210,7 +210,7 @@ class Interpreter::Machine {
     return std::uint64_t{1} << (kLetters + static_cast<unsigned>(group));
   }
   static constexpr unsigned kLetters = kWordLetters;
-  static const std::array<Step, 21> kSteps;
+  static const std::array<Step, 22> kSteps;
   void message();
   void feed_mode();
   void feed();
@@ -221,6 +221,7 @@ class Interpreter::Machine {
   void coolant();
   void override_switches();
   bool is_switch_on() const;
+  void output();
   void dwell();
   void plane();
   void units();

@@ -129,10 +129,10 @@ constexpr auto kMCodes = std::to_array<Code>({
     {530, m_override, true, "P"},
     {600, m_stop, true, ""},
     {610, m_tool, false, ""},
-    {620, m_input_output, false, ""},
-    {630, m_input_output, false, ""},
-    {640, m_input_output, false, ""},
-    {650, m_input_output, false, ""},
+    {620, m_input_output, true, "P"},
+    {630, m_input_output, true, "P"},
+    {640, m_input_output, true, "P"},
+    {650, m_input_output, true, "P"},
     {660, m_input_output, false, ""},
     {670, m_input_output, false, ""},
     {680, m_input_output, false, ""},
@@ -161,7 +161,6 @@ constexpr auto kGRefusals = std::to_array<Refusal>({
 constexpr auto kMRefusals = std::to_array<Refusal>({
     {190, 190, "the spindle angle is not simulated, so it cannot be oriented"},
     {610, 610, "renames the tool in the spindle by hand; use T and M6"},
-    {620, 650, "switches outputs of the control, which are not simulated"},
     {660, 660, "waits for an input of the control, which is not simulated"},
     {670, 680, "sets analog outputs of the control, which are not simulated"},
 });

@@ -51,6 +51,11 @@ TEST(Switches, TakeAPWordAndChangeNoMove) {
   EXPECT_EQ(fault_of("M48 M50"), "p.nc:1:5: error: M48 and M50 in one block (same modal group)");
 }
 
+TEST(Outputs, TakeAPWordAndChangeNoMove) {
+  EXPECT_EQ(moves_of("M62 P0\nM63 P0\nM64 P2\nM65 P2").size(), 0u);
+  EXPECT_EQ(fault_of("M62"), "p.nc:1:1: error: M62 needs a P word (number of the output)");
+}
+
 TEST(Stops, M60WaitsForTheOperatorLikeM0) {
   const Move move = last_move("M60");
   EXPECT_EQ(move.kind, MoveKind::stop);
@@ -86,7 +91,6 @@ TEST(RefusedCodes, HaveAReasonEach) {
             "G96: constant surface speed is for turning; program the speed with G97 S");
   EXPECT_EQ(fault("M19"), "M19: the spindle angle is not simulated, so it cannot be oriented");
   EXPECT_EQ(fault("M61"), "M61: renames the tool in the spindle by hand; use T and M6");
-  EXPECT_EQ(fault("M64"), "M64: switches outputs of the control, which are not simulated");
   EXPECT_EQ(fault("M66"), "M66: waits for an input of the control, which is not simulated");
   EXPECT_EQ(fault("M68"), "M68: sets analog outputs of the control, which are not simulated");
 }
