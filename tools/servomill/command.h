@@ -33,6 +33,7 @@ int time_command(const Arguments& arguments);
 int canon_command(const Arguments& arguments);
 int list_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
+int machine_command(const Arguments& arguments);
 int merge_command(const Arguments& arguments);
 int bode_command(const Arguments& arguments);
 int step_command(const Arguments& arguments);

@@ -26,7 +26,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 25> kCommands = {{
+constexpr std::array<Command, 26> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -58,6 +58,9 @@ constexpr std::array<Command, 25> kCommands = {{
      canon_command},
     {"post", "PART.cls --machine M.toml [-o OUT.ngc]", "post-processes cutter locations to G-code",
      post_command},
+    {"machine", "from SETTINGS [-o MACHINE.toml]",
+     "writes a machine file from settings of LinuxCNC, grbl, FluidNC or RepRapFirmware",
+     machine_command},
     {"recording", "FILE... [-o OUT.h5|OUT.csv]", "prints and converts recordings of real axes",
      recording_command},
     {"calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",

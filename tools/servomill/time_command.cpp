@@ -20,7 +20,7 @@ namespace {
 namespace po = boost::program_options;
 using sim::programs::CycleTimeReport;
 
-void declare(Options& options) {
+void declare_time_options(Options& options) {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   const auto texts = [](const char* name) {
     return po::value<std::vector<std::string>>()->value_name(name);
@@ -148,7 +148,7 @@ int time_command(const Arguments& arguments) {
       "and nc.spindle_time_s, tool changes and changes of spindle speed.\n\n"
       "Of a SCENARIO.toml: each motion of its cases, as their strategies rewrite the program.",
       "PROGRAM|SCENARIO.toml");
-  declare(options);
+  declare_time_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
   sim::programs::TimeReportForm form;
