@@ -37,6 +37,7 @@ SIM_ROOMS = {
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "fmu": ["controllers", "engine", "model"],
     "tables": ["controllers", "strategies", "model"],
+    "limits": ["config", "model", "recordings", "system"],
     "frequency": ["engine", "model", "numerics", "records", "system"],
     "evaluation": ["engine", "metrology", "model", "records", "system"],
     "input": ["controllers", "strategies", "config", "evaluation", "metrology", "model", "standards", "system"],

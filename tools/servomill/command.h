@@ -31,6 +31,7 @@ int compare_command(const Arguments& arguments);
 int check_command(const Arguments& arguments);
 int time_command(const Arguments& arguments);
 int canon_command(const Arguments& arguments);
+int limits_command(const Arguments& arguments);
 int list_command(const Arguments& arguments);
 int sweep_command(const Arguments& arguments);
 int machine_command(const Arguments& arguments);

@@ -62,7 +62,7 @@ int machine_command(const Arguments& arguments) {
       "Writes a machine file from the settings of a real control: an INI file of LinuxCNC, the\n"
       "settings of grbl as $$ lists them, config.yaml of FluidNC, config.g of RepRapFirmware. It\n"
       "holds axes, travel, velocity, acceleration, path tolerance, each with the line that it is\n"
-      "from, for servomill time, check and compensate; a run needs drives, too.\n\n"
+      "from, for servomill time, check, limits and compensate; a run needs drives, too.\n\n"
       "What the settings do not give is not invented: it is a comment, or, where a machine file\n"
       "needs a value (jerk, structure), an assumption, which the file and this command name.",
       "from SETTINGS");

@@ -26,7 +26,7 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 26> kCommands = {{
+constexpr std::array<Command, 27> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
@@ -63,6 +63,9 @@ constexpr std::array<Command, 26> kCommands = {{
      machine_command},
     {"recording", "FILE... [-o OUT.h5|OUT.csv]", "prints and converts recordings of real axes",
      recording_command},
+    {"limits", "LOG --machine M.toml",
+     "checks a recorded motion against velocity, acceleration and jerk of a machine",
+     limits_command},
     {"calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
      "finds the geometric errors of a machine from readings of instruments", calibrate_command},
     {"plan-calibration", "[READINGS.toml] --machine MACHINE.toml [-o FOLDER]",

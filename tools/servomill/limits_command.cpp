@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "plant/vocabulary/input_error.h"
+#include "sim/input/read_machine.h"
+#include "sim/limits/limit_check.h"
+#include "sim/recordings/read_recording.h"
+#include "tools/servomill/axis_options.h"
+#include "tools/servomill/command.h"
+
+namespace servomill::tools {
+namespace {
+
+namespace po = boost::program_options;
+
+void declare_limits_options(Options& options) {
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  const auto texts = [](const char* name) {
+    return po::value<std::vector<std::string>>()->value_name(name);
+  };
+  options.add()("machine,m", text("M.toml"),
+                "machine with the limits v_max, a_max, j_max of its axes");
+  options.add()("channel", texts("\"X=NAME [mm]\""),
+                "channel of an axis, with its unit if the log has none: a position, a velocity "
+                "(mm/s) or an acceleration; default: by the names of channels");
+  options.add()("line", text("NAME"), "channel of the line of the program; default: by its name");
+  options.add()("case", text("NAME"), "of a result file with several cases");
+  options.add()("period", text("\"1 ms\""),
+                "time between samples of a log that numbers them (halsampler), bare numbers in ms");
+  options.add()("time-unit", text("us"), "unit of times without a unit in the log; default: s");
+  options.add()("window", text("\"5 ms\""),
+                "window of the means, bare numbers in ms; default: the shortest in which the "
+                "resolution of the log takes 5 % of the limit, 100 ms at most");
+  options.add()(
+      "resolution", text("\"1 um\""),
+      "resolution of samples, bare numbers in um (of rotary axes in urad, of velocities per "
+      "s); default: the step of which all samples are multiples");
+  options.add()("set", texts("KEY=VALUE"), "changes a key of the machine");
+  options.add()("top", po::value<int>()->default_value(5)->value_name("N"),
+                "lists the N largest excesses of each limit");
+  options.add()("json", "prints one JSON object");
+  options.add()("quiet,q", "prints only faults");
+}
+
+}  // namespace
+
+int limits_command(const Arguments& arguments) {
+  Options options(
+      "limits", "LOG --machine M.toml [--channel \"X=NAME [mm]\"]... [--period \"1 ms\"]",
+      "Checks a recorded motion against the limits of a machine: velocity, acceleration and jerk "
+      "of\neach axis, the largest factor over the limit, when, in which line and how often. LOG "
+      "is a\nrecording of any known format (halsampler, halscope, CSV, HDF5, ...: see servomill "
+      "recording).\n\n"
+      "Derivatives are means over windows: divided differences of the samples, which a motion "
+      "within\nits limits cannot exceed, whatever the sampling. The resolution of the log changes "
+      "them by no\nmore than is printed; an excess counts if it is larger than that.\n\n"
+      "Exit status 1: a limit is exceeded.",
+      "LOG");
+  declare_limits_options(options);
+  if (!options.parse(arguments)) return kDone;
+  if (!options.has("machine")) {
+    throw InputError({"servomill limits"}, "needs --machine M.toml; see --help");
+  }
+  const auto text_of = [&](const char* name) {
+    return options.has(name) ? options.get<std::string>(name) : std::string();
+  };
+  sim::limits::LimitRequest request;
+  request.log.channels = options.list("channel");
+  request.log.line_channel = text_of("line");
+  request.log.case_name = text_of("case");
+  request.log.period = positive_option(options, "period", sim::config::kTime, "ms");
+  request.window = positive_option(options, "window", sim::config::kTime, "ms");
+  request.resolution = positive_option(options, "resolution", sim::config::kLength, "um");
+  const int top = options.get<int>("top");
+  if (top < 0) throw InputError({"--top"}, "must be >= 0");
+  const auto machine =
+      sim::input::read_machine_description(options.get<std::string>("machine"), options.list("set"))
+          .machine;
+  const auto recording = sim::recordings::read_recording(options.word(), text_of("time-unit"));
+  const sim::limits::LimitReport report = sim::limits::check_limits(recording, machine, request);
+  const auto shown = static_cast<std::size_t>(top);
+  if (options.has("json")) {
+    fmt::print("{}\n", sim::limits::to_json(report, shown));
+  } else if (!options.has("quiet")) {
+    fmt::print("{}", sim::limits::to_text(report, shown));
+  }
+  return report.is_within() ? kDone : kMachineStopped;
+}
+
+}  // namespace servomill::tools
