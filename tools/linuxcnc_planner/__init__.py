@@ -1,0 +1,1 @@
+"""LinuxCNC's own trajectory planner, run headless, next to servomill time."""
