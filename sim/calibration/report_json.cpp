@@ -14,12 +14,6 @@ using system::JsonObject;
 
 const char* unit_of(bool linear) { return linear ? "um" : "urad"; }
 
-std::string texts_json(const std::vector<std::string>& texts) {
-  std::vector<std::string> items;
-  for (const std::string& text : texts) items.push_back(system::json_text(text));
-  return system::json_list(items);
-}
-
 std::string group_json(const readings::Group& group, const GroupResult& result) {
   JsonObject out;
   out.text("group", group.name)
@@ -87,8 +81,8 @@ std::string report_json(const Calibration& calibration,
   return JsonObject()
       .raw("groups", system::json_list(groups))
       .raw("errors", system::json_list(errors))
-      .raw("undetermined", texts_json(unidentifiable_sentences(calibration)))
-      .raw("suggestions", texts_json(suggestions))
+      .raw("undetermined", system::json_texts(unidentifiable_sentences(calibration)))
+      .raw("suggestions", system::json_texts(suggestions))
       .line();
 }
 

@@ -10,18 +10,12 @@ namespace {
 
 using system::JsonObject;
 
-std::string texts_json(const std::vector<std::string>& texts) {
-  std::vector<std::string> items;
-  for (const std::string& text : texts) items.push_back(system::json_text(text));
-  return system::json_list(items);
-}
-
 // A value that the recordings do not determine has no interval.
 std::string parameter_json(const Identification& result, std::size_t k) {
   const Estimate& one = result.estimates[k];
   const bool is_identifiable = result.uncertainty.identifiable[k];
   JsonObject out;
-  out.raw("keys", texts_json(one.keys)).text("unit", one.unit.empty() ? "1" : one.unit);
+  out.raw("keys", system::json_texts(one.keys)).text("unit", one.unit.empty() ? "1" : one.unit);
   for (const RecordResult& record : result.estimation) {
     if (record.record->number == one.record) out.text("recording", record.record->record.name);
   }
@@ -73,8 +67,8 @@ std::string report_json(const Identification& result) {
       .raw("parameters", system::json_list(parameters))
       .raw("recordings", system::json_list(records))
       .raw("laws", system::json_list(laws))
-      .raw("undetermined", texts_json(unidentifiable_sentences(result)))
-      .raw("warnings", texts_json(warnings(result)))
+      .raw("undetermined", system::json_texts(unidentifiable_sentences(result)))
+      .raw("warnings", system::json_texts(warnings(result)))
       .line();
 }
 

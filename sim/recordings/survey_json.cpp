@@ -58,16 +58,15 @@ std::string channel_json(const Channel& channel) {
 }  // namespace
 
 std::string survey_json(const Recording& recording) {
-  std::vector<std::string> bases, channels, notes;
+  std::vector<std::string> bases, channels;
   for (const Base& base : recording.bases) bases.push_back(base_json(base));
   for (const Channel& channel : recording.channels) channels.push_back(channel_json(channel));
-  for (const std::string& note : recording.notes) notes.push_back(system::json_text(note));
   return JsonObject()
       .text("file", recording.file)
       .text("format", recording.format)
       .raw("bases", system::json_list(bases))
       .raw("channels", system::json_list(channels))
-      .raw("notes", system::json_list(notes))
+      .raw("notes", system::json_texts(recording.notes))
       .line();
 }
 

@@ -103,8 +103,7 @@ std::string table_text(const ReportTable& table) {
 }
 
 std::string json(const ReportTable& table) {
-  std::vector<std::string> columns, rows;
-  for (const std::string& row : table.rows) rows.push_back(system::json_text(row));
+  std::vector<std::string> columns;
   for (const ReportColumn& column : table.columns) {
     std::vector<std::string> numbers;
     numbers.reserve(column.values.size());
@@ -117,7 +116,7 @@ std::string json(const ReportTable& table) {
   }
   return system::JsonObject()
       .text("name", table.name)
-      .raw("rows", system::json_list(rows))
+      .raw("rows", system::json_texts(table.rows))
       .raw("columns", system::json_list(columns))
       .line();
 }
@@ -138,7 +137,7 @@ std::string printed(const Report& report, bool with_all_tables) {
 }
 
 std::string json(const Report& report) {
-  std::vector<std::string> values, tables, remarks;
+  std::vector<std::string> values, tables;
   for (const ReportValue& one : report.values) {
     values.push_back(system::JsonObject()
                          .text("parameter", one.symbol)
@@ -148,14 +147,13 @@ std::string json(const Report& report) {
                          .line());
   }
   for (const ReportTable& table : report.tables) tables.push_back(json(table));
-  for (const std::string& remark : report.remarks) remarks.push_back(system::json_text(remark));
   return system::JsonObject()
       .text("standard", report.standard)
       .text("name", report.name)
       .text("headline", report.headline)
       .raw("parameters", system::json_list(values))
       .raw("tables", system::json_list(tables))
-      .raw("notes", system::json_list(remarks))
+      .raw("notes", system::json_texts(report.remarks))
       .line();
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 namespace servomill::sim::system {
 
@@ -25,6 +26,12 @@ std::string json_number(double value) {
 
 std::string json_list(std::span<const std::string> items, JsonSpacing spacing) {
   return fmt::format("[{}]", fmt::join(items, spacing == JsonSpacing::blank ? ", " : ","));
+}
+
+std::string json_texts(std::span<const std::string> texts, JsonSpacing spacing) {
+  std::vector<std::string> items;
+  for (const std::string& text : texts) items.push_back(json_text(text));
+  return json_list(items, spacing);
 }
 
 JsonObject& JsonObject::raw(std::string_view key, std::string_view json) {

@@ -18,6 +18,10 @@ std::string json_number(double value);
 /// Behind commas and colons.
 enum class JsonSpacing : std::uint8_t { blank, none };
 
+/// A list of texts.
+std::string json_texts(std::span<const std::string> texts,
+                       JsonSpacing spacing = JsonSpacing::blank);
+
 /// A list of what is JSON already.
 std::string json_list(std::span<const std::string> items, JsonSpacing spacing = JsonSpacing::blank);
 

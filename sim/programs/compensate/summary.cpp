@@ -71,11 +71,10 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
 std::string Summary::json(const JointLayout& layout, std::string_view uncertainty) const {
   const auto object = [] { return system::JsonObject(system::JsonSpacing::none); };
   constexpr int kSmall = 4, kPath = 6;  // decimals of um and urad, of mm and s
-  std::vector<std::string> xyz, assumptions;
+  std::vector<std::string> xyz;
   for (int i = 0; i < 3; ++i) {
     xyz.push_back(fmt::format("{:.{}f}", largest.correction[i] / um, kSmall));
   }
-  for (const std::string& one : assumed) assumptions.push_back(system::json_text(one));
   return object()
       .integer("blocks_before", blocks_before)
       .integer("blocks_after", blocks_after)
@@ -97,14 +96,14 @@ std::string Summary::json(const JointLayout& layout, std::string_view uncertaint
       .fixed("corrected_time_s", corrected_time, kPath)
       .fixed("left_tip_um", left.tip / um, kSmall)
       .fixed("left_axis_urad", left.axis / urad, kSmall)
-      .integer("left_line", most_left ? most_left->line : 0)
+      .raw("left_line", most_left ? std::to_string(most_left->line) : "null")
       .integer("reversals", reversals)
       .fixed("reversal_um", reversal_width / um, kSmall)
       .fixed("undirected_um", undirected_width / um, kSmall)
       .integer("ends_outside_travel", outside_count)
       .raw("uncertainty", uncertainty)
       .boolean("unrolled", unrolled)
-      .raw("assumed", system::json_list(assumptions, system::JsonSpacing::none))
+      .raw("assumed", system::json_texts(assumed, system::JsonSpacing::none))
       .line();
 }
 

@@ -35,6 +35,12 @@ TEST(Json, KeepsTheOrderOfItsMembers) {
   EXPECT_EQ(json_list({}), "[]");
 }
 
+TEST(Json, ListsTexts) {
+  const std::vector<std::string> texts = {"X", "say \"X\""};
+  EXPECT_EQ(json_texts(texts), R"(["X", "say \"X\""])");
+  EXPECT_EQ(json_texts(texts, JsonSpacing::none), R"(["X","say \"X\""])");
+}
+
 TEST(Json, CanDoWithoutBlanks) {
   const std::vector<std::string> items = {"1", "2"};
   EXPECT_EQ(JsonObject(JsonSpacing::none)
