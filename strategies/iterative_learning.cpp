@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "strategies/axis_displacement.h"
 
 namespace servomill::strategies {
@@ -156,8 +157,11 @@ Lesson learn(const LearningPlan& plan, const JointLayout& layout, TrialRuns& run
       PathOffset{times, std::vector<Joints>(times->rows(), Joints::Zero())});
   Lesson out{u, {}};
   double best = 0.0;
+  Stage stage(plan.takes_best ? "trial runs at most" : "trial runs", plan.runs,
+              plan.takes_best ? Steps::unlike : Steps::alike);
   for (int k = 0; k < plan.runs; ++k) {
     TrialRun run = runs.run(u);
+    stage.advance();
     if (!run.stopped.empty()) {
       throw InputError({}, fmt::format("run {} of the program stops: {}", k + 1, run.stopped));
     }

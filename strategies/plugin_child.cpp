@@ -13,6 +13,7 @@
 #include <cstring>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "strategies/plugin_watch.h"
 
 namespace servomill::strategies {
@@ -72,6 +73,7 @@ PluginChild::PluginChild(std::string who, const Work& work) : who_(std::move(who
   }
   process_ = ::fork();
   if (process_ == 0) {
+    ProgressWatch::forget();
     ::close(ends[0]);
     run(ends[1], work);
   }

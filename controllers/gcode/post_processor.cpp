@@ -15,6 +15,7 @@
 #include "controllers/gcode/post_report.h"
 #include "plant/kinematics/branches.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers {
@@ -60,8 +61,10 @@ class Post {
   PostProcessed run(std::vector<Warning>* of_refused) {
     if (access_.is_safe()) access_.retract();
     if (options_.tool > 0 && data_.first_without_tool() != nullptr) load(options_.tool, 0);
+    Stage stage("records", static_cast<double>(data_.records.size()));
     for (std::size_t i = 0; i < data_.records.size() && !report_.is_full(); ++i) {
       throw_if_interrupted();
+      stage.advance();
       const ClRecord& record = data_.records[i];
       if (is_motion(record.kind)) {
         go_to(i);

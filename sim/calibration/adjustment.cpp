@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/calibration/error_effects.h"
 #include "sim/numerics/dense_solver.h"
 
@@ -51,13 +53,16 @@ class Adjuster {
       const double size = *out_.unknowns.prior(u);
       expected[u] = 1.0 / (size * size);
     }
+    Stage stage("iterations", 0.0, Steps::unlike);
     for (out_.iterations = 1;; ++out_.iterations) {
+      throw_if_interrupted();
       set_residuals();
       const NormalEquations equations(normal_matrix(), kOwnShare, expected);
       const VectorXd step = equations.solve(right_side());
       out_.values += step;
       out_.left_out = equations.left_out();
       const bool settled = update_weights(equations);
+      stage.advance();
       out_.converged = settled && largest_effect(step) < kStill;
       if (out_.converged || out_.iterations == kMaxIterations) {
         out_.covariance = equations.inverse();

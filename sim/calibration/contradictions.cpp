@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/progress.h"
+
 namespace servomill::sim::calibration {
 namespace {
 
@@ -35,6 +37,7 @@ class Search {
     Suspect best{.groups = groups, .squares = redundancy_ + kMuchBetter * excess_};
     const double limit = best.squares;
     for (const double factor : kFactors) {
+      tried_.advance();
       const double squares = squares_(multiplied(groups, factor));
       if (squares < best.squares) best = {groups, factor, squares};
     }
@@ -63,6 +66,7 @@ class Search {
   const Squares& squares_;
   double redundancy_;
   double excess_ = 0.0;
+  mutable Stage tried_{"factors tried", 0.0, Steps::unlike};
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "plant/geometry/error_model.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/calibration/calibration.h"
 
 namespace servomill::sim::calibration {
@@ -30,11 +31,13 @@ class Chooser {
                   const std::array<int, N>& tried) {
     Smoothness one{.form = name, .is_of_knots = is_of_knots, .chosen = tried.front(), .errors = {}};
     double best = std::numeric_limits<double>::infinity();
+    Stage stage(is_of_knots ? "numbers of knots" : "degrees", N, Steps::unlike);
     for (const int candidate : tried) {
       number = candidate;
       const double error = adjusted_(settings_).prediction;
       one.errors.emplace_back(candidate, error);
       best = std::min(best, error);
+      stage.advance();
     }
     const auto found = std::find_if(one.errors.begin(), one.errors.end(), [&](const auto& entry) {
       return entry.second <= kNearBest * best;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/calibration/whole_design.h"
 #include "sim/numerics/dense_solver.h"
 
@@ -88,9 +90,12 @@ Design DesignProblem::relaxed(double time) const {
   State state = state_of(counts);
   out.counts = counts;
   out.worst = state.worst;
+  Stage stage("steps", 0.0, Steps::unlike);
   for (const double q : kOrders) {
     double power = kFirstPower;
     for (int step = 0; step < kStepsEach && power > kMinPower; ++step) {
+      throw_if_interrupted();
+      stage.advance();
       const Gains gains = gains_of(state, q, counts, time);
       out.bound = std::max(out.bound, gains.bound);
       if (out.efficiency() > kEnough) return out;

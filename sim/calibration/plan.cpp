@@ -6,10 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/error_effects.h"
 #include "sim/calibration/information.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
 namespace servomill::sim::calibration {
@@ -153,14 +156,22 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
     known(u, u) = 1.0 / (size * size);
   }
   if (taken != nullptr) known += information_of(*taken, machine.chain, effects);
+  Stage parts("parts", 3.0, Steps::unlike);  // what a set-up tells, shares of time, whole numbers
   std::vector<Candidate> candidates;
-  for (const PlannedSetUp& one : out.set_ups) {
-    readings::Readings single;
-    single.groups = {one.group};
-    candidates.push_back({information_of(single, machine.chain, effects), one.time});
+  {
+    Stage stage("set-ups", static_cast<double>(out.set_ups.size()));
+    for (const PlannedSetUp& one : out.set_ups) {
+      throw_if_interrupted();
+      readings::Readings single;
+      single.groups = {one.group};
+      candidates.push_back({information_of(single, machine.chain, effects), one.time});
+      stage.advance();
+    }
   }
+  parts.advance();
   const DesignProblem problem(std::move(candidates), known, tips_of(machine, settings, effects));
   const Design relaxed = problem.relaxed(settings.time);
+  parts.advance();
   const Design whole = problem.whole(relaxed, settings.time);
   for (std::size_t i = 0; i < out.set_ups.size(); ++i) {
     out.set_ups[i].count = static_cast<int>(std::lround(whole.counts[i]));
@@ -195,6 +206,32 @@ std::string report(const Plan& plan, const PlanSettings& settings) {
       100.0 * plan.efficiency);
   if (plan.after > 0.98 * plan.usual) out += "no gain over the usual set-ups\n";
   return out;
+}
+
+std::string report_json(const Plan& plan, const PlanSettings& settings) {
+  std::vector<std::string> set_ups;
+  double spent = 0.0;
+  for (const PlannedSetUp& one : plan.set_ups) {
+    if (one.count == 0) continue;
+    spent += one.count * one.time;
+    set_ups.push_back(system::JsonObject()
+                          .text("set_up", one.group.name)
+                          .text("kind", readings::kKinds[static_cast<std::size_t>(one.group.kind)])
+                          .integer("times", one.count)
+                          .number("time_min", one.count * one.time / minute)
+                          .line());
+  }
+  return system::JsonObject()
+      .raw("set_ups", system::json_list(set_ups))
+      .integer("considered", plan.set_ups.size())
+      .number("time_h", spent / 3600.0)
+      .number("available_h", settings.time / 3600.0)
+      .number("U_before_um", 2.0 * plan.before / um)
+      .number("U_usual_um", 2.0 * plan.usual / um)
+      .number("U_plan_um", 2.0 * plan.after / um)
+      .number("U_bound_um", 2.0 * plan.bound / um)
+      .number("efficiency", plan.efficiency)
+      .line();
 }
 
 readings::Readings planned_readings(const Plan& plan) {

@@ -47,6 +47,9 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
 /// The plan as text: what to measure, and what it is expected to give.
 std::string report(const Plan& plan, const PlanSettings& settings);
 
+/// The same as one JSON object: the chosen set-ups, worst uncertainties of the tip (k = 2).
+std::string report_json(const Plan& plan, const PlanSettings& settings);
+
 /// Its set-ups as readings, once for each time they are to be taken; their numbers are missing.
 readings::Readings planned_readings(const Plan& plan);
 

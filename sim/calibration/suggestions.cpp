@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/information.h"
 #include "sim/calibration/plan_candidates.h"
@@ -57,7 +59,12 @@ class Suggestions {
     const std::vector<Open> open = open_errors();
     if (open.empty()) return {};
     add_candidates();
-    for (const Open& one : open) suggest(one);
+    Stage stage("errors", static_cast<double>(open.size()));
+    for (const Open& one : open) {
+      throw_if_interrupted();
+      suggest(one);
+      stage.advance();
+    }
     return sentences();
   }
 
@@ -100,10 +107,13 @@ class Suggestions {
       settings.instruments.push_back(static_cast<PlanInstrument>(k));
     }
     candidates_ = plan_candidates(machine_, settings);
+    Stage stage("set-ups", static_cast<double>(candidates_.size()));
     for (const PlannedSetUp& one : candidates_) {
+      throw_if_interrupted();
       readings::Readings single;
       single.groups = {one.group};
       information_.push_back(information_of(single, machine_.chain, effects_));
+      stage.advance();
     }
   }
 

@@ -9,6 +9,8 @@
 #include <limits>
 #include <tuple>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 
@@ -58,6 +60,7 @@ class Search {
   }
 
   std::vector<double> best_from(const std::vector<double>& relaxed) {
+    Stage starts("starts", std::size(kStretches));
     for (const double stretch : kStretches) {
       std::vector<double> start;
       for (const double count : relaxed) start.push_back(std::floor(stretch * count + 1e-9));
@@ -65,6 +68,7 @@ class Search {
       fill(plan, 0.0);
       remember(plan);
       search(plan);
+      starts.advance();
     }
     return best_;
   }
@@ -216,7 +220,10 @@ class Search {
 
   void search(Plan& plan) {
     using Draw = boost::random::uniform_int_distribution<std::size_t>;
+    Stage rounds("", kRounds);
     for (int round = 0; round < kRounds; ++round) {
+      throw_if_interrupted();
+      rounds.advance();
       std::vector<std::size_t> taken;
       for (std::size_t i = 0; i < plan.counts.size(); ++i) {
         taken.insert(taken.end(), std::size_t(plan.counts[i]), i);

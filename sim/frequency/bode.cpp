@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::frequency {
@@ -53,6 +54,15 @@ std::span<const CurveOf> curves_of(BodeLoop loop) {
       break;
   }
   return kCompliance;
+}
+
+// Neighbours with the same entry share one.
+double measurements_of(std::span<const CurveOf> curves) {
+  double out = 1.0;
+  for (std::size_t k = 1; k < curves.size(); ++k) {
+    if (curves[k].entry != curves[k - 1].entry) out += 1.0;
+  }
+  return out;
 }
 
 Complex taken(const CurveOf& of, const Response& response, double r) {
@@ -194,7 +204,12 @@ double nyquist_frequency(const model::LoopPeriods& periods, BodeLoop loop) {
 BodeResult bode(const model::MachineSettings& machine, int joint, Tick reading_delay,
                 const BodeSettings& settings) {
   LoopCurves curves(machine, joint, reading_delay, settings);
-  for (const CurveOf& of : curves_of(settings.loop)) curves.add(of);
+  const std::span<const CurveOf> all = curves_of(settings.loop);
+  Stage stage("measurements", measurements_of(all));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k > 0 && all[k].entry != all[k - 1].entry) stage.advance();
+    curves.add(all[k]);
+  }
   return std::move(curves).result();
 }
 

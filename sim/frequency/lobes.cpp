@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::frequency {
@@ -29,11 +30,13 @@ std::vector<LobesPoint> stability_lobes(const LobesRequest& request, unsigned th
     const double share = static_cast<double>(i) / std::max(1, request.points - 1);
     out[i].turns = request.from + share * (request.to - request.from);
   }
+  Stage stage("speeds", static_cast<double>(out.size()));
   system::for_each_index(out.size(), threads, [&](std::size_t i) {
     LobesPoint& point = out[i];
     point.zeroth_order = plant::zeroth_order_limit(request.cut, request.modes, point.turns);
     point.limit =
         plant::limit_of_stability(request.cut, request.modes, point.turns, request.deepest);
+    stage.advance();
   });
   return out;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 
 namespace servomill::sim::frequency {
 namespace {
@@ -188,7 +189,7 @@ struct Lines {
 };
 
 void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& how,
-                    const Window& window, double wait, MeasuredResponse& out) {
+                    const Window& window, Tick first, MeasuredResponse& out, Stage& stage) {
   const Excitation excitation(window, stand, how);
   const auto moved = [&, h = stand.base()](Tick n) {
     return how.position + how.velocity * h * static_cast<double>(n);
@@ -213,12 +214,16 @@ void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& 
 
   stand.settle(how.position);
   const Tick H = stand.hyperperiod();
-  const Tick first = static_cast<Tick>(std::ceil(wait / stand.period()));
   for (Tick p = 0; p < first; ++p) {
     throw_if_interrupted();
+    stage.advance();
     stand.run(p * H, feed, [](Tick, std::uint8_t, const AxisSignals&) {});
   }
-  for (Tick p = first; p < first + window.hyperperiods; ++p) stand.run(p * H, feed, add);
+  for (Tick p = first; p < first + window.hyperperiods; ++p) {
+    throw_if_interrupted();
+    stage.advance();
+    stand.run(p * H, feed, add);
+  }
 
   if (!out.fault) out.fault = stand.fault();
   out.crest_factor = excitation.crest_factor();
@@ -227,6 +232,19 @@ void measure_window(AxisTestBench& stand, PositionLoop loop, const Measurement& 
     out.points.push_back(lines.point(k, excitation.amplitude(k)));
     out.points.back().f = frequency(window, k, stand.period());
   }
+}
+
+// One window after the other, or one of all frequencies. Frequencies that meet are measured once.
+std::vector<Window> windows_of(const std::vector<double>& wanted, Method method, double period) {
+  if (method == Method::multi_sine) return {window_of_all(wanted, period)};
+  std::vector<Window> out;
+  for (const double f : wanted) {
+    Window window = window_of(f, period);
+    const bool is_new =
+        out.empty() || frequency(window, 0, period) > frequency(out.back(), 0, period);
+    if (is_new) out.push_back(std::move(window));
+  }
+  return out;
 }
 
 }  // namespace
@@ -246,16 +264,16 @@ MeasuredResponse measure(const model::MachineSettings& machine, int joint, Tick 
   AxisTestBench stand(machine, joint, reading_delay, loop);
   const double wait =
       std::min(kLongestWait, kDecay * slowest_time_constant(machine, joint, reading_delay, loop));
-  MeasuredResponse out;
-  if (how.method == Method::multi_sine) {
-    measure_window(stand, loop, how, window_of_all(wanted, stand.period()), wait, out);
-    return out;
+  const Tick first = static_cast<Tick>(std::ceil(wait / stand.period()));
+  const std::vector<Window> windows = windows_of(wanted, how.method, stand.period());
+  double hyperperiods = 0.0;
+  for (const Window& window : windows) {
+    hyperperiods += static_cast<double>(first + window.hyperperiods);
   }
-  for (const double f : wanted) {
-    const Window window = window_of(f, stand.period());
-    if (!out.points.empty() && frequency(window, 0, stand.period()) <= out.points.back().f)
-      continue;
-    measure_window(stand, loop, how, window, wait, out);
+  Stage stage("", hyperperiods);  // low frequencies take longer
+  MeasuredResponse out;
+  for (const Window& window : windows) {
+    measure_window(stand, loop, how, window, first, out, stage);
   }
   return out;
 }

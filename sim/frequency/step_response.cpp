@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 
 namespace servomill::sim::frequency {
 namespace {
@@ -91,8 +92,10 @@ StepResponse step_response(const model::MachineSettings& machine, int joint, Tic
     out.signals.push_back(y);
   };
   const Tick periods = static_cast<Tick>(std::ceil(settings.duration / stand.period()));
+  Stage stage("", static_cast<double>(periods + 1));
   for (Tick p = 0; p <= periods; ++p) {
     throw_if_interrupted();
+    stage.advance();
     stand.run(
         p * stand.hyperperiod(), [&](Tick) { return in; }, record);
   }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/added_gain.h"
 #include "sim/frequency/frequency_response.h"
@@ -57,9 +58,11 @@ Largest largest_gain(double least, double most,
                      const std::function<std::optional<Limit>(double)>& check) {
   Largest found;
   double previous = 0.0;
+  Stage tried("gains tried", 0.0, Steps::unlike);
   for (double gain = least; gain <= most; gain *= kScan) {
     throw_if_interrupted();
     const auto limit = check(gain);
+    tried.advance();
     if (!limit) {
       previous = gain;
     } else if (previous > 0.0) {
@@ -67,6 +70,7 @@ Largest largest_gain(double least, double most,
       double good = previous, bad = gain;
       while (bad - good > kGainTol * good) {
         const double middle = 0.5 * (good + bad);
+        tried.advance();
         if (const auto why = check(middle)) {
           bad = middle;
           found.limit = *why;
@@ -149,10 +153,12 @@ template <class Of>
 double lowered(double most, double bound, const Of& quantity) {
   if (quantity(most) <= bound) return most;
   double good = 0.0, bad = most;
+  Stage tried("gains tried", 0.0, Steps::unlike);
   while (bad - good > 1e-4 * most) {
     throw_if_interrupted();
     const double middle = 0.5 * (good + bad);
     (quantity(middle) <= bound ? good : bad) = middle;
+    tried.advance();
   }
   return good;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/identification/identifiable_part.h"
 
 namespace servomill::sim::identification {
@@ -104,10 +105,12 @@ Bootstrap bootstrap(const Fit& fit, const Uncertainty& uncertainty, const Mask& 
   Generator generator(settings.seed);
   const Eigen::VectorXd found = Eigen::VectorXd::Map(fit.values.data(), size);
   out.values.resize(static_cast<Eigen::Index>(settings.replicas), size);
+  Stage stage("replicas", static_cast<double>(settings.replicas));
   for (Eigen::Index n = 0; n < out.values.rows(); ++n) {
     Eigen::VectorXd shuffled = Eigen::VectorXd::Zero(fit.residual.size());
     for (const CountingResidual& one : records) shuffle(one, generator, shuffled);
     out.values.row(n) = found - least_squares(part, shuffled, size);
+    stage.advance();
   }
   return out;
 }

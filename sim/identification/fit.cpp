@@ -8,6 +8,8 @@
 #include <limits>
 #include <span>
 
+#include "plant/vocabulary/progress.h"
+
 namespace servomill::sim::identification {
 namespace {
 
@@ -25,7 +27,7 @@ class Differences {
       : prediction_(prediction), mask_(mask) {}
 
   std::optional<Eigen::VectorXd> residual(const Values& at) const {
-    const auto signals = prediction_.simulate({&at, 1});
+    const auto signals = simulated({&at, 1});
     if (!signals.front()) return std::nullopt;
     return prediction_.residual(*signals.front(), mask_);
   }
@@ -45,7 +47,7 @@ class Differences {
         sides.push_back(at);
         sides.back()[p] += sign * steps[p];
       }
-      const auto signals = prediction_.simulate(sides);
+      const auto signals = simulated(sides);
       std::vector<std::size_t> refused;
       for (std::size_t n = 0; n < open.size(); ++n) {
         if (!signals[n]) {
@@ -72,7 +74,7 @@ class Differences {
         if (std::isfinite(steps[p])) sides.back()[p] += sign * steps[p];
       }
     }
-    const auto signals = prediction_.simulate(sides);
+    const auto signals = simulated(sides);
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(here.size(), static_cast<Eigen::Index>(steps.size()));
     for (std::size_t p = 0; p < steps.size(); ++p) {
       if (!std::isfinite(steps[p]) || steps[p] == 0.0) continue;
@@ -87,8 +89,15 @@ class Differences {
   }
 
  private:
+  std::vector<std::optional<Prediction::Signals>> simulated(std::span<const Values> values) const {
+    auto out = prediction_.simulate(values);
+    simulations_.advance(static_cast<double>(values.size()));
+    return out;
+  }
+
   const Prediction& prediction_;
   const Mask& mask_;
+  mutable Stage simulations_{"simulations", 0.0, Steps::unlike};
 };
 
 // First guess of a change that matters.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/progress.h"
+
 namespace servomill::sim::identification {
 namespace {
 
@@ -156,12 +158,14 @@ FittedLaw fit_law(const Experiment& experiment, const std::vector<const AxisReco
   out.effective = uncertainty_of(whole.jacobian, whole.residual, all).effective_samples;
   double sum = 0.0;
   std::size_t count = 0;
+  Stage folds("folds", kFolds);
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Fit part = fit(prediction, whole.values, masked(all, fold, false));
     const Mask unseen = masked(all, fold, true);
     const auto signals = prediction.simulate({&part.values, 1});
     sum += prediction.residual(*signals.front(), unseen).squaredNorm();
     count += counting(unseen);
+    folds.advance();
   }
   out.result.held_out = std::sqrt(sum / static_cast<double>(count));
   // of a root mean square of so many independent samples
@@ -252,7 +256,9 @@ void compare_laws(const Experiment& experiment, Identification& out, unsigned th
   std::erase_if(records, [&](const AxisRecord* one) { return one->joint != joint; });
   const InverseDynamics* start = out.inverse_dynamics.empty() ? nullptr : &out.inverse_dynamics[1];
   std::vector<double> effective;
-  for (const Law& law : friction_laws(letter, joint < kLinearJoints, start)) {
+  const std::vector<Law> laws = friction_laws(letter, joint < kLinearJoints, start);
+  Stage stage("friction laws", static_cast<double>(laws.size()), Steps::unlike);
+  for (const Law& law : laws) {
     FittedLaw fitted;
     try {
       fitted = fit_law(experiment, records, law, axis, threads);
@@ -262,6 +268,7 @@ void compare_laws(const Experiment& experiment, Identification& out, unsigned th
     }
     out.laws.push_back(fitted.result);
     effective.push_back(fitted.effective);
+    stage.advance();
   }
   // the number of samples of the law that leaves least: what the others leave is model error
   const LawResult* best = nullptr;

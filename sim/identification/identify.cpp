@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/identification/friction_laws.h"
 #include "sim/identification/parameter_space.h"
 #include "sim/input/implausible.h"
@@ -141,9 +142,12 @@ void add_intervals(const Prediction& prediction, const Mask& mask, const Interva
   if (settings.bootstrap.replicas > 0 && any) {
     out.bootstrap = bootstrap(out.fit, out.uncertainty, mask, settings.bootstrap);
   }
+  Stage stage("profiles", static_cast<double>(settings.profiles.size()), Steps::unlike);
   for (const std::size_t parameter : settings.profiles) {
-    if (!identifiable[parameter]) continue;
-    out.profiles.push_back(profile(prediction, out.fit, out.uncertainty, mask, parameter));
+    if (identifiable[parameter]) {
+      out.profiles.push_back(profile(prediction, out.fit, out.uncertainty, mask, parameter));
+    }
+    stage.advance();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plant/kinematics/chain.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
@@ -27,6 +28,12 @@
 namespace servomill::sim::preparation {
 
 namespace {
+
+// Its program runs before the case does.
+bool learns(const model::CaseSpec& spec) {
+  return std::any_of(spec.strategies.begin(), spec.strategies.end(),
+                     [](const model::StrategySpec& one) { return one.entry->runs_program; });
+}
 
 // rad/s during each move; 0 while the spindle stands.
 std::vector<double> spindle_speeds(const MoveRange& moves) {
@@ -357,10 +364,14 @@ std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, Prepara
   refuse_narrow_windows(scenario);
   std::vector<PreparedCase> prepared;
   CaseFaults faults;
+  std::optional<Stage> lessons;
+  const auto learning = std::count_if(scenario.cases.begin(), scenario.cases.end(), learns);
+  if (learning > 0) lessons.emplace("cases that learn", learning, Steps::unlike);
   for (const model::CaseSpec& spec : scenario.cases) {
     try {
       if (spec.machine) check_stability(*spec.machine, scenario.reading_delay_of(spec), cache);
       prepared.emplace_back(scenario, spec, cache);
+      if (learns(spec)) lessons->advance();
     } catch (const InputError& error) {
       faults.add(spec.name, error);
     }

@@ -12,6 +12,7 @@
 #include "plant/sensing/noise.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
@@ -226,6 +227,7 @@ strategies::TrialRun CaseTrials::run(const std::shared_ptr<const strategies::Pat
   inputs.keeping.thinning.reset();
   inputs.format = {};
   std::atomic<float> progress{};
+  const Stage stage(progress);
   const engine::CaseResult result = engine::simulate(inputs, interrupt_wanted, progress);
   throw_if_interrupted();
   if (!result.outcome.finished) return {{}, result.outcome.reason};

@@ -24,6 +24,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/work_knowledge.h"
+#include "sim/programs/line_stage.h"
 #include "sim/run/run.h"
 #include "sim/sweep/sweep.h"
 #include "sim/system/read_file.h"
@@ -170,12 +171,14 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(program_file),
                                        std::move(setup));
   std::string lines;
+  LineStage stage(program_file);
   const auto flush = [&] {
     write(lines);
     lines.clear();
   };
   try {
     while (const Move* move = interpreter.next()) {
+      stage.at(move->line);
       controllers::add_canon_json(*move, lines);
       lines += '\n';
       if (lines.size() >= kWrittenAtOnce) flush();

@@ -1,4 +1,5 @@
 #include "sim/programs/post_file.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/config/option_value.h"
 
 #include <fmt/format.h>
@@ -226,9 +227,11 @@ PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warnin
   settings.lower = machine.nc.lower;
   settings.upper = machine.nc.upper;
   const plant::InverseKinematics inverse(machine.chain, settings);
+  Stage parts("parts", 2.0, Steps::unlike);  // post-processing, verification
   controllers::PostProcessed post_processed =
       controllers::post(data, request.cl_file, inverse, options, &warnings);
   warnings.clear();
+  parts.advance();
 
   controllers::PrintOptions print;
   print.axes = names_of(machine.chain.layout);

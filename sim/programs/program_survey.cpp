@@ -12,9 +12,11 @@
 #include "controllers/gcode/readers/plane_frame.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/input/read_machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/given_setup.h"
+#include "sim/programs/line_stage.h"
 #include "sim/programs/program_duration.h"
 
 namespace servomill::sim::programs {
@@ -169,9 +171,11 @@ class Surveyor {
 void survey_moves(const SurveyInputs& inputs, ProgramSurvey& out) {
   controllers::Interpreter interpreter(ProgramText::of_file(out.file), inputs.setup);
   Surveyor surveyor(inputs, out);
+  LineStage lines(out.file);
   try {
     while (const auto block = interpreter.next_block()) {
       throw_if_interrupted();
+      lines.at(block->line);
       surveyor.add(*block);
     }
   } catch (const InputError& error) {
@@ -190,7 +194,11 @@ ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::
   }
   try {
     controllers::Interpreter interpreter(ProgramText::of_file(file), std::move(own));
-    while (interpreter.next() != nullptr) throw_if_interrupted();
+    LineStage lines(file);
+    while (const Move* move = interpreter.next()) {
+      throw_if_interrupted();
+      lines.at(move->line);
+    }
   } catch (const InputError& error) {
     out.stop = error.faults().front();
   }
@@ -214,7 +222,9 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   inputs.setup.accepts_unknown_dwells = inputs.setup.accepts_unknown_positions = true;
   inputs.setup.accepts_unknown_feeds = true;
   inputs.setup.probed = std::make_shared<controllers::AssumedContact>();
+  Stage parts("parts", 2.0, Steps::unlike);  // moves, controls that read it
   survey_moves(inputs, out);
+  parts.advance();
   // every control has a tool table of its own: without one here, no number stops a reader
   ProgramSetup setup = program_setup(request.inputs, request.program_file);
   for (const std::string& text : request.tool_lengths) add_tool_length(text, setup.tools);
@@ -222,8 +232,10 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   setup.accepts_unknown_positions = true;
   setup.probed = inputs.setup.probed;
   using controllers::Reader;
+  Stage stage("controls", static_cast<double>(controllers::kReaders.size()), Steps::unlike);
   for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
     const auto reader = static_cast<Reader>(k);
+    stage.reach(static_cast<double>(k));
     if (reader == Reader::any || (reader == Reader::heidenhain && !inputs.is_conversational))
       continue;
     out.readers.push_back(verdict(k, setup, out.file));

@@ -9,6 +9,7 @@
 #include "controllers/gcode/interpreter.h"
 #include "plant/kinematics/straight_tool_path.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
@@ -46,6 +47,7 @@ class PostReplay {
     setup.start = elsewhere(machine.chain.layout);
     now_.Q = machine.chain.layout.joints(setup.start);
     moves_ = controllers::interpret(program, "program", std::move(setup));
+    stage_.emplace("moves", static_cast<double>(moves_.size()));
     result_.only_locations = options.mode == controllers::PostMode::locations;
     if (options_.tool > 0 && data.first_without_tool() != nullptr) {
       functions_.expect_tool(options_.tool);
@@ -97,6 +99,7 @@ class PostReplay {
   const Move* next_motion() {
     while (next_ < moves_.size()) {
       throw_if_interrupted();
+      stage_->reach(static_cast<double>(next_));
       const Move& move = moves_[next_++];
       line_ = move.line;
       if (is_motion(move.kind)) return &move;
@@ -271,6 +274,7 @@ class PostReplay {
   const controllers::PostOptions& options_;
   const std::string& file_;
   std::vector<Move> moves_;
+  std::optional<Stage> stage_;
   std::size_t next_ = 0;
   int line_ = 0;
   const ClRecord* record_ = nullptr;

@@ -1,4 +1,5 @@
 #include "sim/sweep/merge.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/sweep/table_header.h"
 
 #include <fmt/format.h>
@@ -147,6 +148,7 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
   }
 
   std::optional<SweepTable> table;
+  Stage stage("shards", static_cast<double>(shards.size()), Steps::unlike);
   for (const Shard& shard : shards) {
     const records::InputFile file(shard.path);
     if (!table) {
@@ -155,6 +157,7 @@ Merged merge_sweeps(const std::vector<std::string>& paths, const std::string& ou
       table->remove_unless_committed();
     }
     table->copy(file);
+    stage.advance();
   }
   merged.counts = table->counts();
   merged.simd_levels = table->simd_levels();

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/records/nexus.h"
 #include "sim/run/build_identity.h"
@@ -341,8 +342,10 @@ void SweepTable::copy(const records::InputFile& from) {
   assert(file_);
   records::Hdf5Group group = file_->root().group("sweep");
   const std::size_t length = from.shape(kSweepGroup + "/point").at(0);
+  Stage stage("rows", static_cast<double>(length));
   for (std::size_t begin = 0; begin < length; begin += kSweepBlockRows) {
     throw_if_interrupted();
+    stage.reach(static_cast<double>(begin));
     const std::size_t count = std::min(kSweepBlockRows, length - begin);
     const auto numbers = from.values(kSweepGroup + "/point", begin, count);
     const auto statuses = from.values(kSweepGroup + "/status", begin, count);

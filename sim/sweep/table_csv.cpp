@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/records/input_file.h"
 #include "sim/run/point_batch.h"
@@ -101,8 +102,10 @@ void write_csv(const std::string& table, const std::string& csv) {
   CsvFile out(csv);
   out.write(csv_header(columns));
   const std::size_t length = file.shape(kSweepGroup + "/point").at(0);
+  Stage stage("rows", static_cast<double>(length));
   for (std::size_t begin = 0; begin < length; begin += kSweepBlockRows) {
     throw_if_interrupted();
+    stage.reach(static_cast<double>(begin));
     const std::size_t count = std::min(kSweepBlockRows, length - begin);
     const auto points = file.values(kSweepGroup + "/point", begin, count);
     const auto statuses = file.values(kSweepGroup + "/status", begin, count);

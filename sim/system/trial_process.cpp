@@ -9,10 +9,13 @@
 #include <cerrno>
 #include <csignal>
 
+#include "plant/vocabulary/progress.h"
+
 namespace servomill::sim::system {
 namespace {
 
 [[noreturn]] void run_limited(const std::function<void()>& work, int seconds) {
+  ProgressWatch::forget();
   const auto limit = static_cast<rlim_t>(seconds);
   const rlimit time{limit, limit + 1}, none{0, 0};
   setrlimit(RLIMIT_CPU, &time);

@@ -12,6 +12,7 @@
 #include "controllers/gcode/parameters.h"
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
@@ -26,6 +27,7 @@
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
 #include "sim/programs/compensate/work_knowledge.h"
+#include "sim/programs/line_stage.h"
 #include "sim/programs/verification/verification.h"
 #include "sim/system/read_file.h"
 
@@ -291,8 +293,11 @@ Compensated compensate(const CompensateRequest& request) {
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
   HighestZ highest;
+  Stage parts("parts", 2.0, Steps::unlike);  // correction, verification
+  std::optional<LineStage> lines(request.program_file);
   while (const auto block = interpreter.next_block()) {
     throw_if_interrupted();
+    lines->at(block->line);
     if (known.depends_on_place) highest.look(*block);
     refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
@@ -302,6 +307,8 @@ Compensated compensate(const CompensateRequest& request) {
     writer->write(*block);
   }
   refuse_unread_blocks(interpreter, request);
+  lines.reset();
+  parts.advance();
 
   const std::optional<double> retract = retract_of(request, prepared.described);
   if (prepared.options.is_for_other_control && retract) {

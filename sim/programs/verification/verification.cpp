@@ -9,7 +9,9 @@
 #include "controllers/gcode/parameters.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
+#include "sim/programs/line_stage.h"
 #include "sim/programs/verification/linuxcnc_replay.h"
 #include "sim/programs/verification/readings.h"
 
@@ -99,6 +101,7 @@ class Verifier {
     options.without = request_.without;
     const auto readings = readings_of(written_, request_.dialect, control, options);
     std::vector<std::vector<MachineAction>> done;
+    Stage stage("settings of the control", static_cast<double>(readings.size()), Steps::unlike);
     for (const Reading& reading : readings) {
       settings_ = reading.settings;
       std::vector<MachineAction> actions = read(reading);
@@ -106,6 +109,7 @@ class Verifier {
         compare(actions, setup);
         done.push_back(std::move(actions));
       }
+      stage.advance();
       ++report_.settings;
     }
   }
@@ -119,6 +123,7 @@ class Verifier {
     AxisWords other = given;
     other += (AxisWords() << 7.3 * mm, -4.1 * mm, 11.9 * mm, 0.3 * deg, -0.7 * deg, 1.1 * deg)
                  .finished();
+    Stage stage("starts", 2.0);
     for (const bool is_other : {false, true}) {
       for (int i = 0; i < kAxisWords; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -130,6 +135,7 @@ class Verifier {
           read({"", [&] { return replay_linuxcnc(written_, "written", strict, options_); }});
       compare(actions, setup);
       ++report_.settings;
+      stage.advance();
     }
   }
 
@@ -158,9 +164,11 @@ class Verifier {
     }
     comparison.start_at(start);
     const OriginalAction* action = nullptr;
+    LineStage lines(request_.original_file);
     try {
       while ((action = original.next()) != nullptr) {
         throw_if_interrupted();
+        lines.at(action->move.line);
         comparison.match(*action);
       }
       comparison.finish();
