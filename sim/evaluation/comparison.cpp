@@ -160,7 +160,9 @@ std::string to_json(const ComparisonRow& row) {
       .text_or_null("basis", row.basis);
   if (!row.note.empty()) out.text("note", row.note);
   if (row.tolerance) {
-    out.raw("tolerance", fmt::format("[{}, {}]", row.tolerance->lower, row.tolerance->upper));
+    const std::vector<std::string> limits = {system::json_number(row.tolerance->lower),
+                                             system::json_number(row.tolerance->upper)};
+    out.raw("tolerance", system::json_list(limits));
     if (std::isfinite(row.value)) {
       out.boolean("is_within_tolerance", row.tolerance->contains(row.value));
     }

@@ -10,6 +10,7 @@
 #include "sim/evaluation/comparison.h"
 #include "sim/records/input_file.h"
 #include "sim/sweep/table_header.h"
+#include "sim/system/json.h"
 #include "sim/system/text_table.h"
 
 namespace servomill::sim::sweep {
@@ -124,7 +125,34 @@ std::vector<std::string> conformity_cells(const SampledQuantity& one) {
           shown_number(found.guard_band), has_value ? std::string(name_of(found.statement)) : "-"};
 }
 
+std::string conformity_json(const Conformity& found) {
+  const bool has_value = std::isfinite(found.probability);
+  return system::JsonObject()
+      .number("probability", found.probability)
+      .number("guard_band", has_value ? found.guard_band : kNoNumber)
+      .text_or_null("statement", has_value ? name_of(found.statement) : "")
+      .line();
+}
+
 }  // namespace
+
+std::vector<std::string> statistics_json(const std::vector<SampledQuantity>& quantities) {
+  std::vector<std::string> out;
+  for (const SampledQuantity& one : quantities) {
+    const Distribution& d = one.distribution;
+    system::JsonObject object;
+    object.text_or_null("grid", one.grid);
+    for (const char* name : {"quantity", "axis", "statistic", "sections", "case"}) {
+      object.text_or_null(name, attribute_of(one.column, name));
+    }
+    object.text("unit", one.column.meaning.units).integer("samples", d.count);
+    object.number("mean", d.mean).number("standard_deviation", d.deviation);
+    object.number("low_95", d.low).number("high_95", d.high);
+    object.raw("conformity", one.conformity ? conformity_json(*one.conformity) : "null");
+    out.push_back(object.line());
+  }
+  return out;
+}
 
 std::string format_statistics(const std::vector<SampledQuantity>& quantities, std::size_t most) {
   const bool has_grid = !quantities.empty() && !quantities.front().grid.empty();

@@ -41,6 +41,9 @@ struct SampledQuantity {
 /// @throws InputError if the file is no table of a sweep
 std::vector<SampledQuantity> sample_statistics(const std::string& table);
 
+/// The statistics as JSON objects.
+std::vector<std::string> statistics_json(const std::vector<SampledQuantity>& quantities);
+
 /// The statistics as a table of text; so many lines at most, and how many more there are.
 std::string format_statistics(const std::vector<SampledQuantity>& quantities, std::size_t most);
 
