@@ -7,7 +7,7 @@
 namespace servomill::sim::programs {
 namespace {
 
-// 0, not known, for a file that cannot be read: that is told where it is read.
+// 0, not known, for a file that cannot be read: that is reported where it is read.
 double lines_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   using Bytes = std::istreambuf_iterator<char>;

@@ -270,6 +270,25 @@ void refuse_unread_blocks(const controllers::Interpreter& interpreter,
                    "program with M30 before it");
 }
 
+// Corrects block after block.
+void write_blocks(const CompensateRequest& request, WorkKnowledge& known,
+                  controllers::Interpreter& interpreter, ProgramWriter& writer, HighestZ& highest,
+                  std::vector<Fault>& warnings) {
+  LineStage lines(request.program_file);
+  while (const auto block = interpreter.next_block()) {
+    throw_if_interrupted();
+    lines.at(block->line);
+    if (known.depends_on_place) highest.look(*block);
+    refuse_unknown_system(*block, request, known);
+    if (block->text.starts_with(kHeader)) {
+      warnings.push_back({{request.program_file, block->line},
+                          "this program was corrected before and is now corrected again"});
+    }
+    writer.write(*block);
+  }
+  refuse_unread_blocks(interpreter, request);
+}
+
 }  // namespace
 
 Compensated compensate(const CompensateRequest& request) {
@@ -294,20 +313,7 @@ Compensated compensate(const CompensateRequest& request) {
                                        known.setup);
   HighestZ highest;
   Stage parts("parts", 2.0, Steps::unlike);  // correction, verification
-  std::optional<LineStage> lines(request.program_file);
-  while (const auto block = interpreter.next_block()) {
-    throw_if_interrupted();
-    lines->at(block->line);
-    if (known.depends_on_place) highest.look(*block);
-    refuse_unknown_system(*block, request, known);
-    if (block->text.starts_with(kHeader)) {
-      out.warnings.push_back({{request.program_file, block->line},
-                              "this program was corrected before and is now corrected again"});
-    }
-    writer->write(*block);
-  }
-  refuse_unread_blocks(interpreter, request);
-  lines.reset();
+  write_blocks(request, known, interpreter, *writer, highest, out.warnings);
   parts.advance();
 
   const std::optional<double> retract = retract_of(request, prepared.described);
