@@ -195,18 +195,18 @@ DRAWN = {"ISO 230-2": positioning, "ISO 230-4": polar, "ISO 230-6": diagonals, "
 
 
 def read_reports(path):
-    reports = []
-    with open(path, encoding="utf-8") as file:
-        for line, text in enumerate(file, 1):
-            try:
-                report = json.loads(text)
-                if not {"standard", "name", "parameters", "tables"} <= set(report):
-                    raise ValueError("is not a report of servomill evaluate --json")
-            except (ValueError, TypeError) as error:
-                raise InputError(f"{path}:{line}: error: {error}") from error
-            reports.append(report)
+    try:
+        with open(path, encoding="utf-8") as file:
+            reports = json.load(file)
+        if not isinstance(reports, list):
+            raise ValueError("is not a list of reports, as servomill evaluate --json prints it")
+        for report in reports:
+            if not isinstance(report, dict) or not {"standard", "name", "parameters", "tables"} <= set(report):
+                raise ValueError("is not a report of servomill evaluate --json")
+    except ValueError as error:
+        raise InputError(f"{path}: error: {error}") from error
     if not reports:
-        raise InputError(f"{path}: error: is empty; servomill evaluate --json prints one test per line")
+        raise InputError(f"{path}: error: is empty; servomill evaluate --json prints one object per test")
     return reports
 
 

@@ -70,14 +70,14 @@ std::string as_markdown(std::span<const KeyEntry> keys) {
   return out;
 }
 
-std::string as_json(std::span<const KeyEntry> keys) {
-  std::string out;
+std::vector<std::string> keys_json(std::span<const KeyEntry> keys) {
+  std::vector<std::string> out;
   for (const KeyEntry& one : keys) {
     system::JsonObject line;
     line.text_or_null("section", one.section).text("key", one.key).text("help", one.help);
     line.text("type", one.type).text_or_null("unit", one.unit).text_or_null("range", one.range);
     line.text("presence", one.presence).text_or_null("default", default_of(one));
-    out += line.line() + '\n';
+    out.push_back(line.line());
   }
   return out;
 }

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/input/key_list.h"
 
@@ -14,8 +15,8 @@ std::string as_text(std::span<const KeyEntry> keys);
 /// A page: a heading and a table a section.
 std::string as_markdown(std::span<const KeyEntry> keys);
 
-/// One JSON object a line with section, key, help, type, unit, range, presence and default; null
+/// A JSON object each with section, key, help, type, unit, range, presence and default; null
 /// where there is none.
-std::string as_json(std::span<const KeyEntry> keys);
+std::vector<std::string> keys_json(std::span<const KeyEntry> keys);
 
 }  // namespace servomill::sim::input

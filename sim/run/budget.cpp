@@ -11,6 +11,7 @@
 #include <ranges>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/evaluation/path_signal.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/preparation/preparation_cache.h"
@@ -120,15 +121,12 @@ class BudgetRun {
       control.cache = &cache_;
       control.scratch_folder = control_.scratch_folder;
       if (removed.empty()) control.prepared = control_.prepared;
-      control.progress = [&](double share) {
-        if (control_.progress) control_.progress((runs_ + share) / kRuns);
-      };
       for (CaseOutput& one : run_scenario(changed, control).cases) {
         const std::string name = one.name;
         out[name] = std::make_shared<const CaseOutput>(std::move(one));
       }
     }
-    runs_ += 1.0;
+    runs_.advance();
     return out;
   }
 
@@ -254,7 +252,7 @@ class BudgetRun {
   std::shared_ptr<records::SignalStore> store_;
   std::map<std::string, Causes> present_;  // by case
   std::vector<Budget> budgets_;
-  double runs_ = 0.0;
+  Stage runs_{"runs", kRuns};
 };
 
 // The quantities of a scenario, and those of all cases and axes that it has none of.

@@ -95,7 +95,6 @@ std::vector<model::QuantitySpec> budget_quantities(const model::Scenario& scenar
 struct BudgetControl {
   unsigned threads = 0;  // 0: one a core
   const engine::StopFlag* stop = nullptr;
-  std::function<void(double)> progress;  // share done, 0 to 1
   // what the first run, that of all causes, takes; before it begins
   std::function<void(const preparation::RunEstimate&)> prepared;
   std::string scratch_folder;  // as in RunControl

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
 #include "sim/evaluation/quantity.h"
@@ -261,15 +262,11 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
   const std::optional<std::string> note = leave_out_parts(base);
   add_residuals_of_shares(base);
   preparation::PreparationCache cache;
-  const double runs = 1.0 + static_cast<double>(refinements.size());
-  double done = 0.0;
+  Stage runs("runs", 1.0 + static_cast<double>(refinements.size()));
   RunControl run;
   run.threads = control.threads;
   run.stop = control.stop;
   run.cache = &cache;
-  run.progress = [&](double share) {
-    if (control.progress) control.progress((done + share) / runs);
-  };
   const auto stopped = [&] { return control.stop != nullptr && *control.stop; };
 
   Convergence out;
@@ -288,7 +285,7 @@ std::optional<Convergence> find_convergence(const input::ScenarioSource& source,
   }
   if (refinements.contains(Refinement::block)) out.inputs = blocks_as_inputs(base);
   for (const Refinement refinement : refinements) {
-    done += 1.0;
+    runs.advance();
     if (stopped()) return std::nullopt;
     const auto index = static_cast<std::size_t>(refinement);
     const std::vector<std::string> changes = halved(refinement, base);

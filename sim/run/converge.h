@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -67,7 +66,6 @@ struct Convergence {
 struct ConvergeControl {
   unsigned threads = 0;  // 0: one a core
   const engine::StopFlag* stop = nullptr;
-  std::function<void(double)> progress;  // share done, 0 to 1
 };
 
 /// Resolution (um or urad by `unit`; else 0: not known; of shares of the imposed displacement

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/preparation/stability_check.h"
 #include "sim/run/isolated_case.h"
 #include "sim/system/worker_thread.h"
@@ -118,6 +119,7 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
     ~NoMore() { next = count; }
   };
   const NoMore no_more{next, count};
+  Stage stage("", static_cast<double>(count));
   for (std::size_t i = 0; i < count;) {
     if (!done[i]) {
       if (strategies::PluginRescue::is_wanted()) keep_others(control, outputs, done, failures, i);
@@ -127,11 +129,9 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
       if (control.case_done) control.case_done(outputs[i]);
       ++i;
     }
-    if (control.progress) {
-      double sum = 0.0;
-      for (const auto& share : progress) sum += share;
-      control.progress(sum / static_cast<double>(count));
-    }
+    double sum = 0.0;
+    for (const auto& share : progress) sum += share;
+    stage.reach(sum);
   }
   pool.clear();
 

@@ -27,7 +27,6 @@ struct RunControl {
                                // temporary files
   // every fault of the input is found, and what the run takes is known; called once
   std::function<void(const preparation::RunEstimate&)> prepared;
-  std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
   std::function<void(const CaseOutput&)>
       case_done;  // called from one thread, in order of the cases
 };

@@ -13,6 +13,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/system/worker_thread.h"
@@ -209,21 +210,22 @@ class SweepRun {
   }
 
   void take_results() {
+    Stage stage("points", static_cast<double>(count_));
     for (bool last = false; !last;) {
       last = running_ == 0;  // all results of threads that ended have been put by now
       while (auto points = results_.take(last ? std::chrono::milliseconds(0) : kProgressPeriod)) {
         if (control_.batch_done) control_.batch_done(std::move(*points));
-        report_progress();
+        stage.reach(points_done());
       }
-      report_progress();
+      stage.reach(points_done());
     }
   }
 
-  void report_progress() const {
-    if (!control_.progress || count_ == 0) return;
+  // Points in work count as far as they are.
+  double points_done() const {
     double points = static_cast<double>(ended_);
     for (const auto& share : shares_) points += static_cast<double>(batch_) * share;
-    control_.progress(std::min(1.0, points / static_cast<double>(count_)));
+    return points;
   }
 
   const Sweep& sweep_;

@@ -28,7 +28,6 @@ struct SweepControl {
   std::size_t batch = kBatchPoints;  // at least 1
   const engine::StopFlag* stop = nullptr;
   run::Keep keep = run::Keep::comparison;
-  std::function<void(double)> progress;  // share done, 0 to 1; called from one thread
   /// Points that ended, as soon and in the order in which they do; called from one thread. What it
   /// throws ends the sweep.
   std::function<void(std::vector<SweepPoint>&&)> batch_done;

@@ -257,9 +257,9 @@ class CalibratedPart(unittest.TestCase):
         self.write("residual.toml", text)
         self.run_here("run", "residual.toml", "-o", "residual.h5", "--force")
         os.rename(os.path.join(self.folder, machine), os.path.join(self.folder, "gone.toml"))  # the file holds all
-        lines = self.run_here("compare", "residual.h5", "--json").stdout.splitlines()
+        rows = json.loads(self.run_here("compare", "residual.h5", "--json").stdout)
         os.rename(os.path.join(self.folder, "gone.toml"), os.path.join(self.folder, machine))
-        return dict(zip(wanted, (json.loads(line)["value"] for line in lines)))
+        return dict(zip(wanted, (row["value"] for row in rows)))
 
     def test_a_run_gives_the_uncertainty_of_its_residual(self):
         found = self.uncertainties("machine.toml", PROGRAM, ["up", "down"])

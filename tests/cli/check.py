@@ -54,7 +54,7 @@ class Check(unittest.TestCase):
         return done
 
     def json(self, program, *arguments, status=0):
-        return json.loads(self.check(program, "--json", *arguments, status=status).stdout)["program"]
+        return json.loads(self.check(program, "--json", *arguments, status=status).stdout)[0]["program"]
 
     def assertSays(self, program, expected, *arguments):
         self.assertEqual(self.check(program, *arguments).stdout, "part.ngc: no faults\n" + expected.lstrip("\n"))
@@ -271,7 +271,7 @@ name = "cycle_time"
         shown = subprocess.run([SERVOMILL, "compare", "scenario.h5", "--json"], cwd=self.folder, check=True,
                                capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual(done.stderr, "")
-        self.assertAlmostEqual(checked["s"], json.loads(shown.stdout.splitlines()[0])["value"], delta=1e-6)
+        self.assertAlmostEqual(checked["s"], json.loads(shown.stdout)[0]["value"], delta=1e-6)
 
     def test_says_which_controls_read_a_program_and_what_stops_the_others(self):
         program = "G0 X1 N5\nG0 X2 /2\n"

@@ -33,13 +33,13 @@ class Converge(unittest.TestCase):
         self.assertEqual(done.stderr, "")
 
     def test_says_the_same_in_json(self):
-        row = json.loads(converge(SCENARIO, "--json").stdout.splitlines()[0])
+        row = json.loads(converge(SCENARIO, "--json").stdout)[0]
         self.assertEqual(list(row["changes"]), ["recording", "block", "solver", "tick"])
         self.assertGreater(row["digits"], 1)
         self.assertAlmostEqual(float(row["stable"]), row["value"], delta=0.01 * row["value"])
 
     def test_halves_only_what_is_asked_for(self):
-        row = json.loads(converge(SCENARIO, "--json", "--halve", "tick").stdout.splitlines()[0])
+        row = json.loads(converge(SCENARIO, "--json", "--halve", "tick").stdout)[0]
         self.assertEqual(row["changes"]["recording"], 0)
 
     def test_knows_no_other_steps(self):

@@ -28,7 +28,7 @@ def evaluate(*arguments, status=0, cwd=None):
 
 
 def parameters(*arguments, cwd=None):
-    report = json.loads(evaluate(*arguments, "--json", cwd=cwd).stdout)
+    (report,) = json.loads(evaluate(*arguments, "--json", cwd=cwd).stdout)
     return {one["parameter"]: one["value"] for one in report["parameters"]}, report
 
 
@@ -127,7 +127,7 @@ class Readings(unittest.TestCase):
     ROUTER = os.path.join(ROOT, "scenarios", "calibration", "router", "readings.toml")
 
     def reports(self, standard):
-        return [json.loads(line) for line in evaluate(self.ROUTER, "--standard", standard, "--json").stdout.splitlines()]
+        return json.loads(evaluate(self.ROUTER, "--standard", standard, "--json").stdout)
 
     def test_groups_of_the_standard_are_evaluated(self):
         axes, circles = self.reports("iso230-2"), self.reports("iso230-4")
@@ -149,7 +149,7 @@ class Uncertainty(unittest.TestCase):
 
     def test_of_the_shipped_laser_is_that_of_numpy(self):
         """The README's U of A, E and B, with another generator."""
-        report = json.loads(evaluate(LINEAR_AXIS, "--standard", "2", "--uncertainty", self.LASER, "--json").stdout)
+        (report,) = json.loads(evaluate(LINEAR_AXIS, "--standard", "2", "--uncertainty", self.LASER, "--json").stdout)
         U = {one["parameter"]: one["U"] for one in report["parameters"]}
         with open(LINEAR_AXIS, encoding="utf-8") as file:
             rows = [line.split(",") for line in file.read().splitlines() if not line.startswith("#")][1:]

@@ -110,7 +110,7 @@ class Way(unittest.TestCase):
         self.assertEqual({one["use"] for one in found["recordings"]} - {"estimation", "validation"}, set())
 
     def test_a_recording_is_surveyed_as_json(self):
-        found = json.loads(self.run_in_folder("recording", "recording.csv", "--json").stdout)
+        found = json.loads(self.run_in_folder("recording", "recording.csv", "--json").stdout)[0]
         table = np.genfromtxt(self.path("recording.csv"), delimiter=",", names=True)
         (base,) = found["bases"]
         self.assertEqual((base["samples"], base["unit"], base["gaps"]), (len(table), "s", []))

@@ -3,6 +3,7 @@
 
 result_file.py SERVOMILL
 """
+import json
 import os
 import shutil
 import subprocess
@@ -63,7 +64,7 @@ class ResultFile(unittest.TestCase):
             self.assertTrue(np.all(np.diff(data["time"].values) > 0))
 
     def test_comparison_holds_what_was_printed(self):
-        rows = [line for line in self.printed.splitlines() if line.startswith("{")]
+        rows = json.loads(self.printed)
         with h5py.File(self.path, "r") as file:
             self.assertEqual(len(file["comparison"]), len(rows))
 

@@ -38,7 +38,7 @@ class Statements(unittest.TestCase):
 
     def values(self, name, quantity, statistic="max"):
         """{case: value} of a quantity of a run."""
-        rows = [json.loads(line) for line in self.run_of(name).stdout.splitlines()]
+        rows = json.loads(self.run_of(name).stdout)
         return {row["case"]: row["value"] for row in rows
                 if row["quantity"] == quantity and row["statistic"] in (None, statistic)}
 
@@ -153,7 +153,7 @@ class Statements(unittest.TestCase):
                                   "--set", f"case.table.strategy.time_constant_ms={response}",
                                   "--set", f"errors.imposed.EYX.harmonic.period_mm={period}")
             self.assertEqual(done.returncode, 0, done.stderr)
-            found = {(row["case"], row["quantity"], row["axis"]): row["value"] for row in map(json.loads, done.stdout.splitlines())}
+            found = {(row["case"], row["quantity"], row["axis"]): row["value"] for row in json.loads(done.stdout)}
             self.assertAlmostEqual(found["feedback", "realised_ratio", "Y"], realised_ratio, delta=0.06)
             self.assertAlmostEqual(found["table", "imposed_error_residual", "Y"], 20.0, delta=0.1)
 
@@ -173,7 +173,7 @@ class Statements(unittest.TestCase):
     def test_only_a_change_of_the_command_shifts_Z_at_the_scale(self):
         done = self.servomill("run", os.path.join(SCENARIOS, "guevel2025", "z_hypotheses.toml"), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        found = {(row["case"], row["axis"] or "top"): row["value"] for row in map(json.loads, done.stdout.splitlines())}
+        found = {(row["case"], row["axis"] or "top"): row["value"] for row in json.loads(done.stdout)}
         for case, scale, top in (("compensated", 0.14, 0.0), ("datum", 5.14, 0.0), ("temperature", 5.14, 0.0),
                                  ("growth", 0.14, -5.0), ("force", 0.14, 0.0), ("force_p", 0.22, 0.0),
                                  ("force_p_72N", 4.3, -4.1)):

@@ -85,7 +85,7 @@ class Table(Sweeps):
         compared = servomill("compare", self.path("out.series/2.h5"), "--json")
         with h5py.File(self.path("out.h5")) as file:
             value = file["sweep/table_imposed_error_residual_Y_max_flank"][1]
-        self.assertAlmostEqual(json.loads(compared.stdout)["value"], value, delta=1e-7)   # um; nine digits of 100 um
+        self.assertAlmostEqual(json.loads(compared.stdout)[0]["value"], value, delta=1e-7)   # um; nine digits of 100 um
 
     def test_keeps_the_points_that_are_asked_for(self):
         self.sweep("all.h5")

@@ -113,7 +113,7 @@ def old_names(servomill):
     """All old names that the program itself lists."""
     def said(*arguments):
         return subprocess.run([servomill, *arguments], capture_output=True, text=True, check=True).stdout
-    out = list(old_keys(json.loads(line) for line in said("list", "keys", "--json").splitlines()))
+    out = list(old_keys(json.loads(said("list", "keys", "--json"))))
     for command in COMMANDS:
         out += old_options(command, said(command, "--help"))
     return out + list(old_quantities(said("list", "quantities")))

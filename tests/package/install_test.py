@@ -77,7 +77,7 @@ class Installed(unittest.TestCase):
         self.assertIn("guevel2025/experiment1", names)
         self.assertGreater(len(names), 30)
         self.assertFalse([name for name in names if name.startswith("machines/")])
-        objects = [json.loads(line) for line in self.run_program("list", "scenarios", "--json").stdout.splitlines()]
+        objects = json.loads(self.run_program("list", "scenarios", "--json").stdout)
         self.assertEqual([one["name"] for one in objects], names)
 
     def test_has_a_page_for_every_command(self):

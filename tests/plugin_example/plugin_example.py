@@ -73,7 +73,7 @@ class PluginExample(unittest.TestCase):
             file.write(PROGRAM)
         shutil.copy(os.path.join(GALLERY, "machine.toml"), self.folder)
         printed = done(SERVOMILL, "run", "s.toml", "-o", "out.h5", "--json", "--plugin", plugin, cwd=self.folder)
-        forth, back, mean = (json.loads(line)["value"] for line in printed.splitlines())
+        forth, back, mean = (row["value"] for row in json.loads(printed))
         self.assertEqual(forth, 0.0)  # no reversal yet
         self.assertAlmostEqual(back, HEIGHT, delta=0.1 * HEIGHT)
         self.assertLess(mean, -0.5 * HEIGHT)  # towards -X, as the axis then goes

@@ -39,19 +39,18 @@ class Commands(unittest.TestCase):
         return self.folder / name
 
     def test_run(self):
-        lines = map(json.loads, printed("run", SCENARIO, "--json", "-o", self.folder / "out.h5").splitlines())
+        lines = json.loads(printed("run", SCENARIO, "--json", "-o", self.folder / "out.h5"))
         ours = servomill.run(SCENARIO).comparison
-        lines = list(lines)
         self.assertEqual([row[:5] for row in ours], [tuple(one[key] or "" for key in KEYS) for one in lines])
         numpy.testing.assert_allclose([row.value for row in ours], [one["value"] for one in lines], rtol=DIGITS)
         with servomill.open(self.folder / "out.h5") as stored:
             self.assertEqual([row.value for row in ours], [row.value for row in stored.comparison])
 
     def test_run_with_changes(self):
-        lines = printed("run", SCENARIO, "--json", "-o", self.folder / "out.h5", "--set", "program.feed_override=0.7", "--set",
-                        'machine.nc.Kv="50 1/s"').splitlines()
+        rows = json.loads(printed("run", SCENARIO, "--json", "-o", self.folder / "out.h5", "--set", "program.feed_override=0.7",
+                                  "--set", 'machine.nc.Kv="50 1/s"'))
         ours = servomill.run(SCENARIO, set={"program.feed_override": 0.7, "machine.nc.Kv": "50 1/s"}).comparison
-        numpy.testing.assert_allclose([row.value for row in ours], [json.loads(line)["value"] for line in lines], rtol=DIGITS)
+        numpy.testing.assert_allclose([row.value for row in ours], [row["value"] for row in rows], rtol=DIGITS)
 
     def test_sweep(self):
         printed("sweep", SCENARIO, "-q", "-o", self.folder / "theirs.h5")
@@ -69,8 +68,8 @@ class Commands(unittest.TestCase):
 
     def test_bode(self):
         (ours,) = servomill.bode(SCENARIO, "Y", loop="velocity", method="sine", points=3)
-        *points, loop = map(json.loads, printed("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--method", "sine", "--points",
-                                                3, "--json").splitlines())
+        *points, loop = json.loads(printed("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--method", "sine", "--points", 3,
+                                           "--json"))
         numpy.testing.assert_allclose([loop["gain_margin"], loop["phase_margin_deg"], loop["bandwidth_Hz"]],
                                       [ours.gain_margin, ours.phase_margin_deg, ours.bandwidth_Hz], rtol=DIGITS)
         curve = ours.curves["velocity_open"]

@@ -84,7 +84,7 @@ class Drawing(WithFiles):
     def test_nonlinear_errors_are_drawn_and_agree_with_compare(self):
         path = self.out / "table32.h5"
         servomill("run", HERE.parents[1] / "scenarios" / "li2024" / "table32.toml", "-o", path)
-        rows = [json.loads(line) for line in servomill("compare", path, "--json").splitlines()]
+        rows = json.loads(servomill("compare", path, "--json"))
         with results.open_result(path) as run:
             segments = nonlinear.Segments(run)
             for row in rows:

@@ -34,7 +34,7 @@ class Servo(WithFiles):
         drawn = self.out / "figures" / "b-budget.png"
         self.assertGreater(drawn.stat().st_size, SMALLEST_PNG)
         with results.open_result(budget) as file:
-            said = [json.loads(line) for line in printed.splitlines()]
+            said = json.loads(printed)
             self.assertEqual([(one.case, one.sections) for one in file.budgets],
                              [(line["case"], line["sections"]) for line in said])
             self.assertEqual({one.case for one in file.budgets}, {"table", "gcode"})
@@ -69,8 +69,8 @@ class Agreement(WithFiles):
     """The numbers behind the figures are those that `servomill compare` prints."""
 
     def rows(self, path, quantity):
-        lines = servomill("compare", path, "--json").splitlines()
-        return [row for row in map(json.loads, lines) if row["quantity"] == quantity]
+        rows = json.loads(servomill("compare", path, "--json"))
+        return [row for row in rows if row["quantity"] == quantity]
 
     def test_largest_residuals_of_figures_9_10_and_11(self):
         with results.Run(self.side) as run:

@@ -53,7 +53,7 @@ class Parts(WithFiles):
         self.assertEqual(self.drawn(), ["block-part.png", "block-planes.png", "block-probed.png"])
         for drawn in self.out.iterdir():
             self.assertGreater(drawn.stat().st_size, SMALLEST_PNG, drawn)
-        rows = [json.loads(line) for line in servomill("compare", self.block, "--json").splitlines()]
+        rows = json.loads(servomill("compare", self.block, "--json"))
         said = {row["case"]: row["value"] for row in rows if row["quantity"] == "probed_deviation"}
         with results.open_result(self.block) as run:
             front = parts.relative(run, parts.probed(run)["front"])

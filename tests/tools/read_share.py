@@ -23,7 +23,7 @@ def checked(servomill, program):
                           check=False)
     if done.returncode not in (0, 2):
         sys.exit(f"{program}: servomill check ends with {done.returncode}: {done.stderr}")
-    said = json.loads(done.stdout)
+    (said,) = json.loads(done.stdout)
     faults = said["faults"]
     if faults and not faults[0]["message"]:
         sys.exit(f"{program}: refused without a reason")

@@ -58,7 +58,7 @@ class Figures(unittest.TestCase):
 
     def draw(self, *reports, status=0, options=(), text=None):
         path = self.folder / "reports.json"
-        path.write_text(text if text is not None else "".join(json.dumps(one) + "\n" for one in reports), encoding="utf-8")
+        path.write_text(text if text is not None else json.dumps(reports), encoding="utf-8")
         done = subprocess.run([TOOL, path, "-o", self.folder / "out", *options], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done
@@ -98,9 +98,10 @@ class Figures(unittest.TestCase):
         self.assertEqual([standard_figures.nice(x) for x in (0.9, 1.0, 4.9, 37.0)], [0.5, 1.0, 2.0, 20.0])
 
     def test_wrong_files_are_refused(self):
-        self.assertIn("reports.json:1: error:", self.draw(status=2, text="no json\n").stderr)
-        self.assertIn("is not a report of servomill evaluate --json", self.draw(status=2, text="{}\n").stderr)
-        self.assertIn("is empty", self.draw(status=2, text="").stderr)
+        self.assertIn("reports.json: error:", self.draw(status=2, text="no json\n").stderr)
+        self.assertIn("is not a report of servomill evaluate --json", self.draw(status=2, text="[{}]\n").stderr)
+        self.assertIn("is not a list of reports", self.draw(status=2, text="{}\n").stderr)
+        self.assertIn("is empty", self.draw(status=2, text="[]\n").stderr)
         self.draw(circle())
         self.assertIn("exists; use --force", self.draw(circle(), status=2).stderr)
         self.draw(circle(), options=("--force",))

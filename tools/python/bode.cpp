@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
 #include "sim/run/servo_store.h"
@@ -71,12 +72,13 @@ py::list bode(const LoadedScenario& loaded, const py::object& progress, const py
   const sim::model::MachineSettings& machine = scenario.machine;
   const std::vector<tools::BodeTask> tasks = tools::bode_tasks(options, machine);
   const Tick delay = frequency::reading_delay_of(scenario);
-  const auto results = computed(progress, [&](Watch& watch) {
+  const auto results = computed(progress, [&] {
     std::vector<frequency::BodeResult> out;
+    Stage loops("loops", static_cast<double>(tasks.size()), Steps::unlike);
     for (const auto& [joint, settings] : tasks) {
       out.push_back(frequency::bode(machine, joint, delay, settings));
       throw_if_interrupted();
-      watch.share = static_cast<double>(out.size()) / static_cast<double>(tasks.size());
+      loops.advance();
     }
     return out;
   });

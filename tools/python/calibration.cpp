@@ -101,7 +101,7 @@ py::dict calibrate(const std::string& readings, const std::string& machine,
                    const py::object& progress) {
   const CalibrateRequest request{readings, machine, output, model, force};
   const auto found =
-      computed(progress, [&](Watch&) { return std::make_shared<Calibrated>(calibrated(request)); });
+      computed(progress, [&] { return std::make_shared<Calibrated>(calibrated(request)); });
   py::dict out;
   out["functions"] = functions_of(found->result);
   out["locations"] = locations_of(found->result);

@@ -20,7 +20,7 @@ struct Compared {
 };
 
 py::tuple compare(const std::string& path) {
-  const Compared out = computed(py::none(), [&](Watch&) {
+  const Compared out = computed(py::none(), [&] {
     const sim::run::StoredRun run = sim::run::read_run(path);
     return Compared{run.title, sim::evaluation::compare(run.quantities, run.cases)};
   });

@@ -6,8 +6,10 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/user_file.h"
 
 namespace servomill::python {
@@ -41,8 +43,7 @@ std::unique_lock<std::timed_mutex> turn() {
 // Work on a thread of its own.
 class Working {
  public:
-  explicit Working(const std::function<void(Watch&)>& work)
-      : thread_([this, &work] { run(work); }) {}
+  explicit Working(const std::function<void()>& work) : thread_([this, &work] { run(work); }) {}
   Working(const Working&) = delete;
   Working& operator=(const Working&) = delete;
   ~Working() { join(); }
@@ -55,25 +56,40 @@ class Working {
   void join() {
     if (thread_.joinable()) thread_.join();
   }
-  double share() const { return watch_.share; }
+  // Done, 0 to 1; between two stages as before.
+  double share() {
+    const std::scoped_lock lock(mutex_);
+    const auto stages = watch_ != nullptr ? watch_->stages() : std::vector<StageState>();
+    if (!stages.empty()) share_ = share_done(stages);
+    return share_;
+  }
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  void run(const std::function<void(Watch&)>& work) {
+  void run(const std::function<void()>& work) {
+    const ProgressWatch watch;
+    watched_by(&watch);
     try {
-      work(watch_);
+      work();
     } catch (...) {
       failure_ = std::current_exception();
     }
+    watched_by(nullptr);
     const std::scoped_lock lock(mutex_);
     has_ended_ = true;
     ended_.notify_one();
   }
 
-  Watch watch_;
+  void watched_by(const ProgressWatch* watch) {
+    const std::scoped_lock lock(mutex_);
+    watch_ = watch;
+  }
+
   std::mutex mutex_;
+  const ProgressWatch* watch_ = nullptr;  // of the thread, while it works
+  double share_ = 0.0;
   std::condition_variable ended_;
   bool has_ended_ = false;
   std::exception_ptr failure_;
@@ -92,7 +108,7 @@ void look(const py::object& progress, double share) {
 InsideComputation::InsideComputation() { ++inside; }
 InsideComputation::~InsideComputation() { --inside; }
 
-void compute(const py::object& progress, const std::function<void(Watch&)>& work) {
+void compute(const py::object& progress, const std::function<void()>& work) {
   refuse_nested();
   const std::unique_lock<std::timed_mutex> lock = turn();
   const InputRecord inputs;

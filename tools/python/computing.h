@@ -4,21 +4,10 @@
 
 #include <pybind11/pybind11.h>
 
-#include <atomic>
 #include <functional>
 #include <optional>
-#include <utility>
 
 namespace servomill::python {
-
-/// A computation that goes on, as the thread of Python sees it that waits for it.
-struct Watch {
-  std::atomic<double> share = 0.0;  // done, 0 to 1
-
-  std::function<void(double)> progress() {
-    return [this](double now) { share = now; };
-  }
-};
 
 /// Calls `work` on a thread of its own and waits for it without the GIL. Meanwhile the calling
 /// thread looks twenty times a second whether Python has an exception waiting (Ctrl-C), and calls
@@ -26,13 +15,13 @@ struct Watch {
 /// through `interrupt_wanted`, and is thrown when it has ended. One computation at a time: others
 /// wait for its end.
 /// @throws what work throws; RuntimeError where a strategy or a progress function asks for it
-void compute(const pybind11::object& progress, const std::function<void(Watch&)>& work);
+void compute(const pybind11::object& progress, const std::function<void()>& work);
 
 /// The same for work that has a result.
 template <class Work>
 auto computed(const pybind11::object& progress, Work work) {
-  std::optional<decltype(work(std::declval<Watch&>()))> out;
-  compute(progress, [&](Watch& watch) { out.emplace(work(watch)); });
+  std::optional<decltype(work())> out;
+  compute(progress, [&] { out.emplace(work()); });
   return *std::move(out);
 }
 

@@ -80,7 +80,7 @@ py::dict identify(const std::string& experiment, const std::vector<std::string>&
   const IdentifyRequest request{experiment, {recording, validation}, output, signals, force,
                                 threads};
   const auto found =
-      computed(progress, [&](Watch&) { return std::make_shared<Identified>(identified(request)); });
+      computed(progress, [&] { return std::make_shared<Identified>(identified(request)); });
   py::dict out;
   out["estimates"] = estimates_of(found->result);
   out["estimation"] = records_of(found->result.estimation);

@@ -35,7 +35,7 @@ py::tuple canon(const std::string& program, const py::kwargs& given) {
   options.parse(arguments_of(program, given));
   const sim::programs::ProgramInputs inputs = tools::program_inputs(options);
   std::string lines;
-  const auto warnings = computed(py::none(), [&](Watch&) {
+  const auto warnings = computed(py::none(), [&] {
     return sim::programs::canon(program, inputs,
                                 [&](std::string_view more) { lines.append(more); });
   });
@@ -49,7 +49,7 @@ py::dict compensate(const std::string& program, const py::object& progress,
   options.parse(arguments_of(program, given));
   const sim::programs::CompensateRequest request = tools::compensate_request(options);
   const sim::programs::Compensated done =
-      computed(progress, [&](Watch&) { return sim::programs::compensate(request); });
+      computed(progress, [&] { return sim::programs::compensate(request); });
   py::dict out;
   out["name"] = tools::compensated_name(options);
   out["program"] = done.program;
@@ -65,7 +65,7 @@ py::dict post(const std::string& locations, const py::object& progress, const py
   options.parse(arguments_of(locations, given, {"json", "output"}));
   sim::programs::PostRequest request = tools::post_request(options);
   const sim::programs::PostProcessedFile done =
-      computed(progress, [&](Watch&) { return sim::programs::post_file(std::move(request)); });
+      computed(progress, [&] { return sim::programs::post_file(std::move(request)); });
   std::vector<std::string> warnings;
   for (const auto& one : done.warnings) warnings.push_back(to_string(one));
   py::dict out;

@@ -36,7 +36,7 @@ std::string scratch_folder(const std::string& path) {
 }
 
 sim::run::RunOutput run_scenario(const LoadedScenario& loaded, const Target& target,
-                                 unsigned threads, Watch& watch) {
+                                 unsigned threads) {
   if (!loaded.text) remember_input(loaded.path);
   const std::string path =
       target.path.empty() ? "" : sim::run::writable_name(target.path, target.force);
@@ -45,7 +45,6 @@ sim::run::RunOutput run_scenario(const LoadedScenario& loaded, const Target& tar
   control.threads = threads;
   control.stop = &interrupt_wanted;
   control.scratch_folder = scratch_folder(path);
-  control.progress = watch.progress();
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
     if (path.empty()) return;
     sim::preparation::refuse_full_disk(loaded.scenario, takes, control.scratch_folder);
@@ -83,9 +82,9 @@ py::object signals_of(const Output& output, const sim::records::Series& series) 
 
 py::tuple run(const LoadedScenario& loaded, const std::string& path, bool force, unsigned threads,
               const py::object& progress) {
-  const Output output = computed(progress, [&](Watch& watch) {
+  const Output output = computed(progress, [&] {
     return std::make_shared<const sim::run::RunOutput>(
-        run_scenario(loaded, {path, force}, threads, watch));
+        run_scenario(loaded, {path, force}, threads));
   });
   py::list cases;
   for (const sim::run::CaseOutput& one : output->cases) {

@@ -24,7 +24,7 @@ std::vector<std::string> case_names(const LoadedScenario& loaded) {
 
 py::dict estimate_of(const LoadedScenario& loaded) {
   const sim::preparation::RunEstimate takes =
-      computed(py::none(), [&](Watch&) { return sim::run::check_scenario(loaded.scenario); });
+      computed(py::none(), [&] { return sim::run::check_scenario(loaded.scenario); });
   py::dict out;
   out["motion_s"] = takes.motion;
   out["rows"] = takes.rows;
@@ -40,9 +40,8 @@ py::dict estimate_of(const LoadedScenario& loaded) {
 LoadedScenario load_scenario(const std::string& path, const py::object& set,
                              std::optional<std::string> text) {
   LoadedScenario out{path, changes_of(set), std::move(text), {}};
-  compute(py::none(), [&](Watch&) {
-    out.scenario = sim::input::ScenarioSource(out.path, out.changes, out.text).at();
-  });
+  compute(py::none(),
+          [&] { out.scenario = sim::input::ScenarioSource(out.path, out.changes, out.text).at(); });
   return out;
 }
 

@@ -44,8 +44,7 @@ std::vector<bool> points_done(const sim::sweep::SweepTable& table) {
   return done;
 }
 
-std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, unsigned threads,
-                      Watch& watch) {
+std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, unsigned threads) {
   if (!loaded.text) remember_input(loaded.path);
   const sim::sweep::Sweep sweep(loaded.path, loaded.changes, loaded.text);
   const sim::sweep::Selection selection =
@@ -58,7 +57,6 @@ std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, u
   sim::sweep::SweepControl control;
   control.threads = threads;
   control.stop = &interrupt_wanted;
-  control.progress = watch.progress();
   control.batch_done = [&](std::vector<sim::sweep::SweepPoint>&& points) { table.write(points); };
   sim::sweep::run_sweep(sweep, selection, points_done(table), control);
   throw_if_interrupted();
@@ -69,8 +67,8 @@ std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, u
 std::string sweep(const LoadedScenario& loaded, const std::string& path, bool force,
                   const std::string& points, const std::string& shard, unsigned threads,
                   const py::object& progress) {
-  return computed(progress, [&](Watch& watch) {
-    return run_sweep(loaded, {path, points, shard, force}, threads, watch);
+  return computed(progress, [&] {
+    return run_sweep(loaded, {path, points, shard, force}, threads);
   });
 }
 

@@ -12,6 +12,8 @@
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/bode_options.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -122,7 +124,7 @@ void print_summary(const sim::frequency::BodeResult& result, int joint, double i
   }
 }
 
-void print_json(const sim::frequency::BodeResult& result, char axis) {
+void add_json(const sim::frequency::BodeResult& result, char axis, JsonList& list) {
   const std::string letter(1, axis);
   const auto number = [](sim::frequency::Complex y) {
     return sim::system::JsonObject()
@@ -137,7 +139,7 @@ void print_json(const sim::frequency::BodeResult& result, char axis) {
       point.text("axis", letter).text("curve", curve.name).number("frequency_Hz", curve.f[i]);
       point.raw("exact", number(curve.exact_at[i]));
       point.raw("measured", known ? number(curve.measured[i]) : "null");
-      fmt::print("{}\n", point.line());
+      list.add(point.line());
     }
   }
   const sim::frequency::Margins& m = result.margins;
@@ -152,21 +154,22 @@ void print_json(const sim::frequency::BodeResult& result, char axis) {
     loop.number("phase_margin_deg", m.phase / deg).number("crossover_Hz", m.crossover);
     loop.number("sensitivity_peak", m.sensitivity).number("bandwidth_Hz", c.bandwidth);
   }
-  fmt::print("{}\n", loop.number("peak", c.peak).number("peak_Hz", c.peak_frequency).line());
+  list.add(loop.number("peak", c.peak).number("peak_Hz", c.peak_frequency).line());
 }
 
 void print_result(const sim::frequency::BodeResult& result,
-                  const sim::model::MachineSettings& machine, int joint, const Options& options) {
+                  const sim::model::MachineSettings& machine, int joint, const Options& options,
+                  JsonList& list) {
   const char axis = machine.chain.layout.letter_of(joint);
   if (result.fault) {
     fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n", axis,
                sim::run::name_of(result.loop), *result.fault);
   }
-  if (options.has("quiet")) return;
   if (options.has("json")) {
-    print_json(result, axis);
+    add_json(result, axis, list);
     return;
   }
+  if (options.has("quiet")) return;
   for (const sim::frequency::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
   print_summary(result, joint, machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
 }
@@ -186,6 +189,7 @@ int bode_command(const Arguments& arguments) {
   add_bode_options(options);
   if (!options.parse(arguments)) return kDone;
 
+  ProgressLine line(options);
   const sim::model::Scenario scenario = scenario_for_axes(options);
   const sim::model::MachineSettings& machine = scenario.machine;
   const std::vector<BodeTask> tasks = bode_tasks(options, machine);
@@ -195,16 +199,22 @@ int bode_command(const Arguments& arguments) {
   }
   const bool is_table = !options.has("quiet") && !options.has("json");
   const Tick delay = sim::frequency::reading_delay_of(scenario);
+  JsonList list;
   bool stable = true;
   int headed = -1;
+  Stage loops("loops", static_cast<double>(tasks.size()), Steps::unlike);
   for (const auto& [joint, settings] : tasks) {
-    if (is_table && joint != headed) fmt::print("{}\n", axis_headline(machine, joint, delay));
-    headed = joint;
     const sim::frequency::BodeResult result = sim::frequency::bode(machine, joint, delay, settings);
     stable &= result.stable && !result.fault;
     if (store) store->add(machine.chain.layout.letter_of(joint), result);
-    print_result(result, machine, joint, options);
+    loops.advance();
+    const auto hidden = line.hidden();
+    if (is_table && joint != headed) fmt::print("{}\n", axis_headline(machine, joint, delay));
+    headed = joint;
+    print_result(result, machine, joint, options, list);
   }
+  line.end();
+  if (options.has("json")) list.end();
   if (store) {
     store->commit();
     if (is_table) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));

@@ -133,7 +133,7 @@ void add_bode_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the curves to a result file, for tools/plot.py");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object per frequency and curve, and one per loop");
+  options.add()("json", "prints a JSON list, one object per frequency and curve, and one per loop");
   options.add()("quiet,q", "prints only faults");
 }
 

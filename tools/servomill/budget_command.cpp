@@ -14,6 +14,8 @@
 #include "sim/system/json.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -161,16 +163,13 @@ void print_budget(const sim::run::Budget& budget) {
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
 }
 
-void print_json(const sim::run::Budget& budget) {
+std::string budget_json(const sim::run::Budget& budget) {
   const sim::model::QuantitySpec& q = budget.quantity;
   sim::system::JsonObject out;
   out.text("case", q.cases.front()).text("quantity", q.name);
   out.text_or_null("axis", q.axis == '\0' ? "" : std::string(1, q.axis));
   out.text("sections", fmt::format("{}", fmt::join(q.sections, ", "))).text("baseline", q.baseline);
-  if (!budget.note.empty()) {
-    fmt::print("{}\n", out.text("note", budget.note).line());
-    return;
-  }
+  if (!budget.note.empty()) return out.text("note", budget.note).line();
   out.text("unit", "um").number("s_mm", budget.place_s);
   out.number("residual", budget.residual.at_place).number("residual_rms", budget.residual.rms);
   sim::system::JsonObject parts;
@@ -188,7 +187,7 @@ void print_json(const sim::run::Budget& budget) {
   }
   out.raw("kinds", kinds.line());
   out.number("remainder", budget.remainder.at_place);
-  fmt::print("{}\n", out.number("remainder_rms", budget.remainder.rms).line());
+  return out.number("remainder_rms", budget.remainder.rms).line();
 }
 
 void add_budget_options(Options& options) {
@@ -208,9 +207,18 @@ void add_budget_options(Options& options) {
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one per core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object per budget");
+  options.add()("json", "prints a JSON list, one object per budget");
   options.add()("quiet,q", "no progress bar");
   add_plugin_option(options);
+}
+
+// Names parts of the scenario that have no budget.
+void tell_parts_without_budget(const sim::model::Scenario& scenario, ProgressLine& line) {
+  const auto hidden = line.hidden();
+  if (scenario.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  if (scenario.record.windows.limited()) {
+    fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
+  }
 }
 
 }  // namespace
@@ -223,24 +231,21 @@ int budget_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
+  ProgressLine line(options);
   const sim::model::Scenario scenario =
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::vector<sim::model::QuantitySpec> quantities = chosen(scenario, options);
-  if (scenario.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
-  if (scenario.record.windows.limited()) {
-    fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
-  }
+  tell_parts_without_budget(scenario, line);
   std::optional<sim::run::BudgetStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
   }
   const auto& stop = stop_on_interrupt();
-  ProgressBar bar(options.has("quiet") || options.has("json"));
   sim::run::BudgetControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
-  control.progress = [&](double share) { bar.show(share); };
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+    const auto hidden = line.hidden();
     if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
     if (sim::preparation::is_worth_telling(takes)) {
       const std::string folder = control.scratch_folder.empty()
@@ -255,18 +260,20 @@ int budget_command(const Arguments& arguments) {
   }
   const std::vector<sim::run::Budget> budgets =
       sim::run::find_budgets(scenario, quantities, control);
-  bar.clear();
+  line.end();
   if (budgets.empty()) {
     print_interrupted("");
     return kInterrupted;
   }
   if (!options.has("json")) fmt::print("{}\n", scenario.title);
   bool all = true;
+  JsonList list;
   for (const sim::run::Budget& budget : budgets) {
-    options.has("json") ? print_json(budget) : print_budget(budget);
+    options.has("json") ? list.add(budget_json(budget)) : print_budget(budget);
     if (store) store->add(budget);
     all &= budget.note.empty();
   }
+  if (options.has("json")) list.end();
   if (store) {
     store->commit();
     if (!options.has("json")) {

@@ -8,6 +8,7 @@
 #include "sim/calibration/write_readings.h"
 #include "sim/input/read_machine.h"
 #include "sim/system/write_file.h"
+#include "tools/servomill/progress_line.h"
 #include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
@@ -74,6 +75,7 @@ int calibrate_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
   const std::string table = output_of(options, "table", ".csv");
+  ProgressLine line(options);
   const std::string file = options.word(), machine_file = measured_machine(options, options.word());
   const sim::input::MachineDescription description =
       sim::input::read_machine_description(machine_file);
@@ -88,18 +90,21 @@ int calibrate_command(const Arguments& arguments) {
     calibration::make_up(readings, chain, truth_of(options, description),
                          static_cast<std::uint64_t>(options.get<int>("seed")));
     calibration::write_readings(folder, readings, chain, machine_file, options.has("force"));
+    line.end();
     if (!options.has("quiet")) fmt::print("written to {}\n", folder);
     return kDone;
   }
   const calibration::Calibration result =
       calibration::calibrate(std::move(readings), chain, settings);
-  const bool prints = !options.has("quiet") && !options.has("json");
-  if (options.has("json")) {
-    const auto suggestions = calibration::suggestions(result, description.machine);
+  const bool json = options.has("json"), prints = !options.has("quiet") && !json;
+  const auto suggestions = json || prints ? calibration::suggestions(result, description.machine)
+                                          : std::vector<std::string>();
+  line.end();
+  if (json) {
     fmt::print("{}\n", calibration::report_json(result, suggestions));
   } else if (prints) {
     fmt::print("{}", calibration::report(result));
-    print_suggestions(calibration::suggestions(result, description.machine));
+    print_suggestions(suggestions);
   }
   for (const std::string& warning : calibration::warnings(result)) {
     fmt::print(stderr, "warning: {}\n", warning);

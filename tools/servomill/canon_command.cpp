@@ -6,6 +6,7 @@
 #include "sim/programs/canonical_moves.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/program_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 
@@ -22,9 +23,13 @@ int canon_command(const Arguments& arguments) {
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
-  const auto warnings = sim::programs::canon(
-      options.word(), program_inputs(options),
-      [](std::string_view lines) { std::fwrite(lines.data(), 1, lines.size(), stdout); });
+  ProgressLine line(options);
+  const auto warnings =
+      sim::programs::canon(options.word(), program_inputs(options), [&](std::string_view lines) {
+        const auto hidden = line.hidden();
+        std::fwrite(lines.data(), 1, lines.size(), stdout);
+      });
+  line.end();
   for (const Fault& warning : warnings) {
     fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
   }

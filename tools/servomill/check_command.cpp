@@ -7,7 +7,9 @@
 #include "sim/programs/program_survey.h"
 #include "sim/system/json.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
 #include "tools/servomill/program_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -28,7 +30,7 @@ void declare(Options& options) {
                 "one and with a rotation");
   options.add()("tool-length", texts("1=50"),
                 "programs: length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
-  options.add()("json", "prints one JSON object per file");
+  options.add()("json", "prints a JSON list, one object per FILE");
   options.add()("quiet,q", "prints only faults");
 }
 
@@ -47,23 +49,24 @@ std::string to_json(const std::vector<Fault>& faults) {
 
 // @return number of faults
 std::size_t check(const std::string& path, const Options& options,
-                  sim::programs::ProgramInputs inputs) {
+                  sim::programs::ProgramInputs inputs, JsonList& list, ProgressLine& line) {
   inputs.trials = std::make_shared<controllers::SharedTrials>();
   std::vector<Fault> warnings;
   const auto faults = sim::programs::check_file(path, options.list("set"), inputs, &warnings);
   const bool json = options.has("json");
   std::optional<sim::programs::ProgramSurvey> survey;
-  if (sim::programs::is_program(path) && !options.has("quiet")) {
+  if (sim::programs::is_program(path) && (json || !options.has("quiet"))) {
     survey = sim::programs::survey_program(
         {path, inputs, options.list("work-offset"), options.list("tool-length")});
   }
+  const auto hidden = line.hidden();
   if (json) {
-    fmt::print("{}\n", sim::system::JsonObject()
-                           .text("file", path)
-                           .raw("faults", to_json(faults))
-                           .raw("warnings", to_json(warnings))
-                           .raw("program", survey ? sim::programs::to_json(*survey) : "null")
-                           .line());
+    list.add(sim::system::JsonObject()
+                 .text("file", path)
+                 .raw("faults", to_json(faults))
+                 .raw("warnings", to_json(warnings))
+                 .raw("program", survey ? sim::programs::to_json(*survey) : "null")
+                 .line());
     return faults.size();
   }
   for (const Fault& warning : warnings) {
@@ -100,8 +103,16 @@ int check_command(const Arguments& arguments) {
   load_plugins(options);
   if (options.words().empty()) throw InputError({"servomill check"}, "needs a FILE; see --help");
   const sim::programs::ProgramInputs inputs = program_inputs(options);
+  JsonList list;
+  ProgressLine line(options);
+  Stage files("files", static_cast<double>(options.words().size()), Steps::unlike);
   std::size_t faults = 0;
-  for (const std::string& path : options.words()) faults += check(path, options, inputs);
+  for (const std::string& path : options.words()) {
+    faults += check(path, options, inputs, list, line);
+    files.advance();
+  }
+  line.end();
+  if (options.has("json")) list.end();
   return faults == 0 ? kDone : kInputWrong;
 }
 

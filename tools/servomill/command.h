@@ -1,4 +1,4 @@
-/// Common part of all commands of the program: options, exit status, progress.
+/// Common part of all commands of the program: options, exit status.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -88,22 +88,6 @@ class Options {
   std::string command_, synopsis_, summary_, words_;
   boost::program_options::options_description description_{"Options"};
   boost::program_options::variables_map values_;
-};
-
-/// A bar on standard error while it is a terminal, nothing otherwise.
-class ProgressBar {
- public:
-  explicit ProgressBar(bool quiet);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-  void show(double share);
-  void clear();
-
- private:
-  bool on_;
-  double begin_;  // s
-  std::size_t shown_ = 0;
 };
 
 /// --plugin FILE, of commands that read scenarios.

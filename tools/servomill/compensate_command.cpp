@@ -11,6 +11,7 @@
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/compensate_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -52,9 +53,11 @@ int compensate_command(const Arguments& arguments) {
 
   const std::string name = compensated_name(options);
   const bool to_stdout = name == "-", force = options.has("force");
+  ProgressLine line(options);
   const sim::programs::CompensateRequest request = compensate_request(options);
   refuse_outputs(options, name);
   const sim::programs::Compensated done = sim::programs::compensate(request);
+  line.end();
   if (!to_stdout) sim::system::write_text_file(name, done.program, force);
   if (const std::string points = output_of(options, "point-uncertainty", ".csv"); !points.empty()) {
     sim::system::write_text_file(points, done.uncertainty->csv(), force);
@@ -74,7 +77,7 @@ int compensate_command(const Arguments& arguments) {
     return kDone;
   }
   if (!to_stdout) fmt::print(to, "{}:\n", name);
-  for (const std::string& line : done.report) fmt::print(to, "  {}\n", line);
+  for (const std::string& text : done.report) fmt::print(to, "  {}\n", text);
   return kDone;
 }
 

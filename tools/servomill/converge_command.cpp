@@ -7,6 +7,8 @@
 #include "sim/run/converge.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -65,23 +67,22 @@ int converge_command(const Arguments& arguments) {
                 "changes a key of the scenario, as in run");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one per core); results do not depend on it");
-  options.add()("json", "prints one JSON object per line of the comparison");
+  options.add()("json", "prints a JSON list, one object per line of the comparison");
   options.add()("quiet,q", "no progress bar");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);
 
   const std::set<sim::run::Refinement> refinements = chosen(options);
+  ProgressLine line(options);
   const sim::input::ScenarioSource source(options.word(), options.list("set"));
   const bool json = options.has("json");
   const auto& stop = stop_on_interrupt();
-  ProgressBar bar(options.has("quiet") || json);
   sim::run::ConvergeControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
-  control.progress = [&](double share) { bar.show(share); };
   const auto found = sim::run::find_convergence(source, refinements, control);
-  bar.clear();
+  line.end();
   if (!found) {
     print_interrupted("");
     return kInterrupted;
@@ -89,8 +90,9 @@ int converge_command(const Arguments& arguments) {
   if (found->note) fmt::print(stderr, "note: {}\n", *found->note);
   for (const std::string& stopped : found->stopped) fmt::print(stderr, "stopped: {}\n", stopped);
   if (json) {
-    for (const sim::run::ConvergedRow& row : found->rows)
-      fmt::print("{}\n", sim::run::to_json(row));
+    JsonList list;
+    for (const sim::run::ConvergedRow& row : found->rows) list.add(sim::run::to_json(row));
+    list.end();
   } else {
     fmt::print("{}", sim::run::format_table(*found));
   }

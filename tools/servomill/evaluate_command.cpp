@@ -17,6 +17,8 @@
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 #include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
@@ -226,6 +228,19 @@ std::vector<Report> reports_of(const Options& options, Standard standard) {
               : reports_of_tables(files, standard, options);
 }
 
+void print_reports(const std::vector<Report>& reports, const Options& options) {
+  if (options.has("json")) {
+    JsonList list;
+    for (const Report& report : reports) list.add(standards::json(report));
+    list.end();
+    return;
+  }
+  for (const Report& report : reports) {
+    if (&report != &reports.front()) fmt::print("\n");
+    fmt::print("{}", standards::printed(report, options.has("targets")));
+  }
+}
+
 }  // namespace
 
 int evaluate_command(const Arguments& arguments) {
@@ -242,12 +257,10 @@ int evaluate_command(const Arguments& arguments) {
   if (options.has("table")) {
     sim::system::output_target(options.get<std::string>("table"), sim::system::existing_of(force));
   }
+  ProgressLine line(options);
   const std::vector<Report> reports = reports_of(options, standard);
-  for (const Report& report : reports) {
-    if (!options.has("json") && &report != &reports.front()) fmt::print("\n");
-    fmt::print("{}", options.has("json") ? standards::json(report) + "\n"
-                                         : standards::printed(report, options.has("targets")));
-  }
+  line.end();
+  print_reports(reports, options);
   if (options.has("table")) {
     sim::system::write_text_file(options.get<std::string>("table"), standards::csv(reports), force);
     if (!options.has("json")) fmt::print("written to {}\n", options.get<std::string>("table"));

@@ -14,6 +14,7 @@
 #include "sim/fmu/fmu_package.h"
 #include "sim/fmu/tool.h"
 #include "sim/run/build_identity.h"
+#include "sim/system/json.h"
 #include "sim/system/program_folder.h"
 #include "sim/system/read_file.h"
 #include "sim/system/write_file.h"
@@ -122,6 +123,17 @@ std::string list_of_variables() {
          lines_of(sim::fmu::tool_variables());
 }
 
+std::string fmu_json(const std::vector<sim::fmu::AxisConstants>& axes, const std::string& file,
+                     std::string_view version) {
+  std::vector<std::string> letters;
+  for (const sim::fmu::AxisConstants& one : axes) letters.push_back(one.axis);
+  return sim::system::JsonObject()
+      .text("file", file)
+      .text("fmi", fmt::format("{}.0", version))
+      .raw("axes", sim::system::json_texts(letters))
+      .line();
+}
+
 void add_fmu_options(Options& options) {
   add_axis_options(options);
   options.add()("machine", "all axes, and where kinematics and geometric errors put the tool");
@@ -133,6 +145,7 @@ void add_fmu_options(Options& options) {
                 "version of the Functional Mock-up Interface");
   options.add()("output,o", po::value<std::string>()->value_name("DRIVE.fmu"), "the FMU");
   options.add()("force,f", "replaces the FMU if it exists");
+  options.add()("json", "prints what it wrote as one JSON object");
   options.add()("quiet,q", "prints only faults");
 }
 
@@ -157,6 +170,10 @@ int fmu_command(const Arguments& arguments) {
   sim::system::write_text_file(
       out, sim::fmu::fmu_bytes(static_cast<sim::fmu::FmiVersion>(version), machine, library),
       options.has("force"));
+  if (options.has("json")) {
+    fmt::print("{}\n", fmu_json(machine.axes, out, kVersions[version]));
+    return kDone;
+  }
   if (options.has("quiet")) return kDone;
   for (const sim::fmu::AxisConstants& axis : machine.axes) {
     fmt::print("{}\n", axis_headline(axis.machine, axis.joint, axis.reading_delay));

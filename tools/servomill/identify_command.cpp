@@ -9,6 +9,7 @@
 #include "sim/identification/store_identification.h"
 #include "sim/run/result_file.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 
@@ -102,16 +103,19 @@ int identify_command(const Arguments& arguments) {
     return options.has(option) ? options.get<std::vector<std::string>>(option)
                                : std::vector<std::string>();
   };
+  ProgressLine line(options);
   sim::identification::Experiment experiment = sim::identification::read_experiment(
       options.word(), {files("recording"), files("validation")});
   if (options.has("compare-laws")) experiment.compares_laws = true;
   if (!made_up.empty()) {
     sim::identification::make_up(experiment, made_up, options.has("force"));
+    line.end();
     if (!options.has("quiet")) fmt::print("written to {}\n", made_up);
     return kDone;
   }
   const sim::identification::Identification result = sim::identification::identify(
       experiment, thread_count(options), intervals_of(options, experiment));
+  line.end();
   const bool prints = !options.has("quiet") && !options.has("json");
   if (options.has("json")) {
     fmt::print("{}\n", sim::identification::report_json(result));

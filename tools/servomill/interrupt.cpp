@@ -17,6 +17,7 @@
 #include "sim/input/plugins.h"
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -58,6 +59,7 @@ void on_signal(int signal) {
   sim::system::TemporaryFile::remove_all();
   const std::scoped_lock lock(kept_mutex);
   const std::string kept = what_is_kept ? what_is_kept() : "";
+  erase_progress_line();
   write_to_stderr(why + (kept.empty() ? "\n" : "\n" + kept + "\n"));
   ::_exit(kSystemFailed);
 }
@@ -109,6 +111,7 @@ void print_interrupted() {
 
 void print_interrupted(const std::string& kept) {
   if (reported.exchange(true)) return;
+  erase_progress_line();
   write_to_stderr(kept.empty() ? "interrupted\n" : "interrupted; " + kept + "\n");
 }
 

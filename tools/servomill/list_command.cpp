@@ -10,23 +10,30 @@
 #include "sim/input/scenario_name.h"
 #include "sim/system/json.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
 
 namespace servomill::tools {
 namespace {
 
 namespace fs = std::filesystem;
 
+void print_list(const std::vector<std::string>& objects) {
+  JsonList list;
+  for (const std::string& one : objects) list.add(one);
+  list.end();
+}
+
 // A file by the name that commands take, with its title.
-void print_file(const std::string& name, const std::string& file, bool as_json) {
+void print_file(const std::string& name, const std::string& file, JsonList* list) {
   const std::string title = sim::input::title_of(file);
-  if (as_json) {
-    fmt::print("{}\n", sim::system::JsonObject().text("name", name).text("title", title).line());
+  if (list != nullptr) {
+    list->add(sim::system::JsonObject().text("name", name).text_or_null("title", title).line());
   } else {
     fmt::print("{:<50} {}\n", name, title);
   }
 }
 
-void list_files(const std::string& folder, bool machines, bool as_json) {
+void list_files(const std::string& folder, bool machines, JsonList* list) {
   if (!fs::is_directory(folder)) {
     throw InputError({folder}, "is not a folder; set the scenario folder with --folder");
   }
@@ -38,21 +45,20 @@ void list_files(const std::string& folder, bool machines, bool as_json) {
     }
   }
   std::sort(files.begin(), files.end());
-  for (const std::string& file : files) print_file(file, file, as_json);
+  for (const std::string& file : files) print_file(file, file, list);
 }
 
 // Lists the folder of the options, or the first one that there is.
-void list_files_of(const Options& options, bool machines) {
+void list_files_of(const Options& options, bool machines, JsonList* list) {
   const std::vector<std::string> folders = sim::input::scenario_folders();
-  const bool as_json = options.has("json");
   if (options.has("folder") || folders.empty()) {
     const bool has_folder = options.has("folder");
-    list_files(has_folder ? options.get<std::string>("folder") : "scenarios", machines, as_json);
+    list_files(has_folder ? options.get<std::string>("folder") : "scenarios", machines, list);
   } else if (machines) {
-    list_files(folders.front(), machines, as_json);
+    list_files(folders.front(), machines, list);
   } else {
     for (const std::string& name : sim::input::scenario_names(folders.front())) {
-      print_file(name, fmt::format("{}/{}.toml", folders.front(), name), as_json);
+      print_file(name, fmt::format("{}/{}.toml", folders.front(), name), list);
     }
   }
 }
@@ -68,9 +74,12 @@ void list_keys_of(const Options& options) {
   }
   const std::vector<sim::input::KeyEntry> keys =
       sim::input::keys_of(words.size() == 2 ? words[1] : "");
-  fmt::print("{}", options.has("json")       ? sim::input::as_json(keys)
-                   : options.has("markdown") ? sim::input::as_markdown(keys)
-                                             : sim::input::as_text(keys));
+  if (options.has("json")) {
+    print_list(sim::input::keys_json(keys));
+    return;
+  }
+  fmt::print("{}",
+             options.has("markdown") ? sim::input::as_markdown(keys) : sim::input::as_text(keys));
 }
 
 }  // namespace
@@ -90,7 +99,7 @@ int list_command(const Arguments& arguments) {
       "folder", po::value<std::string>()->value_name("DIR"),
       "folder of machines and scenarios, whose files are printed; default: scenarios in the "
       "current folder, or those that are installed");
-  options.add()("json", "keys, machines, scenarios: prints one JSON object per line");
+  options.add()("json", "prints a JSON list, one object each");
   options.add()("markdown", "keys: prints a page with one table a section");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
@@ -100,19 +109,22 @@ int list_command(const Arguments& arguments) {
     return kDone;
   }
   const std::string what = options.word();
-  const bool is_of_files = what == "machines" || what == "scenarios";
   if (options.has("markdown")) throw InputError({"--markdown"}, "applies to 'keys' only");
-  if (options.has("json") && !is_of_files) {
-    throw InputError({"--json"}, "applies to 'keys', 'machines' and 'scenarios' only");
-  }
+  const bool json = options.has("json");
+  const auto print = [json](const std::vector<std::string>& objects, const std::string& text) {
+    json ? print_list(objects) : fmt::print("{}", text);
+  };
+  namespace input = sim::input;
   if (what == "strategies") {
-    fmt::print("{}", sim::input::describe_strategies());
+    print(input::strategies_json(), input::describe_strategies());
   } else if (what == "quantities") {
-    fmt::print("{}", sim::input::describe_quantities());
+    print(input::quantities_json(), input::describe_quantities());
   } else if (what == "rules") {
-    fmt::print("{}", sim::input::describe_reader_rules());
-  } else if (is_of_files) {
-    list_files_of(options, what == "machines");
+    print(input::reader_rules_json(), input::describe_reader_rules());
+  } else if (what == "machines" || what == "scenarios") {
+    JsonList list;
+    list_files_of(options, what == "machines", json ? &list : nullptr);
+    if (json) list.end();
   } else {
     constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios",
                                           "quantities", "rules",    "keys"};

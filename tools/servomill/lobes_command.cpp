@@ -15,6 +15,7 @@
 #include "sim/system/worker_thread.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -348,9 +349,11 @@ int lobes_command(const Arguments& arguments) {
                 "changes a key of the file");
   if (!options.parse(arguments)) return kDone;
   const std::string output = output_of(options, "output", ".csv");
+  ProgressLine line(options);
   const sim::frequency::LobesRequest request = request_of(options);
   const auto points =
       sim::frequency::stability_lobes(request, sim::system::thread_count(thread_count(options)));
+  line.end();
   if (options.has("json")) {
     fmt::print("{}\n", to_json(request, points));
   } else {

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <iostream>
 
 #include "plant/vocabulary/input_error.h"
@@ -19,19 +16,6 @@ namespace servomill::tools {
 namespace {
 
 namespace po = boost::program_options;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-constexpr double kTellFrom = 0.005;  // share done from which on the rest can be estimated
-
-std::string time_left(double seconds) {
-  constexpr double kMinute = 60.0, kHour = 3600.0;
-  if (seconds < 2.0 * kMinute) return fmt::format("{:.0f} s left", seconds);
-  if (seconds < 2.0 * kHour) return fmt::format("{:.0f} min left", seconds / kMinute);
-  return fmt::format("{:.1f} h left", seconds / kHour);
-}
 
 // Message of boost, and the nearest option of ours.
 std::string unknown_option(const po::unknown_option& error, const po::options_description& known) {
@@ -129,31 +113,6 @@ std::string Options::word() const {
   if (all.size() == 1) return all.front();
   throw InputError({"servomill " + command_},
                    fmt::format("expected one {}, got {}; see --help", words_, all.size()));
-}
-
-ProgressBar::ProgressBar(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0), begin_(now()) {}
-
-ProgressBar::~ProgressBar() { clear(); }
-
-void ProgressBar::show(double share) {
-  if (!on_) return;
-  constexpr int kWidth = 40;
-  const int full = static_cast<int>(share * kWidth);
-  const double gone = now() - begin_;
-  const std::string rest =
-      share > kTellFrom ? time_left(gone * (1.0 - share) / share) : std::string();
-  const std::string line = fmt::format("[{}{}] {:3.0f} % {}", std::string(full, '='),
-                                       std::string(kWidth - full, ' '), 100.0 * share, rest);
-  fmt::print(stderr, "\r{:<{}}", line, shown_);
-  std::fflush(stderr);
-  shown_ = line.size();
-}
-
-void ProgressBar::clear() {
-  if (!on_ || shown_ == 0) return;
-  fmt::print(stderr, "\r{:<{}}\r", "", shown_);
-  std::fflush(stderr);
-  shown_ = 0;
 }
 
 void add_plugin_option(Options& options) {

@@ -14,6 +14,7 @@
 #include "sim/input/read_machine.h"
 #include "sim/programs/measuring/measuring_program.h"
 #include "sim/system/write_file.h"
+#include "tools/servomill/progress_line.h"
 #include "tools/servomill/readings_options.h"
 
 namespace servomill::tools {
@@ -48,6 +49,7 @@ void add_plan_options(Options& options) {
   options.add()("stylus", po::value<double>()->default_value(6.0)->value_name("D"),
                 "diameter of the stylus, mm");
   options.add()("force,f", "replaces outputs that exist");
+  options.add()("json", "prints the plan as one JSON object, notes on programs on standard error");
 }
 
 calibration::PlanSettings settings_of(const Options& options) {
@@ -112,6 +114,7 @@ void write_programs(const std::string& folder, const sim::readings::Readings& pl
                     const sim::model::MachineSettings& machine,
                     const programs::ProbingSettings& settings,
                     const std::vector<programs::Dialect>& controls, const Options& options) {
+  std::FILE* to = options.has("json") ? stderr : stdout;
   const auto is_sphere = [](const auto& group) {
     return group.kind == sim::readings::Kind::sphere;
   };
@@ -122,17 +125,17 @@ void write_programs(const std::string& folder, const sim::readings::Readings& pl
   for (const double length : lengths) {
     const programs::MeasuringMoves moves =
         programs::measuring_moves(plan, machine, settings, length * um);
-    for (const std::string& note : moves.notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : moves.notes) fmt::print(to, "note: {}\n", note);
     for (const programs::Dialect dialect : controls) {
       const std::string name = programs::measuring_file(dialect, length * um);
       for (const std::string& clause : programs::write_measuring_program(
                (std::filesystem::path(folder) / name).string(), moves, machine, settings,
                length * um, dialect, options.has("force"))) {
-        fmt::print("note: {}: {}\n", name, clause);
+        fmt::print(to, "note: {}: {}\n", name, clause);
       }
     }
     programs::write_touches(folder, moves, machine, settings, length * um, options.has("force"));
-    fmt::print("{} touches with a probe of {:g} mm: programs for {}\n", moves.touches,
+    fmt::print(to, "{} touches with a probe of {:g} mm: programs for {}\n", moves.touches,
                length * um / mm, options.get<std::string>("controls"));
   }
 }
@@ -158,6 +161,7 @@ int plan_calibration_command(const Arguments& arguments) {
   if (options.has("output")) {
     refuse_unwritable_plan(options.get<std::string>("output"), options.has("force"));
   }
+  ProgressLine line(options);
   const auto machine = sim::input::read_machine_description(machine_file).machine;
   std::optional<sim::readings::Readings> taken;
   if (has_readings) {
@@ -166,14 +170,17 @@ int plan_calibration_command(const Arguments& arguments) {
   }
   const calibration::Plan plan =
       calibration::plan_calibration(machine, settings, taken ? &*taken : nullptr);
-  fmt::print("{}", calibration::report(plan, settings));
+  line.end();
+  const bool json = options.has("json");
+  fmt::print("{}", json ? calibration::report_json(plan, settings) + "\n"
+                        : calibration::report(plan, settings));
   if (options.has("output")) {
     const auto& folder = options.get<std::string>("output");
     std::filesystem::create_directories(folder);
     const sim::readings::Readings planned = calibration::planned_readings(plan);
     calibration::write_plan(folder, planned, machine.chain, machine_file, options.has("force"));
     write_programs(folder, planned, machine, probing, controls, options);
-    fmt::print("written to {}\n", folder);
+    if (!json) fmt::print("written to {}\n", folder);
   }
   return kDone;
 }

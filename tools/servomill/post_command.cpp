@@ -9,9 +9,11 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/post_file.h"
+#include "sim/system/json.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/post_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -28,14 +30,27 @@ void tell(const std::vector<controllers::Warning>& warnings) {
 }
 
 // Odd things explain faults.
-sim::programs::PostProcessedFile post(sim::programs::PostRequest request) {
+sim::programs::PostProcessedFile post(sim::programs::PostRequest request, ProgressLine& line) {
   std::vector<controllers::Warning> warnings;
   try {
     return sim::programs::post_file(std::move(request), &warnings);
   } catch (const InputError&) {
+    line.end();
     tell(warnings);
     throw;
   }
+}
+
+std::string post_json(const sim::programs::PostProcessedFile& done, const std::string& name) {
+  std::vector<std::string> warnings;
+  for (const controllers::Warning& one : done.warnings) warnings.push_back(to_string(one));
+  return sim::system::JsonObject()
+      .text("file", name)
+      .integer("locations", done.locations)
+      .integer("points_inserted", done.inserted)
+      .text("verified", done.verified)
+      .raw("warnings", sim::system::json_texts(warnings))
+      .line();
 }
 
 std::string program_name(const Options& options) {
@@ -64,18 +79,23 @@ int post_command(const Arguments& arguments) {
 
   const std::string name = program_name(options);
   const bool to_stdout = name == "-";
+  ProgressLine line(options);
   sim::programs::PostRequest request = post_request(options);
   if (!to_stdout) sim::system::refuse_unwritable_text(name, options.has("force"));
-  const sim::programs::PostProcessedFile post_processed = post(std::move(request));
+  const sim::programs::PostProcessedFile post_processed = post(std::move(request), line);
+  line.end();
   tell(post_processed.warnings);
   if (to_stdout) {
     std::fwrite(post_processed.program.data(), 1, post_processed.program.size(), stdout);
   } else {
     sim::system::write_text_file(name, post_processed.program, options.has("force"));
   }
-  if (!options.has("quiet")) {
-    fmt::print(to_stdout ? stderr : stdout, "{}: {} locations, {} points between them\n{}\n", name,
-               post_processed.locations, post_processed.inserted, post_processed.verified);
+  std::FILE* to = to_stdout ? stderr : stdout;
+  if (options.has("json")) {
+    fmt::print(to, "{}\n", post_json(post_processed, name));
+  } else if (!options.has("quiet")) {
+    fmt::print(to, "{}: {} locations, {} points between them\n{}\n", name, post_processed.locations,
+               post_processed.inserted, post_processed.verified);
   }
   return kDone;
 }

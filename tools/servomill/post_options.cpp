@@ -179,6 +179,7 @@ void add_post_options(Options& options) {
   options.add()("start", po::value<std::string>()->value_name("A=10,C=90"),
                 "axis positions near which the first location is solved; default: zero");
   options.add()("force,f", "replaces the program if it exists");
+  options.add()("json", "prints what it wrote as one JSON object");
   options.add()("quiet,q", "prints only warnings and faults");
 }
 

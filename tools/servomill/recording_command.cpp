@@ -7,6 +7,8 @@
 #include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 
@@ -36,7 +38,7 @@ int recording_command(const Arguments& arguments) {
   options.add()("time-unit", po::value<std::string>()->value_name("us"),
                 "unit of times without a unit in the file; default: s");
   options.add()("force,f", "replaces OUT if it exists");
-  options.add()("json", "prints one JSON object per FILE");
+  options.add()("json", "prints a JSON list, one object per FILE");
   options.add()("quiet,q", "prints only faults");
   if (!options.parse(arguments)) return kDone;
   const Place place{"servomill recording"};
@@ -50,17 +52,24 @@ int recording_command(const Arguments& arguments) {
   const std::string time_unit =
       options.has("time-unit") ? options.get<std::string>("time-unit") : "";
   const bool prints = !options.has("quiet") && !options.has("json");
+  JsonList list;
+  ProgressLine line(options);
+  Stage stage("files", static_cast<double>(files.size()), Steps::unlike);
   for (const std::string& file : files) {
     const sim::recordings::Recording recording = sim::recordings::read_recording(file, time_unit);
-    if (options.has("json")) {
-      fmt::print("{}\n", sim::recordings::survey_json(recording));
-    } else if (prints) {
-      fmt::print("{}", sim::recordings::survey(recording));
-    }
-    if (out.empty()) continue;
-    sim::recordings::write_recording(recording, out, options.has("force"));
-    if (prints) fmt::print("written to {}\n", out);
+    const std::string survey = options.has("json") ? sim::recordings::survey_json(recording)
+                               : prints            ? sim::recordings::survey(recording)
+                                                   : "";
+    if (!out.empty()) sim::recordings::write_recording(recording, out, options.has("force"));
+    stage.advance();
+    const auto hidden = line.hidden();
+    if (options.has("json")) list.add(survey);
+    if (!prints) continue;
+    fmt::print("{}", survey);
+    if (!out.empty()) fmt::print("written to {}\n", out);
   }
+  line.end();
+  if (options.has("json")) list.end();
   return kDone;
 }
 

@@ -8,12 +8,14 @@
 #include "sim/recordings/read_recording.h"
 #include "sim/responses/control_response.h"
 #include "sim/responses/local_polynomial.h"
+#include "sim/responses/response_json.h"
 #include "sim/responses/store_response.h"
 #include "sim/run/result_file.h"
 #include "sim/system/output_name.h"
 #include "sim/system/text_table.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 
@@ -49,6 +51,7 @@ void add_response_options(Options& options) {
                 "writes lines and fit for tools/identification_page.py, which draws them");
   options.add()("time-unit", text("us"), "unit of times without a unit in the file");
   options.add()("force,f", "replaces OUT if it exists");
+  options.add()("json", "prints one JSON object with all lines");
 }
 
 const sim::recordings::Channel& channel_of(const sim::recordings::Recording& recording,
@@ -237,14 +240,15 @@ std::string csv_of(const MeasuredResponse& response) {
 void write_outputs(const sim::responses::ResponseRecord& record, const Options& options,
                    const std::string& signals) {
   const bool force = options.has("force");
+  const bool prints = !options.has("json");
   if (options.has("table")) {
     const auto table = options.get<std::string>("table");
     sim::system::write_text_file(table, csv_of(record.response), force);
-    fmt::print("written to {}\n", table);
+    if (prints) fmt::print("written to {}\n", table);
   }
   if (!signals.empty()) {
     sim::responses::store_response(record, signals, force);
-    fmt::print("written to {}\n", signals);
+    if (prints) fmt::print("written to {}\n", signals);
   }
 }
 
@@ -312,10 +316,15 @@ int response_command(const Arguments& arguments) {
   }
   const std::string signals = output_of(options, "signals", ".h5");
   if (!signals.empty()) sim::run::writable_name(signals, force);
+  ProgressLine progress(options);
   const auto recording = sim::recordings::read_recording(
       file, options.has("time-unit") ? options.get<std::string>("time-unit") : "");
   const MeasuredResponse response = within(measured_response(recording, options), options);
-  print_response(response, options.has("lines"));
+  const bool prints = !options.has("json");
+  if (prints) {  // whatever becomes of the fit
+    const auto hidden = progress.hidden();
+    print_response(response, options.has("lines"));
+  }
   sim::responses::ResponseRecord record;
   record.recording = file;
   record.input = signal_name(recording, options, "input");
@@ -323,11 +332,15 @@ int response_command(const Arguments& arguments) {
   record.response = response;
   if (order) {
     record.rational = sim::responses::fit_rational(response, *order, file);
-    print_fit(*record.rational);
+    progress.end();
+    if (prints) print_fit(*record.rational);
   } else if (!fit.empty()) {
     record.fit = sim::responses::fit_two_mass(response, file);
-    print_fit(*record.fit);
+    progress.end();
+    if (prints) print_fit(*record.fit);
   }
+  progress.end();
+  if (options.has("json")) fmt::print("{}\n", sim::responses::to_json(record));
   write_outputs(record, options, signals);
   return kDone;
 }

@@ -19,6 +19,8 @@
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 #include "tools/servomill/run_reports.h"
 
 namespace servomill::tools {
@@ -108,8 +110,10 @@ int print_output(const sim::run::RunOutput& output, const Options& options,
   for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
   print_notes(output);
   if (json) {
-    for (const auto& row : output.comparison) fmt::print("{}\n", sim::evaluation::to_json(row));
-    print_report_json(output);
+    JsonList list;
+    for (const auto& row : output.comparison) list.add(sim::evaluation::to_json(row));
+    add_report_json(output, list);
+    list.end();
   } else if (!quiet) {
     fmt::print("{}\n\n", scenario.title);
     print_outcomes(output);
@@ -144,7 +148,7 @@ void add_run_options(Options& options) {
   options.add()("readings", po::value<std::string>()->value_name("FOLDER"),
                 "writes the readings of every [[test]] to FOLDER/CASE/TEST.csv (diagonals: "
                 "TEST/PPP.csv, ...), as `servomill evaluate` reads them");
-  options.add()("json", "prints the comparison as one JSON object per line");
+  options.add()("json", "prints a JSON list, one object per line of the comparison, test and day");
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
   options.add()("isolate",
@@ -166,18 +170,17 @@ int run_command(const Arguments& arguments) {
   load_plugins(options);
   if (options.has("isolate")) sim::input::isolate_plugins();
 
+  ProgressLine line(options);
   const sim::model::Scenario scenario =
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::string path =
       sim::run::writable_name(output_name(options, scenario.name, ""), options.has("force"));
   const auto& stop = stop_on_interrupt();
   std::optional<sim::run::RunStore> store;
-  ProgressBar bar(options.has("quiet"));
   sim::run::RunControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
-  control.progress = [&](double share) { bar.show(share); };
   Kept kept(scenario);
   const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
   control.case_done = [&](const sim::run::CaseOutput& one) {
@@ -185,6 +188,7 @@ int run_command(const Arguments& arguments) {
     kept.add(one);
   };
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+    const auto hidden = line.hidden();
     if (sim::preparation::is_worth_telling(takes))
       fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
     if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
@@ -195,19 +199,19 @@ int run_command(const Arguments& arguments) {
   sim::run::RunOutput output;
   try {
     output = sim::run::run_scenario(scenario, control);
-    bar.clear();
+    line.end();
     if (!kept.all_complete()) {
       print_interrupted(kept.said());
       return kInterrupted;
     }
     store->commit(output.comparison);
   } catch (const sim::system::SystemError& error) {
-    bar.clear();
+    line.end();
     fmt::print(stderr, "{}\n", error.what());
     if (const std::string said = kept.said(); !said.empty()) fmt::print(stderr, "{}\n", said);
     return kSystemFailed;
   } catch (const Interrupted&) {
-    bar.clear();
+    line.end();
     print_interrupted(kept.said());
     return kInterrupted;
   }

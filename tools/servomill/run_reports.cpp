@@ -16,6 +16,7 @@
 #include "sim/run/test_sheet.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
 
 namespace servomill::tools {
 
@@ -51,10 +52,10 @@ void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& 
   }
 }
 
-void print_report_json(const sim::run::RunOutput& output) {
+void add_report_json(const sim::run::RunOutput& output, JsonList& list) {
   for (const sim::run::CaseOutput& one : output.cases) {
-    for (const auto& test : one.tests) fmt::print("{}\n", sim::standards::json(test->report));
-    if (one.day) fmt::print("{}\n", sim::run::day_json(one.name, *one.day));
+    for (const auto& test : one.tests) list.add(sim::standards::json(test->report));
+    if (one.day) list.add(sim::run::day_json(one.name, *one.day));
   }
 }
 

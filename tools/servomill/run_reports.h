@@ -10,6 +10,7 @@ struct RunOutput;
 
 namespace servomill::tools {
 
+class JsonList;
 class Options;
 
 /// Files of readings of each test, in a folder for each case (--readings).
@@ -17,7 +18,8 @@ void write_readings(const sim::run::RunOutput& output, const Options& options);
 
 /// Parameters of each test, the cases that finished side by side.
 void print_tests(const sim::run::RunOutput& output, const sim::model::Scenario& scenario);
-void print_report_json(const sim::run::RunOutput& output);
+/// The same, one object each.
+void add_report_json(const sim::run::RunOutput& output, JsonList& list);
 
 /// Drift and cycles of the day of each case.
 void print_days(const sim::run::RunOutput& output);

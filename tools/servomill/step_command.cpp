@@ -11,6 +11,8 @@
 #include "sim/run/servo_store.h"
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -112,8 +114,8 @@ void print_figures(const sim::frequency::StepSettings& settings,
   fmt::print("  largest current {:.3g} A of {:g} A\n", response.peak_current, i_max);
 }
 
-void print_json(const sim::frequency::StepSettings& settings,
-                const sim::frequency::StepResponse& response, char axis) {
+std::string to_json(const sim::frequency::StepSettings& settings,
+                    const sim::frequency::StepResponse& response, char axis) {
   const sim::frequency::StepFigures& f = response.figures;
   sim::system::JsonObject out;
   out.text("axis", std::string(1, axis)).text("step", sim::run::name_of(settings.kind));
@@ -121,20 +123,22 @@ void print_json(const sim::frequency::StepSettings& settings,
   out.number("rise_time_s", f.rise_time).number("settling_time_s", f.settling_time);
   out.number("band", settings.band).number("steady_error_SI", f.steady_error);
   out.number("peak_SI", f.peak).number("peak_time_s", f.peak_time);
-  fmt::print("{}\n", out.number("peak_current_A", response.peak_current).line());
+  return out.number("peak_current_A", response.peak_current).line();
 }
 
 // A step of an axis. Gives the settings a duration where they have none; where no step can be
 // shown, says why and returns nothing.
 std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineSettings& machine,
                                                       int joint, Tick delay,
-                                                      sim::frequency::StepSettings& settings) {
+                                                      sim::frequency::StepSettings& settings,
+                                                      ProgressLine& line) {
   const char axis = machine.chain.layout.letter_of(joint);
   const bool is_velocity = settings.kind == sim::frequency::StepKind::velocity;
   const double slowest = sim::frequency::slowest_time_constant(
       machine, joint, delay,
       is_velocity ? sim::frequency::PositionLoop::open : sim::frequency::PositionLoop::closed);
   if (!std::isfinite(slowest)) {
+    const auto hidden = line.hidden();
     fmt::print(stderr, "axis {}: the {} loop is unstable; no step is simulated\n", axis,
                is_velocity ? "velocity" : "position");
     return std::nullopt;
@@ -146,11 +150,23 @@ std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineS
   sim::frequency::StepResponse response = sim::frequency::step_response(
       machine, joint, delay, settings, std::max<Tick>(1, ticks / kMaxRows));
   if (response.fault) {
+    const auto hidden = line.hidden();
     fmt::print(stderr, "axis {}, {} step: {}\n", axis, sim::run::name_of(settings.kind),
                *response.fault);
     return std::nullopt;
   }
   return response;
+}
+
+// All of them before the first step is simulated.
+void refuse_wrong_settings(const Options& options, const std::vector<int>& joints,
+                           const std::vector<sim::frequency::StepKind>& kinds) {
+  if (kinds.size() > 1 && options.has("amplitude")) {
+    throw InputError({"--amplitude"}, "needs one --kind: its unit depends on the kind");
+  }
+  for (const int joint : joints) {
+    for (const sim::frequency::StepKind kind : kinds) settings_of(options, kind, joint);
+  }
 }
 
 void add_step_options(Options& options) {
@@ -171,7 +187,7 @@ void add_step_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the signals to a result file, for tools/plot.py");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object per step");
+  options.add()("json", "prints a JSON list, one object per step");
   options.add()("quiet,q", "prints only faults");
 }
 
@@ -187,43 +203,47 @@ int step_command(const Arguments& arguments) {
   add_step_options(options);
   if (!options.parse(arguments)) return kDone;
 
+  ProgressLine line(options);
   const sim::model::Scenario scenario = scenario_for_axes(options);
   const auto joints = chosen_joints(options, scenario.machine);
   const auto kinds = kinds_of(options);
-  if (kinds.size() > 1 && options.has("amplitude")) {
-    throw InputError({"--amplitude"}, "needs one --kind: its unit depends on the kind");
-  }
-  for (const int joint : joints) {
-    for (const sim::frequency::StepKind kind : kinds) settings_of(options, kind, joint);
-  }
+  refuse_wrong_settings(options, joints, kinds);
   std::optional<sim::run::StepStore> store;
   if (options.has("output")) {
     store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
   }
   const sim::model::MachineSettings machine =
       options.has("linear") ? sim::frequency::linearised(scenario.machine) : scenario.machine;
-  const bool silent = options.has("quiet"), json = options.has("json");
+  const bool json = options.has("json"), silent = options.has("quiet") && !json;
+  JsonList list;
+  Stage steps("steps", static_cast<double>(joints.size() * kinds.size()), Steps::unlike);
   const Tick delay = sim::frequency::reading_delay_of(scenario);
   bool stable = true;
   for (const int joint : joints) {
     const char axis = machine.chain.layout.letter_of(joint);
-    if (!silent && !json) fmt::print("{}\n", axis_headline(machine, joint, delay));
+    if (!silent && !json) {
+      const auto hidden = line.hidden();
+      fmt::print("{}\n", axis_headline(machine, joint, delay));
+    }
     for (const sim::frequency::StepKind kind : kinds) {
       sim::frequency::StepSettings settings = settings_of(options, kind, joint);
-      const auto found = simulated(machine, joint, delay, settings);
+      const auto found = simulated(machine, joint, delay, settings, line);
+      steps.advance();
       stable &= found.has_value();
       if (!found) continue;
       const sim::frequency::StepResponse& response = *found;
       if (store) store->add(axis, settings, response);
-      if (silent) continue;
+      const auto hidden = line.hidden();
       if (json) {
-        print_json(settings, response, axis);
-      } else {
+        list.add(to_json(settings, response, axis));
+      } else if (!silent) {
         print_figures(settings, response, joint,
                       scenario.machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
       }
     }
   }
+  line.end();
+  if (json) list.end();
   if (store) {
     store->commit();
     if (!silent && !json) fmt::print("\nwritten to {}\n", options.get<std::string>("output"));

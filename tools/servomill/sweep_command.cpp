@@ -19,6 +19,8 @@
 #include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 #include "tools/servomill/sweep_lines.h"
 
 namespace servomill::tools {
@@ -54,7 +56,7 @@ void add_sweep_options(Options& options) {
                 "runs points again at which the program or the system failed, such as for lack of "
                 "memory");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints one JSON object per point and quantity");
+  options.add()("json", "prints a JSON list, one object per point that is run and quantity");
   options.add()("csv", "prints the table as the CSV file has it, at the end");
   options.add()("quiet,q", "prints only faults");
 }
@@ -189,7 +191,8 @@ bool is_sweep_quiet(const Options& options) {
 void tell_before(const Options& options, const sim::sweep::SweepTable& table,
                  const SweepFiles& files,
                  const std::optional<sim::preparation::RunEstimate>& of_a_point,
-                 std::uint64_t to_do) {
+                 std::uint64_t to_do, ProgressLine& line) {
+  const auto hidden = line.hidden();
   if (!is_sweep_quiet(options)) print_points_there(table, files.table, to_do);
   if (of_a_point) {
     tell_estimate(*of_a_point, to_do, thread_count(options), !files.signals.empty());
@@ -197,7 +200,8 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
 }
 
 // Names parts of the scenario that a sweep leaves out.
-void tell_left_out(const sim::model::Scenario& base) {
+void tell_left_out(const sim::model::Scenario& base, ProgressLine& line) {
+  const auto hidden = line.hidden();
   if (base.day && !sim::run::is_day_asked_for(base)) {
     fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
   }
@@ -209,6 +213,7 @@ void tell_left_out(const sim::model::Scenario& base) {
 // Prints that nothing is left to be done; the exit status.
 int print_complete(const Options& options, const sim::sweep::SweepTable& table,
                    const SweepFiles& files, std::uint64_t points) {
+  if (options.has("json")) JsonList().end();
   if (!is_sweep_quiet(options)) {
     fmt::print("{} already contains all {} points\n", files.table, points);
     print_statistics(files.table);
@@ -240,13 +245,15 @@ int sweep_command(const Arguments& arguments) {
   add_sweep_options(options);
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
+  if (options.has("json") && options.has("csv")) throw InputError({"--json"}, "excludes --csv");
   load_plugins(options);
 
+  ProgressLine line(options);
   const sim::sweep::Sweep sweep(options.word(), options.list("set"));
   const sim::sweep::Selection selection = selection_of(options, sweep);
   const SweepFiles files = files_of(options, sweep, selection);
   const auto of_a_point = sweep.refuse_hopeless();
-  tell_left_out(sweep.base());
+  tell_left_out(sweep.base(), line);
 
   PointsLeft left(files.table, selection.size());
   const KeptWhenInterrupted when_interrupted([&left] { return left.said(); });
@@ -257,34 +264,33 @@ int sweep_command(const Arguments& arguments) {
   const std::vector<bool> done = points_done(table, selection, sweep, files.signals);
   left.count = std::count(done.begin(), done.end(), false);
   if (table.is_complete() && left.count == 0) {
+    line.end();
     return print_complete(options, table, files, selection.size());
   }
-  tell_before(options, table, files, of_a_point, static_cast<std::uint64_t>(left.count));
+  tell_before(options, table, files, of_a_point, static_cast<std::uint64_t>(left.count), line);
 
-  ProgressBar bar(options.has("quiet"));
   SweepLines lines = lines_of(options, sweep, selection, done);
   sim::sweep::SweepControl control;
   control.threads = thread_count(options);
   control.stop = &stop_on_interrupt();
   control.keep = files.signals.empty() ? sim::run::Keep::comparison : sim::run::Keep::series;
-  control.progress = [&](double share) { bar.show(share); };
   std::uint64_t still_without_signals = 0;
   control.batch_done = [&](std::vector<sim::sweep::SweepPoint>&& points) {
     if (!files.signals.empty())
       still_without_signals += write_signals(files.signals, sweep, points);
     write_rows(table, selection, points);
     left.count -= static_cast<std::int64_t>(points.size());
-    bar.clear();
+    const auto hidden = line.hidden();
     for (const sim::sweep::SweepPoint& point : points) lines.add(point);
   };
   try {
     sim::sweep::run_sweep(sweep, selection, done, control);
   } catch (const Interrupted&) {
-    bar.clear();
+    line.end();
     print_interrupted(left.said());
     return kInterrupted;
   }
-  bar.clear();
+  line.end();
   lines.finish();
   tell_mixed_levels(files.table, levels_of(table, files.signals));
   if (left.count > 0) {

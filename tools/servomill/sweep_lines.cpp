@@ -81,11 +81,10 @@ SweepLines::Said SweepLines::said_of(const sim::sweep::SweepPoint& point) const 
   }
   if (form_ == Form::json) {
     for (const auto& row : result.rows) {
-      said.out += sim::system::JsonObject()
-                      .text("point", where)
-                      .raw("row", sim::evaluation::to_json(row))
-                      .line() +
-                  '\n';
+      said.objects.push_back(sim::system::JsonObject()
+                                 .text("point", where)
+                                 .raw("row", sim::evaluation::to_json(row))
+                                 .line());
     }
   } else if (form_ == Form::table && !result.rows.empty()) {
     said.out = line_of(point);
@@ -110,6 +109,7 @@ void SweepLines::add(const sim::sweep::SweepPoint& point) {
 void SweepLines::finish() {
   for (const auto& [place, said] : waiting_) print(said);
   waiting_.clear();
+  if (form_ == Form::json) list_.end();
   std::fflush(stdout);
 }
 
@@ -120,6 +120,7 @@ void SweepLines::print(const Said& said) {
   }
   fmt::print(stderr, "{}", said.error);
   fmt::print("{}", said.out);
+  for (const std::string& object : said.objects) list_.add(object);
 }
 
 std::string points_by_status(const sim::sweep::StatusCounts& counts) {

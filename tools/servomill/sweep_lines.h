@@ -10,6 +10,7 @@
 #include "sim/evaluation/comparison.h"
 #include "sim/sweep/run_sweep.h"
 #include "sim/sweep/table.h"
+#include "tools/servomill/json_list.h"
 
 namespace servomill::tools {
 
@@ -33,6 +34,7 @@ class SweepLines {
  private:
   struct Said {
     std::string out, error;
+    std::vector<std::string> objects;  // JSON
   };
   std::string heading() const;
   std::string line_of(const sim::sweep::SweepPoint& point) const;
@@ -47,6 +49,7 @@ class SweepLines {
   std::map<std::uint64_t, Said> waiting_;  // by place in the selection
   std::uint64_t next_ = 0;                 // place
   bool headed_ = false;
+  JsonList list_;
 };
 
 /// "98 points done, 2 points refused".

@@ -20,6 +20,8 @@
 #include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/import_errors.h"
+#include "tools/servomill/progress_line.h"
+#include "tools/servomill/table_json.h"
 
 namespace servomill::tools {
 namespace {
@@ -319,6 +321,7 @@ void add_table_options(Options& options) {
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario or of the machine file, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
+  options.add()("json", "prints the report as one JSON object; excludes --import");
   options.add()("quiet,q", "prints only faults");
   add_plugin_option(options);
 }
@@ -345,8 +348,12 @@ int table_command(const Arguments& arguments) {
     throw InputError({"servomill table"}, "needs the name of a folder: -o FOLDER");
   }
 
-  if (options.has("import")) return import_errors(options);
+  if (options.has("import")) {
+    if (options.has("json")) throw InputError({"--json"}, "excludes --import");
+    return import_errors(options);
+  }
 
+  ProgressLine line(options);
   const Inputs inputs = read_inputs(options);
   sim::tables::TableRequest request = request_of(options, inputs.machine);
   const plant::ErrorModel& errors = model_of(inputs, options, request.model);
@@ -361,13 +368,19 @@ int table_command(const Arguments& arguments) {
   const auto folder = options.get<std::string>("output");
   const auto files = sim::tables::table_files(tables);
   const sim::tables::TableVerification verified = sim::tables::verify_tables(tables, files);
+  line.end();
   write(files, folder, options.has("force"));
+  std::vector<std::string> names;
+  for (const sim::tables::TextFile& file : files) {
+    names.push_back((fs::path(folder) / file.name).string());
+  }
+  if (options.has("json")) {
+    fmt::print("{}\n", tables_json(tables, verified, names));
+    return kDone;
+  }
   if (options.has("quiet")) return kDone;
-  for (const std::string& line : sim::tables::report(tables)) fmt::print("{}\n", line);
-  fmt::print("{}\nwritten:", sim::tables::to_string(verified));
-  for (const sim::tables::TextFile& file : files)
-    fmt::print(" {}", (fs::path(folder) / file.name).string());
-  fmt::print("\n");
+  for (const std::string& text : sim::tables::report(tables)) fmt::print("{}\n", text);
+  fmt::print("{}\nwritten: {}\n", sim::tables::to_string(verified), fmt::join(names, " "));
   return kDone;
 }
 

@@ -10,6 +10,8 @@
 #include "sim/frequency/tuning.h"
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/json_list.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -114,7 +116,7 @@ void print_table(const sim::frequency::Tuning& t, int joint) {
 // The margins as the whole axis shows them in the simulation, one sinusoid at each crossover.
 // Says why not and returns false if the simulation cannot be trusted.
 bool confirm(const sim::model::MachineSettings& machine, int joint, Tick delay,
-             const sim::frequency::Assessment& a) {
+             const sim::frequency::Assessment& a, ProgressLine& line) {
   struct Loop {
     const char* name;
     sim::frequency::PositionLoop loop;
@@ -137,6 +139,7 @@ bool confirm(const sim::model::MachineSettings& machine, int joint, Tick delay,
     how.velocity = sim::frequency::default_velocity(machine, joint, one.entry, how.amplitude);
     const auto measured =
         sim::frequency::measure(machine, joint, delay, one.loop, how, {one.margins.crossover});
+    const auto hidden = line.hidden();
     if (measured.fault) {
       fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n",
                  machine.chain.layout.letter_of(joint), one.name, *measured.fault);
@@ -176,18 +179,18 @@ std::string to_json(const sim::frequency::Assessment& a) {
   return out.number("load_peak_SI", a.load_peak).line();
 }
 
-void print_json(char axis, const sim::frequency::Tuning& t, double common_Kv) {
+std::string to_json(char axis, const sim::frequency::Tuning& t, double common_Kv) {
   sim::system::JsonObject out;
   out.text("axis", std::string(1, axis));
   out.raw("before", to_json(t.before)).raw("after", to_json(t.after));
   out.number("Kv_limit_per_s", t.Kv_limit).number("common_Kv_per_s", common_Kv);
-  fmt::print("{}\n", out.line());
+  return out.line();
 }
 
 // The velocity gain of all axes, and the axis that asks for it.
 struct CommonKv {
-  double value;  // 1/s
-  char axis;
+  double value = 0.0;  // 1/s
+  char axis = 0;
 };
 
 struct TunedAxis {
@@ -236,6 +239,34 @@ void print_limits(const TunedAxis& axis, const sim::frequency::TuneSettings& wan
   fmt::print("\n");
 }
 
+struct TunedAxes {
+  std::vector<sim::frequency::Tuning> tunings;
+  std::vector<double> own_Kv;  // 1/s, before the common one
+  CommonKv common;
+};
+
+TunedAxes tuned_axes(const sim::model::MachineSettings& machine, const std::vector<int>& joints,
+                     Tick delay, const sim::frequency::TuneSettings& wanted) {
+  TunedAxes out;
+  Stage axes("axes", static_cast<double>(joints.size()));
+  for (const int joint : joints) {
+    out.tunings.push_back(sim::frequency::tune(machine, joint, delay, wanted));
+    out.own_Kv.push_back(out.tunings.back().after.gains.Kv);
+    axes.advance();
+  }
+  const auto slowest = std::min_element(out.own_Kv.begin(), out.own_Kv.end());
+  out.common = {*slowest, machine.chain.layout.letter_of(
+                              joints[static_cast<std::size_t>(slowest - out.own_Kv.begin())])};
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    sim::frequency::Tuning& one = out.tunings[k];
+    if (joints.size() > 1) {
+      one = sim::frequency::with_common_Kv(machine, joints[k], delay, one, out.common.value);
+    }
+    if (!one.after.stable) throw std::logic_error("tuned gains are not stable");
+  }
+  return out;
+}
+
 void add_tune_options(Options& options) {
   add_axis_options(options);
   const auto text = [] { return po::value<std::string>(); };
@@ -252,7 +283,7 @@ void add_tune_options(Options& options) {
                 "upper limit; a bare number is in rad/s");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
                 "reset time times velocity bandwidth");
-  options.add()("json", "prints one JSON object per axis");
+  options.add()("json", "prints a JSON list, one object per axis");
 }
 
 }  // namespace
@@ -269,46 +300,38 @@ int tune_command(const Arguments& arguments) {
   add_tune_options(options);
   if (!options.parse(arguments)) return kDone;
 
+  ProgressLine line(options);
   const sim::frequency::TuneSettings wanted = settings_of(options);
   const sim::model::Scenario scenario = scenario_for_axes(options);
   const sim::model::MachineSettings& machine = scenario.machine;
   const auto joints = chosen_joints(options, machine);
   const Tick delay = sim::frequency::reading_delay_of(scenario);
-  std::vector<sim::frequency::Tuning> tunings;
-  for (const int joint : joints)
-    tunings.push_back(sim::frequency::tune(machine, joint, delay, wanted));
-  const auto slowest =
-      std::min_element(tunings.begin(), tunings.end(),
-                       [](const sim::frequency::Tuning& a, const sim::frequency::Tuning& b) {
-                         return a.after.gains.Kv < b.after.gains.Kv;
-                       });
-  const CommonKv common = {
-      slowest->after.gains.Kv,
-      machine.chain.layout.letter_of(joints[static_cast<std::size_t>(slowest - tunings.begin())])};
-
+  const TunedAxes tuned = tuned_axes(machine, joints, delay, wanted);
+  if (options.has("json")) {
+    JsonList list;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      list.add(
+          to_json(machine.chain.layout.letter_of(joints[k]), tuned.tunings[k], tuned.common.value));
+    }
+    list.end();
+    return kDone;
+  }
   bool confirmed = true;
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    const double own_Kv = tunings[k].after.gains.Kv;
-    if (joints.size() > 1) {
-      tunings[k] =
-          sim::frequency::with_common_Kv(machine, joints[k], delay, tunings[k], common.value);
+    const TunedAxis axis = {machine, joints[k], delay, tuned.tunings[k], tuned.own_Kv[k]};
+    {
+      const auto hidden = line.hidden();
+      if (k > 0) fmt::print("\n");
+      print_limits(axis, wanted, tuned.common);
+      print_table(axis.tuning, axis.joint);
+      fmt::print("\n");
     }
-    if (!tunings[k].after.stable) throw std::logic_error("tuned gains are not stable");
-    if (options.has("json")) {
-      print_json(machine.chain.layout.letter_of(joints[k]), tunings[k], common.value);
-      continue;
-    }
-    if (k > 0) fmt::print("\n");
-    const TunedAxis axis = {machine, joints[k], delay, tunings[k], own_Kv};
-    print_limits(axis, wanted, common);
-    print_table(axis.tuning, axis.joint);
-    fmt::print("\n");
     confirmed &= confirm(sim::frequency::with_gains(machine, axis.joint, axis.tuning.after.gains),
-                         axis.joint, delay, axis.tuning.after);
+                         axis.joint, delay, axis.tuning.after, line);
   }
-  if (options.has("json")) return kDone;
+  line.end();
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    print_toml(machine.chain.layout.letter_of(joints[k]), tunings[k].after.gains);
+    print_toml(machine.chain.layout.letter_of(joints[k]), tuned.tunings[k].after.gains);
   }
   if (joints.size() == 1) {
     fmt::print("\nInterpolating axes need equal Kv: --axis all finds the common one.\n");

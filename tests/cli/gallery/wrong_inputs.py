@@ -14,7 +14,7 @@ from wrong_tests import TESTS
 COMMAND_LINE = [
     typed("an unknown command", "servomill rnu scenario.toml", "servomill frobnicate"),
     typed("an unknown option", "servomill run scenario.toml --forse", "servomill --quiet", "servomill check -x",
-          "servomill list --json strategies"),
+          "servomill list strategies --markdown", "servomill table scenario.toml --json --import a.csv -o b.toml"),
     typed("an option without its value", "servomill run scenario.toml -o", "servomill run scenario.toml --set"),
     typed("a value of the wrong type", "servomill run scenario.toml --threads many",
           "servomill run scenario.toml --threads -1", "servomill run scenario.toml --force=yes"),

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/run/run.h"
 #include "sim/sweep/run_sweep.h"
 
@@ -153,14 +154,19 @@ TEST(Sweep, EndsWhenItIsStopped) {
 }
 
 TEST(Sweep, TellsItsProgress) {
+  const ProgressWatch watch;
   SweepControl control;
-  double last = 0.0;
-  control.progress = [&](double share) {
-    EXPECT_GE(share, last - 0.5);  // batches in work are estimated
-    last = share;
+  std::size_t ended = 0;
+  control.batch_done = [&](std::vector<SweepPoint>&& points) {
+    ended += points.size();
+    const std::vector<StageState> stages = watch.stages();
+    ASSERT_EQ(stages.size(), 1U);
+    EXPECT_EQ(stages.front().counted, "points");
+    EXPECT_EQ(stages.front().total, 6.0);
   };
-  run_all(sweep_of(kSix), control);
-  EXPECT_EQ(last, 1.0);
+  run_sweep(sweep_of(kSix), {0, 6}, {}, control);
+  EXPECT_EQ(ended, 6U);
+  EXPECT_TRUE(watch.stages().empty());
 }
 
 std::string refusal(const std::string& table) {
