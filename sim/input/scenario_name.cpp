@@ -39,6 +39,19 @@ std::string without_suffix(const std::string& name) {
   return name.ends_with(kSuffix) ? name.substr(0, name.size() - kSuffix.size()) : name;
 }
 
+// Names with the same last part, as guevel2025/experiment1 to experiment1, else the nearest by
+// letters; empty: none.
+std::string nearest_of(const std::vector<std::string>& names, const std::string& plain) {
+  std::vector<std::string> near;
+  for (const std::string& name : names) {
+    const bool is_same = fs::path(name).filename() == fs::path(plain).filename();
+    if (is_same && std::find(near.begin(), near.end(), name) == near.end()) near.push_back(name);
+  }
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return near.empty() ? did_you_mean(plain, views)
+                      : fmt::format("; did you mean '{}'?", fmt::join(near, "' or '"));
+}
+
 }  // namespace
 
 std::vector<std::string> scenario_folders() {
@@ -68,25 +81,37 @@ std::string scenario_file(const std::string& word, const std::vector<std::string
   if (fs::exists(word)) return word;
   const std::string plain = without_suffix(word), file = plain + std::string(kSuffix);
   if (is_file(file)) return file;
-  std::vector<std::string> names, near;
+  std::vector<std::string> names;
   for (const std::string& folder : folders) {
     const fs::path found = fs::path(folder) / file;
     if (is_file(found)) return found.string();
     const std::vector<std::string> here = scenario_names(folder);
     names.insert(names.end(), here.begin(), here.end());
   }
-  // the nearest: those of the same last part, as guevel2025/experiment1 to experiment1, or by
-  // letters
-  for (const std::string& name : names) {
-    const bool is_same = fs::path(name).filename() == fs::path(plain).filename();
-    if (is_same && std::find(near.begin(), near.end(), name) == near.end()) near.push_back(name);
-  }
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string nearest = near.empty()
-                                  ? did_you_mean(plain, views)
-                                  : fmt::format("; did you mean '{}'?", fmt::join(near, "' or '"));
+  const std::string nearest = nearest_of(names, plain);
   if (nearest.empty()) return word;
   throw InputError({word}, "is no file and no scenario" + nearest);
+}
+
+std::string machine_file(const std::string& word, const std::vector<std::string>& folders) {
+  if (fs::exists(word)) return word;
+  const std::string plain = without_suffix(word), file = plain + std::string(kSuffix);
+  if (is_file(file)) return file;
+  std::vector<std::string> names;
+  for (const std::string& folder : folders) {
+    const fs::path machines = fs::path(folder) / "machines";
+    for (const fs::path& found : {machines / file, fs::path(folder) / file}) {
+      if (is_file(found)) return found.string();
+    }
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(machines, ignored)) {
+      if (entry.path().extension() == kSuffix) names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  const std::string nearest = nearest_of(names, fs::path(plain).filename().string());
+  if (nearest.empty()) return word;
+  throw InputError({word}, "is no file and no machine" + nearest);
 }
 
 }  // namespace servomill::sim::input

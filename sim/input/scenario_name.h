@@ -1,5 +1,5 @@
-/// Scenarios by name: "guevel2025/experiment1" is a file below the current folder or of an
-/// installation.
+/// Scenarios and machines by name: "guevel2025/experiment1" is a file below the current folder or
+/// of an installation.
 #pragma once
 
 #include <string>
@@ -19,5 +19,9 @@ std::vector<std::string> scenario_names(const std::string& folder);
 /// first of the folders that has one. A word that is near to no name is returned as it is.
 /// @throws InputError with the nearest names, if there are any
 std::string scenario_file(const std::string& word, const std::vector<std::string>& folders);
+
+/// File of a machine: as that of a scenario, or in the folder `machines` of one of the folders:
+/// "hsm600u" and "machines/hsm600u" are the same.
+std::string machine_file(const std::string& word, const std::vector<std::string>& folders);
 
 }  // namespace servomill::sim::input

@@ -75,14 +75,15 @@ class Options {
   std::vector<std::string> list(const std::string& name) const {
     return has(name) ? get<std::vector<std::string>>(name) : std::vector<std::string>{};
   }
-  /// Words as they were given; those that name a scenario as its file (sim/input/scenario_name.h).
+  /// Words as they were given; those that name a scenario as its file, as --machine the file of its
+  /// machine (sim/input/scenario_name.h).
   std::vector<std::string> words() const { return list("words"); }
   /// The only word. @throws InputError if there are none or several
   std::string word() const;
 
  private:
   void remember_files() const;
-  void find_scenarios();
+  void find_named_files();
   bool print_other_form(const Arguments& arguments) const;
 
   std::string command_, synopsis_, summary_, words_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iostream>
 
 #include "plant/vocabulary/input_error.h"
@@ -59,7 +60,7 @@ bool Options::parse(const Arguments& arguments) {
     throw InputError(place, error.what());
   }
   if (!has("help")) {
-    find_scenarios();
+    find_named_files();
     remember_files();
     for (const std::string& one : words()) {
       if (one.empty())
@@ -72,12 +73,24 @@ bool Options::parse(const Arguments& arguments) {
   return false;
 }
 
-void Options::find_scenarios() {
-  if (words_.find("SCENARIO") == std::string::npos || !has("words")) return;
+void Options::find_named_files() {
   const std::vector<std::string> folders = sim::input::scenario_folders();
-  auto& words = values_.at("words").as<std::vector<std::string>>();
-  for (std::string& word : words) {
-    if (!word.empty()) word = sim::input::scenario_file(word, folders);
+  const bool all = words_.find("SCENARIO") != std::string::npos;
+  if (has("words") && (all || command_ == "check")) {
+    for (std::string& word : values_.at("words").as<std::vector<std::string>>()) {
+      // a FILE may also be a program
+      const bool may_be_scenario = all || std::filesystem::path(word).extension().empty();
+      if (!word.empty() && may_be_scenario) word = sim::input::scenario_file(word, folders);
+    }
+  }
+  if (!has("machine")) return;
+  boost::any& value = values_.at("machine").value();
+  if (auto* one = boost::any_cast<std::string>(&value)) {
+    if (!one->empty()) *one = sim::input::machine_file(*one, folders);
+  } else if (auto* several = boost::any_cast<std::vector<std::string>>(&value)) {
+    for (std::string& file : *several) {
+      if (!file.empty()) file = sim::input::machine_file(file, folders);
+    }
   }
 }
 

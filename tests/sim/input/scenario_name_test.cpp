@@ -52,6 +52,22 @@ TEST_F(ScenarioName, OfAnInstallationIsItsFile) {
   }
 }
 
+TEST_F(ScenarioName, OfAMachineIsWithOrWithoutItsFolder) {
+  for (const char* word : {"worn", "worn.toml", "machines/worn", "machines/worn.toml"}) {
+    EXPECT_EQ(machine_file(word, {folder_.string()}), (folder_ / "machines/worn.toml").string());
+  }
+  const std::string here = (folder_ / "machines/mill").string();
+  EXPECT_EQ(machine_file(here, {}), here + ".toml");
+  EXPECT_EQ(machine_file("lathe", {folder_.string()}), "lathe");  // refused where it is read
+  try {
+    machine_file("machines/wron", {folder_.string()});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "machines/wron: error: is no file and no machine; did you mean 'worn'?");
+  }
+}
+
 TEST_F(ScenarioName, IsAFileOfTheCurrentFolderFirst) {
   const std::string here = (folder_ / "paper/experiment2").string();
   EXPECT_EQ(scenario_file(here + ".toml", {folder_.string()}), here + ".toml");
