@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/report.h"
@@ -11,6 +12,8 @@ namespace servomill::sim::calibration {
 namespace {
 
 using system::JsonObject;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 const char* unit_of(bool linear) { return linear ? "um" : "urad"; }
 
@@ -23,8 +26,8 @@ std::string group_json(const readings::Group& group, const GroupResult& result) 
       .number("uncertainty", result.uncertainty / um)
       .boolean("is_estimated", !group.uncertainty)
       .number("residual_rms", result.rms / um)
-      .number("redundancy", result.redundancy);
-  if (result.redundancy > 0.5) out.number("variance_ratio", result.ratio());
+      .number("redundancy", result.redundancy)
+      .number("variance_ratio", result.redundancy > 0.5 ? result.ratio() : kUnknown);
   return out.line();
 }
 
@@ -58,10 +61,8 @@ std::string function_json(const Adjustment& adjustment, const KnownFunction& kno
       .text("position_unit", linear ? "mm" : "deg")
       .number("from", known.s.front() / (linear ? mm : deg))
       .number("to", known.s.back() / (linear ? mm : deg));
-  if (known.reversal) {
-    out.number("reversal", known.reversal->first / um)
-        .number("U_reversal", 2.0 * known.reversal->second / um);
-  }
+  out.number("reversal", known.reversal ? known.reversal->first / um : kUnknown);
+  out.number("U_reversal", known.reversal ? 2.0 * known.reversal->second / um : kUnknown);
   return out.boolean("is_combined", is_combined(adjustment, known.name)).line();
 }
 

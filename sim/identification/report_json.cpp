@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <string_view>
 
 #include "sim/identification/report.h"
@@ -9,6 +10,8 @@ namespace servomill::sim::identification {
 namespace {
 
 using system::JsonObject;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // A value that the recordings do not determine has no interval.
 std::string parameter_json(const Identification& result, std::size_t k) {
@@ -20,8 +23,7 @@ std::string parameter_json(const Identification& result, std::size_t k) {
     if (record.record->number == one.record) out.text("recording", record.record->record.name);
   }
   out.number("value", one.start).boolean("is_identifiable", is_identifiable);
-  if (is_identifiable) out.number("U", 2.0 * result.uncertainty.standard(k));
-  return out.line();
+  return out.number("U", is_identifiable ? 2.0 * result.uncertainty.standard(k) : kUnknown).line();
 }
 
 std::string record_json(const RecordResult& one, std::string_view use) {
@@ -30,8 +32,9 @@ std::string record_json(const RecordResult& one, std::string_view use) {
       .text("use", use)
       .text("unit", one.record->joint < kLinearJoints ? "m" : "rad")
       .number("position_rms", one.feedback_rms);
-  if (one.force_rms > 0.0) out.number("force_rms_share", one.force_rms);
-  if (one.scale_rms > 0.0) out.number("scale_rms", one.scale_rms);
+  // 0: not recorded
+  out.number("force_rms_share", one.force_rms > 0.0 ? one.force_rms : kUnknown);
+  out.number("scale_rms", one.scale_rms > 0.0 ? one.scale_rms : kUnknown);
   return out.number("effective_samples", one.effective_samples).line();
 }
 

@@ -162,6 +162,27 @@ class Documents(unittest.TestCase):
         text = re.findall(r"^(\w+): ", self.done("list", "strategies"), re.MULTILINE)
         self.assertEqual([one["strategy"] for one in json.loads(self.done("list", "strategies", "--json"))], text)
 
+    def test_what_a_loop_lacks_is_null(self):
+        *_, compliance = json.loads(self.done("bode", SCENARIO, "--axis", "Y", "--loop", "compliance", "--method", "none", "--json"))
+        self.assertNotIn("gain_margin", compliance)
+        stable, unstable = ({one["axis"]: one for one in self.loops(kv)}["Y"] for kv in ("40 1/s", "20000 1/s"))
+        self.assertTrue(stable["stable"] and stable["gain_margin"] > 1.0 and stable["gain_margin_Hz"] > 0.0)
+        self.assertFalse(unstable["stable"])
+        for key in ("gain_margin", "gain_margin_Hz", "phase_margin_deg", "crossover_Hz", "bandwidth_Hz", "peak", "peak_Hz"):
+            self.assertIsNone(unstable[key], key)
+
+    def loops(self, kv):
+        done = subprocess.run([SERVOMILL, "bode", SCENARIO, "--axis", "Y", "--loop", "position", "--method", "none", "--json", "--set",
+                               f"machine.nc.Kv={kv}", "--set", "machine.nc.check_stability=false"], cwd=self.folder, capture_output=True,
+                              text=True, timeout=PATIENCE, check=False)
+        return [one for one in json.loads(done.stdout) if "loop" in one]
+
+    def test_a_load_step_has_no_overshoot(self):
+        steps = {one["step"]: one for one in json.loads(self.done("step", SCENARIO, "--axis", "Y", "--json"))}
+        self.assertIsNone(steps["load"]["overshoot"])
+        self.assertIsNone(steps["load"]["rise_time_s"])
+        self.assertGreaterEqual(steps["position"]["overshoot"], 0.0)
+
     def test_a_response_without_a_number_has_null(self):
         document = json.loads(self.done("response", "multisine.csv", "--input", "current", "--output", "angle", "--period", "0.5",
                                         "--fit", "0/2", "--json"))

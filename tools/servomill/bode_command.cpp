@@ -149,12 +149,21 @@ void add_json(const sim::frequency::BodeResult& result, char axis, JsonList& lis
       .text("loop", sim::run::name_of(result.loop))
       .boolean("stable", result.stable);
   loop.number("slowest_time_constant_s", result.time_constant);
+  // what a loop lacks has no frequency, and an unstable one has no margins
+  const auto known = [&](bool is_there, double value) {
+    return result.stable && is_there ? value : std::nan("");
+  };
   if (result.loop != sim::frequency::BodeLoop::compliance) {
-    loop.number("gain_margin", m.gain).number("gain_margin_Hz", m.gain_frequency);
-    loop.number("phase_margin_deg", m.phase / deg).number("crossover_Hz", m.crossover);
-    loop.number("sensitivity_peak", m.sensitivity).number("bandwidth_Hz", c.bandwidth);
+    const bool has_gain = std::isfinite(m.gain), has_phase = std::isfinite(m.phase);
+    loop.number("gain_margin", known(has_gain, m.gain));
+    loop.number("gain_margin_Hz", known(has_gain, m.gain_frequency));
+    loop.number("phase_margin_deg", known(has_phase, m.phase / deg));
+    loop.number("crossover_Hz", known(has_phase, m.crossover));
+    loop.number("sensitivity_peak", known(true, m.sensitivity));
+    loop.number("bandwidth_Hz", known(true, c.bandwidth));
   }
-  list.add(loop.number("peak", c.peak).number("peak_Hz", c.peak_frequency).line());
+  loop.number("peak", known(true, c.peak));
+  list.add(loop.number("peak_Hz", known(c.peak_frequency > 0.0, c.peak_frequency)).line());
 }
 
 void print_result(const sim::frequency::BodeResult& result,

@@ -12,6 +12,7 @@
 #include "sim/run/day_course.h"
 #include "sim/run/store_day.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 
@@ -128,11 +129,13 @@ int identify_heat_command(const Arguments& arguments) {
   if (!path.ends_with(".h5") && options.has("case")) {
     throw InputError({"--case"}, "is of result files (DAY.h5) only");
   }
+  ProgressLine line(options);
   const HeatReadings readings = path.ends_with(".h5")
                                     ? readings_of_day(path, options)
                                     : sim::calibration::read_heat_readings(path, machine);
   const auto found =
       sim::calibration::regress(readings, machine.chain, errors_of(options, machine.chain.layout));
+  line.end();
   if (!output.empty()) {
     const std::string based_on = sim::input::machine_seen_from(output, machine_path);
     sim::input::write_identified_file(

@@ -117,9 +117,11 @@ void print_figures(const sim::frequency::StepSettings& settings,
 std::string to_json(const sim::frequency::StepSettings& settings,
                     const sim::frequency::StepResponse& response, char axis) {
   const sim::frequency::StepFigures& f = response.figures;
+  const bool is_load = settings.kind == sim::frequency::StepKind::load;
+  const double overshoot = is_load ? std::nan("") : f.overshoot;  // of the amplitude: a force
   sim::system::JsonObject out;
   out.text("axis", std::string(1, axis)).text("step", sim::run::name_of(settings.kind));
-  out.number("amplitude_SI", settings.amplitude).number("overshoot", f.overshoot);
+  out.number("amplitude_SI", settings.amplitude).number("overshoot", overshoot);
   out.number("rise_time_s", f.rise_time).number("settling_time_s", f.settling_time);
   out.number("band", settings.band).number("steady_error_SI", f.steady_error);
   out.number("peak_SI", f.peak).number("peak_time_s", f.peak_time);

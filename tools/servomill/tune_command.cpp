@@ -171,12 +171,15 @@ std::string to_json(const sim::frequency::Assessment& a) {
   sim::system::JsonObject out;
   out.number("velocity_bandwidth_rad_per_s", a.gains.wv).number("reset_time_s", a.gains.Tn);
   out.number("Kv_per_s", a.gains.Kv).boolean("stable", a.stable);
-  out.number("velocity_gain_margin", a.velocity.gain);
-  out.number("velocity_phase_margin_deg", a.velocity.phase / deg);
-  out.number("position_gain_margin", a.position.gain);
-  out.number("position_phase_margin_deg", a.position.phase / deg);
-  out.number("bandwidth_Hz", a.closed.bandwidth).number("overshoot", a.overshoot);
-  return out.number("load_peak_SI", a.load_peak).line();
+  // an unstable axis has no margins and no step
+  const auto known = [&](double value) { return a.stable ? value : std::nan(""); };
+  out.number("velocity_gain_margin", known(a.velocity.gain));
+  out.number("velocity_phase_margin_deg", known(a.velocity.phase / deg));
+  out.number("position_gain_margin", known(a.position.gain));
+  out.number("position_phase_margin_deg", known(a.position.phase / deg));
+  out.number("bandwidth_Hz", known(a.closed.bandwidth));
+  out.number("overshoot", known(a.overshoot));
+  return out.number("load_peak_SI", known(a.load_peak)).line();
 }
 
 std::string to_json(char axis, const sim::frequency::Tuning& t, double common_Kv) {
