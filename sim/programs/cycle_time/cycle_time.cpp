@@ -72,7 +72,8 @@ class ProgramReading {
 
   void add(const ExecutedBlock& block) {
     const std::uint16_t file = number_of(*block.file);
-    positions_.begin_line(block);
+    const bool all_is_known = program_.is_start_known;
+    if (!all_is_known) positions_.begin_line(block);
     if (!block.unknown_moves.empty()) {
       booking_.duration().add_unknown_moves(block.unknown_moves, block.line);
     }
@@ -85,8 +86,9 @@ class ProgramReading {
         booking_.duration().add_other(move, file);
         continue;
       }
-      const bool is_known = positions_.next(move, block, &move == last).distance_is_known;
-      booking_.duration().add(move, is_known || program_.is_start_known, file);
+      const bool is_known =
+          all_is_known || positions_.next(move, block, &move == last).distance_is_known;
+      booking_.duration().add(move, is_known, file);
       refuse_unplannable();
     }
   }
