@@ -210,8 +210,8 @@ class LinuxCnc(Machine):
         self.assertEqual(self.faults(INI.replace("LINEAR_UNITS = mm", "LINEAR_UNITS = furlong")),
                          ["settings:7:1: error: [TRAJ] LINEAR_UNITS = furlong; is no unit"])
         self.assertEqual(self.faults(INI.replace("[AXIS_Y]\nMAX_VELOCITY = 50\n", "")),
-                         ["settings: error: does not give the largest velocity of Y",
-                          "settings: error: does not give the largest acceleration of Y"])
+                         ["settings: error: does not give the largest velocity of Y: [AXIS_Y] MAX_VELOCITY",
+                          "settings: error: does not give the largest acceleration of Y: [AXIS_Y] MAX_ACCELERATION"])
         self.assertEqual(self.faults(INI.replace("X Y Z", "X Y Z A B C") + "".join(
             f"[AXIS_{axis}]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 1\n" for axis in "ABC")),
             ["settings: error: has three rotary axes, and a machine two at most: choose them with --structure"])
@@ -282,6 +282,11 @@ class Others(Machine):
         done = json.loads(self.servomill("time", "part.ngc", "--machine", "grbl.toml", "--start", "X=0", "--json").stdout)
         v, a, j = 0.1, 0.5, 50.0
         self.assertAlmostEqual(done["time_s"], 0.1 / v + v / a + a / j, places=6)
+
+    def test_limits_that_are_missing_are_named_as_the_control_names_them(self):
+        for settings, without, key in ((GRBL, "$122=50.000\n", "acceleration of Z: $122"), (FLUIDNC, "    max_rate_mm_per_min: 900\n", "velocity of Z: axes/z/max_rate_mm_per_min"),
+                                       (RRF, " Z150", "acceleration of Z: M201 Z")):
+            self.assertEqual(self.faults(settings.replace(without, "")), [f"settings: error: does not give the largest {key}"])
 
     def test_unknown_files_are_refused(self):
         self.assertEqual(self.faults("hello\n"), ["settings: error: is not known as settings of a control; name it with --control"])

@@ -228,6 +228,10 @@ class Parts(Case):
         self.assertEqual(lines[2]["block"], "G1 Y10 F600")
         self.assertEqual((lines[2]["limit"], lines[2]["axis"]), ("feed", None))
 
+    def test_no_lines_are_printed_on_request(self):
+        self.assertEqual(self.json(self.PROGRAM, *START, "--top", "0")["lines"], [])
+        self.assertNotIn("Lines", self.time(self.PROGRAM, *START, "--top", "0").stdout)
+
     def test_a_line_of_a_loop_has_the_time_of_all_its_passes(self):
         done = self.json("G21 G90\nO1 REPEAT [5]\nG1 X10 F600\nX0\nO1 ENDREPEAT\nM2\n", *START)
         self.assertEqual(sorted((one["line"], round(one["time_s"], 3)) for one in done["lines"]),

@@ -18,6 +18,37 @@ namespace {
 constexpr double kPathTolerance = 10 * um;  // as of a machine file without one
 constexpr std::size_t kComment = 38;        // column
 
+// Keys in which each control has the largest velocity and acceleration of an axis.
+std::string velocity_key(ControlKind kind, Axis axis) {
+  const char small = static_cast<char>(letter(axis) - 'A' + 'a');
+  switch (kind) {
+    case ControlKind::linuxcnc:
+      return fmt::format("[AXIS_{}] MAX_VELOCITY", letter(axis));
+    case ControlKind::grbl:
+      return fmt::format("$11{}", index_of(axis));
+    case ControlKind::fluidnc:
+      return fmt::format("axes/{}/max_rate_mm_per_min", small);
+    case ControlKind::rrf:
+      return fmt::format("M203 {}", letter(axis));
+  }
+  return {};
+}
+
+std::string acceleration_key(ControlKind kind, Axis axis) {
+  const char small = static_cast<char>(letter(axis) - 'A' + 'a');
+  switch (kind) {
+    case ControlKind::linuxcnc:
+      return fmt::format("[AXIS_{}] MAX_ACCELERATION", letter(axis));
+    case ControlKind::grbl:
+      return fmt::format("$12{}", index_of(axis));
+    case ControlKind::fluidnc:
+      return fmt::format("axes/{}/acceleration_mm_per_sec2", small);
+    case ControlKind::rrf:
+      return fmt::format("M201 {}", letter(axis));
+  }
+  return {};
+}
+
 // A basic string of TOML.
 std::string toml_text(std::string_view text) {
   std::string out = "\"";
@@ -95,13 +126,15 @@ class Draft {
                         "--structure"});
     }
     for (const auto& one : axes_) {
-      const auto need = [&](const std::optional<CitedValue>& value, const char* what) {
+      const auto need = [&](const std::optional<CitedValue>& value, const char* what,
+                            const std::string& key) {
         if (value) return;
         faults.push_back(
-            {{settings_.file}, fmt::format("does not give the {} of {}", what, letter(one.first))});
+            {{settings_.file},
+             fmt::format("does not give the {} of {}: {}", what, letter(one.first), key)});
       };
-      need(one.second.v_max, "largest velocity");
-      need(one.second.a_max, "largest acceleration");
+      need(one.second.v_max, "largest velocity", velocity_key(settings_.kind, one.first));
+      need(one.second.a_max, "largest acceleration", acceleration_key(settings_.kind, one.first));
     }
     if (!faults.empty()) throw InputError(std::move(faults));
   }

@@ -76,6 +76,7 @@ std::string duration_text(double seconds) {
 
 std::vector<CostlyLine> costly_lines(const CycleTimeReport& report, std::size_t count) {
   std::vector<CostlyLine> out;
+  if (count == 0) return out;
   const auto costs_more = [](const CostlyLine& a, const CostlyLine& b) {
     return a.time.time > b.time.time;
   };

@@ -211,7 +211,7 @@ std::string to_text(const CycleTimeReport& report, const TimeReportForm& form) {
   if (wants(TimeTable::section, accounts.sections.size() > 1)) {
     out += part_table("Sections", "section", sections_of(accounts), report.motion());
   }
-  if (wants(TimeTable::line, true)) out += lines(report, form.top);
+  if (wants(TimeTable::line, form.top > 0)) out += lines(report, form.top);
   return out;
 }
 

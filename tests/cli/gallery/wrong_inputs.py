@@ -3,6 +3,7 @@
 edit: (file, old text, new text); write: {file: content}; folders: made before; stdout: shown, too.
 """
 from edits import CHECK, line, machine, typed
+from wrong_cycle_times import CYCLE_TIMES
 from wrong_experiments import EXPERIMENTS
 from wrong_identified import IDENTIFIED
 from wrong_machines import AXIS, HEAT, MACHINE, MACHINE_REFUSES, SERVO, STRUCTURE
@@ -276,4 +277,4 @@ UNITS = [
 ]
 
 WRONG_INPUTS = (COMMAND_LINE + FILES + SCENARIO + MACHINE + STRUCTURE + HEAT + AXIS + SET + MACHINE_REFUSES + IDENTIFIED + EXPERIMENTS + TESTS + READINGS + PROGRAM + OUTPUT + SWEEP + SERVO + UNITS + POST + TABLES
-                + COMPENSATE + CUTTING + PART + PROBES + RECORDINGS)
+                + COMPENSATE + CYCLE_TIMES + CUTTING + PART + PROBES + RECORDINGS)
