@@ -21,6 +21,7 @@ void look_at(const Polyline& vertices, const ChainSpeeds& speeds, Visit visit) {
     real(traits.tolerance_linear);
     real(traits.tolerance_rotary);
     whole(traits.arc < 0 ? 0 : static_cast<std::uint64_t>(traits.arc) - first + 1);
+    whole(std::uint64_t{traits.is_exact});
   }
   whole(speeds.spans.size());
   for (std::size_t n = 0; goes_on && n < speeds.spans.size(); ++n) {

@@ -12,12 +12,15 @@ constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
 constexpr double kGrowth = 0.25;        // of the way, by which chords may grow along it
+constexpr double kLeast = 0.1;          // of the tolerance, the shortest chord: at cusps
+constexpr double kEven = 1e-9;          // relative, chords that are alike
 constexpr double kRounding = 1e-9;      // of a chord
 constexpr double kSameTurn = 1e-3;      // rad, between curves that go on in each other
 constexpr double kSameBend = 0.05;      // of the curvature, the same
 constexpr double kFlat = 1e-3;          // 1/m, a curvature that counts as none
 
-// Longest chords along a part of a curve that has no corner.
+// Longest chords along a part of a curve without a break: linear between samples, so that the
+// number of chords goes like a logarithm.
 class ChordLengths {
  public:
   ChordLengths(const SplineCurve& curve, double from, double to, double tolerance) {
@@ -30,8 +33,12 @@ class ChordLengths {
     for (std::size_t i = s_.size() - 1; i-- > 0;) limit(i, i + 1);
     counts_.push_back(0.0);
     for (std::size_t i = 1; i < s_.size(); ++i) {
-      const double mean = 0.5 * (1.0 / h_[i - 1] + 1.0 / h_[i]);
-      counts_.push_back(counts_.back() + mean * (s_[i] - s_[i - 1]));
+      const double way = s_[i] - s_[i - 1], ratio = h_[i] / h_[i - 1] - 1.0;
+      const double count =
+          std::isinf(h_[i])
+              ? 0.0
+              : way / h_[i - 1] * (std::abs(ratio) > kEven ? std::log1p(ratio) / ratio : 1.0);
+      counts_.push_back(counts_.back() + count);
     }
   }
 
@@ -43,15 +50,20 @@ class ChordLengths {
     const auto above = std::upper_bound(counts_.begin(), counts_.end() - 1, count);
     const auto i = static_cast<std::size_t>(above - counts_.begin());
     const double share = (count - counts_[i - 1]) / (counts_[i] - counts_[i - 1]);
-    return s_[i - 1] + share * (s_[i] - s_[i - 1]);
+    const double ratio = h_[i] / h_[i - 1] - 1.0;
+    const double way =
+        std::abs(ratio) > kEven ? std::expm1(share * std::log1p(ratio)) / ratio : share;
+    return s_[i - 1] + way * (s_[i] - s_[i - 1]);
   }
 
  private:
   void add(const SplineCurve& curve, double s, double tolerance) {
     const double bend = curve.state(s).curvature.norm();
-    const double radius = bend > 0.0 ? 1.0 / bend : std::numeric_limits<double>::infinity();
+    const double radius = 1.0 / bend;
+    const double h = bend > 0.0 ? radius * chord_angle(radius, tolerance)
+                                : std::numeric_limits<double>::infinity();
     s_.push_back(s);
-    h_.push_back(bend > 0.0 ? radius * chord_angle(radius, tolerance) : radius);
+    h_.push_back(std::max(h, kLeast * tolerance));
   }
   void limit(std::size_t i, std::size_t neighbour) {
     h_[i] = std::min(h_[i], h_[neighbour] + kGrowth * std::abs(s_[i] - s_[neighbour]));
@@ -70,7 +82,7 @@ double chord_angle(double radius, double tolerance) {
 std::vector<CurvePoint> points_of(const SplineCurve& curve, double tolerance) {
   std::vector<CurvePoint> out;
   if (curve.length() == 0.0) return out;
-  std::vector<double> ends = curve.corners();
+  std::vector<double> ends = curve.breaks();
   ends.push_back(curve.length());
   double from = 0.0;
   for (const double to : ends) {
@@ -78,12 +90,12 @@ std::vector<CurvePoint> points_of(const SplineCurve& curve, double tolerance) {
     const ChordLengths chords(curve, from, to, tolerance);
     const double n = std::max(1.0, std::ceil(chords.count() - kRounding));
     for (double i = 1.0; i < n; ++i) {
-      out.push_back({curve.point(chords.s_behind(chords.count() * i / n)), false});
+      const double s = chords.s_behind(chords.count() * i / n);
+      out.push_back({curve.point(s), s / curve.length(), true});
     }
-    out.push_back({curve.point(to), true});
+    out.push_back({curve.point(to), to / curve.length(), false});
     from = to;
   }
-  out.back().is_corner = false;
   return out;
 }
 

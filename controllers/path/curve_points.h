@@ -7,8 +7,8 @@
 ///     h = min(0.1 R, sqrt(12 T R) / 4)                                                        (1)
 ///
 /// What a cubic through such points misses of a circle, h^4 / (384 R^3), is below T / 680 T/R: less
-/// than a nanometre for T = 10 um and R >= 1 mm. Along a spline h follows (1) as fast as by a
-/// quarter of the way.
+/// than a nanometre for T = 10 um and R >= 1 mm. Along a spline h changes by a quarter of the way
+/// at most.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,8 @@ double chord_angle(double radius, double tolerance);
 
 struct CurvePoint {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  // m
-  bool is_corner = false;                       // the tangent jumps there
+  double share = 0.0;                           // of the length of the curve
+  bool is_inside = false;  // neither the end nor a place where tangent or curvature jumps
 };
 
 /// Points behind the start; the last is the end. None of a curve without length.

@@ -37,12 +37,8 @@ Fairing::Fairing(const SmoothingWindows& path, const Joints& jerk)
 
 // Place, direction and curvature of the smoothed polyline at s, on chord k.
 FairSpline::State Fairing::state_at(double s, std::size_t k) const {
-  std::size_t first = k + 1, last = k + 1;
-  while (first > 1 && s_[first - 1] + w_[first - 1] > s) --first;
-  while (last < n_ && s_[last] - w_[last] < s) ++last;
-  const SmoothingWindows::Deviation D = path_.deviation(s, s, first, last);
-  const Joints d = path_.direction(k);
-  return {s, v_.u(k) + d * (s - s_[k]) + D.d0, d + D.d1, D.d2, k};
+  const PathState at = path_.state_at(s, k);
+  return {s, at.q, at.d1, at.d2, k};
 }
 
 // Tells if the window at vertex i is wide enough to cover its neighbours.

@@ -14,12 +14,6 @@ namespace servomill::controllers {
 /// curvature.
 class Fairing {
  public:
-  /// A part of the path that splines take.
-  struct Stretch {
-    double from = 0.0, to = 0.0;      // m
-    std::size_t first = 0, last = 0;  // pieces
-  };
-
   /// @param path  whose windows are chosen; must outlive this
   /// @param jerk  limits of the scaled joints
   Fairing(const SmoothingWindows& path, const Joints& jerk);

@@ -149,25 +149,28 @@ class Planner {
     }
     const SplineCurve::State begin = curve.state(0.0), end = curve.state(curve.length());
     Leg leg = leg_of(move);
-    leg.tangent_begin = leg.tangent_end = Joints::Zero();
-    leg.tangent_begin.head<kLinearJoints>() = linear_joints(begin.tangent);
-    leg.tangent_end.head<kLinearJoints>() = linear_joints(end.tangent);
+    leg.tangent_begin = with_linear(Joints::Zero(), begin.tangent);
+    leg.tangent_end = with_linear(Joints::Zero(), end.tangent);
     leg.length = curve.length();
     leg.tolerance = rules_.tolerance_of(move);
     leg.feed = rules_.speed_along(leg, move);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
-    ChainSpeeds::Span span = begin_span(index, leg);
-    span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
+    const std::uint32_t feed = speeds_.index_of(rules_.feed_limit(move, leg));
     join_curve(index, last_end_ && goes_on(*last_end_, {begin.tangent, begin.curvature}));
-    const std::vector<CurvePoint> points = points_of(curve, leg.tolerance);
-    for (const CurvePoint& point : points) {
-      Joints u = u_;
-      u.head<kLinearJoints>() = linear_joints(point.p);
-      const bool is_inside = &point != &points.back() && !point.is_corner;
-      add_point(u, move, 0.0, is_inside ? arc_index_ : -1);
+    double from = 0.0;
+    for (const CurvePoint& point : points_of(curve, leg.tolerance)) {
+      ChainSpeeds::Span span = begin_span(index, leg);
+      span.feed = feed;
+      span.share = static_cast<std::uint32_t>(shares_.size());
+      add_point(with_linear(u_, point.p), move, 0.0, point.is_inside ? arc_index_ : -1, true);
+      if (skipped_) continue;
+      span.last = last_vertex();
+      speeds_.spans.push_back(span);
+      speeds_.times.push_back(0.0);
+      shares_.push_back({from, point.share});
+      from = point.share;
     }
-    span.last = last_vertex();
-    if (span.last > span.first) speeds_.spans.push_back(span);
+    if (from > 0.0) shares_.back().to = 1.0;
     last_move_ = index;
     Q_ = layout_.joints(move.end_machine);
     u_ = scaled(Q_);
@@ -263,16 +266,15 @@ class Planner {
   }
 
   Joints arc_tangent(const ArcSweep& arc, const Joints& step, double fraction) const {
-    Joints t = step;
-    t.head<kLinearJoints>() = linear_joints(arc.derivative(fraction));
-    return t.normalized();
+    return with_linear(step, arc.derivative(fraction)).normalized();
   }
 
-  // X Y Z in the order of the layout.
-  Eigen::Vector3d linear_joints(const Eigen::Vector3d& p) const {
+  // With X Y Z in the order of the layout.
+  Joints with_linear(Joints u, const Eigen::Vector3d& p) const {
     AxisWords words = AxisWords::Zero();
     words.head<3>() = p;
-    return layout_.joints(words).head<kLinearJoints>();
+    u.head<kLinearJoints>() = layout_.joints(words).head<kLinearJoints>();
+    return u;
   }
 
   void add_arc(const ArcSweep& arc, const Move& move, const Joints& step, int index) {
@@ -282,15 +284,15 @@ class Planner {
     const Joints u_begin = u_;
     for (int i = 1; i <= n; ++i) {
       const double fraction = static_cast<double>(i) / n;
-      Joints u = u_begin + step * fraction;
-      u.head<kLinearJoints>() = linear_joints(arc.point(fraction));
+      Joints u = with_linear(u_begin + step * fraction, arc.point(fraction));
       if (i == n) u = u_begin + step;
       add_point(u, move, 0.0, i < n ? index : -1);
     }
   }
 
-  void add_point(const Joints& u, const Move& move, double speed, int arc) {
-    PathVertex vertex{u, rules_.tolerance_of(move), options_.rotary_tolerance, speed, arc};
+  void add_point(const Joints& u, const Move& move, double speed, int arc, bool is_exact = false) {
+    PathVertex vertex{u,       rules_.tolerance_of(move), options_.rotary_tolerance, speed, arc,
+                      is_exact};
     if (move.path_mode != PathMode::continuous) {
       vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
     }

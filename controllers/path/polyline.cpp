@@ -5,7 +5,8 @@ namespace servomill::controllers {
 void Polyline::push_back(const PathVertex& vertex) {
   u_.push_back(vertex.u);
   speed_.push_back(vertex.speed);
-  index_.push_back(index_of({vertex.tolerance_linear, vertex.tolerance_rotary, vertex.arc}));
+  index_.push_back(
+      index_of({vertex.tolerance_linear, vertex.tolerance_rotary, vertex.arc, vertex.is_exact}));
 }
 
 void Polyline::set_last_arc(int arc) {
@@ -22,11 +23,7 @@ std::uint32_t Polyline::index_of(const Traits& traits) {
   constexpr std::size_t kLookedAt = 3;
   for (std::size_t back = 1; back <= kLookedAt && back <= traits_.size(); ++back) {
     const std::size_t i = traits_.size() - back;
-    const Traits& known = traits_[i];
-    if (known.tolerance_linear == traits.tolerance_linear &&
-        known.tolerance_rotary == traits.tolerance_rotary && known.arc == traits.arc) {
-      return static_cast<std::uint32_t>(i);
-    }
+    if (traits_[i] == traits) return static_cast<std::uint32_t>(i);
   }
   traits_.push_back(traits);
   return static_cast<std::uint32_t>(traits_.size() - 1);

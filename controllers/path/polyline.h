@@ -15,7 +15,9 @@ struct PathVertex {
   double tolerance_linear = 0.0;  // m, on the way to this vertex
   double tolerance_rotary = 0.0;  // m
   double speed = 0.0;             // m/s along the path, programmed on the way to this vertex
-  int arc = -1;  // interior point of that arc: may be moved outward so that the curve passes it
+  int arc = -1;  // interior point of that arc or spline: may be moved outward so that the curve
+                 // passes it
+  bool is_exact = false;  // of a spline, which the path follows as it is (exact_curves.h)
 };
 
 /// Vertices, held so that a million of them take 52 MB: neighbours rarely differ in more than place
@@ -25,6 +27,8 @@ class Polyline {
   struct Traits {
     double tolerance_linear = 0.0, tolerance_rotary = 0.0;  // m
     int arc = -1;
+    bool is_exact = false;
+    bool operator==(const Traits&) const = default;
   };
 
   Polyline() = default;

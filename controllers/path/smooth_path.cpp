@@ -1,49 +1,60 @@
 #include "controllers/path/smooth_path.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <span>
 #include <utility>
 
+#include "controllers/path/exact_curves.h"
 #include "controllers/path/fairing.h"
 #include "controllers/path/smoothing_windows.h"
 
 namespace servomill::controllers {
 namespace {
 
-// Pieces of the splines, and between them those of the smoothed polyline.
-SmoothPath join(const SmoothingWindows& windows, const Fairing& fairing) {
-  constexpr double kMinPiece = SmoothingWindows::kMinPiece;
-  const std::vector<Fairing::Stretch>& faired = fairing.stretches();
-  const std::vector<CubicPiece>& splines = fairing.pieces();
-  const Polyline& v = windows.vertices();
-  const std::vector<double>& s = windows.s();
-  SmoothPath path;
-  path.s = s;
-  path.pieces.reserve(splines.size());
-  std::size_t next = 0;
-  const auto add = [&](double from, double middle, std::size_t k, std::size_t first,
-                       std::size_t last) {
-    const SmoothingWindows::Deviation D = windows.deviation(from, middle, first, last);
-    const Joints d = windows.direction(k);
-    path.pieces.push_back({from, v.u(k) + d * (from - s[k]) + D.d0, d + D.d1, D.d2, D.d3, k});
+// A stretch and its pieces.
+struct Replaced {
+  double from = 0.0, to = 0.0;  // m
+  std::span<const CubicPiece> pieces;
+};
+
+// In the order of the path; they do not overlap.
+std::vector<Replaced> all_replaced(const Fairing& fairing, const ExactCurves& curves) {
+  std::vector<Replaced> out;
+  const auto add = [&](const auto& one) {
+    for (const Stretch& stretch : one.stretches()) {
+      out.push_back({stretch.from, stretch.to,
+                     std::span(one.pieces()).subspan(stretch.first, stretch.last - stretch.first)});
+    }
   };
-  windows.for_each_span(0.0, s.back(), [&](const SmoothingWindows::Span& span) {
-    const auto [from, to, k, first, last] = span;
-    const double middle = span.middle();
-    while (next < faired.size() && faired[next].to <= from + kMinPiece) ++next;
-    double at = from;
-    for (; next < faired.size() && faired[next].from < to; ++next) {
-      const Fairing::Stretch& run = faired[next];
-      if (run.from > at + kMinPiece) add(at, middle, k, first, last);
-      if (run.from >= from) {
-        path.pieces.insert(path.pieces.end(),
-                           splines.begin() + static_cast<std::ptrdiff_t>(run.first),
-                           splines.begin() + static_cast<std::ptrdiff_t>(run.last));
+  add(fairing);
+  add(curves);
+  std::sort(out.begin(), out.end(),
+            [](const Replaced& a, const Replaced& b) { return a.from < b.from; });
+  return out;
+}
+
+// The stretches, and between them the pieces of the smoothed polyline.
+SmoothPath join(const SmoothingWindows& windows, const std::vector<Replaced>& replaced) {
+  constexpr double kMinPiece = SmoothingWindows::kMinPiece;
+  SmoothPath path;
+  path.s = windows.s();
+  for (const Replaced& run : replaced) path.pieces.reserve(path.pieces.size() + run.pieces.size());
+  std::size_t next = 0;
+  windows.for_each_span(0.0, path.s.back(), [&](const SmoothingWindows::Span& span) {
+    while (next < replaced.size() && replaced[next].to <= span.from + kMinPiece) ++next;
+    double at = span.from;
+    for (; next < replaced.size() && replaced[next].from < span.to; ++next) {
+      const Replaced& run = replaced[next];
+      if (run.from > at + kMinPiece) path.pieces.push_back(windows.piece(span, at));
+      if (run.from >= span.from) {
+        path.pieces.insert(path.pieces.end(), run.pieces.begin(), run.pieces.end());
       }
       at = run.to;
-      if (run.to > to - kMinPiece) break;
+      if (run.to > span.to - kMinPiece) break;
     }
-    if (at < to - kMinPiece) add(at, middle, k, first, last);
+    if (at < span.to - kMinPiece) path.pieces.push_back(windows.piece(span, at));
   });
   return path;
 }
@@ -54,7 +65,9 @@ SmoothPath smooth(Polyline vertices, const Joints& jerk) {
   assert(vertices.size() >= 2);
   SmoothingWindows windows(std::move(vertices));
   windows.choose();
-  return join(windows, Fairing(windows, jerk));
+  const Fairing fairing(windows, jerk);
+  const ExactCurves curves(windows);
+  return join(windows, all_replaced(fairing, curves));
 }
 
 }  // namespace servomill::controllers

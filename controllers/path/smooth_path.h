@@ -34,6 +34,17 @@ struct CubicPiece {
   std::size_t segment = 0;  // chord of the polyline to which it belongs
 };
 
+/// Place on a path and derivatives by s.
+struct PathState {
+  Joints q = Joints::Zero(), d1 = Joints::Zero(), d2 = Joints::Zero();  // m, 1, 1/m
+};
+
+/// A part of the smoothed polyline that other pieces take.
+struct Stretch {
+  double from = 0.0, to = 0.0;      // m
+  std::size_t first = 0, last = 0;  // pieces
+};
+
 struct SmoothPath {
   std::vector<CubicPiece> pieces;
   std::vector<double> s;  // of each vertex
@@ -44,7 +55,8 @@ struct SmoothPath {
 };
 
 /// Runs of many short chords, where windows cover several vertices, are then replaced by splines of
-/// less third derivative (fair_spline.h).
+/// less third derivative (fair_spline.h), and the inside of splines by their interpolation
+/// (exact_curves.h).
 ///
 /// @param vertices  at least two, neighbours apart
 /// @param jerk      limit of each joint (scaled like the path; > 0 for joints that move)

@@ -58,6 +58,23 @@ Joints SmoothingWindows::direction(std::size_t k) const {
   return chord / length;
 }
 
+PathState SmoothingWindows::state_at(double s, std::size_t chord) const {
+  const std::size_t k = std::min(chord, n_ - 1);
+  std::size_t first = k + 1, last = k + 1;
+  while (first > 1 && s_[first - 1] + w_[first - 1] > s) --first;
+  while (last < n_ && s_[last] - w_[last] < s) ++last;
+  const Deviation D = deviation(s, s, first, last);
+  const Joints d = direction(k);
+  return {v_.u(k) + d * (s - s_[k]) + D.d0, d + D.d1, D.d2};
+}
+
+CubicPiece SmoothingWindows::piece(const Span& span, double from) const {
+  const Deviation D = deviation(from, span.middle(), span.first, span.last);
+  const std::size_t k = span.segment;
+  const Joints d = direction(k);
+  return {from, v_.u(k) + d * (from - s_[k]) + D.d0, d + D.d1, D.d2, D.d3, k};
+}
+
 // Deviation at vertex i if it and its neighbours all had the window w.
 Joints SmoothingWindows::deviation_with(std::size_t i, double w) const {
   Joints sum = Joints::Zero();

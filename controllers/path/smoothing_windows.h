@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controllers/path/polyline.h"
+#include "controllers/path/smooth_path.h"
 #include "plant/vocabulary/axes.h"
 
 namespace servomill::controllers {
@@ -40,6 +41,14 @@ class SmoothingWindows {
   std::size_t chords() const { return n_; }
   const std::vector<double>& s() const { return s_; }      // m, of the vertices
   const std::vector<double>& width() const { return w_; }  // m, half of each window
+
+  /// A vertex before points of arcs and splines were moved.
+  const Joints& programmed(std::size_t i) const { return target_.empty() ? v_.u(i) : target_[i]; }
+
+  /// State of the smoothed polyline at s, on that chord.
+  PathState state_at(double s, std::size_t chord) const;
+  /// Its piece on a span from there on.
+  CubicPiece piece(const Span& span, double from) const;
 
   /// Direction of a chord.
   Joints direction(std::size_t chord) const;

@@ -14,6 +14,8 @@ constexpr int kMaxHalvings = 40;       // of a Bezier curve, at cusps
 constexpr double kStill = 1e-9;        // of the length: derivative by t below which it stands
 constexpr double kBeside = 1e-5;       // t, how far beside a standstill its direction is taken
 constexpr double kCornerAngle = 1e-4;  // rad, sharper ones are corners
+constexpr double kBendJump = 0.05;     // of the curvature
+constexpr double kFlat = 1e-3;         // 1/m, a curvature that counts as none
 constexpr double kCuspAngle = 1.0;     // rad, within a cell
 constexpr double kTiny = 1e-4;         // t, cells that only cusps are cut into
 constexpr std::size_t kSamples = 8;    // of a cell, in which a closest point is looked for
@@ -205,54 +207,75 @@ std::vector<double> SplineCurve::samples() const {
   return out;
 }
 
-// A corner lies where two cells meet, or in a cell that was halved as often as is allowed.
-std::vector<double> SplineCurve::corners() const {
+// A break lies where two cells meet, or in a cell that was halved as often as is needed.
+std::vector<double> SplineCurve::breaks() const {
   std::vector<double> out;
-  const auto turn = [&](const Place& a, const Place& b) {
-    return (state_at(b, 1.0).tangent - state_at(a, -1.0).tangent).norm();
+  const auto is_break = [&](const Place& a, const Place& b, double angle) {
+    const State before = state_at(a, -1.0), behind = state_at(b, 1.0);
+    const double bend = std::max(before.curvature.norm(), behind.curvature.norm());
+    return (behind.tangent - before.tangent).norm() > angle ||
+           (angle < kCuspAngle &&
+            (behind.curvature - before.curvature).norm() > kBendJump * bend + kFlat);
   };
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const Cell& cell = cells_[i];
     const Place begin{cell.bezier, cell.from}, end{cell.bezier, cell.to};
     const Place before = i > 0 ? Place{cells_[i - 1].bezier, cells_[i - 1].to} : begin;
-    const bool meets = i > 0 && turn(before, begin) > kCornerAngle;
-    const bool holds = cell.to - cell.from < kTiny && turn(begin, end) > kCuspAngle;
+    const bool meets = i > 0 && is_break(before, begin, kCornerAngle);
+    const bool holds = cell.to - cell.from < kTiny && is_break(begin, end, kCuspAngle);
     const bool is_known = !out.empty() && cell.s - out.back() < kBeside * length_;
     if ((meets || holds) && !is_known) out.push_back(cell.s);
   }
   return out;
 }
 
-// Samples, and the best place on both sides of the best of them.
+// Of samples those that are closer than their neighbours, and the best place on both sides of each.
 double SplineCurve::closest(const Eigen::Vector3d& p) const {
   const auto square = [&](const Place& at) { return (derivatives(at).p - p).squaredNorm(); };
-  const auto sample = [&](std::size_t n) {
-    const Cell& cell = cells_[n / kSamples];
-    const double step = (cell.to - cell.from) / kSamples;
-    return Place{cell.bezier, cell.from + step * static_cast<double>(n % kSamples)};
-  };
   const std::size_t count = cells_.size() * kSamples;
-  Place best{cells_.back().bezier, cells_.back().to};
-  double least = square(best);
-  std::size_t index = count, in = cells_.size() - 1;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double here = square(sample(n));
-    if (here < least) least = here, best = sample(n), index = n, in = n / kSamples;
-  }
-  for (const std::size_t n : {index - 1, index}) {  // intervals between samples
-    if (n >= count) continue;
-    const Cell& cell = cells_[n / kSamples];
-    const double low = sample(n).t, high = low + (cell.to - cell.from) / kSamples;
-    const auto slope = [&](double t) {  // of half the square of the distance
-      const Derivatives d = derivatives({cell.bezier, t});
-      return std::pair((d.p - p).dot(d.d1), d.d1.squaredNorm() + (d.p - p).dot(d.d2));
-    };
-    if (!(slope(low).first < 0.0 && slope(high).first > 0.0)) continue;
-    const Place at{cell.bezier, root_in(low, high, 0.5 * (low + high), slope)};
-    if (square(at) < least) least = square(at), best = at, in = n / kSamples;
+  const auto sample = [&](std::size_t n) {
+    const Cell& cell = cells_[std::min(n, count - 1) / kSamples];
+    const double step = (cell.to - cell.from) / kSamples;
+    return Place{cell.bezier,
+                 n == count ? cell.to : cell.from + step * static_cast<double>(n % kSamples)};
+  };
+  std::vector<double> squares(count + 1);
+  for (std::size_t n = 0; n <= count; ++n) squares[n] = square(sample(n));
+  double least = std::numeric_limits<double>::infinity();
+  Place best;
+  std::size_t in = 0;  // cell of the best place
+  const auto take = [&](const Place& at, std::size_t n) {
+    const double here = square(at);
+    if (here < least) least = here, best = at, in = n / kSamples;
+  };
+  for (std::size_t n = 0; n <= count; ++n) {
+    const bool is_low =
+        (n == 0 || squares[n] <= squares[n - 1]) && (n == count || squares[n] <= squares[n + 1]);
+    const bool may_be_corner = n % kSamples == 0;
+    if (!is_low && !may_be_corner) continue;
+    take(sample(n), std::min(n, count - 1));
+    if (n > 0) take(closest_in(n - 1, p), n - 1);
+    if (n < count) take(closest_in(n, p), n);
   }
   const Cell& cell = cells_[in];
   return std::min(cell.s + part_length(cell.bezier, cell.from, best.t), length_);
+}
+
+// Where the distance from p is stationary between two samples, or where they begin.
+SplineCurve::Place SplineCurve::closest_in(std::size_t interval, const Eigen::Vector3d& p) const {
+  const Cell& cell = cells_[interval / kSamples];
+  const double step = (cell.to - cell.from) / kSamples;
+  const double low = cell.from + step * static_cast<double>(interval % kSamples);
+  const auto slope = [&](double t) {  // of half the square of the distance
+    const Derivatives d = derivatives({cell.bezier, t});
+    return std::pair((d.p - p).dot(d.d1), d.d1.squaredNorm() + (d.p - p).dot(d.d2));
+  };
+  const auto halts = [&](double t) {
+    return derivatives({cell.bezier, t}).d1.norm() <= kStill * length_;
+  };
+  const bool has_root = (halts(low) || slope(low).first < 0.0) &&
+                        (halts(low + step) || slope(low + step).first > 0.0);
+  return {cell.bezier, has_root ? root_in(low, low + step, low + 0.5 * step, slope) : low};
 }
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> SplineCurve::extent() const {

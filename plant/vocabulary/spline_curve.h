@@ -47,8 +47,9 @@ class SplineCurve {
   /// next to it.
   State state(double s) const;
 
-  /// Arc lengths where the tangent jumps, rising: control points that coincide, and cusps.
-  std::vector<double> corners() const;
+  /// Arc lengths where the tangent or the curvature jumps (by more than a twentieth), rising: knots
+  /// of order 3, control points that coincide, cusps.
+  std::vector<double> breaks() const;
   /// Arc lengths, rising, close together where the curve bends: what lies between them does not
   /// differ much from them.
   std::vector<double> samples() const;
@@ -82,6 +83,7 @@ class SplineCurve {
   Derivatives derivatives(const Place& at) const;
   State state_at(const Place& at, double side) const;
   std::size_t cell_of(double s) const;
+  Place closest_in(std::size_t interval, const Eigen::Vector3d& p) const;
   Place place(double s) const;
 
   int order_;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "plant/vocabulary/arc_sweep.h"
+#include "plant/vocabulary/spline_curve.h"
 
 namespace servomill::controllers::test {
 
@@ -56,6 +57,22 @@ Program& Program::arc(const Eigen::Vector3d& centre, const Eigen::Vector3d& to, 
   move.feed = feed;
   const ArcSweep sweep = arc_sweep(move, at_.head<3>());
   append(move, std::hypot(sweep.r_begin * sweep.sweep, to[normal] - at_[normal]));
+  return *this;
+}
+
+Program& Program::spline(int order, const std::vector<Eigen::Vector2d>& points, double feed,
+                         std::vector<double> weights) {
+  std::vector<Eigen::Vector3d> all = {at_.head<3>()};
+  for (const Eigen::Vector2d& p : points) all.emplace_back(p.x(), p.y(), at_[2]);
+  if (weights.empty()) weights.assign(all.size(), 1.0);
+  Move move;
+  move.kind = MoveKind::spline;
+  move.spline = std::make_shared<const Spline>(Spline{SplineCurve(order, all, weights), all});
+  move.end = at_;
+  move.end.head<3>() = all.back();
+  move.end_machine = move.end;
+  move.feed = feed;
+  append(move, move.spline->curve.length());
   return *this;
 }
 

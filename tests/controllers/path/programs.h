@@ -34,6 +34,10 @@ class Program {
   Program& rapid(const AxisWords& to);
   Program& arc(const Eigen::Vector3d& centre, const Eigen::Vector3d& to, int normal, int turns,
                double feed);
+  /// @param points   X Y behind where it begins, of a NURBS of that order
+  /// @param weights  of the start and of each of these; all 1 if empty
+  Program& spline(int order, const std::vector<Eigen::Vector2d>& points, double feed,
+                  std::vector<double> weights = {});
   Program& dwell(double seconds);
 
   const std::vector<Move>& moves() const { return moves_; }

@@ -43,13 +43,14 @@ class CoxDeBoor {
 
   /// Distance of p from the curve: n points are looked at, the best of them is refined.
   double distance(const Eigen::Vector3d& p, int n) const {
-    const auto at = [&](double u) { return (point(std::clamp(u, 0.0, last_knot())) - p).norm(); };
+    const auto at = [&](double u) { return (point(u) - p).norm(); };
     double best = 0.0;
     for (int i = 0; i <= n; ++i) {
       const double u = last_knot() * i / n;
       if (at(u) < at(best)) best = u;
     }
-    double low = best - last_knot() / n, high = best + last_knot() / n;
+    double low = std::max(best - last_knot() / n, 0.0);
+    double high = std::min(best + last_knot() / n, last_knot());
     constexpr double kGolden = 0.6180339887498949;
     while (high - low > 1e-13 * last_knot()) {
       const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);

@@ -110,6 +110,23 @@ TEST(SplineCurve, FindsItsOwnPointsAsClosest) {
       EXPECT_LT((curve.point(curve.closest(curve.point(s))) - curve.point(s)).norm(), 1e-9) << n;
     }
   }
+  // a loop: the other branch is near where it crosses itself
+  const SplineCurve loop =
+      curve_of({4,
+                {{0.0, 0.0, 0.0}, {0.06, 0.04, 0.0}, {-0.02, 0.04, 0.0}, {0.04, 0.0, 0.0}},
+                {1, 1, 1, 1}});
+  for (int i = 0; i <= 400; ++i) {
+    const Vector3d p = loop.point(loop.length() * i / 400);
+    EXPECT_LT((loop.point(loop.closest(p)) - p).norm(), 1e-9) << i;
+  }
+  // it stands still where it begins and where it ends
+  const SplineCurve halting = curve_of(
+      {4,
+       {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}, {0.02, 0.01, 0.0}, {0.02, 0.01, 0.0}},
+       {1.0, 1.7, 0.6, 2.3, 0.8}});
+  for (const double s : {1e-5, halting.length() - 1e-5}) {
+    EXPECT_NEAR(halting.closest(halting.point(s)), s, 1e-9);
+  }
   const SplineCurve arc = curve_of(quarter_circle(0.05));
   EXPECT_NEAR(arc.closest({0.07, 0.07, 0.03}), 0.5 * arc.length(), kLengthTol);
   EXPECT_EQ(arc.closest({0.06, -0.01, 0.0}), 0.0);
@@ -137,8 +154,8 @@ TEST(SplineCurve, ExtentReachesTheFarthestPoints) {
   EXPECT_NEAR(arch.extent().second.y(), 0.075, kRoundingTol);
 }
 
-TEST(SplineCurve, CornersAreWherePointsCoincideAndAtCusps) {
-  EXPECT_TRUE(curve_of(quarter_circle(0.05)).corners().empty());
+TEST(SplineCurve, BreaksAreWherePointsCoincideAndAtCusps) {
+  EXPECT_TRUE(curve_of(quarter_circle(0.05)).breaks().empty());
   // a quadratic that passes through a double point
   const SplineCurve bent = curve_of({3,
                                      {{0.0, 0.0, 0.0},
@@ -148,19 +165,19 @@ TEST(SplineCurve, CornersAreWherePointsCoincideAndAtCusps) {
                                       {0.02, 0.01, 0.0},
                                       {0.02, 0.02, 0.0}},
                                      std::vector<double>(6, 1.0)});
-  ASSERT_EQ(bent.corners().size(), 1U);
-  EXPECT_LT((bent.point(bent.corners()[0]) - Vector3d(0.02, 0.0, 0.0)).norm(), 1e-9);
+  ASSERT_EQ(bent.breaks().size(), 1U);
+  EXPECT_LT((bent.point(bent.breaks()[0]) - Vector3d(0.02, 0.0, 0.0)).norm(), 1e-9);
   // control polygon crossed like an X: a cusp halfway
   const SplineCurve cusp = curve_of(
       {4, {{0.0, 0.0, 0.0}, {0.01, 0.01, 0.0}, {0.0, 0.01, 0.0}, {0.01, 0.0, 0.0}}, {1, 1, 1, 1}});
-  ASSERT_EQ(cusp.corners().size(), 1U);
-  EXPECT_NEAR(cusp.corners()[0], 0.5 * cusp.length(), 1e-9);
+  ASSERT_EQ(cusp.breaks().size(), 1U);
+  EXPECT_NEAR(cusp.breaks()[0], 0.5 * cusp.length(), 1e-9);
   // the same curve; weights in a geometric row only change how it is run through
   const SplineCurve shorn =
       curve_of({4,
                 {{0.0, 0.0, 0.0}, {0.01, 0.01, 0.0}, {0.0, 0.01, 0.0}, {0.01, 0.0, 0.0}},
                 {1.0, 2.0, 4.0, 8.0}});
-  EXPECT_EQ(shorn.corners().size(), 1U);
+  EXPECT_EQ(shorn.breaks().size(), 1U);
 }
 
 TEST(SplineCurve, BeginsWithADirectionAlsoWhereItStandsStill) {
@@ -168,7 +185,7 @@ TEST(SplineCurve, BeginsWithADirectionAlsoWhereItStandsStill) {
   const SplineCurve curve = curve_of(
       {4, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.01, 0.01, 0.0}}, {1, 1, 1, 1}});
   EXPECT_LT((curve.state(0.0).tangent - Vector3d::UnitY()).norm(), 1e-4);
-  EXPECT_TRUE(curve.corners().empty());
+  EXPECT_TRUE(curve.breaks().empty());
   const CoxDeBoor reference(
       4, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.01, 0.01, 0.0}}, {1, 1, 1, 1});
   EXPECT_LT(reference.distance(curve.point(1e-6), 5000), 1e-10);
@@ -180,7 +197,7 @@ TEST(SplineCurve, APointWithoutLengthIsOne) {
   EXPECT_EQ(curve.length(), 0.0);
   EXPECT_EQ(curve.point(0.0), here);
   EXPECT_EQ(curve.closest({1.0, 0.0, 0.0}), 0.0);
-  EXPECT_TRUE(curve.corners().empty());
+  EXPECT_TRUE(curve.breaks().empty());
 }
 
 TEST(MoveCurve, SplineGoesByItsLength) {
