@@ -60,7 +60,7 @@ bool ProgramDuration::refuses(const Move& move) {
   }
   if (move.tool_control != ToolControl::none && !settings_.tool_centre_point) {
     why_unknown_ = fmt::format(
-        "line {} is under tool-centre-point control or in a tilted plane; a scenario simulates it",
+        "line {} is under tool-centre-point control or in a tilted plane; servomill time plans it",
         move.line);
   }
   if (move.kind != MoveKind::rapid && move.feed == 0.0) {

@@ -10,9 +10,15 @@ namespace servomill::sim::programs {
 using controllers::LimitKind;
 using controllers::MotionStretch;
 
+namespace {
+
+// Column of a joint; the first is of none.
+std::size_t column(int joint) { return joint < 0 ? 0 : static_cast<std::size_t>(joint) + 1; }
+
+}  // namespace
+
 void LimitTimes::add(const MotionStretch& stretch) {
-  by_[static_cast<std::size_t>(stretch.kind)][static_cast<std::size_t>(stretch.joint + 1)] +=
-      stretch.time;
+  by_[static_cast<std::size_t>(stretch.kind)][column(stretch.joint)] += stretch.time;
 }
 
 void LimitTimes::add(const LimitTimes& other) {
@@ -22,7 +28,7 @@ void LimitTimes::add(const LimitTimes& other) {
 }
 
 double LimitTimes::of(LimitKind kind, int joint) const {
-  return by_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(joint + 1)];
+  return by_[static_cast<std::size_t>(kind)][column(joint)];
 }
 
 double LimitTimes::of(LimitKind kind) const {
