@@ -71,7 +71,8 @@ TEST(MeanDerivative, IsNeverBeyondTheDerivative) {
 TEST(MeanDerivative, IsChangedByResolutionWithinItsFloor) {
   const double q = 1e-6;
   const std::vector<double> t = instants(3000, 3);
-  const std::vector<double> x = sampled(t, [](double time) { return 0.02 * std::sin(40.0 * time); });
+  const std::vector<double> x =
+      sampled(t, [](double time) { return 0.02 * std::sin(40.0 * time); });
   std::vector<double> rounded;
   for (const double value : x) rounded.push_back(q * std::round(value / q));
   for (int n = 1; n <= kMaxOrder; ++n) {
