@@ -3,25 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "controllers/path/feed_reduction.h"
 
 namespace servomill::sim::programs {
 
-DurationSettings MotionBooking::with_booking(DurationSettings settings) {
-  settings.on_part = [this](const PlannedPart& part) { book(part); };
-  return settings;
+DurationSettings MotionBooking::with_booking(const DurationSettings& settings) {
+  DurationSettings out = settings;
+  out.on_part = [this](const PlannedPart& part) { book(part); };
+  return out;
 }
 
-MotionBooking::MotionBooking(const model::MachineSettings& machine, DurationSettings settings,
-                             double raise, unsigned threads)
+MotionBooking::MotionBooking(const model::MachineSettings& machine,
+                             const DurationSettings& settings, double raise, unsigned threads)
     : machine_(machine),
       raise_(raise),
       file_(settings.file),
       duration_(machine, with_booking(settings)),
       accountant_(machine.chain.layout, duration_.limits(), duration_.options()) {
-  if (raise > 0.0) raised_.emplace(machine, duration_, std::move(settings), raise, threads);
+  if (raise > 0.0) raised_.emplace(machine, duration_, settings, raise, threads);
 }
 
 void MotionBooking::book(const PlannedPart& part) {

@@ -16,8 +16,8 @@ class MotionBooking {
  public:
   /// @param machine  must outlive this
   /// @param raise    share by which limits are raised for comparison; 0: none is
-  MotionBooking(const model::MachineSettings& machine, DurationSettings settings, double raise,
-                unsigned threads);
+  MotionBooking(const model::MachineSettings& machine, const DurationSettings& settings,
+                double raise, unsigned threads);
   MotionBooking(const MotionBooking&) = delete;
   MotionBooking& operator=(const MotionBooking&) = delete;
 
@@ -29,7 +29,7 @@ class MotionBooking {
   void finish(CycleTimeReport& report, bool warns_of_travel);
 
  private:
-  DurationSettings with_booking(DurationSettings settings);
+  DurationSettings with_booking(const DurationSettings& settings);
   void book(const PlannedPart& part);
 
   const model::MachineSettings& machine_;
