@@ -90,8 +90,7 @@ class Equal(Case):
 
     def assertScenarioAgrees(self, scenario, *arguments):
         planned = {}
-        for line in self.servomill("time", scenario, "--json", *arguments).stdout.splitlines():
-            report = json.loads(line)
+        for report in json.loads(self.servomill("time", scenario, "--json", *arguments).stdout):
             planned.update({case: report["time_s"] for case in report["cases"]})
         recorded = self.recorded(scenario, *arguments)
         self.assertEqual(planned.keys(), recorded.keys())

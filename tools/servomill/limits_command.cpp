@@ -8,6 +8,7 @@
 #include "sim/recordings/read_recording.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -77,8 +78,10 @@ int limits_command(const Arguments& arguments) {
   const auto machine =
       sim::input::read_machine_description(options.get<std::string>("machine"), options.list("set"))
           .machine;
+  ProgressLine line(options);
   const auto recording = sim::recordings::read_recording(options.word(), text_of("time-unit"));
   const sim::limits::LimitReport report = sim::limits::check_limits(recording, machine, request);
+  line.end();
   const auto shown = static_cast<std::size_t>(top);
   if (options.has("json")) {
     fmt::print("{}\n", sim::limits::to_json(report, shown));

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,7 +11,9 @@
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/json_list.h"
 #include "tools/servomill/program_options.h"
+#include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
 namespace {
@@ -51,7 +52,9 @@ void declare_time_options(Options& options) {
   options.add()("case", texts("NAME"), "scenarios: only this case");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads of --raise (default: one per core)");
-  options.add()("json", "prints one JSON object for each motion; null for what is unknown");
+  options.add()(
+      "json",
+      "prints the result as JSON, of a scenario a list of motions; null for what is unknown");
   options.add()("force,f", "replaces the file of --csv if it exists");
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
@@ -108,15 +111,8 @@ std::vector<CycleTimeReport> reports_of(const Options& options) {
   }
   if (options.has("case")) throw InputError({"--case"}, "is for scenarios");
   sim::programs::CycleTimeRequest request = request_of(options);
-  ProgressBar bar(options.has("quiet"));
-  const auto begin = std::chrono::steady_clock::now();
-  request.progress = [&](double share) {
-    constexpr std::chrono::seconds kPatience(2);
-    if (std::chrono::steady_clock::now() - begin > kPatience) bar.show(share);
-  };
   std::vector<CycleTimeReport> out;
   out.push_back(sim::programs::cycle_time(request));
-  bar.clear();
   return out;
 }
 
@@ -129,6 +125,18 @@ void print_warnings(const std::vector<CycleTimeReport>& reports) {
       if (printed.insert(line).second) fmt::print(stderr, "{}\n", line);
     }
   }
+}
+
+// The motion of a program, or the list of those of a scenario.
+void print_json(const std::vector<CycleTimeReport>& reports,
+                const sim::programs::TimeReportForm& form, bool is_list) {
+  if (!is_list) {
+    fmt::print("{}\n", sim::programs::to_json(reports.front(), form));
+    return;
+  }
+  JsonList list;
+  for (const CycleTimeReport& report : reports) list.add(sim::programs::to_json(report, form));
+  list.end();
 }
 
 }  // namespace
@@ -160,7 +168,9 @@ int time_command(const Arguments& arguments) {
   if (top < 0) throw InputError({"--top"}, "must be >= 0");
   form.top = static_cast<std::size_t>(top);
   const std::string csv = output_of(options, "csv", ".csv");
+  ProgressLine line(options);
   const std::vector<CycleTimeReport> reports = reports_of(options);
+  line.end();
   print_warnings(reports);
   if (!csv.empty()) {
     if (reports.size() > 1) {
@@ -170,11 +180,10 @@ int time_command(const Arguments& arguments) {
     sim::system::write_text_file(csv, sim::programs::to_csv(reports.front(), table),
                                  options.has("force"));
   }
-  if (options.has("quiet")) return kDone;
-  for (std::size_t k = 0; k < reports.size(); ++k) {
-    if (options.has("json")) {
-      fmt::print("{}\n", sim::programs::to_json(reports[k], form));
-    } else {
+  if (options.has("json")) {
+    print_json(reports, form, options.word().ends_with(".toml"));
+  } else if (!options.has("quiet")) {
+    for (std::size_t k = 0; k < reports.size(); ++k) {
       fmt::print("{}{}", k == 0 ? "" : "\n", sim::programs::to_text(reports[k], form));
     }
   }

@@ -82,8 +82,7 @@ class Key:
 
 def keys_of(printed):
     """Keys of `servomill list keys --json`."""
-    rows = [json.loads(line) for line in printed.splitlines()]
-    return [Key(row["section"] or "", row["key"], row["type"], row["range"] or "", row["default"]) for row in rows]
+    return [Key(row["section"] or "", row["key"], row["type"], row["range"] or "", row["default"]) for row in json.loads(printed)]
 
 
 def number(rng, key):

@@ -14,20 +14,13 @@
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/cycle_time/motion_booking.h"
 #include "sim/programs/given_setup.h"
+#include "sim/programs/line_stage.h"
 #include "sim/system/counted.h"
 
 namespace servomill::sim::programs {
 namespace {
 
 using controllers::ExecutedBlock;
-
-// Number of lines of a file, for the progress.
-int lines_of(const std::string& file) {
-  controllers::ProgramText text = controllers::ProgramText::of_file(file);
-  std::string_view line;
-  while (text.next(line)) throw_if_interrupted();
-  return text.number();
-}
 
 struct TimedProgram {
   model::MachineSettings machine;
@@ -119,16 +112,14 @@ class ProgramReading {
 void read_program(const CycleTimeRequest& request, const TimedProgram& program,
                   MotionBooking& booking, CycleTimeReport& report) {
   const auto text = [&] { return controllers::ProgramText::of_file(request.program_file); };
-  const int lines = request.progress ? lines_of(request.program_file) : 0;
-  constexpr int kOften = 1 << 12;  // lines
+  LineStage lines(request.program_file);
   ProgramReading reading(program, booking, report);
   controllers::Interpreter interpreter(text(), program.given.setup);
   try {
-    for (int n = 0; const auto block = interpreter.next_block(); ++n) {
+    while (const auto block = interpreter.next_block()) {
       throw_if_interrupted();
+      lines.at(block->line);
       reading.add(*block);
-      if (n % kOften != 0 || lines == 0) continue;
-      request.progress(std::min(static_cast<double>(block->line) / lines, 1.0));
     }
   } catch (const InputError&) {  // stopped at the first fault; the user wants all of them
     auto faults = controllers::check_program(text(), program.given.setup);

@@ -1,7 +1,6 @@
 /// Cycle time of a program: planned as for a run, without its servo loops.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,7 +24,6 @@ struct CycleTimeRequest {
   double feed_override = 1.0;
   double raise = 0.0;  // share by which each limit is raised for comparison; 0: none is
   unsigned threads = 1;
-  std::function<void(double)> progress = {};  // share done
 };
 
 /// One limit and what it costs.

@@ -83,12 +83,6 @@ std::string raised_json(const CycleTimeReport& report) {
   return system::json_list(out);
 }
 
-std::vector<std::string> texts_json(const std::vector<std::string>& texts) {
-  std::vector<std::string> out;
-  for (const std::string& text : texts) out.push_back(system::json_text(text));
-  return out;
-}
-
 std::string csv_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -144,10 +138,10 @@ std::string to_json(const CycleTimeReport& report, const TimeReportForm& form) {
   }
   JsonObject out;
   out.text("program", report.program).text("machine", report.machine);
-  if (!report.cases.empty()) out.raw("cases", system::json_list(texts_json(report.cases)));
+  if (!report.cases.empty()) out.raw("cases", system::json_texts(report.cases));
   out.raw("total_s", is_known ? fmt::format("{:.6f}", report.known()) : "null")
       .fixed("at_least_s", report.known(), kDigits)
-      .raw("unknown", system::json_list(texts_json(report.unknown())));
+      .raw("unknown", system::json_texts(report.unknown()));
   add_share(out, accounts.total, report.layout)
       .raw("tool_changes", events_json(accounts.tool_changes, report.tool_change_time))
       .raw("spindle_changes", events_json(accounts.spindle_changes, report.spindle_time))
