@@ -33,27 +33,8 @@ LEAST_MOVE = 1e-7              # mm; nine decimals of an inch tell positions onl
 MM_PER_INCH = 25.4
 UNPACKED = "~/.cache/rs274/root/usr/bin/rs274"
 PYTHON = "/usr/bin/python3"    # Debian's, for which the module gcode is built
+FEEDS = pathlib.Path(__file__).resolve().with_name("rs274_feeds.py")
 CHORDS_PER_POINT = 15          # of a spline, by the module gcode; sometimes there is one more, of no length
-# Prints [line, x, y] in inches for every straight feed of a program: splines are such feeds there. Lines count their visits.
-FEEDS = """
-import json, sys
-import gcode
-class Canon:
-    parameter_file = sys.argv[2]
-    visits = 0
-    def next_line(self, _): self.visits += 1
-    def straight_feed(self, x, y, *_): print(json.dumps([self.visits, x, y]))
-    def get_block_delete(self): return int(sys.argv[3])
-    def get_tool(self, _): return (-1,) + (0.0,) * 12 + (0,)
-    def check_abort(self): return False
-    def get_external_angular_units(self): return 1.0
-    def get_external_length_units(self): return 1.0
-    def get_axis_mask(self): return 0x3f
-    def __getattr__(self, name):
-        if name.startswith("__") or name in ("use_move_batches", "move_batch"): raise AttributeError(name)
-        return lambda *_: None
-gcode.parse(sys.argv[1], Canon(), "G21", "")
-"""
 
 
 class Missing(Exception):
@@ -340,8 +321,8 @@ class Interpreter:
         return {"t": record["t"], "line": line, **file, **without(record, "t", "line")}
 
     def _splines(self, program, records, block_delete, timeout):
-        """Chords of the splines among the records, as far as the straight feeds of the module can be told apart."""
-        command = [PYTHON, "-c", FEEDS, program.name, self.home / "module.var", str(int(block_delete))]
+        """Chords of the splines among the records, as far as they can be found among the straight feeds of the module."""
+        command = [PYTHON, "-B", FEEDS, program.name, self.home / "module.var", str(int(block_delete))]
         (self.home / "module.var").touch()
         try:
             done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, env=self.environment,

@@ -1,4 +1,4 @@
-/// What the interpreter (interpreter.cpp, motion.cpp, ...) remembers, and the steps of a block.
+/// Memory of the interpreter (interpreter.cpp, motion.cpp, ...), and the steps of a block.
 #pragma once
 
 #include <fmt/format.h>

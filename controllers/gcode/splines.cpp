@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kCubicCode = 50;
-constexpr int kLeastOrder = 3;  // LinuxCNC counts a smaller L as 3
+constexpr int kMinOrder = 3;  // LinuxCNC counts a smaller L as 3
 
 }  // namespace
 
@@ -122,10 +122,10 @@ void Interpreter::Machine::nurbs_point() {
   if (request().has('L')) {
     const int L = integer('L');
     if (L < 0) fail_at('L', fmt::format("L{}; must be >= 0", L));
-    if (L < kLeastOrder) {
+    if (L < kMinOrder) {
       warn(request().word('L').column, fmt::format("G5.2 L{}: read as L3, as in LinuxCNC", L));
     }
-    if (L > kLeastOrder) curve.order = L;
+    if (L > kMinOrder) curve.order = L;
   }
   if (!has_point) return;
   curve.points.emplace_back(programmed_end().head<2>());

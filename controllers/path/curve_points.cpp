@@ -12,7 +12,7 @@ constexpr double kChordAngle = 0.1;     // rad, longest chord of an arc
 constexpr double kChordsPerWindow = 4;  // chords of an arc in the half-width of its window
 constexpr double kSameCircle = 1e-9;    // m, by which circles that are meant to be one may differ
 constexpr double kGrowth = 0.25;        // of the way, by which chords may grow along it
-constexpr double kLeast = 0.1;          // of the tolerance, the shortest chord: at cusps
+constexpr double kMinChord = 0.1;       // of the tolerance, the shortest chord: at cusps
 constexpr double kEven = 1e-9;          // relative, chords that are alike
 constexpr double kRounding = 1e-9;      // of a chord
 constexpr double kSameTurn = 1e-3;      // rad, between curves that go on in each other
@@ -63,7 +63,7 @@ class ChordLengths {
     const double h = bend > 0.0 ? radius * chord_angle(radius, tolerance)
                                 : std::numeric_limits<double>::infinity();
     s_.push_back(s);
-    h_.push_back(std::max(h, kLeast * tolerance));
+    h_.push_back(std::max(h, kMinChord * tolerance));
   }
   void limit(std::size_t i, std::size_t neighbour) {
     h_[i] = std::min(h_[i], h_[neighbour] + kGrowth * std::abs(s_[i] - s_[neighbour]));

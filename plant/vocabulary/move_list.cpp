@@ -37,7 +37,7 @@ struct Reader {
   }
 };
 
-// Where plane, spline and text of a move stand.
+// Places of plane, spline and text of a move.
 struct Indices {
   int plane = 0, spline = 0, text = 0;
 };

@@ -229,7 +229,8 @@ std::vector<double> SplineCurve::breaks() const {
   return out;
 }
 
-// Of samples those that are closer than their neighbours, and the best place on both sides of each.
+// Best of the samples that are closer than their neighbours and of the places on both sides of
+// them.
 double SplineCurve::closest(const Eigen::Vector3d& p) const {
   const auto square = [&](const Place& at) { return (derivatives(at).p - p).squaredNorm(); };
   const std::size_t count = cells_.size() * kSamples;
@@ -261,7 +262,7 @@ double SplineCurve::closest(const Eigen::Vector3d& p) const {
   return std::min(cell.s + part_length(cell.bezier, cell.from, best.t), length_);
 }
 
-// Where the distance from p is stationary between two samples, or where they begin.
+// Place between two samples at which the distance from p is stationary, or the first of them.
 SplineCurve::Place SplineCurve::closest_in(std::size_t interval, const Eigen::Vector3d& p) const {
   const Cell& cell = cells_[interval / kSamples];
   const double step = (cell.to - cell.from) / kSamples;

@@ -1,6 +1,6 @@
 /// A rational B-spline (NURBS) in space, by its arc length.
 ///
-/// Of degree d = order - 1, with control points P_i and weights w_i,
+/// With degree d = order - 1, control points P_i and weights w_i it is
 ///
 ///     C(u) = sum_i w_i N_i,d(u) P_i / sum_i w_i N_i,d(u)                                      (1)
 ///
@@ -43,8 +43,8 @@ class SplineCurve {
 
   /// @param s  m, 0 to length()
   Eigen::Vector3d point(double s) const;
-  /// Where the curve stands still (control points that coincide) tangent and curvature are those
-  /// next to it.
+  /// If the curve stands still there (control points that coincide), tangent and curvature are
+  /// those next to it.
   State state(double s) const;
 
   /// Arc lengths where the tangent or the curvature jumps (by more than a twentieth), rising: knots

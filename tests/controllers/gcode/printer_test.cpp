@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "plant/vocabulary/spline_curve.h"
 #include "tests/controllers/gcode/program.h"
 
 namespace servomill::controllers::printer_test {
@@ -49,6 +50,15 @@ void expect_same(const Move& a, const Move& b) {
     EXPECT_EQ(a.arc.turns, b.arc.turns);
     EXPECT_LE((a.arc.centre - b.arc.centre).cwiseAbs().maxCoeff(), kPrintTol);
   }
+  if (a.kind == MoveKind::spline) {
+    EXPECT_NEAR(a.feed, b.feed, kFeedTol * a.feed);
+    EXPECT_EQ(a.spline->curve.order(), b.spline->curve.order());
+    EXPECT_EQ(a.spline->curve.weights(), b.spline->curve.weights());
+    ASSERT_EQ(a.spline->points.size(), b.spline->points.size());
+    for (std::size_t i = 0; i < a.spline->points.size(); ++i) {
+      EXPECT_LE((a.spline->points[i] - b.spline->points[i]).head<2>().norm(), 2 * kPrintTol);
+    }
+  }
   EXPECT_NEAR(a.value, b.value, 1e-11 * std::abs(a.value));
   EXPECT_EQ(a.number, b.number);
   EXPECT_EQ(a.direction, b.direction);
@@ -75,6 +85,17 @@ TEST(Printer, WritesWhatAPersonWouldWrite) {
             "G64 P0.02\nG0 X1 Y2 Z-100\nG1 Z-1 F300\nG1 X5\nG2 X7 I1 J0\nG4 P0.5\nM5\nM30\n");
   EXPECT_EQ(printed.move_of_line,
             (std::vector<int>{-1, -1, -1, 0, 1, 2, 3, 3, 3, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(Printer, SplinesAreNurbs) {
+  const ProgramSetup setup = usual_setup();
+  expect_round_trip(
+      "G0 X1 Y2\nG5 X3 Y2 I1 J2 P-1 Q3 F500\nG1 X4\nG5.1 X6 Y3 I1 J1\nG93\nG5.1 X9 I1 J2 F4\nG94 "
+      "F100\nG55\nG5.2 P2 L4\nX7 Y1 P0.25\nX8 Y3 P1\nX9 Y2 P3\nG5.3\nG1 Z3\nM2\n",
+      setup);
+  EXPECT_NE(print_program(moves_of("G0 X1 Y2\nG5.1 X3 Y2 I1 J2 F500"), {.axes = "XYZ"}, "")
+                .text.find("G5.2 P1 L3 F500\nX2 Y4 P1\nX3 Y2 P1\nG5.3\n"),
+            std::string::npos);
 }
 
 TEST(Printer, DecimalsRoundAndUnchangedWordsAreLeftOut) {

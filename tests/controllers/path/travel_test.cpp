@@ -57,5 +57,16 @@ TEST(Travel, SeesTheExtremePointOfAnArc) {
   EXPECT_EQ(faults(Program(start).arc(centre, to, 2, -1, 0.1)), Lines{});
 }
 
+TEST(Travel, SeesTheFarthestPointOfASpline) {
+  Joints start = Joints::Zero();
+  start.head<3>() << 0.39, -0.02, 0.0;
+  // an arch of the height 3/4 of that of its control points
+  EXPECT_EQ(faults(Program(start).spline(4, {{0.41, -0.02}, {0.41, 0.02}, {0.39, 0.02}}, 0.1)),
+            (Lines{"part.nc:1: error: X moves to 405.0000 mm, outside the travel; must be <= "
+                   "400.0000"}));
+  EXPECT_EQ(faults(Program(start).spline(4, {{0.4, -0.02}, {0.4, 0.02}, {0.39, 0.02}}, 0.1)),
+            Lines{});
+}
+
 }  // namespace
 }  // namespace servomill::controllers::test::travel_test
