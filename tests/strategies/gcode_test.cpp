@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/geometry/reversal_memory.h"
+#include "plant/vocabulary/spline_curve.h"
 #include "tests/strategies/identified_machines.h"
 
 namespace servomill::strategies::gcode_test {
@@ -167,6 +168,31 @@ TEST(Gcode, DividesArcsWhereAnAxisReverses) {
         }
       }
     }
+  }
+}
+
+// A quarter of that circle as a NURBS becomes blocks whose ends lie on it.
+TEST(Gcode, ReplacesSplinesByBlocksOnTheirCurve) {
+  constexpr double kRadius = 20.0 * mm;
+  const Eigen::Vector3d begin(40.0 * mm, 0.0, 0.0), end(20.0 * mm, 20.0 * mm, 0.0);
+  const std::vector<Eigen::Vector3d> points = {begin, {40.0 * mm, 20.0 * mm, 0.0}, end};
+  const double lead = begin.norm(), length = 0.5 * std::numbers::pi * kRadius;
+  Move move = feed_to(end, lead, lead + length);
+  move.kind = MoveKind::spline;
+  move.spline = std::make_shared<const Spline>(
+      Spline{SplineCurve(3, points, {1.0, std::sqrt(0.5), 1.0}), points});
+  const std::vector<Move> blocks =
+      rewritten(machine_with(plant::ErrorModel()), {feed_to(begin, 0.0, lead), move},
+                Action::compensate, 1.0 * mm);
+  EXPECT_GT(blocks.size(), 60U);
+  for (const Move& block : blocks) {
+    EXPECT_EQ(block.kind, MoveKind::feed);
+    EXPECT_EQ(block.spline, nullptr);
+    if (block.s_end <= lead) continue;
+    const double angle = (block.s_end - lead) / kRadius;
+    const Eigen::Vector3d wanted(20.0 * mm + kRadius * std::cos(angle), kRadius * std::sin(angle),
+                                 0.0);
+    EXPECT_LT((block.end_machine.head<3>() - wanted).norm(), 1e-11) << block.s_end;
   }
 }
 

@@ -48,6 +48,8 @@ COMPENSATE = [
                 COMPENSATE_IT + " --work-offset X=10", AT_ZERO + " --work-offset X=10"),
     compensated("moves under tool-centre-point control", CUT.replace("G1", "G43.4 H1\nG1"),
                 AT_ZERO + " --tools tools.tbl", **{"tools.tbl": "T1 P1 Z+40\n"}),
+    compensated("a spline", CUT.replace("G1 X10", "G5 X10 Y0 I1 J1 P1 Q1"), AT_ZERO, FOR_FANUC),
+    compensated("a NURBS", CUT.replace("G1 X10 F100", "F100\nG5.2 P1\nX5 Y5 P1\nX10 Y0 P1\nG5.3"), AT_ZERO, FOR_FANUC),
     compensated("parameter files of compensate", CUT, COMPENSATE_IT + " --parameter-file none.var",
                 COMPENSATE_IT + " --parameter-file wrong.var",
                 **{"wrong.var": "5221 1.5\n5222\n12 1\n5220 10\n5210 1\n"}),
