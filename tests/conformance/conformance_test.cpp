@@ -133,7 +133,7 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   return records;
 }
 
-// Where the chords end in which LinuxCNC shows a spline: 15 for each control point, of equal steps
+// Ends of the chords in which LinuxCNC shows a spline: 15 for each control point, of equal steps
 // of the parameter; the last may have no length.
 void add_chords(Record& ours, const Record& theirs) {
   const auto chords = theirs.find("chord_x");
