@@ -198,8 +198,7 @@ class Interpreter::Machine {
   bool has_unknown_feed() const;
 
   // ---- steps of a block, in the order of execution
-  // Due if the block has the letter or a code of the group: the lowest bits are letters, the next
-  // are groups.
+  // Due if the block has the letter or a code of the group: low bits are letters, then groups.
   struct Step {
     void (Machine::*run)();
     std::uint64_t due;

@@ -58,7 +58,7 @@ struct Unit {
   int kg = 0, m = 0, s = 0, A = 0, rad = 0;
 };
 const Unit& unit_of(Kind kind, const AxisConstants& axis);
-/// Of a linear axis with a rotary motor, and of the tool.
+/// The unit for a linear axis with a rotary motor, and for the tool.
 const Unit& linear_unit_of(Kind kind);
 
 inline constexpr std::size_t kVariables = 24;

@@ -1,4 +1,4 @@
-/// What is exported of a scenario.
+/// Constants of a scenario that an FMU contains.
 #pragma once
 
 #include "sim/fmu/machine_constants.h"

@@ -45,7 +45,7 @@ class MachineInstance {
   bool enter_event_mode();
   bool enter_step_mode();
   bool is_in_event_mode() const { return in_event_mode_; }
-  /// Whether a clock ticks now; only in event mode.
+  /// True for a clock that ticks now; only in event mode.
   bool ticks(std::uint32_t reference, bool& value);
   bool event_is_due() const;
   double next_event_time() const;

@@ -4,7 +4,8 @@
  *     node tests/page/measure.mjs FILE.h5 [--served]     with the page in build/page, built by tools/page/build
  *
  * Prints the load of the machine, the time until the page can read files, that from choosing the file to the first
- * complete plot and to all of them, the memory of all processes of the browser, and frames a second while zooming, moving the cursor and turning the path.
+ * complete plot and to all of them, the memory of all processes of the browser, and frames a second while zooming,
+ * moving the cursor and turning the path.
  */
 import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";

@@ -29,7 +29,7 @@ class Component {
   /// Switches the logging of events; errors and stops are logged always. Without categories: all.
   bool log_events(bool on, std::size_t count, const char* const categories[]);
 
-  /// Whether clocks tick now.
+  /// True for clocks that tick now.
   bool ticks(const unsigned references[], std::size_t count, bool values[]);
   bool get(const unsigned references[], std::size_t count, double values[]);
   bool set(const unsigned references[], std::size_t count, const double values[]);

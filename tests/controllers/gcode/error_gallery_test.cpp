@@ -89,7 +89,7 @@ TEST(ErrorGallery, WordsAndCodes) {
       {"G0 X1 H3", "1:7: error: H word without a code that uses it (G43, G43.2, G43.4, G43.5)"},
       {"G0 X1 P3",
        "1:7: error: P word without a code that uses it (G2, G3, G4, G5, G5.2, G10, G64, G74, "
-       "G82, G84, G86, G88, G89, M50, M51, M52, M53)"},
+       "G82, G84, G86, G88, G89, M50, M51, M52, M53, M62, M63, M64, M65)"},
       {"G40 D3", "1:5: error: D word without a code that uses it (G41, G41.1, G42, G42.1)"},
       {"M0 M3 M7 M48 M6", "1:14: error: more than 4 M codes in one block"},
   });

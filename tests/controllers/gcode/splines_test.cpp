@@ -167,7 +167,7 @@ TEST(Splines, EachRefusalHasItsReason) {
       {"G53 G5 X2 I1 J1 P1 Q1", "G53 needs G0 or G1"},
       {"G5.1 X2 I1 J1 P1",
        "P word without a code that uses it (G2, G3, G4, G5, G5.2, G10, G64, G74, G82, G84, G86, "
-       "G88, G89, M50, M51, M52, M53)"},
+       "G88, G89, M50, M51, M52, M53, M62, M63, M64, M65)"},
   };
   for (const auto& [text, message] : all) EXPECT_EQ(message_of(text), message) << text;
 }

@@ -1,4 +1,4 @@
-/// Where an exported machine puts its tool.
+/// The tool of an exported machine.
 #include "sim/fmu/tool.h"
 
 #include <gtest/gtest.h>
