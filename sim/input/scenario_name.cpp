@@ -10,7 +10,6 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/machine_document.h"
-#include "sim/system/program_folder.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -54,14 +53,13 @@ std::string nearest_of(const std::vector<std::string>& names, const std::string&
 
 }  // namespace
 
-std::vector<std::string> scenario_folders() {
+std::vector<std::string> scenario_folders(const fs::path& share) {
   constexpr const char* kFolder = "scenarios";
   std::vector<std::string> out;
   std::error_code fault;
   if (fs::is_directory(kFolder, fault)) out.emplace_back(kFolder);
-  const fs::path program = system::program_folder();
-  if (program.empty()) return out;
-  const fs::path installed = (program / SERVOMILL_SHARE / kFolder).lexically_normal();
+  if (share.empty()) return out;
+  const fs::path installed = (share / kFolder).lexically_normal();
   if (fs::is_directory(installed, fault)) out.push_back(installed.string());
   return out;
 }

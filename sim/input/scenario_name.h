@@ -2,14 +2,19 @@
 /// of an installation.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "sim/system/program_folder.h"
+
 namespace servomill::sim::input {
 
-/// Folders of scenarios that exist: `scenarios` of the current folder, then that which was
-/// installed with the running program (there is none with one in a build folder).
-std::vector<std::string> scenario_folders();
+/// Folders of scenarios that exist: `scenarios` of the current folder, then that of an
+/// installation.
+/// @param share  folder share/servomill of the installation
+std::vector<std::string> scenario_folders(
+    const std::filesystem::path& share = system::installed_share());
 
 /// Names of the scenarios in a folder, relative to it and without ".toml", sorted; machines and
 /// other files that cases refer to are none.

@@ -9,4 +9,9 @@ std::filesystem::path program_folder() {
   return std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
 }
 
+std::filesystem::path installed_share() {
+  const std::filesystem::path program = program_folder();
+  return program.empty() ? program : (program / SERVOMILL_SHARE).lexically_normal();
+}
+
 }  // namespace servomill::sim::system

@@ -60,10 +60,26 @@ class Installation(unittest.TestCase):
             (package,) = pathlib.Path(prefix).rglob("servomill")
             self.assertEqual(package.parent.name, "dist-packages")
             self.assertTrue({path.name for path in PACKAGE.iterdir() if path.is_file()} <= {path.name for path in package.iterdir()})
-            printed = subprocess.run([sys.executable, "-B", "-c", "import servomill; print(servomill.__file__, servomill.__version__)"],
-                                     env={**os.environ, "PYTHONPATH": str(package.parent)}, check=True, capture_output=True,
-                                     encoding="utf-8", cwd=prefix).stdout
+            printed = self.printed("import servomill; print(servomill.__file__, servomill.__version__)", package, prefix)
             self.assertEqual(printed.split(), [str(package / "__init__.py"), servomill.__version__])
+
+    def test_finds_scenarios_of_the_installation_by_name(self):
+        with tempfile.TemporaryDirectory() as prefix, tempfile.TemporaryDirectory() as elsewhere:
+            subprocess.run([CMAKE, "--install", BUILD, "--prefix", prefix], check=True, capture_output=True)
+            (package,) = pathlib.Path(prefix).glob("lib/python*/dist-packages/servomill")
+            printed = self.printed("import servomill; print(*servomill.scenarios())", package, elsewhere)
+            self.assertIn("guevel2025/experiment1", printed.split())
+            printed = self.printed("import servomill; print(servomill.load('guevel2025/experiment1').path)", package, elsewhere)
+            self.assertEqual(os.path.realpath(printed.strip()),
+                             os.path.realpath(f"{prefix}/share/servomill/scenarios/guevel2025/experiment1.toml"))
+            printed = self.printed("import servomill\ntry: servomill.load('guevel2025/experimant1')\n"
+                                   "except servomill.InputError as error: print(error.rule)", package, elsewhere)
+            self.assertEqual(printed, "is no file and no scenario; did you mean 'guevel2025/experiment1'?\n")
+
+    @staticmethod
+    def printed(program, package, folder):
+        return subprocess.run([sys.executable, "-B", "-c", program], env={**os.environ, "PYTHONPATH": str(package.parent)},
+                              check=True, capture_output=True, encoding="utf-8", cwd=folder).stdout
 
 
 if __name__ == "__main__":

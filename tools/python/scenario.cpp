@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/input/plugins.h"
+#include "sim/input/scenario_name.h"
 #include "sim/input/scenario_source.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
@@ -59,6 +60,19 @@ void bind_scenario(py::module_& module) {
       .def("estimate", &estimate_of);
   module.def("load", &load_scenario, py::arg("path"), py::arg("set") = py::none(),
              py::arg("text") = py::none());
+  // from the folder of the module, which an installation of Python finds anywhere
+  module.attr("share") = SERVOMILL_MODULE_SHARE;
+  module.def("scenario_file", [](const std::string& word, const std::string& share) {
+    return sim::input::scenario_file(word, sim::input::scenario_folders(share));
+  });
+  module.def("scenario_names", [](const std::string& share) {
+    std::vector<std::string> out;
+    for (const std::string& folder : sim::input::scenario_folders(share)) {
+      const std::vector<std::string> names = sim::input::scenario_names(folder);
+      out.insert(out.end(), names.begin(), names.end());
+    }
+    return out;
+  });
   module.def("load_plugin",
              [](const std::string& file) { while_idle([&] { sim::input::load_plugin(file); }); });
 }

@@ -45,6 +45,18 @@ TEST_F(ScenarioName, AreThoseOfFilesWithCases) {
   EXPECT_TRUE(scenario_names(folder_ / "nowhere").empty());
 }
 
+TEST_F(ScenarioName, AreThoseOfAnInstallation) {
+  write("share/servomill/scenarios/iso/circle.toml", "[[case]]\n");
+  const std::vector<std::string> folders = scenario_folders(folder_ / "share" / "servomill");
+  ASSERT_FALSE(folders.empty());
+  EXPECT_EQ(folders.back(), (folder_ / "share/servomill/scenarios").string());
+  EXPECT_EQ(scenario_file("iso/circle", folders),
+            (folder_ / "share/servomill/scenarios/iso/circle.toml").string());
+  for (const fs::path& none : {fs::path{}, folder_ / "nowhere"}) {
+    EXPECT_LT(scenario_folders(none).size(), folders.size());
+  }
+}
+
 TEST_F(ScenarioName, OfAnInstallationIsItsFile) {
   for (const char* word : {"paper/experiment1", "paper/experiment1.toml"}) {
     EXPECT_EQ(scenario_file(word, {folder_.string()}),

@@ -4,6 +4,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 version: str
+share: str
 
 _Progress = Optional[Callable[[float], Any]]
 _Set = Union[None, Mapping[str, Any], List[str]]
@@ -76,6 +77,8 @@ class Program:
     def position(self, move: np.ndarray, share: np.ndarray) -> np.ndarray: ...
 
 def load(path: str, set: _Set = ..., text: Optional[str] = ...) -> Scenario: ...
+def scenario_file(word: str, share: str) -> str: ...
+def scenario_names(share: str) -> List[str]: ...
 def load_plugin(file: str) -> None:
     """Loads a shared library with strategies (strategies/README.md)."""
 def run(scenario: Scenario, output: str = ..., force: bool = ..., threads: int = ..., progress: _Progress = ...

@@ -61,6 +61,19 @@ class Scenario:
         return f"<scenario {self.name}: {', '.join(self.cases)}>"
 
 
+def _installed() -> str:
+    """Folder share/servomill of the installation that this module belongs to."""
+    return os.path.join(os.path.dirname(_core.__file__), _core.share)
+
+
+def scenarios() -> List[str]:
+    """Names of the scenarios in the folder `scenarios` of the current folder, and of those that are installed.
+
+    A name stands for its file wherever a scenario is asked for: `servomill.run("guevel2025/experiment1")`.
+    """
+    return sorted({*_core.scenario_names(_installed())})
+
+
 Loadable = Union[Scenario, str, os.PathLike, Mapping[str, Any]]
 
 
@@ -68,7 +81,8 @@ def load(scenario: Loadable, set: Changes = None, folder: Union[str, os.PathLike
          name: str = "scenario") -> Scenario:
     """Reads a scenario and checks it.
 
-    scenario: name of a TOML file; or a dictionary with the same keys; or the text itself, which has a line break.
+    scenario: name of a TOML file or one of `scenarios()`; or a dictionary with the same keys; or the text itself, which has
+        a line break.
     set: changes of keys, as `--set` takes them: {"program.feed_override": 0.5, "machine.nc.Kv": "60 1/s"}.
     folder, name: of a dictionary or text: files that it names are relative to this folder; messages call it `name`.toml.
 
@@ -93,5 +107,5 @@ def load(scenario: Loadable, set: Changes = None, folder: Union[str, os.PathLike
     elif isinstance(scenario, str) and "\n" in scenario:
         text = scenario
     if text is None:
-        return Scenario(_core.load(os.fspath(scenario), set, None))
+        return Scenario(_core.load(_core.scenario_file(os.fspath(scenario), _installed()), set, None))
     return Scenario(_core.load(os.path.join(os.fspath(folder), f"{name}.toml"), set, text))
