@@ -169,8 +169,8 @@ class Plugins(unittest.TestCase):
             values = [data[:] for name, data in file["sweep"].items() if "trajectory_difference" in name]
         self.assertEqual(len(values), 1)
         for slope, value in list(zip(slopes, values[0]))[::5]:
-            row = json.loads(self.run_ramp(f"{slope}.h5", "--plugin", library("ramp"),
-                                           keys=f"slope_um_per_m = {slope}").stdout)
+            (row,) = json.loads(self.run_ramp(f"{slope}.h5", "--plugin", library("ramp"),
+                                              keys=f"slope_um_per_m = {slope}").stdout)
             self.assertEqual(row["value"], float(f"{value:.9g}"), slope)
 
     def test_it_is_listed_with_its_keys(self):

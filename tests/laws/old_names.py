@@ -6,7 +6,7 @@ import re
 import subprocess
 
 COMMANDS = ("run", "compare", "sweep", "merge", "budget", "converge", "bode", "step", "tune", "fmu", "lobes", "table", "compensate", "check", "canon",
-            "post", "recording", "calibrate", "plan-calibration", "evaluate", "identify", "response", "list")
+            "post", "recording", "calibrate", "plan-calibration", "evaluate", "identify", "response", "time", "machine", "limits", "view", "list")
 
 # Old name: what replaces it. Nowhere a key, a quantity, a recorded name, or any other word of its own in quotes.
 NAMES = {

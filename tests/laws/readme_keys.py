@@ -14,7 +14,7 @@ import sys
 import readmes
 
 COMMANDS = ("run", "compare", "sweep", "merge", "budget", "converge", "bode", "step", "tune", "fmu", "lobes", "table", "compensate", "check", "canon",
-            "post", "recording", "calibrate", "plan-calibration", "evaluate", "identify", "response", "time", "machine", "limits", "list")
+            "post", "recording", "calibrate", "plan-calibration", "evaluate", "identify", "response", "time", "machine", "limits", "view", "list")
 FOREIGN = {  # options of other programs that READMEs show
     "preset", "build", "install", "prefix", "complete", "sshlogin", "workdir", "time", "partition", "cpus-per-task", "requeue", "nodes", "mem", "array", "export", "target",
 }

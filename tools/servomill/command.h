@@ -41,6 +41,7 @@ int step_command(const Arguments& arguments);
 int lobes_command(const Arguments& arguments);
 int fmu_command(const Arguments& arguments);
 int tune_command(const Arguments& arguments);
+int view_command(const Arguments& arguments);
 int budget_command(const Arguments& arguments);
 int converge_command(const Arguments& arguments);
 int plan_calibration_command(const Arguments& arguments);

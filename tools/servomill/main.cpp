@@ -26,10 +26,11 @@
 namespace servomill::tools {
 namespace {
 
-constexpr std::array<Command, 27> kCommands = {{
+constexpr std::array<Command, 28> kCommands = {{
     {"run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...", "runs every case of a scenario",
      run_command},
     {"compare", "OUT.h5...", "prints the comparison of runs again", compare_command},
+    {"view", "OUT.h5... [--no-browser]", "shows results in the browser", view_command},
     {"sweep", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
      "runs a scenario at the points of its [sweep] table", sweep_command},
     {"merge", "SHARD.h5... -o OUT.h5 [--partial]", "joins the shards of a sweep", merge_command},
