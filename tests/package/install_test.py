@@ -15,7 +15,7 @@ import tempfile
 import unittest
 
 CMAKE, BUILD = sys.argv.pop(1), pathlib.Path(sys.argv.pop(1)).resolve()
-COMMANDS = 22    # of the program, at least
+COMMANDS = 25    # of the program, at least
 DRIVE_BASH = """
 source "$1"; shift
 COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
@@ -92,6 +92,12 @@ class Installed(unittest.TestCase):
             # every option of --help is on the page
             for option in re.findall(r"--([a-z][a-z0-9-]+)", self.run_program(name, "--help").stdout.split("Options:")[1]):
                 self.assertIn(option.replace("-", "\\-"), text, name)
+
+    def test_brings_the_example_of_a_plug_in(self):
+        example = pathlib.Path(__file__).resolve().parents[1] / "plugin_example"
+        installed = self.prefix / "share/doc/servomill/examples/plugin"
+        for name in ("CMakeLists.txt", "quadrant.cpp"):
+            self.assertEqual((installed / name).read_bytes(), (example / name).read_bytes())
 
     def test_exports_axes_with_the_installed_library(self):
         self.run_program("fmu", "iso/circular", "--axis", "X", "-o", "x.fmu")
