@@ -150,7 +150,7 @@ class Documents(unittest.TestCase):
         self.assertGreater(len(commands), 20)
         with_option = {name for name in commands if re.search(r"^  --json\b", self.done(name, "--help"), re.MULTILINE)}
         self.assertEqual(with_option, {arguments[0] for arguments, _, _ in ROWS})
-        self.assertEqual(set(commands) - with_option, {"canon", "machine"})  # always JSON, one object per line; a machine file
+        self.assertEqual(set(commands) - with_option, {"canon", "machine", "view"})  # always JSON, one object per line; a machine file; a server
 
     def test_lists_have_an_object_a_line(self):
         lines = self.done("list", "quantities", "--json").splitlines()
