@@ -157,12 +157,12 @@ class Shown(unittest.TestCase):
         self.interrupted(terminal)
 
     def test_forecasts_a_measurement_whose_low_frequencies_take_longer(self):
-        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--f-min", "0.1", "--points", "60")
+        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--f-min", "0.1", "--points", "400")
         terminal.wait_for(BAR + r", [\d.]+ (s|min|h) left")
         self.interrupted(terminal)
 
     def test_says_only_what_was_done_where_nothing_can_be_forecast(self):
-        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "all", "--f-min", "0.1", "--points", "60")
+        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "all", "--f-min", "0.1", "--points", "400")
         said = terminal.wait_for(r"\d of 3 loops.*? so far")
         self.assertNotIn("left", said)
         self.interrupted(terminal)
