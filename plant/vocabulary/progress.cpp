@@ -1,7 +1,6 @@
 #include "plant/vocabulary/progress.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace servomill {
 namespace {
@@ -12,8 +11,8 @@ thread_local ProgressWatch* watch_of_thread = nullptr;
 
 double share_done(const std::vector<StageState>& stages) {
   double share = 0.0;
-  for (const StageState& stage : stages | std::views::reverse) {
-    share = stage.total > 0.0 ? std::min(1.0, (stage.done + share) / stage.total) : 0.0;
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {  // the innermost first
+    share = stage->total > 0.0 ? std::min(1.0, (stage->done + share) / stage->total) : 0.0;
   }
   return share;
 }
