@@ -5,16 +5,15 @@
 """
 import json
 import os
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy as np
 
+import in_folder
+
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-PATIENCE = 120  # s, far more than anything here takes
 T = 1e-3        # s, between samples
 V, A, J = 0.1, 1.0, 30.0  # m/s, m/s^2, m/s^3
 
@@ -42,22 +41,12 @@ def trapezoid(a=A, v=V, length=0.05):
     return np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1])) * T])
 
 
-class Limits(unittest.TestCase):
+class Limits(in_folder.InFolder):
+    program = SERVOMILL
+
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
+        super().setUp()
         self.write("router.toml", MACHINE)
-
-    def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def servomill(self, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE,
-                              check=False)
-        self.assertEqual(done.returncode, status, f"{arguments}\n{done.stdout}{done.stderr}")
-        return done
 
     def limits(self, log, *arguments, status=0, name="log.csv"):
         self.write(name, log)

@@ -8,13 +8,13 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
+import in_folder
+
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SAMPLES = "/usr/share/doc/linuxcnc/examples/sample-configs"  # of Debian's linuxcnc-uspace
-PATIENCE = 60  # s, far more than anything here takes
 
 INI = """[EMC]
 MACHINE = my "mill"
@@ -104,21 +104,8 @@ m208 Z-85:0
 """
 
 
-class Machine(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
-
-    def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def servomill(self, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE,
-                              check=False)
-        self.assertEqual(done.returncode, status, f"{arguments}\n{done.stdout}{done.stderr}")
-        return done
+class Machine(in_folder.InFolder):
+    program = SERVOMILL
 
     def text(self, settings, *arguments, name="settings"):
         self.write(name, settings)

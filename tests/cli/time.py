@@ -7,19 +7,18 @@ import csv
 import json
 import os
 import re
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
+
+import in_folder
 
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 SCENARIOS = os.path.join(ROOT, "scenarios")
 PROGRAMS = os.path.join(SCENARIOS, "programs")
 MACHINES = os.path.join(SCENARIOS, "machines")
-PATIENCE = 120  # s, far more than anything here takes
 EQUAL = 1e-3    # s, between time and run
 
 # structure and limits: no drives
@@ -53,23 +52,13 @@ def jerk_alone(length, v, j=J):
     return length / v + 2.0 * (v / j) ** 0.5
 
 
-class Case(unittest.TestCase):
+class Case(in_folder.InFolder):
+    program = SERVOMILL
+
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
+        super().setUp()
         self.write("router.toml", ROUTER)
         self.write("timed.toml", ROUTER.replace("[axis.X]", TIMES + "[axis.X]"))
-
-    def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def servomill(self, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE,
-                              check=False)
-        self.assertEqual(done.returncode, status, f"{arguments}\n{done.stdout}{done.stderr}")
-        return done
 
     def time(self, program, *arguments, machine="router.toml", status=0):
         self.write("part.ngc", program)
