@@ -32,7 +32,7 @@ std::vector<MoveFeed> feeds_of(const MoveRange& moves, const PathOptions& option
   return out;
 }
 
-// Time at which a phase reaches s, between two times of which the first is not behind it.
+// Time (s) at which a phase reaches s, within [from, to]; s(from) <= s.
 double time_at(const Phase& phase, double s, double from, double to) {
   constexpr int kSteps = 60;
   constexpr double kResolution = 1e-13;  // s
