@@ -21,7 +21,7 @@ inline constexpr int kPrintMessage = 1;         // `Move::number` of (PRINT, ...
 inline constexpr double kSlowestInverse = 0.1;  // mm, inch or deg per minute under G93: LinuxCNC
 inline constexpr int kMist = 1, kFlood = 2;     // bits of `Move::number` of a coolant move
 
-/// An axis word as it stands in a parameter, in mm or degrees, and back.
+/// An axis word as the value of a parameter, in mm or degrees, and back.
 /// @param axis  0 ... 5, X to C
 inline double in_parameter_unit(int axis, double value) { return value / (axis < 3 ? mm : deg); }
 inline double from_parameter_unit(int axis, double value) { return value * (axis < 3 ? mm : deg); }

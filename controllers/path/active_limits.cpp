@@ -116,7 +116,7 @@ class StretchWalk {
     take_({span.move, to - from, most.kind, most.joint});
   }
 
-  // Speed of X, Y and Z, of the rotary joints where those stand, of the tip under TCP control.
+  // Speed of X, Y and Z, of the rotary joints with those at rest, of the tip under TCP control.
   void add_feed(const Chain& chain, const Chain::Span& span, const Joints& d1, double v,
                 MostUsed& most) const {
     const double length = chain.end_of(span) - chain.begin_of(span);

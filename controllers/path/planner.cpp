@@ -139,7 +139,7 @@ class Planner {
     if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
   }
 
-  // X and Y on a spline; the other axes stand.
+  // X and Y on a spline; the other axes are at rest.
   void add_spline(const Move& move, std::size_t index) {
     assert(move.tool_control == ToolControl::none && move.feed > 0.0);
     const SplineCurve& curve = move.spline->curve;

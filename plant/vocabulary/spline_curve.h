@@ -43,8 +43,8 @@ class SplineCurve {
 
   /// @param s  m, 0 to length()
   Eigen::Vector3d point(double s) const;
-  /// If the curve stands still there (control points that coincide), tangent and curvature are
-  /// those next to it.
+  /// At a derivative of 0 (control points that coincide) tangent and curvature are those next to
+  /// it.
   State state(double s) const;
 
   /// Arc lengths where the tangent or the curvature jumps (by more than a twentieth), rising: knots

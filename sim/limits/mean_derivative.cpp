@@ -76,7 +76,7 @@ double quantum_of(std::span<const double> x) {
   }
   const double rounding = std::numeric_limits<double>::epsilon() * largest;
   if (!(least_change < std::numeric_limits<double>::infinity())) return rounding;
-  // Differences have the rounding of large values: the largest value tells the step better.
+  // Differences have the rounding of large values: the step follows from the largest value.
   const double step = largest / std::max(1.0, std::round(largest / least_change));
   if (are_multiples(x, step, largest) && trembles(x, step)) return step;
   constexpr int kCoarsest = 3, kFinest = 15;  // decimals, before and behind the point

@@ -75,7 +75,7 @@ class Terminal:
         return took
 
     def screen(self):
-        """What stands there at last: a carriage return goes back to the begin of the line."""
+        """The text that is left on the line: a carriage return goes back to its beginning."""
         lines = []
         for line in self.seen.replace("\r\n", "\n").split("\n"):
             shown = []

@@ -105,7 +105,7 @@ class FluidNc {
     }
   }
 
-  // Travels follow from homing, which may stand before or behind them.
+  // Travels follow from homing, which may be before or behind them in the file.
   void finish() {
     for (auto& [axis, limits] : out_.axes) {
       const auto travel = travels_.find(axis);

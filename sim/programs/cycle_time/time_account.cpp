@@ -85,7 +85,7 @@ class TimeAccountant::Part {
   }
 
  private:
-  // Books what stands between two moves that take time.
+  // Books the records between two moves that take time.
   void go_to(std::size_t index) {
     for (; index_ < part_.moves.size() && index_ <= index; ++index_, ++next_) {
       const Move& move = *next_;

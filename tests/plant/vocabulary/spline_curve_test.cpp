@@ -119,7 +119,7 @@ TEST(SplineCurve, FindsItsOwnPointsAsClosest) {
     const Vector3d p = loop.point(loop.length() * i / 400);
     EXPECT_LT((loop.point(loop.closest(p)) - p).norm(), 1e-9) << i;
   }
-  // it stands still where it begins and where it ends
+  // its derivative is 0 at both ends
   const SplineCurve halting = curve_of(
       {4,
        {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}, {0.02, 0.01, 0.0}, {0.02, 0.01, 0.0}},

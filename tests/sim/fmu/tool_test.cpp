@@ -43,7 +43,7 @@ TEST(Tool, StandsWhereTheLinearAxesAre) {
   EXPECT_EQ(part(values, kDeviation), Eigen::Vector3d::Zero());
 }
 
-// A table that turns by c about a vertical line takes a tool that stands still the other way round.
+// A tool at rest turns in the workpiece against a table that turns by c.
 TEST(Tool, TurnsWithTheTable) {
   KinematicConstants turning = machine();
   turning.chain.at(Axis::C).centre.setZero();
