@@ -110,6 +110,7 @@ describe("looks and keys", () => {
       assert.ok(texts.includes(part), part);
     await page.keyboard.press("Escape");
     await page.keyboard.press("Escape");
+    await page.waitForSelector("dialog", { hidden: true }); // a browser tells of a closed dialog in a task of its own
     assert.equal(await page.$("dialog"), null);
   });
 
