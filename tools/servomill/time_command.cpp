@@ -77,12 +77,12 @@ sim::programs::CycleTimeRequest request_of(const Options& options) {
     throw InputError({"servomill time"}, "needs --machine M.toml; see --help");
   }
   sim::programs::CycleTimeRequest request;
-  request.program_file = options.word();
-  request.inputs = program_inputs(options);
-  request.changes = options.list("set");
-  request.work_offsets = options.list("work-offset");
-  request.tool_lengths = options.list("tool-length");
-  if (options.has("start")) request.start = options.get<std::string>("start");
+  request.placement.program_file = options.word();
+  request.placement.inputs = program_inputs(options);
+  request.placement.changes = options.list("set");
+  request.placement.work_offsets = options.list("work-offset");
+  request.placement.tool_lengths = options.list("tool-length");
+  if (options.has("start")) request.placement.start = options.get<std::string>("start");
   if (options.has("feed-override")) {
     request.feed_override = positive_number(options, "feed-override");
   }

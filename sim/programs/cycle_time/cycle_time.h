@@ -7,20 +7,13 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/programs/canonical_moves.h"
 #include "sim/programs/cycle_time/time_account.h"
+#include "sim/programs/placed_program.h"
 
 namespace servomill::sim::programs {
 
 struct CycleTimeRequest {
-  std::string program_file;
-  ProgramInputs inputs;                        // with the machine
-  std::vector<std::string> changes = {};       // "KEY=VALUE", of the machine file
-  std::vector<std::string> work_offsets = {};  // "G54:X=10,Y=-5"
-  std::vector<std::string> tool_lengths = {};  // "1=50"
-  /// "X=0,Y=0,Z=50": machine position before the program, from which every position is known.
-  /// Empty: positions are known as far as the program names them.
-  std::string start = {};
+  ProgramPlacement placement;
   double feed_override = 1.0;
   double raise = 0.0;  // share by which each limit is raised for comparison; 0: none is
   unsigned threads = 1;
