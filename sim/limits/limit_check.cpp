@@ -130,11 +130,22 @@ class LimitWalk {
   LimitResult out_;
 };
 
+// The recording begins where the machine stands before the program.
+PathReport path_report(const ProgramRequest& request, const LoggedPath& log) {
+  const ProgrammedPath program = programmed_path(request, log.at.front());
+  PathReport out = check_path(program, log);
+  for (const Fault& warning : program.warnings) {
+    out.notes.push_back(fmt::format("{}: {}", to_string(warning.place), warning.message));
+  }
+  return out;
+}
+
 }  // namespace
 
 bool LimitReport::is_within() const {
-  return std::all_of(results.begin(), results.end(),
-                     [](const LimitResult& one) { return one.excesses.empty(); });
+  const bool keeps_limits = std::all_of(
+      results.begin(), results.end(), [](const LimitResult& one) { return one.excesses.empty(); });
+  return keeps_limits && (!path || path->lines_beyond() == 0);
 }
 
 LimitReport check_limits(const recordings::Recording& recording,
@@ -173,6 +184,11 @@ LimitReport check_limits(const recordings::Recording& recording,
       }
       out.results.push_back(LimitWalk(signal, order, limit, period).check(quantum, request.window));
     }
+  }
+  if (request.program) {
+    out.path =
+        path_report(*request.program, logged_path(recording.file, log.signals, machine.chain.layout,
+                                                  request.resolution.value_or(0.0)));
   }
   return out;
 }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "sim/limits/log_signals.h"
+#include "sim/limits/path_check.h"
+#include "sim/limits/programmed_path.h"
 #include "sim/model/machine.h"
 
 namespace servomill::sim::limits {
@@ -48,13 +50,15 @@ struct LimitReport {
   std::size_t samples = 0;
   std::vector<LimitResult> results;
   std::vector<std::string> notes;
-  bool is_within() const;  ///< no limit is certainly exceeded
+  std::optional<PathReport> path = {};  // if there is a program to compare with
+  bool is_within() const;               ///< no limit and no tolerance is certainly exceeded
 };
 
 struct LimitRequest {
   LogRequest log;
   std::optional<double> window = {};      // s; none: as short as the resolution of the log allows
   std::optional<double> resolution = {};  // of positions, m or rad; none: that of the samples
+  std::optional<ProgramRequest> program = {};
 };
 
 /// A machine file may lack limits: those are not checked, and noted.

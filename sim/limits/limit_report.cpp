@@ -77,7 +77,7 @@ std::string to_text(const LimitReport& report, std::size_t top) {
       out += fmt::format("  and {} more\n", one.excesses.size() - shown);
     }
   }
-  return out;
+  return report.path ? out + to_text(*report.path, top) : out;
 }
 
 std::string to_json(const LimitReport& report, std::size_t top) {
@@ -122,6 +122,7 @@ std::string to_json(const LimitReport& report, std::size_t top) {
       .boolean("within_limits", report.is_within())
       .raw("results", system::json_list(results))
       .raw("notes", system::json_list(notes))
+      .raw("path", report.path ? to_json(*report.path, top) : "null")
       .line();
 }
 

@@ -37,7 +37,6 @@ SIM_ROOMS = {
     "engine": ["controllers", "strategies", "model", "records", "system"],
     "fmu": ["controllers", "engine", "model"],
     "tables": ["controllers", "strategies", "model"],
-    "limits": ["config", "model", "recordings", "system"],
     "frequency": ["engine", "model", "numerics", "records", "system"],
     "evaluation": ["engine", "metrology", "model", "records", "system"],
     "input": ["controllers", "strategies", "config", "evaluation", "metrology", "model", "standards", "system"],
@@ -50,6 +49,7 @@ SIM_ROOMS = {
     "sweep": ["config", "evaluation", "input", "model", "preparation", "records", "run", "system"],
     "programs": ["controllers", "strategies", "config", "evaluation", "input", "model", "preparation", "readings", "records", "run",
                  "sweep", "system"],
+    "limits": ["controllers", "config", "engine", "model", "preparation", "programs", "recordings", "system"],
 }
 standing = ["plant", "controllers", "strategies", *SIM_ROOMS]
 faults = [f"{room} may include {lower}, which stands no lower" for room, seen in SIM_ROOMS.items() for lower in seen

@@ -4,7 +4,8 @@
 
 The machine of both is tools/linuxcnc_planner/mill.ini: LinuxCNC runs it with its setpoints fed back and recorded at each servo
 period, servomill reads it with `machine from`. Printed are the times from the first to the last change of a setpoint, the
-ratio, and the largest factor over the limits of acceleration of an axis in LinuxCNC's setpoints, as `servomill limits` finds it.
+ratio, and of LinuxCNC's setpoints, as `servomill limits` finds it, the largest factor over the limit of acceleration of an axis and the largest
+distance from the path or between a corner and the motion.
 Needs Debian's linuxcnc-uspace (2.9); as root it runs LinuxCNC as user nobody. Takes some minutes, as LinuxCNC runs in real time.
 Exit status: 0 done, 2 the input is wrong or LinuxCNC is not there, 3 LinuxCNC fails.
 """
@@ -43,11 +44,16 @@ def planned_time(servomill, program, machine):
     return json.loads(done.stdout)["time_s"]
 
 
-def acceleration_factor(servomill, log, machine):
-    done = subprocess.run([servomill, "limits", str(log), "--machine", str(machine), "--json", *CHANNELS], capture_output=True, text=True, check=False)
+def findings(servomill, log, machine, program):
+    """Largest factor of an acceleration, largest distance from the path and from a corner (um)."""
+    done = subprocess.run([servomill, "limits", str(log), "--machine", str(machine), "--json", *CHANNELS, "--program", str(program),
+                           "--work-offset", "X=0,Y=0,Z=0", "--top", "1000000"], capture_output=True, text=True, check=False)
     if done.returncode > 1:
         raise ControlError(done.stderr)
-    return max(one["factor"] for one in json.loads(done.stdout)["results"] if one["quantity"] == "acceleration")
+    found = json.loads(done.stdout)
+    acceleration = max(one["factor"] for one in found["results"] if one["quantity"] == "acceleration")
+    corner = max((line["corner_mm"] or 0.0 for line in found["path"]["lines"]), default=0.0)
+    return acceleration, 1e3 * found["path"]["deviation_mm"], 1e3 * corner
 
 
 def row(control, servomill, name, machine, logs):
@@ -57,7 +63,8 @@ def row(control, servomill, name, machine, logs):
     log = logs / ("".join(c if c.isalnum() else "_" for c in name) + ".txt")
     control.run(program, log, PATIENCE)
     theirs, ours = motion_time(log), planned_time(servomill, program, machine)
-    print(f"{name:<32} {theirs:10.3f} {ours:10.3f} {ours / theirs:7.3f} {acceleration_factor(servomill, log, machine):13.2f}", flush=True)
+    acceleration, path, corner = findings(servomill, log, machine, program)
+    print(f"{name:<32} {theirs:10.3f} {ours:10.3f} {ours / theirs:7.3f} {acceleration:13.2f} {path:8.2f} {corner:9.2f}", flush=True)
     return theirs, ours
 
 
@@ -79,13 +86,13 @@ def main():
         try:
             with Control(folder) as control:
                 subprocess.run([arguments.servomill, "machine", "from", str(folder / "mill.ini"), "-o", str(machine), "-q"], check=True)
-                print(f"{'program':<32} {'LinuxCNC s':>10} {'servomill s':>10} {'ratio':>6} {'acceleration':>13}\n{'-' * 76}")
+                print(f"{'program':<32} {'LinuxCNC s':>10} {'servomill s':>10} {'ratio':>6} {'acceleration':>13} {'path um':>8} {'corner um':>9}\n{'-' * 95}")
                 times = [row(control, arguments.servomill, name, machine, logs) for name in names]
         except (ControlError, OSError, subprocess.CalledProcessError) as error:
             print(error, file=sys.stderr)
             return 3
     theirs, ours = (sum(column) for column in zip(*times))
-    print(f"{'-' * 76}\n{'all':<32} {theirs:10.3f} {ours:10.3f} {ours / theirs:7.3f}")
+    print(f"{'-' * 95}\n{'all':<32} {theirs:10.3f} {ours:10.3f} {ours / theirs:7.3f}")
     return 0
 
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
@@ -8,6 +9,7 @@
 #include "sim/recordings/read_recording.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/command.h"
+#include "tools/servomill/program_options.h"
 #include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
@@ -37,18 +39,41 @@ void declare_limits_options(Options& options) {
       "resolution", text("\"1 um\""),
       "resolution of samples, bare numbers in um (of rotary axes in urad, of velocities per "
       "s); default: the step of which all samples are multiples");
+  options.add()("program,p", text("PROGRAM"),
+                "program that the log is of: its path is compared, too; the log begins where the "
+                "machine stands before it");
+  options.add()("tolerance", text("\"20 um\""),
+                "of the path, bare numbers in um; default: P of G64, of G64 without P "
+                "nc.path_tolerance of the machine file, of G61 0.1 um");
+  add_program_options(options);
+  add_placement_options(options);
   options.add()("set", texts("KEY=VALUE"), "changes a key of the machine");
   options.add()("top", po::value<int>()->default_value(5)->value_name("N"),
-                "lists the N largest excesses of each limit");
+                "lists the N largest excesses of each limit, the N lines of the largest deviation");
   options.add()("json", "prints one JSON object");
   options.add()("quiet,q", "prints only faults");
+}
+
+std::optional<sim::limits::ProgramRequest> program_request(const Options& options) {
+  const auto tolerance = positive_option(options, "tolerance", sim::config::kLength, "um");
+  if (options.has("program")) {
+    return sim::limits::ProgramRequest{
+        program_placement(options, options.get<std::string>("program")), tolerance};
+  }
+  for (const char* name : {"tolerance", "tools", "parameter", "parameter-file", "subs", "reader",
+                           "decimal-point", "feed", "additional-offset", "ignore-code",
+                           "block-delete", "max-jumps", "work-offset", "tool-length", "start"}) {
+    if (options.has(name)) throw InputError({fmt::format("--{}", name)}, "needs --program PROGRAM");
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 int limits_command(const Arguments& arguments) {
   Options options(
-      "limits", "LOG --machine M.toml [--channel \"X=NAME [mm]\"]... [--period \"1 ms\"]",
+      "limits",
+      "LOG --machine M.toml [--program PROGRAM] [--channel \"X=NAME [mm]\"]... [--period \"1 ms\"]",
       "Checks a recorded motion against the limits of a machine: velocity, acceleration and jerk "
       "of\neach axis, the largest factor over the limit, when, in which line and how often. LOG "
       "is a\nrecording of any known format (halsampler, halscope, CSV, HDF5, ...: see servomill "
@@ -56,7 +81,9 @@ int limits_command(const Arguments& arguments) {
       "Derivatives are means over windows: divided differences of the samples, which a motion "
       "within\nits limits cannot exceed, whatever the sampling. The resolution of the log changes "
       "them by no\nmore than is printed; an excess counts if it is larger than that.\n\n"
-      "Exit status 1: a limit is exceeded.",
+      "With --program the motion is followed along the programmed path: how far it leaves it, and "
+      "how\nnear it comes to the corners, line by line, against the tolerance.\n\n"
+      "Exit status 1: a limit or a tolerance is exceeded.",
       "LOG");
   declare_limits_options(options);
   if (!options.parse(arguments)) return kDone;
@@ -73,6 +100,7 @@ int limits_command(const Arguments& arguments) {
   request.log.period = positive_option(options, "period", sim::config::kTime, "ms");
   request.window = positive_option(options, "window", sim::config::kTime, "ms");
   request.resolution = positive_option(options, "resolution", sim::config::kLength, "um");
+  request.program = program_request(options);
   const int top = options.get<int>("top");
   if (top < 0) throw InputError({"--top"}, "must be >= 0");
   const auto machine =

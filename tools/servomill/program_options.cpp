@@ -70,4 +70,28 @@ sim::programs::ProgramInputs program_inputs(const Options& options) {
   return inputs;
 }
 
+void add_placement_options(Options& options) {
+  namespace po = boost::program_options;
+  const auto texts = [](const char* name) {
+    return po::value<std::vector<std::string>>()->value_name(name);
+  };
+  options.add()("work-offset", texts("X=10,Y=-5"),
+                "position of G54 in the machine, mm and deg; G55:X=10,R=30 for another one and "
+                "with a rotation");
+  options.add()("tool-length", texts("1=50"),
+                "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
+  options.add()("start", po::value<std::string>()->value_name("X=0,Y=0,Z=50"),
+                "machine position before the program, mm and deg, 0 for axes without one");
+}
+
+sim::programs::ProgramPlacement program_placement(const Options& options,
+                                                  const std::string& program_file) {
+  sim::programs::ProgramPlacement out{program_file, program_inputs(options)};
+  out.changes = options.list("set");
+  out.work_offsets = options.list("work-offset");
+  out.tool_lengths = options.list("tool-length");
+  if (options.has("start")) out.start = options.get<std::string>("start");
+  return out;
+}
+
 }  // namespace servomill::tools

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/programs/canonical_moves.h"
+#include "sim/programs/placed_program.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -12,5 +13,12 @@ void add_machine_option(Options& options);
 
 /// Reads these options.
 sim::programs::ProgramInputs program_inputs(const Options& options);
+
+/// Place of the program in the machine: --work-offset, --tool-length, --start.
+void add_placement_options(Options& options);
+
+/// Reads all of these options, --machine and the changes of --set.
+sim::programs::ProgramPlacement program_placement(const Options& options,
+                                                  const std::string& program_file);
 
 }  // namespace servomill::tools

@@ -37,14 +37,7 @@ void declare_time_options(Options& options) {
                 "the time that this saves");
   options.add()("csv", text("FILE.csv"), "writes the table of --by (default: line), all rows");
   add_program_options(options);
-  options.add()("work-offset", texts("X=10,Y=-5"),
-                "position of G54 in the machine, mm and deg; G55:X=10,R=30 for another one and "
-                "with a rotation");
-  options.add()("tool-length", texts("1=50"),
-                "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
-  options.add()("start", text("X=0,Y=0,Z=50"),
-                "machine position before the program, mm and deg, 0 for axes without one: all "
-                "positions are known from there, and moves beyond the travel are reported");
+  add_placement_options(options);
   options.add()("feed-override", po::value<double>()->value_name("0.5"), "factor on all feeds");
   options.add()("set", texts("KEY=VALUE"),
                 "changes a key of the machine, such as axis.X.a_max=\"2 m/s^2\"; of the scenario, "
@@ -77,12 +70,7 @@ sim::programs::CycleTimeRequest request_of(const Options& options) {
     throw InputError({"servomill time"}, "needs --machine M.toml; see --help");
   }
   sim::programs::CycleTimeRequest request;
-  request.placement.program_file = options.word();
-  request.placement.inputs = program_inputs(options);
-  request.placement.changes = options.list("set");
-  request.placement.work_offsets = options.list("work-offset");
-  request.placement.tool_lengths = options.list("tool-length");
-  if (options.has("start")) request.placement.start = options.get<std::string>("start");
+  request.placement = program_placement(options, options.word());
   if (options.has("feed-override")) {
     request.feed_override = positive_number(options, "feed-override");
   }
