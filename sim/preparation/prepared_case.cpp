@@ -363,6 +363,7 @@ std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, Prepara
   check_stability(scenario.machine, longest, cache);
   refuse_narrow_windows(scenario);
   std::vector<PreparedCase> prepared;
+  prepared.reserve(scenario.cases.size());
   CaseFaults faults;
   std::optional<Stage> lessons;
   const auto learning = std::count_if(scenario.cases.begin(), scenario.cases.end(), learns);

@@ -54,8 +54,9 @@ double resident_memory() {
 }
 
 void return_large_blocks() {
-  constexpr int kLarge = 4 << 20;
+  constexpr int kLarge = 4 << 20, kKept = 64 << 20;
   mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, kKept);
 }
 
 double memory_of_process() {
@@ -65,7 +66,9 @@ double memory_of_process() {
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
     memory = std::min(memory, static_cast<double>(limit.rlim_cur));
   }
-  return std::min(memory, memory_of_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
+  // asked for each point of a sweep; the files take longer to read than a tenth of a short run
+  static const double groups = memory_of_groups("/proc/self/cgroup", "/sys/fs/cgroup");
+  return std::min(memory, groups);
 }
 
 }  // namespace servomill::sim::system

@@ -13,7 +13,8 @@ double memory_of_process();
 double resident_memory();
 
 /// Lets blocks of more than 4 MB go back to the system as soon as they are freed: left to itself,
-/// the library keeps what was once freed of a long text for smaller blocks.
+/// the library keeps what was once freed of a long text for smaller blocks. Up to 64 MB of smaller
+/// blocks stay: each point of a sweep would return its memory and take it again.
 void return_large_blocks();
 
 /// Bytes that the control groups of a process allow, of version 1 and 2, from its own group up to
