@@ -63,7 +63,9 @@ PathState SmoothingWindows::state_at(double s, std::size_t chord) const {
   std::size_t first = k + 1, last = k + 1;
   while (first > 1 && s_[first - 1] + w_[first - 1] > s) --first;
   while (last < n_ && s_[last] - w_[last] < s) ++last;
-  const Deviation D = deviation(s, s, first, last);
+  // at the end of the chord it is the state before the vertex there, whose direction is that of
+  // this chord
+  const Deviation D = deviation(s, std::min(s, std::nextafter(s_[k + 1], s_[k])), first, last);
   const Joints d = direction(k);
   return {v_.u(k) + d * (s - s_[k]) + D.d0, d + D.d1, D.d2};
 }

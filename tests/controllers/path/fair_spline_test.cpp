@@ -44,6 +44,29 @@ std::vector<PathVertex> wandering(int count, unsigned seed) {
   return out;
 }
 
+// Rows over a surface, with corners at both ends of the step to the next one.
+std::vector<PathVertex> rows(int count, unsigned seed) {
+  std::mt19937 dice(seed);
+  const auto chord = [&] {
+    return (0.05 + 0.15 * (static_cast<double>(dice()) / 4294967296.0)) * mm;
+  };
+  const auto at = [](double x, double y) {
+    return vertex(x, y, 6 * mm * std::sin(x / (31 * mm)) * std::cos(y / (23 * mm)));
+  };
+  std::vector<PathVertex> out = {at(0, 0)};
+  double x = 0.0;
+  for (int row = 0; row < count; ++row) {
+    const double y = row * 0.3 * mm, end = row % 2 == 0 ? 10 * mm : 0.0;
+    if (row > 0) out.push_back(at(x, y));
+    for (double step = chord(); std::abs(end - x) > step; step = chord()) {
+      x += std::copysign(step, end - x);
+      out.push_back(at(x, y));
+    }
+    out.push_back(at(x = end, y));
+  }
+  return out;
+}
+
 std::vector<PathVertex> circle(double R, double chord) {
   std::vector<PathVertex> out;
   for (double phi = 0.0; phi < 3.0; phi += chord / R) {
@@ -79,8 +102,7 @@ TEST(FairSpline, KeepsTheToleranceOfEveryChord) {
   }
 }
 
-TEST(FairSpline, ContinuesPlaceDirectionAndCurvature) {
-  const SmoothPath path = smooth(wandering(3000, 7), kJerk);
+void expect_continuous(const SmoothPath& path) {
   for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) {
     const CubicPiece &p = path.pieces[i], &next = path.pieces[i + 1];
     const double h = next.s - p.s;
@@ -88,6 +110,18 @@ TEST(FairSpline, ContinuesPlaceDirectionAndCurvature) {
     ASSERT_LE((q - next.c0).norm(), kRounding);
     ASSERT_LE((p.c1 + h * (p.c2 + h * p.c3 / 2.0) - next.c1).norm(), 1e-9);
     ASSERT_LE((p.c2 + h * p.c3 - next.c2).norm(), 1e-6 * (1.0 + p.c3.norm() * h));
+  }
+}
+
+TEST(FairSpline, ContinuesPlaceDirectionAndCurvature) {
+  expect_continuous(smooth(wandering(3000, 7), kJerk));
+}
+
+// Some splines begin in the very vertex where the window of the corner before ends.
+TEST(FairSpline, ContinuesThemBehindCorners) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_continuous(smooth(rows(30, seed), kJerk));
   }
 }
 
