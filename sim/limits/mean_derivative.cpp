@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace servomill::sim::limits {
@@ -65,6 +67,20 @@ bool trembles(std::span<const double> x, double q) {
   return turns >= std::max(kFewest, bends / kShare);
 }
 
+// The largest power of two of which all values are whole multiples, as recorders round them.
+double binary_step(std::span<const double> x) {
+  int lowest = std::numeric_limits<int>::max();
+  for (const double value : x) {
+    if (value == 0.0) continue;
+    constexpr int kDigits = std::numeric_limits<double>::digits;
+    int exponent = 0;
+    const double fraction = std::frexp(std::abs(value), &exponent);
+    const auto bits = static_cast<std::uint64_t>(std::ldexp(fraction, kDigits));
+    lowest = std::min(lowest, exponent - kDigits + std::countr_zero(bits));
+  }
+  return std::ldexp(1.0, lowest);
+}
+
 }  // namespace
 
 double quantum_of(std::span<const double> x) {
@@ -85,7 +101,8 @@ double quantum_of(std::span<const double> x) {
     const bool is_fine = q <= least_change * (1.0 + 1e-6);
     if (is_fine && are_multiples(x, q, largest) && trembles(x, q)) return q;
   }
-  return rounding;
+  const double binary = binary_step(x);
+  return binary > 4.0 * rounding && trembles(x, binary) ? binary : rounding;
 }
 
 }  // namespace servomill::sim::limits

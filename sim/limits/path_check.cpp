@@ -18,7 +18,7 @@ namespace {
 using Piece = engine::ProgramPath::Piece;
 
 constexpr double kRounding = 1e-3;       // of a tolerance: digits of logs
-constexpr double kMinLength = 1e-9;    // m, a piece that has a direction
+constexpr double kMinLength = 1e-9;      // m, a piece that has a direction
 constexpr double kCornerReach = 0.5e-3;  // m along the path, at least, in which a corner is passed
 constexpr double kCornerTolerances = 10.0;
 constexpr double kWhole = 1.0 - 1e-6;  // of the path
@@ -121,8 +121,7 @@ class PathCheck {
 
   void look_at_corner(std::size_t index, const Piece& from, const Piece& to) {
     const bool is_one_frame = from.is_tip == to.is_tip && (!from.is_tip || from.p_ST == to.p_ST);
-    if (!is_one_frame ||
-        angle_between(direction(from, true), direction(to, false)) < kMinCorner) {
+    if (!is_one_frame || angle_between(direction(from, true), direction(to, false)) < kMinCorner) {
       return;
     }
     const double tolerance = program_.tolerance[index];

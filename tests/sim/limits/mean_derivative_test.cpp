@@ -100,6 +100,15 @@ TEST(Quantum, OfAnEncoderIsItsStep) {
   EXPECT_NEAR(quantum_of(x), q, 1e-12);
 }
 
+// No two samples differ by one step alone.
+TEST(Quantum, OfBinaryRoundingIsItsPowerOfTwo) {
+  const double q = std::ldexp(1.0, -28);
+  std::vector<double> x;
+  for (int k = 0; k < 1000; ++k)
+    x.push_back(q * std::round((80.0 + 20.0 * std::sin(5e-4 * k)) / q));
+  EXPECT_EQ(quantum_of(x), q);
+}
+
 TEST(Quantum, OfAMotionInEqualStepsIsNotThoseSteps) {
   std::vector<double> even, accelerated;
   for (int k = 0; k < 300; ++k) even.push_back(0.25 * k);
