@@ -19,6 +19,13 @@ Leg leg_of(const Move& move) {
   return leg;
 }
 
+void set_tolerances(Leg& leg, std::span<const JointChord> chords, double rotary_radius) {
+  if (chords.empty()) return;
+  const JointChord &first = chords.front(), &last = chords.back();
+  leg.tolerance = std::min(first.tolerance_linear, last.tolerance_linear);
+  leg.rotary_tolerance = std::min(first.tolerance_rotary, last.tolerance_rotary) * rotary_radius;
+}
+
 Joints scale_of(const PathOptions& options) {
   Joints scale = Joints::Ones();
   scale.tail<kJoints - kLinearJoints>().setConstant(options.rotary_radius);
@@ -66,7 +73,10 @@ bool LegRules::must_stop(const Leg& from, const Leg& to) const {
 // T_c (v - v_c)/v + 2 w (1/v_c - 1/v) for passing a window of half-width w at v_c.
 bool LegRules::stopping_is_faster(const Leg& from, const Leg& to, const Joints& turn) const {
   const double linear = turn.head<kLinearJoints>().norm();
-  const double w = 6.0 * std::min(from.tolerance, to.tolerance) / std::max(linear, 1e-12);
+  const double rotary = turn.tail<kJoints - kLinearJoints>().norm();
+  const double w = std::min(
+      6.0 * std::min(from.tolerance, to.tolerance) / std::max(linear, 1e-12),
+      6.0 * std::min(from.rotary_tolerance, to.rotary_tolerance) / std::max(rotary, 1e-12));
   const double L = std::min(from.length, to.length);
   if (L < kLongLeg * w) return false;
   const Joints d = from.tangent_end.cwiseAbs().cwiseMax(to.tangent_begin.cwiseAbs());

@@ -1,8 +1,12 @@
 /// One move as a part of the scaled path, and the corners between two of them.
 #pragma once
 
+#include <limits>
+#include <span>
+
 #include "controllers/path/path_limits.h"
 #include "controllers/path/segment_limits.h"
+#include "controllers/path/tcp_motion.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 
@@ -15,11 +19,16 @@ struct Leg {
   Joints tangent_begin, tangent_end;  // unit, scaled
   double length = 0.0;                // m, scaled
   double tolerance = 0.0;             // m
-  double feed = 0.0;                  // m/s along the scaled path
+  // m, of rotary joints, scaled, where they round corners as well
+  double rotary_tolerance = std::numeric_limits<double>::infinity();
+  double feed = 0.0;  // m/s along the scaled path
 };
 
 /// The leg of a move, but for its length and its tangents.
 Leg leg_of(const Move& move);
+
+/// Tolerances of a move under TCP control, as its first and its last chord have them; none: 0.
+void set_tolerances(Leg& leg, std::span<const JointChord> chords, double rotary_radius);
 
 /// Metres of the scaled path per unit of each joint.
 Joints scale_of(const PathOptions& options);

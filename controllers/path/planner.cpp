@@ -244,7 +244,7 @@ class Planner {
   // Tangents where it begins and ends to move; length 0 if it does not.
   Leg tip_leg(const Move& move, const TcpMotion& motion, std::span<const JointChord> chords) const {
     Leg leg = leg_of(move);
-    leg.tolerance = chords.empty() ? 0.0 : chords.front().tolerance_linear;
+    set_tolerances(leg, chords, options_.rotary_radius);
     Joints at = u_;
     for (const JointChord& chord : chords) {
       const Joints step = scaled(chord.end) - at;

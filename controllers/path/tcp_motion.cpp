@@ -18,8 +18,14 @@ namespace {
 using Eigen::Vector3d;
 
 // Shares of the tolerance of the tip. Chords in the half-width of a window of their curvature: 4.
-constexpr double kChordShare = 0.04, kLinearShare = 0.4, kRotaryShare = 0.4;
-constexpr double kAxisShare = 0.5;  // of the tolerance of the tool axis, for the rotary joints
+constexpr double kChordShare = 0.04;
+constexpr double kMoreThanSeen = 1.25;  // chords between the places that are looked at
+constexpr double kInnerShare = 0.4;     // of linear and of rotary joints, within a move
+constexpr double kSecondOrder = 0.05;   // beyond (2), where rotary joints deviate
+constexpr double kMinShare = 0.2;       // of either kind of joints where both deviate
+constexpr double kStill = 1e-3;         // of rotary joints that do not move
+constexpr std::size_t kNeighbours = 3;  // chords on either side that deviate together
+constexpr double kAxisShare = 0.5;      // of the tolerance of the tool axis, for the rotary joints
 static_assert(kGreatCircleShare + kAxisShare * std::numbers::sqrt2 < 1.0);
 constexpr double kLongestTurn = 30.0 * deg;  // of a joint or an arc in one chord
 constexpr int kArcParts = 12;                // of each turn of an arc
@@ -67,17 +73,34 @@ class Tracer {
       at = knot;
     }
     motion.last = out_.chords.size();
+    for (std::size_t i = motion.first + 1; i + 1 < motion.last; ++i) budgets_[i].is_inner = true;
     note_slowing(motion, move, Q_begin);
     out_.motions.push_back(motion);
     return {};
   }
 
-  TipMotions take() { return std::move(out_); }
+  TipMotions take() {
+    divide_tolerances();
+    return std::move(out_);
+  }
 
  private:
   struct Point {
     double t = 0.0;
     Joints Q;
+  };
+  // What the tolerance of a chord is divided by.
+  struct Budget {
+    Joints begin;
+    double whole = 0.0;     // m, tolerance of the tip
+    double tip = 0.0;       // m, the same less what the chord misses
+    double arm = 0.0;       // m, of (2)
+    double axis = 0.0;      // rad, of a rotary joint, for the tool axis
+    bool is_inner = false;  // between other chords of its move, which has no corners
+  };
+  // Changes of direction where a chord begins, as they move the tip.
+  struct Bend {
+    double linear = 0.0, rotary = 0.0;
   };
 
   void set_tolerances(const Move& move) {
@@ -147,7 +170,7 @@ class Tracer {
   bool split(const Point& a, const Point& b, const RotaryKnot& from, const RotaryKnot& to,
              int halvings_left) {
     if (halvings_left == 0 || error_of(a, b) <= kChordShare * T_) {
-      add(b, to.is_even);
+      add(a, b, to.is_even);
       return true;
     }
     const auto middle = point_at(0.5 * (a.t + b.t), from, to);
@@ -166,14 +189,62 @@ class Tracer {
     return worst;
   }
 
-  void add(const Point& b, bool is_even) {
+  void add(const Point& a, const Point& b, bool is_even) {
     const double arm = plant::jacobian(machine_.chain(), b.Q, p_ST_)
                            .J_pQ.rightCols<kJoints - kLinearJoints>()
                            .norm();
-    const double of_axis = kAxisShare * axis_tolerance_;
-    const double of_tip = arm > 0.0 ? kRotaryShare * T_ / arm : of_axis;
-    out_.chords.push_back({b.Q, b.t, kLinearShare * T_, std::min(of_axis, of_tip), is_even});
+    const double missed = std::min(kMoreThanSeen * error_of(a, b), kChordShare * T_);
+    budgets_.push_back({a.Q, T_, T_ - missed, arm, kAxisShare * axis_tolerance_});
+    out_.chords.push_back({b.Q, b.t, 0.0, 0.0, is_even});
     Q_ = b.Q;
+  }
+
+  Bend bend_before(std::size_t chord) const {
+    if (chord == 0 || out_.chords[chord - 1].end != budgets_[chord].begin) return {};
+    const auto direction = [&](std::size_t i) -> Joints {
+      Joints step = out_.chords[i].end - budgets_[i].begin;
+      step.tail<kJoints - kLinearJoints>() *= options_.rotary_radius;
+      return step.stableNormalized();
+    };
+    const Joints bend = direction(chord) - direction(chord - 1);
+    return {bend.head<kLinearJoints>().norm(),
+            budgets_[chord].arm * rotary(bend).norm() / options_.rotary_radius};
+  }
+
+  // Linear and rotary joints deviate as the direction changes in them, chords near each other
+  // together: (2) leaves each kind what it needs.
+  void divide_tolerances() {
+    const std::size_t n = out_.chords.size();
+    std::vector<Bend> sums(n + 1);  // of the bends before
+    for (std::size_t i = 0; i < n; ++i) {
+      const Bend here = bend_before(i);
+      sums[i + 1] = {sums[i].linear + here.linear, sums[i].rotary + here.rotary};
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const Bend& from = sums[i < kNeighbours ? 0 : i - kNeighbours];
+      const Bend& to = sums[std::min(n, i + kNeighbours + 2)];
+      divide(i, {to.linear - from.linear, to.rotary - from.rotary});
+    }
+  }
+
+  void divide(std::size_t i, const Bend& bend) {
+    const Budget& budget = budgets_[i];
+    JointChord& chord = out_.chords[i];
+    double most_rotary = kInnerShare * budget.whole;  // of the tip
+    chord.tolerance_linear = kInnerShare * budget.whole;
+    if (!(bend.rotary > 0.0)) {
+      most_rotary = kStill * budget.tip;
+      chord.tolerance_linear = budget.tip - most_rotary;
+    } else if (!budget.is_inner) {
+      const double tip = budget.tip * (1.0 - kSecondOrder);
+      const double needed = bend.rotary / (bend.rotary + bend.linear);
+      most_rotary = std::clamp(needed, kMinShare, 1.0 - kMinShare) * tip;
+      chord.tolerance_linear = tip - std::min(most_rotary, budget.arm * budget.axis);
+    }
+    chord.tolerance_rotary = budget.axis;
+    if (budget.arm > 0.0) {
+      chord.tolerance_rotary = std::min(budget.axis, most_rotary / budget.arm);
+    }
   }
 
   // Speed, acceleration and jerk of the joints at the programmed feed, from the last chords.
@@ -254,6 +325,7 @@ class Tracer {
   bool circle_ = false;                    // the tool axis turns on a great circle
   Vector3d k_begin_ = Vector3d::UnitZ(), k_end_ = Vector3d::UnitZ();
   TipMotions out_;
+  std::vector<Budget> budgets_;  // of its chords
 };
 
 }  // namespace

@@ -12,8 +12,10 @@
 ///
 ///     |dp| <= |dQ_linear| + a |dQ_rotary|,   a^2 = sum of squares of the arms of the tip    (2)
 ///
-/// so a tolerance T of the tip leaves shares of T for chords, linear and rotary joints; the angle
-/// by which the tool axis moves is at most sqrt(2) |dQ_rotary|.
+/// so a tolerance T of the tip less what the chords miss is divided among linear and rotary joints,
+/// as the direction of the chords changes in them, since corners deviate in that proportion: where
+/// the rotary joints are at rest nearly all of it is left to the linear ones. The angle by which
+/// the tool axis moves is at most sqrt(2) |dQ_rotary|.
 #pragma once
 
 #include <cstddef>

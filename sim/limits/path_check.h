@@ -17,7 +17,7 @@ struct LineDeviation {
   int line = 0;
   double tolerance = 0.0;  // m
   double deviation = 0.0;  // m, of a sample from the path
-  double time = 0.0;       // s, when
+  double time = 0.0;       // s, when; -inf: no sample is in the line
   std::optional<double> rotary =
       {};  // rad, of a rotary axis or of the tool axis; none: not recorded
   /// m, between the corner at the end of the line and the motion; none: no corner

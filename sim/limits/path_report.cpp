@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "plant/vocabulary/units.h"
 #include "sim/limits/path_check.h"
@@ -36,6 +37,9 @@ std::string verdict(const PathReport& report) {
   return fmt::format("beyond the tolerance in {}", system::counted(beyond, "line"));
 }
 
+// Lines between two samples have none.
+std::string time_text(double t) { return std::isfinite(t) ? fmt::format("{:.6g}", t) : ""; }
+
 std::string length_text(double x) { return fmt::format("{:.6f}", x / mm); }
 
 }  // namespace
@@ -55,7 +59,7 @@ std::string to_text(const PathReport& report, std::size_t top) {
   if (has_rotary) rows.front().push_back("rotary deg");
   for (const LineDeviation& one : shown) {
     rows.push_back({std::to_string(one.line), length_text(one.tolerance) + " mm",
-                    length_text(one.deviation) + " mm", fmt::format("{:.6g}", one.time),
+                    length_text(one.deviation) + " mm", time_text(one.time),
                     one.corner ? length_text(*one.corner) + " mm" : "",
                     one.corner ? fmt::format("{:.6g}", one.corner_time) : "",
                     fmt::format("{:.3f}", one.factor()), report.is_beyond(one) ? "beyond" : ""});

@@ -5,7 +5,9 @@
 """
 import csv
 import json
+import math
 import os
+import random
 import re
 import sys
 import unittest
@@ -126,6 +128,36 @@ class Equal(Case):
         tool = "start = { Z_mm = 400.0 }\n[[program.tool]]\nnumber = 1\nlength_mm = 120.0"
         given = ("--start", "Z=400", "--tool-length", "1=120")
         self.assertProgramAgrees(os.path.join(PROGRAMS, "s_part.ngc"), machine, tool, *given)
+
+
+class FiveAxes(Case):
+    """Under TCP control with the tool at rest in its direction the path is that of three axes, and so is its time."""
+
+    def both(self, blocks):
+        head, end = "G21 G90 G17 G64 P0.01\nG0 X0 Y0 Z0 B0 C0\n", "\nM2\n"
+        start = ("--start", "X=0,Y=0,Z=0,B=0,C=0", "--tool-length", "1=0")
+        machine = os.path.join(MACHINES, "hsm600u.toml")
+        return [self.json(head + mode + blocks + end, *start, machine=machine)["time_s"] for mode in ("", "G43.4 H1\n")]
+
+    def path(self, block, count, seed):
+        draw = random.Random(seed)
+        angle = x = y = 0.0
+        blocks = []
+        for _ in range(count):
+            angle += draw.uniform(-1.5, 1.5)
+            x, y = x + block * math.cos(angle), y + block * math.sin(angle)
+            blocks.append(f"G1 X{x:.4f} Y{y:.4f} F3000")
+        return "\n".join(blocks)
+
+    def test_corners_of_long_and_short_blocks(self):
+        for block in (2.0, 0.3, 0.05):
+            linear, tip = self.both(self.path(block, 200, seed=3))
+            self.assertLess(tip, 1.002 * linear, block)
+            self.assertGreater(tip, 0.95 * linear, block)
+
+    def test_arcs(self):
+        linear, tip = self.both("\n".join(f"G{2 + k % 2} X{10 * k + 10}. Y0. I5. J0. F3000" for k in range(10)))
+        self.assertLess(tip, 1.01 * linear)
 
 
 class Totals(Case):

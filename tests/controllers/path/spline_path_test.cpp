@@ -103,7 +103,7 @@ TEST(SplinePath, IsNotSlowerThanItsChords) {
   // bends by all of that. A tolerance of as much as they miss it by anyway makes both alike.
   PathOptions narrow;
   narrow.tolerance = 1 * um;
-  constexpr double kCutBends = 1.05;
+  constexpr double kCutBends = 1.07;
   for (const double feed : {0.03, 0.1, 0.3}) {
     for (const Curve& curve : curves()) {
       const Program chords = chords_of(curve, feed), whole = program_of(curve, feed);
