@@ -184,6 +184,20 @@ constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
      "",
      "Haas 96-8000, June 1999, p. 376 (does not return control); Fanuc B-64124EN/01, subprogram, "
      "from memory"},
+    {system_zero,
+     "G10 L2 P0",
+     {{{"sets the active work system", "LinuxCNC, grbl", kLinuxCnc | kGrbl},
+       {"sets an offset of all work systems", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, G10; grbl 1.1, gcode.c; Fanuc B-63944EN, G10 L2 (P0: external offset), and "
+     "Haas (P0: G52), from memory"},
+    {incremental_input,
+     "G10 L2 under G91",
+     {{{"sets the offset to the words", "LinuxCNC, grbl", kLinuxCnc | kGrbl},
+       {"adds the words to the offset", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, interp_convert.cc; grbl 1.1, gcode.c; Haas 96-8000, June 1999, G10 (example "
+     "G10 L2 P1 G91 X6.0); Fanuc B-63944EN, G10 L2, from memory"},
 });
 
 // Codes of LinuxCNC, by ten times their numbers, and readers whose control lacks them.

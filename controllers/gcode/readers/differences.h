@@ -40,6 +40,8 @@ enum class WordDifference : std::uint8_t {
   variable_dwell,
   argument_point,
   return_block,
+  system_zero,
+  incremental_input,
   count
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "controllers/gcode/parameters.h"
 #include "controllers/gcode/readers/reading_step.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -152,6 +153,7 @@ void ReadingStep::inputs() {
   const BlockWord* code = words.code('G', 100);
   if (code == nullptr || !words.has('L')) return;
   const int L = static_cast<int>(std::lround(words['L']));
+  if (L == 2) return system_input(code->column);
   if (L == 10 || L == 11) {
     if (choose(WordDifference::tool_table_input, words.column('L')) == 0) return;
     if (L == 11 || is_incremental() || !words.has('R')) {
@@ -182,6 +184,41 @@ void ReadingStep::inputs() {
   }
   need(ReaderRule::additional_work_offset, code->column);
   for (const char letter : {'P', 'L'}) words.erase(letter);
+  words.erase(*words.code('G', 100));
+}
+
+// G10 L2: P0 and G91 mean something else to LinuxCNC than to Fanuc.
+void ReadingStep::system_input(int column) {
+  if (!words.has_axis() || !words.has('P')) return;
+  const int P = static_cast<int>(std::lround(words['P']));
+  if (P == 0 && choose(WordDifference::system_zero, words.column('P')) == 1) {
+    for (const Axis axis : kAllAxes) {
+      const char name = letter(axis);
+      if (words.has(name) && words[name] != 0.0) {
+        fail(words.column('P'),
+             fmt::format("G10 L2 P0 {}{} moves all work systems, which is not supported; set each "
+                         "of them",
+                         name, words[name]));
+      }
+      words.erase(name);
+    }
+    for (const char name : {'P', 'L'}) words.erase(name);
+    return words.erase(*words.code('G', 100));
+  }
+  if (!is_incremental() || choose(WordDifference::incremental_input, column) == 0) return;
+  if (P < 1) return;
+  std::string line = fmt::format("G10 L2 P{}", P);
+  for (int i = 0; i < kAxisWords; ++i) {
+    const Axis axis = kAllAxes[static_cast<std::size_t>(i)];
+    const char name = letter(axis);
+    if (!words.has(name)) continue;
+    const double scale = is_linear(axis) ? unit() / mm : 1.0;
+    line += fmt::format(" {}[[#{} / {}] + [{}]]", name, parameter::work_offset(P) + i, scale,
+                        words[name]);
+    words.erase(name);
+  }
+  before.push_back(std::move(line));
+  for (const char name : {'P', 'L'}) words.erase(name);
   words.erase(*words.code('G', 100));
 }
 

@@ -67,6 +67,7 @@ class ReadingStep {
   bool has_work_offset() const;
   void presets();
   void inputs();
+  void system_input(int column);
   // tool_reading.cpp
   void length_offset();
   void diameter_offset();

@@ -130,6 +130,14 @@ const std::vector<Example>& examples() {
        "M98 P100\nG0 Y9.\nN5 M2\nO100\nM99 P5\nG0 X9.\nIF[1EQ1]GOTO5\nN5 M99\n",
        "p.nc:5:1",
        {"M2\n", "G0 Y9\nM2\n"}},
+      {system_zero,
+       "G55\nG10 L2 P0 X0.\nG0 X1.\nM2\n",
+       "p.nc:2:8",
+       {"G55\nG10 L2 P2 X0\nG0 X1\nM2\n", "G55 G0 X1\nM2\n"}},
+      {incremental_input,
+       "G10 L2 P1 X2.\nG91 G10 L2 P1 X5.\nG90 G0 X1.\nM2\n",
+       "p.nc:2:5",
+       {"G10 L2 P1 X5\nG0 X1\nM2\n", "G10 L2 P1 X7\nG0 X1\nM2\n"}},
   };
   return all;
 }

@@ -120,6 +120,18 @@ inline std::vector<DifferenceExample> difference_examples() {
       {return_block, 1, Reader::haas,
        "#1=0\nM98 P100\nG0 Y9.\nM2\nO100\nN5 #1=#1+1.\nG0 X#1\nIF[#1EQ2]GOTO6\nM99 P5\nN6 M99\n",
        "R 1 0 0 | R 2 0 0 | R 2 9 0", "Haas 96-8000, June 1999, p. 376"},
+      {system_zero, 0, Reader::grbl, "G55\nG10 L2 P0 X5\nG0 X1\nG54 X1\nM2\n", "R 6 0 0 | R 1 0 0",
+       "grbl 1.1, gcode.c (the coordinate system that is selected)"},
+      {system_zero, 1, Reader::fanuc, "G10 L2 P1 X3.\nG10 L2 P0 X0. Y0.\nG0 X1.\nM2\n", "R 4 0 0",
+       fanuc},
+      {incremental_input, 0, Reader::grbl, "G91\nG10 L2 P1 X5\nG10 L2 P1 X6\nG90 G0 X1\nM2\n",
+       "R 7 0 0", "grbl 1.1, gcode.c"},
+      {incremental_input, 1, Reader::haas,
+       "G10 L2 P1 X5. Y2.\nG10 L2 P1 G91 X6.\nG90 G0 X1. Y1.\nM2\n", "R 12 3 0",
+       "Haas 96-8000, June 1999, G10"},
+      {incremental_input, 1, Reader::fanuc,
+       "G20\nG10 L2 P2 Y1. A10.\nG91 G10 L2 P2 Y1. A5.\nG90 G55 G0 Y0.\nA0.\nM2\n",
+       "R 0 50.8 0 | R 0 50.8 0 a15 b0 c0", fanuc},
   };
 }
 
