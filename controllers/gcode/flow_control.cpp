@@ -233,6 +233,22 @@ void Interpreter::Machine::call_subroutine(const std::string& name, const OWord&
   find_subroutine(name);
 }
 
+namespace {
+
+std::string word_behind_call(char letter) {
+  if (letter == 'Q') {
+    return "Q with M98: without effect (LinuxCNC), or the block where the subprogram begins "
+           "(Fanuc); remove it, or choose with --reader linuxcnc";
+  }
+  return fmt::format(
+      "{} behind M98: without effect (LinuxCNC), or read before the call (Fanuc, Haas); write it "
+      "in "
+      "a block of its own, or choose with --reader linuxcnc",
+      letter);
+}
+
+}  // namespace
+
 // With L it is this block that runs again and again, so P may change from turn to turn.
 void Interpreter::Machine::call_subprogram(const std::string& name, const OWord& o) {
   long& turns = flow_.turns_left.back();
@@ -246,9 +262,9 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
     --turns;
   }
   for (const Word& word : block_.words) {
-    if (word.letter != 'P' && word.letter != 'L') {
-      warn(word.column, fmt::format("{} word in the block of M98 has no effect", word.letter));
-    }
+    if (word.letter == 'P' || word.letter == 'L') continue;
+    if (setup_.reader != Reader::linuxcnc) fail(word.column, word_behind_call(word.letter));
+    warn(word.column, fmt::format("{} word in the block of M98 has no effect", word.letter));
   }
   const bool again = o.has_value && turns > 0;
   enter_call(name, o, again ? here_ : LinePlace{text_, text().mark()});

@@ -304,8 +304,8 @@ class Interpreter::Machine {
   int column_of_cause() const;
   void end_queue_at(const Eigen::Vector2d& point);
   void release_queue();
-
   void straight();
+  void note_of_long_turn(const AxisWords& begin, const AxisWords& end);
   void probe();  // G38.2 ... G38.5
   void require_probing() const;
   void require_known_height() const;

@@ -148,6 +148,11 @@ void Interpreter::Machine::stop() {
   if (code == 990 && !flow_.calls.empty()) {
     fail(request().of(Group::m_stop).column, "M99 of a subprogram must stand alone in its block");
   }
+  if (code == 990 && setup_.reader != Reader::linuxcnc) {
+    warn(
+        request().of(Group::m_stop).column,
+        "M99 in a program that none calls: read as its end; a control begins it anew, without end");
+  }
   if (code == 20 || code == 300 || code == 990) {
     refuse_inside_nurbs(request().of(Group::m_stop).column, code_name('M', code));
   }

@@ -122,6 +122,24 @@ double Interpreter::Machine::move_feed(double length, double angle) const {
   return std::max(rate * angle, kSlowestInverse * deg / minute);
 }
 
+// B359 and then B1: forward by 2 degrees where the axis rolls over.
+void Interpreter::Machine::note_of_long_turn(const AxisWords& begin, const AxisWords& end) {
+  const bool is_of_other = setup_.reader != Reader::linuxcnc && setup_.reader != Reader::heidenhain;
+  if (state_.is_incremental || !is_of_other) return;
+  constexpr double kHalf = 180.0 * deg, kRounding = 1e-6 * deg;
+  for (int i = kLinearJoints; i < kAxisWords; ++i) {
+    const double angle = std::abs(end[i] - begin[i]);
+    if (!has_axis(i) || angle < kHalf + kRounding) continue;
+    const char axis = letter(axis_at(i));
+    if (!noted_.insert(fmt::format("long turn of {}", axis)).second) return;
+    return warn(request().word(axis).column,
+                fmt::format("{} turns by {:.6g} degrees: read as the difference of the angles "
+                            "(LinuxCNC); an axis that rolls over (Fanuc, parameter 1008) takes the "
+                            "short way",
+                            axis, angle / deg));
+  }
+}
+
 void Interpreter::Machine::straight() {
   state_.compensation.refuses_arc = false;
   const bool is_rapid = request().motion_code() == 0;
@@ -133,6 +151,7 @@ void Interpreter::Machine::straight() {
   const AxisWords begin = state_.programmed();
   AxisWords end = programmed_end();
   note_height();
+  note_of_long_turn(begin, end);
   const double length = (end - begin).head<3>().norm();
   double angle = (end - begin).tail<3>().norm();
   const bool has_tool_axis = state_.tool_control == ToolControl::tool_axis;

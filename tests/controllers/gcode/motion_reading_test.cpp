@@ -89,5 +89,56 @@ TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
       << other;
 }
 
+std::vector<std::string> warnings_of(const std::string& text, Reader reader) {
+  Interpreter interpreter(text, "p.nc", setup_for(reader));
+  interpreter.rest();
+  std::vector<std::string> out;
+  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
+  return out;
+}
+
+// Fanuc, parameter 1008#1 (ROA, RAB): forward by 3 degrees.
+TEST(Moves, OfMoreThanHalfATurnAreReportedOnce) {
+  const std::string program = "G0 B359.\nB2.\nB359. A10.\nA-171. B300.\nG91 B200.\nM2\n";
+  const auto turns = [](const std::string& place, const std::string& what) {
+    return place + ": error: " + what +
+           " degrees: read as the difference of the angles (LinuxCNC); an axis that rolls over "
+           "(Fanuc, parameter 1008) takes the short way";
+  };
+  EXPECT_EQ(warnings_of(program, Reader::mach),
+            std::vector<std::string>(
+                {turns("p.nc:1:4", "B turns by 359"), turns("p.nc:4:1", "A turns by 181")}));
+  EXPECT_TRUE(warnings_of(program, Reader::linuxcnc).empty());
+  EXPECT_TRUE(warnings_of("G0 B180.\nB0.\nB-180.\nM2\n", Reader::mach).empty());
+}
+
+// It does not end there on a control.
+TEST(Programs, ThatEndWithM99AreWarnedOf) {
+  const std::string program = "G0 X1.\nM99\n";
+  EXPECT_EQ(warnings_of(program, Reader::any),
+            std::vector<std::string>({"p.nc:2:1: error: M99 in a program that none calls: read as "
+                                      "its end; a control begins it anew, without end"}));
+  EXPECT_TRUE(warnings_of(program, Reader::linuxcnc).empty());
+  EXPECT_TRUE(warnings_of("M98 P1\nM2\nO1\nG0 X1.\nM99\n", Reader::any).empty());
+}
+
+// LinuxCNC passes over them, other controls do not.
+TEST(Calls, WithOtherWordsBehindThemAreRefused) {
+  const std::string callee = "\nM2\nO1\nG0 Y1.\nM99\n",
+                    choose = ", or choose with --reader linuxcnc";
+  for (const Reader reader : {Reader::any, Reader::haas, Reader::mach}) {
+    EXPECT_EQ(moves_of("G0\nM98 P1 X5." + callee, setup_for(reader)),
+              "p.nc:2:8: error: X behind M98: without effect (LinuxCNC), or read before the call "
+              "(Fanuc, Haas); write it in a block of its own" +
+                  choose);
+    EXPECT_EQ(moves_of("M98 P1 Q5" + callee, setup_for(reader)),
+              "p.nc:1:8: error: Q with M98: without effect (LinuxCNC), or the block where the "
+              "subprogram begins (Fanuc); remove it" +
+                  choose);
+  }
+  EXPECT_EQ(moves_of("G0\nM98 P1 X5." + callee, setup_for(Reader::linuxcnc)),
+            moves_of("G0\nG0 Y1\nM2\n", setup_for(Reader::linuxcnc)));
+}
+
 }  // namespace
 }  // namespace servomill::controllers
