@@ -67,7 +67,7 @@ std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
   std::vector<Fault> faults;
   const bool is_gcode = !conversational::is_conversational(text, setup.reader) &&
                         !macro::is_macro_program(text, setup.reader) &&
-                        (setup.reader != Reader::any || siemens_program(text).empty());
+                        refused_program(text, setup.reader != Reader::any).empty();
   if (is_gcode) faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {

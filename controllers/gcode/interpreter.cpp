@@ -306,8 +306,8 @@ Interpreter::Interpreter(ProgramText text, ProgramSetup setup) {
   if (conversational::is_conversational(text, setup.reader)) {
     text = conversational::as_gcode(std::move(text), setup);
   }
-  if (setup.reader == Reader::any) {
-    const std::string refusal = siemens_program(text);
+  if (setup.reader != Reader::linuxcnc) {
+    const std::string refusal = refused_program(text, setup.reader != Reader::any);
     if (!refusal.empty()) throw InputError({text.file(), 1, 1}, refusal);
   }
   if (!macro::is_macro_program(text, setup.reader)) {

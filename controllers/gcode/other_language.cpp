@@ -157,24 +157,63 @@ bool is_report_request(std::string_view line) {
   return std::find(kRequests.begin(), kRequests.end(), request) != kRequests.end();
 }
 
-std::string siemens_program(ProgramText& text) {
-  if (text.is_generated()) return {};
+namespace {
+
+bool is_named_by_siemens(const std::string& file, std::string_view first) {
   constexpr std::size_t kEnding = 4;
-  std::string ending =
-      text.file().substr(text.file().size() - std::min(kEnding, text.file().size()));
-  std::transform(ending.begin(), ending.end(), ending.begin(), upper);
-  bool is_named = ending == ".MPF" || ending == ".SPF";
-  std::string_view first;
-  if (!is_named && text.next(first)) {
-    std::string begin(first.substr(0, std::min<std::size_t>(first.size(), kEnding)));
-    std::transform(begin.begin(), begin.end(), begin.begin(), upper);
-    is_named = begin == "%_N_";
-    text.rewind();
+  const auto capitals = [](std::string_view text) {
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(), upper);
+    return out;
+  };
+  const std::string ending =
+      capitals(std::string_view(file).substr(file.size() - std::min(kEnding, file.size())));
+  return ending == ".MPF" || ending == ".SPF" || capitals(first.substr(0, kEnding)) == "%_N_";
+}
+
+std::string siemens_refusal(ProgramText& text) {
+  std::string word;
+  int line_number = 0;
+  for (std::string_view line; word.empty() && text.next(line);) {
+    word = siemens_word(line);
+    if (word.empty() && contains_word(line.substr(0, line.find(';')), "SUPA")) word = "SUPA";
+    line_number = text.number();
   }
-  if (!is_named) return {};
-  return "this is a Siemens program, and only G-code is supported: post-process for Fanuc or "
-         "LinuxCNC, or, if the program has no Siemens-specific words, choose the control with "
-         "--reader";
+  text.rewind();
+  if (word.empty()) {
+    return "the name is that of a Siemens program, and only G-code is supported: post-process for "
+           "Fanuc or LinuxCNC, or, since none of its lines begins with a word of Siemens, choose "
+           "the control with --reader";
+  }
+  return fmt::format(
+      "this is a Siemens program (line {} has '{}'), and only G-code is supported: post-process "
+      "for "
+      "Fanuc or LinuxCNC",
+      line_number, word);
+}
+
+// "%PART G71 *": programs of Heidenhain in DIN/ISO begin so, from memory.
+bool is_din_iso(std::string_view first) {
+  std::size_t end = first.find_last_not_of(" \t\r*");
+  if (!first.starts_with('%') || end == first.npos || end < 3) return false;
+  const std::string_view unit = first.substr(end - 2, 3);
+  return (unit == "G70" || unit == "G71") && (first[end - 3] == ' ' || first[end - 3] == '\t');
+}
+
+}  // namespace
+
+std::string refused_program(ProgramText& text, bool is_control_chosen) {
+  if (text.is_generated()) return {};
+  std::string_view line;
+  const std::string first(text.next(line) ? line : std::string_view());
+  text.rewind();
+  if (is_din_iso(first)) {
+    return "this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), whose I, J and K "
+           "are positions; only conversational is read: convert it on the control or its "
+           "programming station, or post-process for Fanuc or LinuxCNC";
+  }
+  if (is_control_chosen || !is_named_by_siemens(text.file(), first)) return {};
+  return siemens_refusal(text);
 }
 
 namespace {

@@ -169,10 +169,10 @@ class Surveyor {
 };
 
 void survey_moves(const SurveyInputs& inputs, ProgramSurvey& out) {
-  controllers::Interpreter interpreter(ProgramText::of_file(out.file), inputs.setup);
   Surveyor surveyor(inputs, out);
   LineStage lines(out.file);
-  try {
+  try {  // a program of Siemens is refused before its first block
+    controllers::Interpreter interpreter(ProgramText::of_file(out.file), inputs.setup);
     while (const auto block = interpreter.next_block()) {
       throw_if_interrupted();
       lines.at(block->line);

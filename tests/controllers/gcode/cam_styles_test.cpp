@@ -89,9 +89,8 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":1:1: error: this is a Siemens program, and only G-code is supported: post-process for "
-       "Fanuc or LinuxCNC, or, if the program has no Siemens-specific words, choose the control "
-       "with --reader"},
+       ":1:1: error: this is a Siemens program (line 3 has 'T='), and only G-code is "
+       "supported: post-process for Fanuc or LinuxCNC"},
       {"smoothieware.nc", {5, 10, 10}, 2, 9.5, 2.5},
       {"vectric_grbl_inch.nc", {1}, 3, 50.8, 38.1},
       {"vectric_mach_mm.txt", {12, 13, 15}, 3, 55.0, 10.0},

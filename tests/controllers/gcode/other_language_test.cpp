@@ -29,28 +29,54 @@ TEST(OtherLanguage, SubroutinesOfFadalAreRefusedByName) {
             "output the program in format 2");
 }
 
-TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
-  const auto fault = [](const std::string& text, const std::string& file, Reader reader) {
-    ProgramSetup setup;
-    setup.reader = reader;
-    try {
-      interpret(text, file, setup);
-    } catch (const InputError& error) {
-      return to_string(error.faults().front());
-    }
-    return std::string();
-  };
-  const std::string refusal =
-      ":1:1: error: this is a Siemens program, and only G-code is supported: post-process for "
-      "Fanuc or LinuxCNC, or, if the program has no Siemens-specific words, choose the control "
-      "with --reader";
-  for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
-    EXPECT_EQ(fault("G0 X1\nM2\n", file, Reader::any), file + refusal);
+std::string fault_in(const std::string& file, const std::string& text, Reader reader) {
+  ProgramSetup setup;
+  setup.reader = reader;
+  try {
+    interpret(text, file, setup);
+  } catch (const InputError& error) {
+    return to_string(error.faults().front());
   }
-  EXPECT_EQ(fault("%_N_SHAFT_MPF\n;$PATH=/_N_MPF_DIR\nG0 X1\nM2\n", "p.nc", Reader::any),
+  return {};
+}
+
+TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
+  const std::string refusal =
+      ":1:1: error: the name is that of a Siemens program, and only G-code is supported: "
+      "post-process for Fanuc or LinuxCNC, or, since none of its lines begins with a word of "
+      "Siemens, choose the control with --reader";
+  for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
+    EXPECT_EQ(fault_in(file, "G0 X1\nM2\n", Reader::any), file + refusal);
+  }
+  EXPECT_EQ(fault_in("p.nc", "%_N_SHAFT_MPF\n;$PATH=/_N_MPF_DIR\nG0 X1\nM2\n", Reader::any),
             "p.nc" + refusal);
-  EXPECT_EQ(fault("G0 X1.\nM2\n", "shaft.mpf", Reader::fanuc), "");
-  EXPECT_EQ(fault("G0 X1\nM2\n", "mpf", Reader::any), "");
+  EXPECT_EQ(fault_in("shaft.mpf", "G0 X1.\nM2\n", Reader::fanuc), "");
+  EXPECT_EQ(fault_in("mpf", "G0 X1\nM2\n", Reader::any), "");
+}
+
+TEST(OtherLanguage, TheFirstWordOfSiemensIsNamed) {
+  const auto refusal = [](const std::string& text) { return fault_in("a.mpf", text, Reader::any); };
+  const std::string before = "a.mpf:1:1: error: this is a Siemens program (line 2 has '",
+                    behind = "'), and only G-code is supported: post-process for Fanuc or LinuxCNC";
+  EXPECT_EQ(refusal("N1 G0 X1\nN2 G2 X4. CR=2.\nMSG(\"END\")\nM30\n"), before + "CR=" + behind);
+  EXPECT_EQ(refusal("; SUPA=1\nG0 SUPA Z0\nM30\n"), before + "SUPA" + behind);
+}
+
+// I and J are positions there, so the lines must not be taken for G-code.
+TEST(OtherLanguage, DinIsoOfHeidenhainIsRefusedByItsFirstLine) {
+  const std::string refusal =
+      "p.nc:1:1: error: this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), "
+      "whose "
+      "I, J and K are positions; only conversational is read: convert it on the control or its "
+      "programming station, or post-process for Fanuc or LinuxCNC";
+  const std::string rest = "N10 G90\nN20 I+10 J+0\nN30 G2 X+10 Y+10\nN40 M30\n";
+  for (const std::string first : {"% 123 G71", "%PART G70 *", "%PART G71*\r"}) {
+    for (const Reader reader : {Reader::any, Reader::fanuc}) {
+      EXPECT_EQ(fault_in("p.nc", first + "\n" + rest, reader), refusal) << first;
+    }
+  }
+  EXPECT_EQ(fault_in("p.nc", "%\nG0 X1.\nM2\n%\n", Reader::any), "");
+  EXPECT_EQ(fault_in("p.nc", "%PARTG71\nG0 X1.\nM2\n%\n", Reader::any), "");
 }
 
 TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
