@@ -151,9 +151,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "Snapmaker, G-code reference, M3"},
     {skip_behind_number, "'/' after a block number", "read as '/' before it", "Fanuc, Haas",
      kFanuc | kHaas, "from memory"},
-    {polar_coordinates, "G15 and G16", "read as polar coordinates", "Fanuc, Haas, Mach",
-     kFanuc | kHaas | kMach,
-     "Fanuc B-62764EN/01, section 9.2; Mach3 Mill, G0 and G1; Haas from memory"},
+    {polar_coordinates, "G15 and G16", "read as polar coordinates", "Fanuc, Mach", kFanuc | kMach,
+     "Fanuc B-62764EN/01, section 9.2; Mach3 Mill, G0 and G1; that Haas lacks them from memory"},
     {scaling, "G50 and G51", "read as scaling about a point", "Fanuc, Haas, Mach",
      kFanuc | kHaas | kMach,
      "Haas 96-8000 p. 161 (last position as the centre); Fanuc B-63682EN/01 p. 117 (factors "
