@@ -240,7 +240,9 @@ bool Translator::read_of_control(int number, std::span<const HeidenhainWord> res
   if (is_given) {
     assign(*name, setup_.parameters.at(to_string(*name)));
   } else {
-    parameters_.forget(*name, fmt::format("was read from the control (FN {}: {})", number, text));
+    parameters_.forget(
+        *name, fmt::format("was read from the control (FN {}: {}; --parameter {}=NUMBER gives it)",
+                           number, text, to_string(*name)));
   }
   warn_once(fmt::format("FN {} {}", number, to_string(*name)),
             is_given ? fmt::format("FN {}: {} set by --parameter", number, to_string(*name))

@@ -168,7 +168,9 @@ double named_value(const Op& op, const Block& block, const Parameters& parameter
     const bool is_it = a.name >= 0 && block.names[static_cast<std::size_t>(a.name)] == name;
     if (is_it && a.column < op.column) return 0.0;
   }
-  fail(place, fmt::format("parameter #<{}> is not defined", name));
+  const bool is_global = name.starts_with('_');
+  fail(place, fmt::format("parameter #<{0}> is not defined{1}", name,
+                          is_global ? fmt::format("; pass --parameter '#<{}>=NUMBER'", name) : ""));
 }
 
 }  // namespace

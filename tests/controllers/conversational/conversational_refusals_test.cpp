@@ -164,7 +164,8 @@ const Refusal kRefusals[] = {
     {"FN 14: ERROR = 1000\n",
      "t.h:4:1: error: FN 14: the program stops here with its error message"},
     {"FN 18: SYSREAD Q1 = ID220\nL X+Q1 F1\n",
-     "t.h:5:3: error: Q1 was read from the control (FN 18: SYSREAD Q1 = ID220), which is unknown "
+     "t.h:5:3: error: Q1 was read from the control (FN 18: SYSREAD Q1 = ID220; --parameter "
+     "Q1=NUMBER gives it), which is unknown "
      "here; assign it in the program"},
     {"FN 18: SYSREAD QS1 = ID220\n",
      "t.h:4:1: error: FN 18: expected a Q parameter for the result"},
