@@ -34,6 +34,8 @@ constexpr auto kReadings = std::to_array<Reading>({
     {"words in brackets at the end of a block", "a comment",
      "none found; simulators and posts write it", "none needed: no control reads words there"},
     {"a comment that ends with '~'", "continues on the next line", "TNC 640", "from memory"},
+    {"preset 0 of cycle 247", "the preset in force at the start, if the program names no other",
+     "TNC 640 (the datum that was last set by hand)", "from memory"},
     {"M140 MB MAX", "to the upper travel limit of Z in the machine file", "iTNC 530, TNC 640",
      "from memory"},
     {"cycle 392 (ATC)", "no effect on motion: it adapts the drives to the load",

@@ -171,9 +171,20 @@ void Translator::set_preset(double number) {
   if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {
     fail(fmt::format("preset {:g}: only presets 1 to 9 are supported, as G54 to G59.3", number));
   }
-  const int preset = static_cast<int>(number);
+  const bool is_manual = number == 0.0;
+  if (is_manual ? names_preset_ : names_manual_datum_) {
+    fail(
+        "preset 0, the manually set datum, beside other presets: the program does not say where "
+        "they lie to each other; use presets 1 to 9");
+  }
+  (is_manual ? names_manual_datum_ : names_preset_) = true;
+  if (is_manual) {
+    warn_once("preset 0", fmt::format("preset 0, the manually set datum: taken as preset {}, which "
+                                      "is in force at the start",
+                                      setup_.work_system));
+  }
+  const int preset = is_manual ? setup_.work_system : static_cast<int>(number);
   if (preset == preset_) return;
-  if (preset == 0) fail("preset 0 is the manually set datum; it is unknown here");
   require_no_compensation("cycle 247");
   if (plane_ || is_tcp_) fail("cycle 247 with PLANE or M128 active");
   preset_ = preset;

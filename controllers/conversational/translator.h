@@ -305,6 +305,7 @@ class Translator {
   std::optional<double> speed_;                     // rpm
   int spindle_ = 0;
   int preset_ = 1;
+  bool names_preset_ = false, names_manual_datum_ = false;  // by cycle 247
   bool is_tcp_ = false;
   std::optional<std::array<double, 3>> plane_;  // SPA, SPB, SPC
   Frame frame_before_plane_;

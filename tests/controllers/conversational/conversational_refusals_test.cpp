@@ -224,6 +224,12 @@ const Refusal kRefusals[] = {
      "depends on the machine (MP7682); program M126 or M127"},
     {"CYCL DEF 247 Q339=12\n",
      "t.h:4:1: error: preset 12: only presets 1 to 9 are supported, as G54 to G59.3"},
+    {"CYCL DEF 247 Q339=0\nCYCL DEF 247 Q339=1\n",
+     "t.h:5:1: error: preset 0, the manually set datum, beside other presets: the program does not "
+     "say where they lie to each other; use presets 1 to 9"},
+    {"CYCL DEF 247 Q339=2\nCYCL DEF 247 Q339=0\n",
+     "t.h:5:1: error: preset 0, the manually set datum, beside other presets: the program does not "
+     "say where they lie to each other; use presets 1 to 9"},
 };
 
 TEST(ConversationalRefusals, SayWhereWhyAndWhatToDo) {

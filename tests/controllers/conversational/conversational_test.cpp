@@ -318,6 +318,13 @@ TEST(Conversational, ToolLengthAndPreset) {
   EXPECT_NEAR(moves[5].end_machine[2], -7 * mm, 1e-12);
 }
 
+TEST(Conversational, PresetThatWasSetByHand) {
+  const std::string program = with_frame("CYCL DEF 247 Q339=0\nL X+1 F9\n");
+  EXPECT_EQ(interpret(program, "t.h", example_setup()).back().work_offset, 1);
+  EXPECT_EQ(warnings_of(program, example_setup()).front(),
+            "preset 0, the manually set datum: taken as preset 1, which is in force at the start");
+}
+
 TEST(Conversational, ToolsDefinedInTheProgram) {
   ProgramSetup setup;
   setup.reader = Reader::any;
