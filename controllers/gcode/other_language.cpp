@@ -135,6 +135,23 @@ std::string other_blocks(std::string_view line) {
   return {};
 }
 
+// Lines that no control reads but that stand in programs: marks of editors, headers to be filled
+// in.
+std::string unfinished_line(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  for (const std::string_view mark : {"#region", "#endregion"}) {
+    if (!line.starts_with(mark)) continue;
+    return fmt::format(
+        "'{}' is a mark of an editor, which folds the lines behind it; remove the line", mark);
+  }
+  if (line.size() < 3 || upper(line.front()) != 'O' || line[1] != ' ') return {};
+  const std::size_t first = line.find_first_not_of(' ', 1);
+  const bool is_text =
+      first + 1 < line.size() && is_letter(line[first]) && is_letter(line[first + 1]);
+  return is_text ? "a program number is missing behind O; write one (O1000), or remove the line"
+                 : "";
+}
+
 // VC1=10 of Okuma, among names of Siemens.
 bool is_okuma_variable(std::string_view name) {
   return name.size() > 2 && name.substr(0, 2) == "VC" &&
@@ -150,6 +167,28 @@ bool contains_word(std::string_view line, std::string_view word) {
 }
 
 }  // namespace
+
+int column_of_second_block(std::string_view line) {
+  std::size_t end = 0;
+  bool in_comment = false, has_words = false;
+  for (; end < line.size() && (in_comment || line[end] != ';'); ++end) {
+    in_comment = in_comment ? line[end] != ')' : line[end] == '(';
+    has_words = has_words || (!in_comment && is_letter(line[end]));
+  }
+  if (end == line.size() || !has_words) return 0;
+  const std::size_t first = line.find_first_not_of(" \t", end + 1);
+  bool has_word = false;
+  for (std::size_t at = first; at < line.size(); has_word = true) {
+    if (line.find_first_not_of("; \t\r", at) == line.npos) break;
+    if (std::string_view("GMTXYZABCIJKRFSHD").find(upper(line[at])) == std::string_view::npos)
+      return 0;
+    const std::size_t number = line.find_first_not_of("+-", at + 1);
+    const std::size_t next = std::min(line.find_first_not_of("0123456789.", number), line.size());
+    if (number > at + 2 || next == number) return 0;
+    at = std::min(line.find_first_not_of(" \t", next), line.size());
+  }
+  return has_word ? static_cast<int>(first) + 1 : 0;
+}
 
 bool is_report_request(std::string_view line) {
   constexpr std::array<std::string_view, 6> kRequests = {"$$", "$G", "$I", "$N", "$#", "?"};
@@ -238,6 +277,7 @@ std::string e_word_refusal(std::string_view line, int column) {
 
 std::string other_language(std::string_view line, int column) {
   if (line.starts_with("//")) return {};  // a comment, or a block that may be skipped
+  if (std::string unfinished = unfinished_line(line); !unfinished.empty()) return unfinished;
   if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
   if (line.starts_with('$') && !is_report_request(line)) {
     return fmt::format(

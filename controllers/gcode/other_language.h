@@ -21,6 +21,10 @@ std::string other_language(std::string_view line, int column);
 /// @param is_control_chosen  by the user, who may so read what is only called as Siemens's are
 std::string refused_program(ProgramText& text, bool is_control_chosen);
 
+/// Column of the words behind a ';' that follows a block, "G0 X1.; Y2.", from 1; 0 if there are
+/// none, or if what stands there is a text.
+int column_of_second_block(std::string_view line);
+
 /// Returns true for a line that asks grbl or TinyG for a report, which moves nothing; $H and
 /// settings do.
 bool is_report_request(std::string_view line);

@@ -7,8 +7,16 @@
 #include <utility>
 
 #include "controllers/gcode/interpreter_machine.h"
+#include "controllers/gcode/other_language.h"
 
 namespace servomill::controllers {
+namespace {
+
+constexpr std::string_view kSecondBlock =
+    "words behind ';': a comment (LinuxCNC, grbl, Mach), or another block (Fanuc, Haas, where ';' "
+    "ends a block); write each block in a line of its own, or remarks in ( )";
+
+}  // namespace
 
 bool Interpreter::Machine::read_block() {
   block_.clear();
@@ -88,6 +96,12 @@ void Interpreter::Machine::read_executed_line() {
     look_for_missing_points();
   }
   if (setup_.reader == Reader::any && !block_.code.empty()) note_other_arithmetic();
+  if (const int column = is_strict ? 0 : column_of_second_block(line_); column > 0) {
+    if (setup_.reader == Reader::fanuc || setup_.reader == Reader::haas) {
+      fail(column, std::string(kSecondBlock));
+    }
+    if (noted_.insert(std::string(kSecondBlock)).second) warn(column, std::string(kSecondBlock));
+  }
   if (reader_.corner()) {
     reading_.round_corner(corner_to_next());
     return read_as_control();

@@ -79,6 +79,34 @@ TEST(OtherLanguage, DinIsoOfHeidenhainIsRefusedByItsFirstLine) {
   EXPECT_EQ(fault_in("p.nc", "%PARTG71\nG0 X1.\nM2\n%\n", Reader::any), "");
 }
 
+TEST(OtherLanguage, BlocksBehindASemicolonAreNotLostInSilence) {
+  EXPECT_EQ(column_of_second_block("G0 X1.; Y-2. F.5;"), 9);
+  for (const std::string line : {"G0 X1.;", ";G0 X1.", "G0 X1. ; to X1", "G0 (a; b) X1.",
+                                 "(a) ; X1", "M8 ; 2 mm", "G0 X1 ; X-"}) {
+    EXPECT_EQ(column_of_second_block(line), 0) << line;
+  }
+  const std::string program = "G0 X1.; Y2.\nX3.; Y4.\nM2\n";
+  const std::string said =
+      "p.nc:1:9: error: words behind ';': a comment (LinuxCNC, grbl, Mach), or another block "
+      "(Fanuc, "
+      "Haas, where ';' ends a block); write each block in a line of its own, or remarks in ( )";
+  EXPECT_EQ(fault_in("p.nc", program, Reader::haas), said);
+  ProgramSetup setup;
+  setup.reader = Reader::any;
+  Interpreter interpreter(program, "p.nc", setup);
+  interpreter.rest();
+  ASSERT_EQ(interpreter.warnings().size(), 1u);
+  EXPECT_EQ(to_string(interpreter.warnings().front()), said);
+}
+
+TEST(OtherLanguage, LinesThatWereNotFilledInAreNamed) {
+  EXPECT_EQ(other_language("#region tools", 2),
+            "'#region' is a mark of an editor, which folds the lines behind it; remove the line");
+  EXPECT_EQ(other_language("O ENTER THE NUMBER", 3),
+            "a program number is missing behind O; write one (O1000), or remove the line");
+  EXPECT_EQ(other_language("O 100", 3), "");
+}
+
 TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
   EXPECT_EQ(other_language("12 CYCL DEF 200 DRILLING", 1),
             "'CYCL DEF' is Heidenhain conversational; use --reader heidenhain");
