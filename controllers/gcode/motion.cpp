@@ -236,6 +236,11 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
                          ? "; as distances from the start (G91.1) I, J and K fit"
                          : "; as positions of the centre I, J and K fit: if they are meant so, "
                            "program G90.1 at the start";
+    } else if (!state_.is_centre_absolute &&
+               centre_format(start, end, 2.0 * start - centre, tolerance).fault.empty()) {
+      found.fault +=
+          "; with their signs changed I, J and K fit: the post-processor writes the way from the "
+          "centre to the start, but must write that from the start to the centre";
     }
     return found;
   }

@@ -89,6 +89,17 @@ TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
       << other;
 }
 
+// NX has posts that give the way from the centre to the start.
+TEST(Arcs, WhoseCentreHasTheWrongSignsSaySo) {
+  const std::string fault =
+      moves_of("G0 X10. Y0.\nG3 X0. Y10. I10. J0. F9.\nM2\n", setup_for(Reader::any));
+  EXPECT_NE(fault.find("; with their signs changed I, J and K fit: the post-processor writes the "
+                       "way from the centre to the start, but must write that from the start to "
+                       "the centre"),
+            std::string::npos)
+      << fault;
+}
+
 std::vector<std::string> warnings_of(const std::string& text, Reader reader) {
   Interpreter interpreter(text, "p.nc", setup_for(reader));
   interpreter.rest();
