@@ -292,6 +292,10 @@ name = "cycle_time"
         self.assertIn("  read           up to line 3, which has the first fault\n", done.stdout)
         self.assertIn("  extent G54     X 1.000 ... 2.000 mm\n", done.stdout)
 
+    def test_json_of_a_program_that_is_refused_before_its_first_block(self):
+        said = self.json("%_N_PART_MPF\nG0 X1\nMSG(\"END\")\n", status=2)
+        self.assertEqual(said["first_fault_line"], 1)
+
     def test_quiet_says_nothing_of_a_right_program(self):
         done = self.check("G0 X1.\nM2\n", "--quiet")
         self.assertEqual((done.stdout, done.stderr), ("", ""))
