@@ -70,7 +70,6 @@ class Interpreter::Machine {
   }
 
   std::optional<ExecutedBlock> next_block();
-
   std::vector<Move> rest() {
     out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
     given_ = 0;
@@ -304,6 +303,7 @@ class Interpreter::Machine {
   int column_of_cause() const;
   void end_queue_at(const Eigen::Vector2d& point);
   void release_queue();
+  void note_unit_of_control();
   void straight();
   void note_of_long_turn(const AxisWords& begin, const AxisWords& end);
   void probe();  // G38.2 ... G38.5

@@ -31,7 +31,9 @@ void Interpreter::Machine::plane() {
 
 void Interpreter::Machine::units() {
   const int code = request().code(Group::g_units);
-  if (code >= 0) state_.set_unit(code == 200 ? inch : mm);
+  if (code < 0) return;
+  state_.set_unit(code == 200 ? inch : mm);
+  noted_.insert("unit");
 }
 
 void Interpreter::Machine::tool_length() {

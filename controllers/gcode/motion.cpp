@@ -41,6 +41,7 @@ void Interpreter::Machine::motion() {
     if (state_.is_incremental) fail(column, "G53 with G91; machine coordinates are absolute");
   }
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
+  if (code >= 0) note_unit_of_control();
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
   if (is_bezier(code)) bezier();
@@ -120,6 +121,19 @@ double Interpreter::Machine::move_feed(double length, double angle) const {
   const double rate = request()['F'] / minute;
   if (is_linear_move) return std::max(rate * length, kSlowestInverse * state_.unit / minute);
   return std::max(rate * angle, kSlowestInverse * deg / minute);
+}
+
+// grbl begins with G21, LinuxCNC with the unit of its machine, here millimetres.
+void Interpreter::Machine::note_unit_of_control() {
+  const Reader reader = setup_.reader;
+  if (reader == Reader::linuxcnc || reader == Reader::grbl || is_of_other_language()) return;
+  for (int i = 0; i < kLinearJoints; ++i) {
+    if (!has_axis(i) || axis_word(i) == 0.0) continue;
+    if (!noted_.insert("unit").second) return;
+    return warn(request().word(letter(axis_at(i))).column,
+                "a length before any G20 or G21: read in millimetres; controls keep the unit that "
+                "they are set to; program G20 or G21");
+  }
 }
 
 // B359 and then B1: forward by 2 degrees where the axis rolls over.

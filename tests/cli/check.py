@@ -297,7 +297,7 @@ name = "cycle_time"
         self.assertEqual(said["first_fault_line"], 1)
 
     def test_quiet_says_nothing_of_a_right_program(self):
-        done = self.check("G0 X1.\nM2\n", "--quiet")
+        done = self.check("G21 G0 X1.\nM2\n", "--quiet")
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
     def test_json_of_a_whole_program(self):

@@ -83,7 +83,7 @@ const std::vector<Style>& styles() {
        0,
        ":1:1: error: M104: heats the extruder of a 3D printer; only milling programs are "
        "supported"},
-      {"sender_mdi.nc", {1, 8}, 2, 20.0, 10.0},
+      {"sender_mdi.nc", {1, 1, 8}, 2, 20.0, 10.0},
       {"siemens_sinumerik.mpf",
        {},
        0,

@@ -18,6 +18,7 @@
 namespace servomill::controllers {
 namespace {
 
+using program_reader_test::besides_unit;
 using program_reader_test::without_lines;
 
 std::string moves_of(const std::string& text, ProgramSetup setup) {
@@ -45,7 +46,7 @@ std::vector<std::string> warnings_of(const std::string& text, ProgramSetup setup
   Interpreter interpreter(text, "p.nc", std::move(setup));
   interpreter.rest();
   std::vector<std::string> out;
-  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
+  for (const Fault& one : besides_unit(interpreter.warnings())) out.push_back(to_string(one));
   return out;
 }
 
@@ -235,12 +236,14 @@ TEST(MachineFunctions, BecomeCommentsWithAWarning) {
   while (const auto block = interpreter.next_block()) lines.emplace_back(block->text);
   EXPECT_EQ(lines,
             std::vector<std::string>({"G0 X1. (M10)", "(M88)", "G1 X2. F100. (M10) (M11)", "M2"}));
-  ASSERT_EQ(interpreter.warnings().size(), 3u);
-  EXPECT_EQ(interpreter.warnings()[0].message,
+  ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 3u);
+  EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
             sentence(ReaderRule::machine_function) +
                 "; M10 becomes a comment, also where the program is rewritten");
-  EXPECT_EQ(to_string(interpreter.warnings()[1]), "p.nc:2:1: error: M88 becomes a comment, too");
-  EXPECT_EQ(to_string(interpreter.warnings()[2]), "p.nc:3:20: error: M11 becomes a comment, too");
+  EXPECT_EQ(to_string(besides_unit(interpreter.warnings())[1]),
+            "p.nc:2:1: error: M88 becomes a comment, too");
+  EXPECT_EQ(to_string(besides_unit(interpreter.warnings())[2]),
+            "p.nc:3:20: error: M11 becomes a comment, too");
 }
 
 TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
@@ -281,8 +284,8 @@ TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
                                   [](const Move& move) { return move.kind == MoveKind::dwell; });
   ASSERT_NE(dwell, moves.end());
   EXPECT_TRUE(std::isnan(dwell->value));
-  ASSERT_EQ(interpreter.warnings().size(), 1u);
-  EXPECT_EQ(interpreter.warnings()[0].message,
+  ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 1u);
+  EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
             std::string(kBoth) + "; the dwell time stays unknown");
 }
 
@@ -322,7 +325,7 @@ TEST(CutterCompensation, TellsOfAnEntryThatOtherControlsMakeInAnotherWay) {
   ProgramSetup strict = setup_for(Reader::linuxcnc);
   Interpreter interpreter(head + "X10.\nG40 Y-10.\nM2\n", "p.nc", strict);
   interpreter.rest();
-  EXPECT_TRUE(interpreter.warnings().empty());
+  EXPECT_TRUE(besides_unit(interpreter.warnings()).empty());
 }
 
 TEST(DecimalPoint, IncrementsAreThousandths) {
@@ -363,8 +366,8 @@ TEST(WordDifferences, LeaveADwellUnknownThatIsNotNeeded) {
   EXPECT_TRUE(std::isnan(dwells[0]));
   EXPECT_TRUE(std::isnan(dwells[1]));
   EXPECT_EQ(dwells[2], 3.0);
-  ASSERT_EQ(interpreter.warnings().size(), 2u);
-  EXPECT_EQ(interpreter.warnings()[0].message,
+  ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 2u);
+  EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
             both_readings(WordDifference::dwell_unit) + "; the dwell time stays unknown");
 }
 

@@ -240,7 +240,7 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
 }
 
 TEST(Macro, AComparisonNearerThanControlsCalculateIsWarnedOf) {
-  const Reading found = read("#1=.1+.2\nIF[#1EQ.3]GOTO9\nG0 X1.\nN9 M2\n", Reader::fanuc, {});
+  const Reading found = read("#1=.1+.2\nIF[#1EQ.3]GOTO9\nG21 G0 X1.\nN9 M2\n", Reader::fanuc, {});
   EXPECT_EQ(found.moves, "R 1 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[1]),
@@ -311,7 +311,7 @@ TEST(Macro, ModesBeforeTheFirstMotion) {
 // Nothing in them says for which control they are: LinuxCNC's reading, with a warning.
 TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
   const Reading found =
-      read("#1=FIX[-1.5]\nG0 X#1 Y#2\nX[#1+#2]\n#3=[1 AND 1]\nM2\n", Reader::any, {});
+      read("#1=FIX[-1.5]\nG0 X#1 Y#2 G21\nX[#1+#2]\n#3=[1 AND 1]\nM2\n", Reader::any, {});
   EXPECT_EQ(found.moves, "R -2 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
   EXPECT_EQ(to_string(found.warnings[0]),
@@ -322,7 +322,7 @@ TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
             "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, so that its "
             "word is omitted (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   // O-words are LinuxCNC's
-  const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]]\no1 endif\nM2\n", Reader::any, {});
+  const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]] G21\no1 endif\nM2\n", Reader::any, {});
   EXPECT_TRUE(flow.warnings.empty());
 }
 

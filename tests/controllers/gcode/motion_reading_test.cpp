@@ -8,9 +8,12 @@
 
 #include "controllers/gcode/canon_json.h"
 #include "controllers/gcode/interpreter.h"
+#include "tests/controllers/gcode/tolerant_reading.h"
 
 namespace servomill::controllers {
 namespace {
+
+using program_reader_test::besides_unit;
 
 ProgramSetup setup_for(Reader reader) {
   ProgramSetup setup;
@@ -43,7 +46,7 @@ TEST(Surveys, GoOnWhereBothReadingsEndAtTheSamePlace) {
     Interpreter interpreter(text, "p.nc", setup);
     while (interpreter.next() != nullptr) {
     }
-    return to_string(interpreter.warnings().back());
+    return to_string(besides_unit(interpreter.warnings()).back());
   };
   const std::string start = "F100.\nX1.\nM2\n";
   EXPECT_EQ(moves_of(start, setup), moves_of("F100\nG0 X1\nM2\n", setup_for(Reader::linuxcnc)));
@@ -69,7 +72,7 @@ TEST(Surveys, GoOnBeforeTheFirstFeed) {
       if (move->kind == MoveKind::feed) unknown.push_back(std::isnan(move->feed));
     }
     EXPECT_EQ(unknown, (std::vector<bool>{true, true, false}));
-    EXPECT_EQ(to_string(interpreter.warnings().front()),
+    EXPECT_EQ(to_string(besides_unit(interpreter.warnings()).front()),
               "p.nc:1:5: error: G1 before the first F: Mach keeps the last feed, other controls "
               "raise an alarm; program F, or set the feed with --feed or program.first_feed of a "
               "scenario; the cycle time stays unknown");
@@ -104,7 +107,7 @@ std::vector<std::string> warnings_of(const std::string& text, Reader reader) {
   Interpreter interpreter(text, "p.nc", setup_for(reader));
   interpreter.rest();
   std::vector<std::string> out;
-  for (const Fault& one : interpreter.warnings()) out.push_back(to_string(one));
+  for (const Fault& one : besides_unit(interpreter.warnings())) out.push_back(to_string(one));
   return out;
 }
 
@@ -121,6 +124,27 @@ TEST(Moves, OfMoreThanHalfATurnAreReportedOnce) {
                 {turns("p.nc:1:4", "B turns by 359"), turns("p.nc:4:1", "A turns by 181")}));
   EXPECT_TRUE(warnings_of(program, Reader::linuxcnc).empty());
   EXPECT_TRUE(warnings_of("G0 B180.\nB0.\nB-180.\nM2\n", Reader::mach).empty());
+}
+
+// 25.4 is at stake.
+TEST(Lengths, BeforeTheirUnitAreReportedOnce) {
+  const auto reported = [](const std::string& text, Reader reader) {
+    Interpreter interpreter(text, "p.nc", setup_for(reader));
+    interpreter.rest();
+    std::vector<std::string> out;
+    for (const Fault& one : interpreter.warnings()) {
+      if (one.message.find("G20 or G21") != std::string::npos) out.push_back(to_string(one));
+    }
+    return out;
+  };
+  EXPECT_EQ(reported("G0 Z0.\nA3. Z1.\nX2.\nG20 X1.\nM2\n", Reader::any),
+            std::vector<std::string>({"p.nc:2:5: error: a length before any G20 or G21: read in "
+                                      "millimetres; controls keep the unit that they are set to; "
+                                      "program G20 or G21"}));
+  EXPECT_EQ(reported("G0 X2.\nM2\n", Reader::haas).size(), 1u);
+  EXPECT_TRUE(reported("G20 G0 X1.\nM2\n", Reader::any).empty());
+  EXPECT_TRUE(reported("G0 X1.\nM2\n", Reader::grbl).empty());
+  EXPECT_TRUE(reported("G0 X1.\nM2\n", Reader::linuxcnc).empty());
 }
 
 // It does not end there on a control.

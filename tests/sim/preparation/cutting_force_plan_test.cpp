@@ -42,7 +42,7 @@ using Notes = std::vector<std::string>;
 const std::string kCorner =
     "[[probe]]\nname = \"floor\"\npoints_mm = [[0.0, 0.0, -2.0, 0.0, 0.0, 1.0]]\n";
 
-const std::string kBegin = "G17 G90 T1 M6\nG43 H1\nS4775 M3\n";
+const std::string kBegin = "G17 G21 G90 T1 M6\nG43 H1\nS4775 M3\n";
 
 TEST(PlanCutting, rapid_moves_through_material_are_reported_with_their_depth) {
   EXPECT_EQ(notes_of(kBegin + "G0 X-30 Y0\nG1 Z-0.1 F1394\nG0 X30\nM30\n", kTool),

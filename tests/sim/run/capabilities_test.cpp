@@ -49,7 +49,7 @@ std::vector<std::string_view> names() {
 namespace servomill::sim::run {
 namespace {
 
-constexpr const char* kProgram = "G1 X20 F2400\nG1 X0\nM2\n";
+constexpr const char* kProgram = "G21 G1 X20 F2400\nG1 X0\nM2\n";
 
 // @param type     of the strategy of the case "one"
 // @param changes  keys of that case
@@ -173,15 +173,15 @@ TEST(FeedbackHardware, ThatSomeCasesLackCountsAtTheLargestFeedWithItsOverride) {
     uneven.program.feed_override = feed_override;
     return run(uneven).cases[0].notes.at(0);
   };
-  const char* faster = "G1 X10 F2400\nG1 X20 F6000\nG1 X0 F1200\nM2\n";
+  const char* faster = "G21 G1 X10 F2400\nG1 X20 F6000\nG1 X0 F1200\nM2\n";
   EXPECT_NE(note_of(faster, 1.0).find("10 us, which is 1 um at the largest feed of 6 m/min;"),
             std::string::npos)
       << note_of(faster, 1.0);
   EXPECT_NE(note_of(faster, 0.5).find("10 us, which is 0.5 um at the largest feed of 3 m/min;"),
             std::string::npos)
       << note_of(faster, 0.5);
-  EXPECT_NE(note_of("G0 X20\nM2\n", 1.0).find("delay of 10 us; set"), std::string::npos)
-      << note_of("G0 X20\nM2\n", 1.0);
+  EXPECT_NE(note_of("G21 G0 X20\nM2\n", 1.0).find("delay of 10 us; set"), std::string::npos)
+      << note_of("G21 G0 X20\nM2\n", 1.0);
 }
 
 TEST(Comparison, HasNoRowOfTheBaseItself) {

@@ -147,7 +147,7 @@ TEST(Overshoot, OfACubicGridIsReportedWithItsPlace) {
         "[[-400, -200, 0, 400]], value_um = [0, 0, 10, 10], interpolation = \"" +
         interpolation + "\" } }\n";
     const model::Scenario scenario = small_scenario(
-        "G1 X10 F6000\nM30\n",
+        "G21 G1 X10 F6000\nM30\n",
         grid + "[[case]]\nname = \"one\"\nservo = \"ideal\"\n[[case]]\nname = \"two\"\n");
     return run_named_case(scenario, "one").notes;
   };

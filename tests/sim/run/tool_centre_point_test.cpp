@@ -68,7 +68,7 @@ TEST(ToolCentrePoint, FollowsThroughTheServoLoops) {
 
 TEST(ToolCentrePoint, TellsWhatTheNcPutRightAndWhereItSlowedDown) {
   const CaseOutput output = run_named_case(
-      small_scenario("G43.5 H1\nG0 X-40 Z20 I-0.3 J0.01 K1\nG1 X40 I0.3 J0.01 K1 F4000\nM2\n",
+      small_scenario("G21 G43.5 H1\nG0 X-40 Z20 I-0.3 J0.01 K1\nG1 X40 I0.3 J0.01 K1 F4000\nM2\n",
                      kCases),
       "ideal");
   ASSERT_EQ(output.notes.size(), 3U);
