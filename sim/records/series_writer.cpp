@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
 #include <utility>
 
 namespace servomill::sim::records {
@@ -9,6 +10,8 @@ namespace {
 
 // Room for what the library notes about a new chunk; a node of its index is about half of it.
 constexpr std::size_t kBytesPerChunk = 8192;
+
+constexpr std::size_t kRun = 64;  // chunks of a column next to each other, if all are there already
 
 constexpr std::size_t kNeighbours = 8;  // doubles of a cache line
 
@@ -31,6 +34,11 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
     scales.push_back(group_.labels(labels.name, labels.letters, labels.long_name));
   }
   add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
+  if (layout_.index_steps) {
+    Hdf5Dataset& index = datasets_.front().dataset;
+    index.attribute("sampling_ticks", layout_.index_steps->ticks);
+    index.attribute("tick", layout_.index_steps->tick);
+  }
   for (const Channel& channel : layout_.channels) add_channel(channel, scales);
   if (!layout_.plot.signal.empty()) make_nexus_data(group_, layout_.plot);
   if (!layout_.is_encoded) allocate();
@@ -121,24 +129,40 @@ void SeriesWriter::write_block(const std::vector<double>& block, std::size_t row
   system::for_each_index(neighbours_.size(),
                          std::min(system::thread_count(layout_.threads), useful),
                          [&](std::size_t i) { encode(neighbours_[i], block, rows); });
-  write_chunks(rows, chunks_);
-}
-
-void SeriesWriter::append_encoded(std::size_t rows,
-                                  std::span<const std::vector<std::uint8_t>> chunks) {
-  assert(layout_.is_encoded && !finished_ && chunks.size() == width_);
-  write_chunks(rows, chunks);
-}
-
-void SeriesWriter::write_chunks(std::size_t rows,
-                                std::span<const std::vector<std::uint8_t>> chunks) {
   std::size_t bytes = width_ * kBytesPerChunk;
-  for (const auto& chunk : chunks) bytes += chunk.size();
+  for (const auto& chunk : chunks_) bytes += chunk.size();
   group_.reserve(bytes);
   for (Dataset& one : datasets_) {
-    one.dataset.append(rows, chunks.subspan(one.offset, one.columns));
+    one.dataset.append(rows, std::span(chunks_).subspan(one.offset, one.columns));
   }
   group_.flush_file();
+}
+
+void SeriesWriter::append_pages(const ColumnPages& pages) {
+  assert(layout_.is_encoded && !finished_ && pages.page_rows() == layout_.chunk_rows);
+  const std::size_t count = (pages.rows() + pages.page_rows() - 1) / pages.page_rows();
+  for (std::size_t first = 0; first < count; first += kRun) {
+    const std::size_t last = std::min(first + kRun, count);
+    for (Dataset& one : datasets_) write_pages(one, pages, first, last);
+    group_.flush_file();
+  }
+}
+
+void SeriesWriter::write_pages(Dataset& to, const ColumnPages& pages, std::size_t first,
+                               std::size_t last) {
+  std::vector<std::vector<std::uint8_t>> chunks(to.columns);
+  for (std::size_t page = first; page < last; ++page) {
+    std::size_t bytes = to.columns * kBytesPerChunk;
+    for (std::size_t c = 0; c < to.columns; ++c) {
+      if (!pages.read_encoded(to.offset + c, page, chunks[c])) {
+        throw std::logic_error("recorded signals are not encoded");
+      }
+      bytes += chunks[c].size();
+    }
+    group_.reserve(bytes);
+    const std::size_t rows = std::min(pages.page_rows(), pages.rows() - page * pages.page_rows());
+    to.dataset.append(rows, chunks);
+  }
 }
 
 }  // namespace servomill::sim::records

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +11,7 @@
 
 #include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
+#include "sim/records/series.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::records {
@@ -28,18 +31,25 @@ struct Channel {
   Storage storage = Storage::float64;
 };
 
+/// An index whose row i is i * ticks * tick, to the bit.
+struct EvenSteps {
+  std::int64_t ticks;
+  double tick;
+};
+
 /// Layout of a series. The index is the dimension that all share and the first number of a
 /// row; a list of probed points would have {"point", {"1", "number of the point"}}.
 struct SeriesLayout {
   std::string index = "time";
   Meaning index_meaning = {"s", "time"};
+  std::optional<EvenSteps> index_steps = {};  // said to readers, who need not read the index then
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
   Plot plot = {};  // what viewers draw; without a signal, nothing
   std::size_t chunk_rows = 16384;
   int compression = 1;      // kNoCompression to kMaxCompression
   unsigned threads = 0;     // that compress; 0: one a core; the file does not depend on it
-  bool is_encoded = false;  // rows come as chunks (append_encoded); none can be appended
+  bool is_encoded = false;  // rows come as pages (append_pages); none can be appended
 };
 
 /// The file must outlive the writer.
@@ -69,11 +79,11 @@ class SeriesWriter {
   ///         that, and every later call throws the same
   void append(std::span<const double> row);
 
-  /// Adds a block of rows that is encoded: one chunk a column, in the order of a row. None follows
-  /// one of fewer rows than `chunk_rows`.
-  /// @pre is_encoded of the layout
+  /// Adds all rows of pages that are encoded, a page to a chunk. Some hundred kilobytes or more of
+  /// a column lie next to each other in the file, so that one signal is read without the others.
+  /// @pre is_encoded of the layout, and its chunk_rows are those of a page; nothing was added yet
   /// @throws SystemError
-  void append_encoded(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
+  void append_pages(const ColumnPages& pages);
 
   /// Writes the rows of a block that is not full and waits for it. Nothing can be added afterwards.
   /// @throws SystemError as append
@@ -96,7 +106,7 @@ class SeriesWriter {
   void allocate();
   void hand_over();
   void write_block(const std::vector<double>& block, std::size_t rows);
-  void write_chunks(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
+  void write_pages(Dataset& to, const ColumnPages& pages, std::size_t first, std::size_t last);
   void encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows);
 
   Hdf5Group group_;

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <system_error>
 
 #include "plant/vocabulary/simd.h"
@@ -15,13 +13,12 @@
 #include "sim/input/read_scenario.h"
 #include "sim/records/nexus.h"
 #include "sim/records/row_keeper.h"
-#include "sim/records/series_spool.h"
-#include "sim/records/series_writer.h"
 #include "sim/run/day_course.h"
 #include "sim/run/store_day.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
 #include "sim/run/store_sections.h"
+#include "sim/run/store_series.h"
 #include "sim/run/store_tests.h"
 #include "sim/run/touch_record.h"
 
@@ -30,43 +27,6 @@ namespace {
 
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 constexpr std::size_t kRoomOfAttributes = 8;       // as names of cases take
-
-// Contour error over time, next to the other distances of one column; without it, the first signal.
-records::Plot plot_of(const records::Series& series, const std::string& index) {
-  const records::Signal* signal = series.find("contour_error");
-  for (const records::Signal& one : series.signals()) {
-    if (signal == nullptr && one.name != index) signal = &one;
-  }
-  records::Plot plot{signal->name, {index}, {}};
-  if (!signal->labels.empty()) plot.axes.push_back(records::kNoAxis);
-  for (const records::Signal& one : series.signals()) {
-    const bool fits = one.units == signal->units && one.labels == signal->labels;
-    if (fits && one.name != index && one.name != signal->name) plot.others.push_back(one.name);
-  }
-  return plot;
-}
-
-records::SeriesLayout layout_of(const records::Series& series, const std::string& index) {
-  records::SeriesLayout layout;
-  layout.plot = plot_of(series, index);
-  layout.index = index;
-  layout.chunk_rows = records::even_chunk_rows(series.rows());
-  for (const records::Signal& signal : series.signals()) {
-    if (signal.name == index) {
-      layout.index_meaning = {signal.units, signal.long_name};
-      continue;
-    }
-    if (!signal.labels.empty() && std::none_of(layout.labels.begin(), layout.labels.end(),
-                                               [&](const records::ColumnLabels& known) {
-                                                 return known.name == signal.scale;
-                                               })) {
-      layout.labels.push_back({signal.scale, signal.labels, signal.scale});
-    }
-    layout.channels.push_back(
-        {signal.name, {signal.units, signal.long_name}, signal.scale, signal.storage});
-  }
-  return layout;
-}
 
 void write_row(records::Hdf5Group& group, const evaluation::ComparisonRow& row) {
   group.attribute("case", row.case_name);
@@ -267,8 +227,9 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
                    unsigned threads)
     : file_(writable_name(path, force), force),
       shown_(scenario.cases.front().name),
-      compression_(scenario.record.compression),
-      threads_(threads) {
+      format_{{scenario.record_period, scenario.machine.nc.periods.base},
+              scenario.record.compression,
+              threads} {
   records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run", "cases");
   write_errors(root, scenario);
@@ -283,45 +244,14 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
   root.flush_file();
 }
 
-void RunStore::write_series(records::Hdf5Group group, const records::Series& series) const {
-  records::SeriesLayout layout = layout_of(series, "time");
-  layout.compression = compression_;
-  layout.threads = threads_;
-  if (series.pages() != nullptr) return write_pages(std::move(group), std::move(layout), series);
-  records::SeriesWriter writer(std::move(group), std::move(layout));
-  for (std::size_t row = 0; row < series.rows(); ++row) {
-    writer.append({series.row(row), series.width()});
-  }
-  writer.finish();
-}
-
-// The pages of a recording on the disk are chunks of the file as they are.
-void RunStore::write_pages(records::Hdf5Group group, records::SeriesLayout layout,
-                           const records::Series& series) {
-  const records::ColumnPages& pages = *series.pages();
-  layout.chunk_rows = pages.page_rows();
-  layout.is_encoded = true;
-  records::SeriesWriter writer(std::move(group), std::move(layout));
-  std::vector<std::vector<std::uint8_t>> chunks(series.width());
-  for (std::size_t first = 0; first < pages.rows(); first += pages.page_rows()) {
-    for (std::size_t column = 0; column < chunks.size(); ++column) {
-      if (!pages.read_encoded(column, first / pages.page_rows(), chunks[column])) {
-        throw std::logic_error("recorded signals are not encoded");
-      }
-    }
-    writer.append_encoded(std::min(pages.page_rows(), pages.rows() - first), chunks);
-  }
-  writer.finish();
-}
-
 void RunStore::add(const CaseOutput& one) {
   records::Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
   records::Hdf5Group group = root.group(unfinished);
   records::make_nexus_group(group, "NXsubentry", "servo");
-  write_series(group.group("servo"), one.result.servo);
+  write_series(group.group("servo"), one.result.servo, format_);
   if (one.result.last_ticks.rows() > 0) {
-    write_series(group.group("last_ticks"), one.result.last_ticks);
+    write_series(group.group("last_ticks"), one.result.last_ticks, format_);
   }
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);

@@ -10,10 +10,7 @@
 #include "sim/run/day_comparison.h"
 #include "sim/run/result_file.h"
 #include "sim/run/run.h"
-
-namespace servomill::sim::records {
-struct SeriesLayout;
-}  // namespace servomill::sim::records
+#include "sim/run/store_series.h"
 
 namespace servomill::sim::run {
 
@@ -37,15 +34,10 @@ class RunStore {
   const std::string& partial_path() const { return file_.partial_path(); }
 
  private:
-  void write_series(records::Hdf5Group group, const records::Series& series) const;
-  static void write_pages(records::Hdf5Group group, records::SeriesLayout layout,
-                          const records::Series& series);
-
   records::OutputFile file_;
   std::string shown_;  // first case of the scenario: that of the default plot
   bool has_case_ = false;
-  int compression_;
-  unsigned threads_;
+  SeriesFormat format_;
 };
 
 /// A run read back.

@@ -38,9 +38,14 @@ function datasetColumn(file, path, index) {
   };
 }
 
-/** @returns {Column} number of the row, counted from 1 */
-function rowColumn(rows) {
-  return { rows, block: BLOCK, read: (from, to) => Float64Array.from({ length: to - from }, (_, i) => from + i + 1) };
+/** @returns {Column} value of each row by its number */
+function computedColumn(rows, valueAt) {
+  const read = (from, to) => {
+    const values = new Float64Array(to - from);
+    for (let i = 0; i < values.length; ++i) values[i] = valueAt(from + i);
+    return values;
+  };
+  return { rows, block: BLOCK, read };
 }
 
 /** @returns {Column} length of the vector that the columns are the parts of */
@@ -141,8 +146,11 @@ export class Columns {
         (report) => differenceColumn(...parts, report),
       );
     }
-    if (spec.path === undefined) return rowColumn(spec.rows);
+    if (spec.path === undefined) return computedColumn(spec.rows, (row) => row + 1);
     const file = this.fileOf(spec.file);
+    // The times of all cases would be as much to read as what is drawn over them.
+    const even = file.evenTimes(spec.path);
+    if (even) return computedColumn(file.dataset(spec.path).shape[0], (row) => row * even.ticks * even.tick);
     if (spec.column !== "norm") return datasetColumn(file, spec.path, spec.column ?? 0);
     const width = file.dataset(spec.path).shape[1];
     return magnitudeColumn(Array.from({ length: width }, (_, i) => datasetColumn(file, spec.path, i)));

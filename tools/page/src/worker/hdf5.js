@@ -159,6 +159,14 @@ export class ResultFile {
     return attributeValue(this.file.get(path).get_attribute(name));
   }
 
+  /** Ticks from row to row, if these are times that all rows have from 0 on; undefined of others and of signals. */
+  evenTimes(path) {
+    const dataset = this.dataset(path);
+    if (!Object.keys(dataset.attrs).includes("sampling_ticks")) return undefined;
+    const [ticks, tick] = ["sampling_ticks", "tick"].map((name) => attributeValue(dataset.get_attribute(name)));
+    return { ticks, tick };
+  }
+
   /** Rows of one chunk of a dataset, or all of them. */
   chunkRows(path) {
     const { chunks, shape } = this.dataset(path).metadata;

@@ -4,13 +4,15 @@
  */
 
 const KEPT = 80 << 20; // bytes of all pages
+const STREAMS = 32; // places of the file from which reading on is expected
 
 /**
- * Reads bytes of a Blob. The chunks of a column lie about a megabyte apart, those of other columns between them: small
- * pages leave most of the file unread, and each is there as soon as it is asked for.
+ * Reads bytes of a Blob. Small pages leave the columns that nobody looks at unread: their chunks lie next to each other, in
+ * older files about a megabyte apart. Every reading waits for another process, so what is read on is read at once.
  */
 class BlobBytes {
   pageSize = 1 << 17;
+  maxRun = 16; // pages that are read at once where one was read behind the other
   maxAhead = 0; // pages that are requested before they are needed
 
   constructor(blob) {
@@ -35,6 +37,7 @@ class BlobBytes {
  */
 class ServedBytes {
   pageSize = 1 << 22;
+  maxRun = 1;
   maxAhead = 8;
 
   constructor(url, size) {
@@ -79,6 +82,8 @@ export class PagedFile {
     this.pages = new Map();
     /** @type {Set<number>} pages that were needed since the last advance */
     this.needed = new Set();
+    /** @type {Map<number, number>} pages behind those that were read last, and how many these were */
+    this.runs = new Map();
     this.fault = undefined;
   }
 
@@ -106,7 +111,22 @@ export class PagedFile {
       this.pages.set(number, known);
       return known;
     }
-    return this.keep(number, this.load(number));
+    const count = this.runAt(number);
+    const bytes = this.load(number, count);
+    for (let i = count - 1; i > 0; --i) {
+      if (!this.pages.has(number + i)) this.keep(number + i, bytes.slice(i * this.pageSize, (i + 1) * this.pageSize));
+    }
+    return this.keep(number, count > 1 ? bytes.slice(0, this.pageSize) : bytes);
+  }
+
+  /** Pages to be read at once: twice as many as those before them, if these were read last. */
+  runAt(number) {
+    const before = this.runs.get(number) ?? 0;
+    const count = Math.max(1, Math.min(2 * before, this.bytes.maxRun, Math.ceil(this.size / this.pageSize) - number));
+    this.runs.delete(number);
+    this.runs.set(number + count, count);
+    if (this.runs.size > STREAMS) this.runs.delete(this.runs.keys().next().value);
+    return count;
   }
 
   keep(number, page) {
@@ -134,9 +154,9 @@ export class PagedFile {
     );
   }
 
-  load(number) {
+  load(number, count) {
     try {
-      return this.bytes.read(number * this.pageSize, Math.min(this.size, (number + 1) * this.pageSize));
+      return this.bytes.read(number * this.pageSize, Math.min(this.size, (number + count) * this.pageSize));
     } catch (fault) {
       this.fault = fault; // the HDF5 library only reports that it could not read
       throw fault;

@@ -1,0 +1,23 @@
+/// Recorded signals in a result file.
+#pragma once
+
+#include "sim/records/series_writer.h"
+
+namespace servomill::sim::run {
+
+struct SeriesFormat {
+  records::EvenSteps steps;  // of the rows of a recording from which none was left out
+  int compression = 1;
+  unsigned threads = 0;  // that compress; 0: one a core; the file does not depend on it
+};
+
+/// True if the rows have these times: none was left out, as windows do, or added in between.
+/// @pre  the series has time
+bool has_even_times(const records::Series& series, const records::EvenSteps& steps);
+
+/// Writes a series with its default plot: the contour error over time; without it, the first
+/// signal.
+void write_series(records::Hdf5Group group, const records::Series& series,
+                  const SeriesFormat& format);
+
+}  // namespace servomill::sim::run
