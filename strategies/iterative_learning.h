@@ -17,7 +17,6 @@ struct LearningPlan {
   TrialSetup setup;
   LearningFilter filter;
   BlockLimits blocks;      // of the program, if the offset is written into it
-  int runs = 1;            // at most
   double tolerance = 0.0;  // m; it ends once the largest deviation is below
   // the run with the smallest rms decides, and it ends where runs no longer get better; else all
   // runs take place, and the offset is that after the last one

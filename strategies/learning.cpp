@@ -63,7 +63,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
   plan.setup.noise = p.number("noise_um");
   plan.filter.gain = p.number("gain");
   plan.filter.remembering = 1.0 - p.number("forgetting");
-  plan.runs = static_cast<int>(std::lround(p.number("updates")));
+  plan.setup.runs = static_cast<int>(std::lround(p.number("updates")));
   plan.takes_best = false;
   return iterative_learning(plan, identified);
 }

@@ -47,7 +47,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
   plan.setup.as_program = p.word("as") == "program";
   plan.blocks = block_limits_of(p);
   plan.blocks.turns = plan.setup.turns;
-  plan.runs = static_cast<int>(std::lround(p.number("max_runs")));
+  plan.setup.runs = static_cast<int>(std::lround(p.number("max_runs")));
   plan.tolerance = p.number("residual_um");
   return iterative_learning(plan, identified);
 }

@@ -21,6 +21,7 @@ enum class OffsetLimit : std::uint8_t {
 
 /// Choices of a strategy for its runs, which show the deviation from the interpolated path.
 struct TrialSetup {
+  int runs = 1;             // of the program, at most
   bool sees_tip = true;     // of tip and tool axis in the workpiece; else of the scales
   double noise = 0.0;       // m, standard deviation of what is seen of each linear joint
   bool turns = false;       // rotary joints are offset, too, for the orientation of the tool

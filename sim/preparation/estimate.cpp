@@ -127,16 +127,23 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCa
     motions.push_back(one.duration());
     recorded.push_back(one.recorded_duration());
   }
-  return estimate(scenario, motions, threads, recorded);
+  RunEstimate out = estimate(scenario, motions, threads, recorded);
+  for (const PreparedCase& one : cases) {
+    const TrialRunsToCome trials = one.trial_runs();  // one after the other
+    out.trial_runs += trials.number;
+    out.computing += trials.motion / scenario.machine.nc.periods.base / kTicksPerSecond;
+  }
+  return out;
 }
 
 std::string to_string(const RunEstimate& estimate) {
   return fmt::format(
       "{} of motion, {:.2g} rows, {} of signals in a file of {}{}, {} of memory, about {} of "
-      "computing",
+      "computing{}",
       in_time(estimate.motion), estimate.rows, in_gigabytes(estimate.size),
       estimate.is_thinned ? "at most " : "", in_gigabytes(estimate.file),
-      in_gigabytes(estimate.memory), in_time(estimate.computing));
+      in_gigabytes(estimate.memory), in_time(estimate.computing),
+      estimate.trial_runs > 0 ? fmt::format(" with {} trial runs", estimate.trial_runs) : "");
 }
 
 std::string thinning_message(const RunEstimate& estimate) {

@@ -25,6 +25,7 @@ struct RunEstimate {
   double file = 0.0;        // bytes of the result file: about, or at most if it is thinned
   double memory = 0.0;      // bytes, about: what is held now, a plan included, and what comes
   double computing = 0.0;   // s, on so many threads; by the speed of one core of a desktop computer
+  int trial_runs = 0;       // part of that: of the program, from which strategies have yet to learn
 };
 
 /// @param motions  of the cases, s

@@ -29,12 +29,6 @@ namespace servomill::sim::preparation {
 
 namespace {
 
-// Its program runs before the case does.
-bool learns(const model::CaseSpec& spec) {
-  return std::any_of(spec.strategies.begin(), spec.strategies.end(),
-                     [](const model::StrategySpec& one) { return one.entry->runs_program; });
-}
-
 // rad/s during each move; 0 while the spindle stands.
 std::vector<double> spindle_speeds(const MoveRange& moves) {
   std::vector<double> out;
@@ -79,6 +73,8 @@ struct PreparedCase::Parts {
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
   void plan_cut(const CasePreparation& prepare);
+  LearningCase learning(const CasePreparation& prepare);
+  bool learns(std::size_t number) const { return strategies[number]->learning() != nullptr; }
   void teach(const CasePreparation& prepare);
   engine::CaseInputs inputs_on(const model::MachineSettings& machine,
                                const plant::VolumetricModel& errors,
@@ -145,16 +141,21 @@ SharedMoves PreparedCase::Parts::apply_strategies(const CasePreparation& prepare
   return moves;
 }
 
-// Strategies that learn do so from runs with those before and behind them, one after the other.
-void PreparedCase::Parts::teach(const CasePreparation& prepare) {
+LearningCase PreparedCase::Parts::learning(const CasePreparation& prepare) {
   LearningCase learning{prepare, scenario,   spec,      program, machine_errors, component_errors,
                         {},      strategies, rewritten, motion,  warnings};
   learning.inputs = [this](const auto& machine, const auto& errors, const auto* components) {
     return inputs_on(machine, errors, components, {});
   };
+  return learning;
+}
+
+// Strategies that learn do so from runs with those before and behind them, one after the other.
+void PreparedCase::Parts::teach(const CasePreparation& prepare) {
+  LearningCase lessons = learning(prepare);
   trials.resize(strategies.size());
   for (std::size_t k = 0; k < strategies.size(); ++k) {
-    if (strategies[k]->learning() != nullptr) trials[k] = preparation::teach(learning, k);
+    if (learns(k)) trials[k] = preparation::teach(lessons, k);
   }
 }
 
@@ -191,7 +192,28 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
   parts.component_errors = &prepare.errors(machine_errors);
   if (!scenario.imposed.empty()) parts.imposed = prepare.model(scenario.imposed);
   parts.plan_cut(prepare);
-  parts.teach(prepare);
+  LearningCase lessons = parts.learning(prepare);
+  for (std::size_t k = 0; k < parts.strategies.size(); ++k) {
+    if (parts.learns(k)) refuse_lessons(lessons, k);
+  }
+}
+
+TrialRunsToCome PreparedCase::trial_runs() const {
+  const Parts& p = *parts_;
+  TrialRunsToCome out;
+  if (!p.trials.empty()) return out;  // they have taken place
+  for (std::size_t k = 0; k < p.strategies.size(); ++k) {
+    if (!p.learns(k)) continue;
+    const servomill::strategies::TrialSetup setup = p.strategies[k]->learning()->trials();
+    out.number += setup.runs;
+    out.motion += setup.runs * duration() / setup.feed;
+  }
+  return out;
+}
+
+void PreparedCase::teach(PreparationCache* cache) {
+  PreparationCache own;
+  parts_->teach({parts_->scenario, parts_->spec, cache != nullptr ? *cache : own});
 }
 
 void PreparedCase::thin(double bytes) {
@@ -351,42 +373,6 @@ std::vector<Fault> PreparedCase::circular_faults(PreparationCache* cache) const 
   };
   return preparation::circular_faults(
       p.scenario, (cache != nullptr ? *cache : own).circles.get(key, look)->sections);
-}
-
-std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario, PreparationCache* cache) {
-  PreparationCache own;  // the cases of one scenario share much, too
-  if (cache == nullptr) cache = &own;
-  Tick longest = scenario.machine.scale_delay;
-  for (const model::CaseSpec& spec : scenario.cases) {
-    if (!spec.machine) longest = std::max(longest, scenario.reading_delay_of(spec));
-  }
-  check_stability(scenario.machine, longest, cache);
-  refuse_narrow_windows(scenario);
-  std::vector<PreparedCase> prepared;
-  prepared.reserve(scenario.cases.size());
-  CaseFaults faults;
-  std::optional<Stage> lessons;
-  const auto learning = std::count_if(scenario.cases.begin(), scenario.cases.end(), learns);
-  if (learning > 0) lessons.emplace("cases that learn", learning, Steps::unlike);
-  for (const model::CaseSpec& spec : scenario.cases) {
-    try {
-      if (spec.machine) check_stability(*spec.machine, scenario.reading_delay_of(spec), cache);
-      prepared.emplace_back(scenario, spec, cache);
-      if (learns(spec)) lessons->advance();
-    } catch (const InputError& error) {
-      faults.add(spec.name, error);
-    }
-  }
-  faults.report(scenario.cases.size());
-  const RunEstimate takes = estimate(scenario, prepared, 0);
-  refuse_too_large(scenario, takes);
-  for (PreparedCase& one : prepared) {
-    if (takes.is_thinned) one.thin(takes.file / static_cast<double>(prepared.size()));
-  }
-  refuse_absent_sections(scenario, prepared.front().sections());
-  auto faults_of_circles = prepared.front().circular_faults(cache);
-  if (!faults_of_circles.empty()) throw InputError(std::move(faults_of_circles));
-  return prepared;
 }
 
 }  // namespace servomill::sim::preparation

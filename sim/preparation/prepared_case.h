@@ -41,7 +41,14 @@ struct PreparedParts {
   std::span<const std::vector<strategies::TrialFigures>> trials;
 };
 
-/// A case ready to be simulated. Preparing it finds every fault of the input.
+/// Runs of the program of a case from which its strategies have yet to learn.
+struct TrialRunsToCome {
+  int number = 0;       // at most, unless the path has to be planned anew
+  double motion = 0.0;  // s, of all of them
+};
+
+/// A case that has to learn before it can be simulated, if its strategies do. Preparing it finds
+/// every fault of the input that shows without a run.
 class PreparedCase {
  public:
   /// @param scenario, spec  must outlive this
@@ -53,6 +60,12 @@ class PreparedCase {
   PreparedCase(PreparedCase&&) noexcept;
 
   const model::CaseSpec& spec() const;
+  TrialRunsToCome trial_runs() const;
+  /// Has the strategies learn from runs of its program, which may take long.
+  /// @param cache  as that of the constructor
+  /// @throws InputError
+  void teach(PreparationCache* cache = nullptr);
+
   /// Lets rows of its recording be left out, so that it takes about so many bytes of the file.
   void thin(double bytes);
 
@@ -85,12 +98,5 @@ class PreparedCase {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-
-/// All cases of a scenario.
-/// @param scenario  must outlive them
-/// @param cache     may be nullptr
-/// @throws InputError with the faults of all cases: gains that are unstable included
-std::vector<PreparedCase> prepare_cases(const model::Scenario& scenario,
-                                        PreparationCache* cache = nullptr);
 
 }  // namespace servomill::sim::preparation

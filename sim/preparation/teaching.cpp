@@ -35,7 +35,7 @@ class Lessons {
         is_rewritten_(one.rewritten != nullptr),
         planned_(one.motion) {}
 
-  std::vector<strategies::TrialFigures> take() {
+  void refuse() const {
     if (setup_.as_program) {
       refuse_rewritten_probing(spec_, *one_.program, one_.spec.name);
       refuse_tip_moves(spec_, *untaught_, *one_.program, one_.scenario.program.file,
@@ -43,6 +43,9 @@ class Lessons {
     }
     refuse_others();
     check_known_machine();
+  }
+
+  std::vector<strategies::TrialFigures> take() {
     const SharedMotion unhindered = one_.motion;
     controllers::JointLimits limits = one_.prepare.limits();
     std::vector<strategies::TrialFigures> trials;
@@ -212,11 +215,11 @@ class Lessons {
   SharedMotion original_;    // of the program before other strategies
 };
 
-}  // namespace
-
-std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number) {
+// What `step` returns, its faults at the place of the strategy.
+template <typename Step>
+auto with_place(const LearningCase& one, std::size_t number, const Step& step) {
   try {
-    return Lessons(one, number).take();
+    return step();
   } catch (const InputError& error) {
     if (error.faults().front().place.file.empty()) {
       throw fault_of(one.spec.strategies[number], one.spec.name, error);
@@ -225,6 +228,16 @@ std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t numbe
   } catch (const strategies::TooManyBlocks& error) {
     throw fault_of(one.spec.strategies[number], one.spec.name, InputError({}, error.what()));
   }
+}
+
+}  // namespace
+
+void refuse_lessons(LearningCase& one, std::size_t number) {
+  with_place(one, number, [&] { Lessons(one, number).refuse(); });
+}
+
+std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number) {
+  return with_place(one, number, [&] { return Lessons(one, number).take(); });
 }
 
 }  // namespace servomill::sim::preparation

@@ -36,7 +36,12 @@ struct LearningCase {
   std::vector<std::string>& warnings;
 };
 
+/// @throws InputError for what forbids the strategy of that number to learn, as far as it shows
+///         before the program runs
+void refuse_lessons(LearningCase& one, std::size_t number);
+
 /// The strategy of that number learns, and then acts with its offset.
+/// @pre    refuse_lessons() did not throw
 /// @return its runs
 /// @throws InputError
 std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number);

@@ -35,11 +35,26 @@ namespace {
 constexpr std::size_t kWrittenAtOnce = 1U << 16;  // bytes
 
 void warn_of(const model::MachineSettings& machine, const std::string& path,
-             std::vector<Fault>* warnings) {
-  if (warnings == nullptr) return;
+             std::vector<Fault>& warnings) {
   for (std::string& value : input::implausible_values(machine)) {
-    warnings->push_back({{path}, std::move(value)});
+    warnings.push_back({{path}, std::move(value)});
   }
+}
+
+// The trial runs of a scenario, which take as long as the runs themselves.
+std::string trial_runs_not_made(const model::Scenario& scenario, int number) {
+  std::vector<std::string> cases;
+  for (const model::CaseSpec& one : scenario.cases) {
+    if (std::any_of(
+            one.strategies.begin(), one.strategies.end(),
+            [](const model::StrategySpec& strategy) { return strategy.entry->runs_program; })) {
+      cases.push_back(one.name);
+    }
+  }
+  return fmt::format(
+      "{} trial run{} from which strategies learn in case{} {}: what shows only there, "
+      "servomill run finds before the first case",
+      number, number == 1 ? "" : "s", cases.size() == 1 ? "" : "s", fmt::join(cases, ", "));
 }
 
 // Uses of rules beyond LinuxCNC's in the cases' programs; the cases mostly run the same one.
@@ -57,17 +72,18 @@ void add_program_warnings(const model::Scenario& scenario, std::vector<Fault>& w
 }
 
 void check_toml(const std::string& path, const std::vector<std::string>& changes,
-                std::vector<Fault>* warnings) {
+                CheckedFile& out) {
   if (input::is_machine_file(path)) {
     const model::MachineSettings machine = input::read_machine_file(path);
-    warn_of(machine, path, warnings);
+    warn_of(machine, path, out.warnings);
     run::check_machine(machine);
     return;
   }
   const model::Scenario scenario = input::read_scenario(path, changes);
-  warn_of(scenario.machine, path, warnings);
-  run::check_scenario(scenario);
-  if (warnings != nullptr) add_program_warnings(scenario, *warnings);
+  warn_of(scenario.machine, path, out.warnings);
+  const int trial_runs = run::check_scenario(scenario).trial_runs;
+  if (trial_runs > 0) out.not_run = trial_runs_not_made(scenario, trial_runs);
+  add_program_warnings(scenario, out.warnings);
   if (!scenario.sweep.empty()) sweep::Sweep(path, changes).check();
 }
 
@@ -196,27 +212,29 @@ bool is_program(std::string_view path) {
   return !path.ends_with(".toml") && !holds_cutter_locations(path);
 }
 
-std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs, std::vector<Fault>* warnings) {
+CheckedFile check_file(const std::string& path, const std::vector<std::string>& changes,
+                       const ProgramInputs& inputs) {
+  CheckedFile out;
   try {
     if (path.ends_with(".toml")) {
-      check_toml(path, changes, warnings);
-      return {};
+      check_toml(path, changes, out);
+      return out;
     }
     if (holds_cutter_locations(path)) {
       controllers::read_cl_data(system::read_file(path, {}, "cutter location file"), path);
-      return {};
+      return out;
     }
     controllers::ProgramSetup setup = program_setup(inputs, path);
     if (setup.tools.empty()) setup.tools.take_any_number();  // the control has a table of its own
     setup.accepts_unknown_dwells = setup.accepts_unknown_positions = true;
     setup.accepts_unknown_feeds = true;
     setup.probed = std::make_shared<controllers::AssumedContact>();
-    return controllers::check_program(controllers::ProgramText::of_file(path), std::move(setup),
-                                      warnings);
+    out.faults = controllers::check_program(controllers::ProgramText::of_file(path),
+                                            std::move(setup), &out.warnings);
   } catch (const InputError& error) {
-    return error.faults();
+    out.faults = error.faults();
   }
+  return out;
 }
 
 }  // namespace servomill::sim::programs

@@ -54,13 +54,18 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
 /// True of files that are neither scenarios, machines nor cutter locations.
 bool is_program(std::string_view path);
 
-/// All faults of a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or
-/// program (anything else).
-/// @param changes     what --set says, for scenarios
+/// A file as checking it found it.
+struct CheckedFile {
+  std::vector<Fault> faults;
+  std::vector<Fault> warnings;  // programs beyond LinuxCNC's rules, values that no machine has
+  std::string not_run;          // what only a run would check; empty: nothing
+};
+
+/// Checks a file: scenario or machine (.toml), cutter locations (.cls, .apt, .csv) or program
+/// (anything else).
+/// @param changes  what --set says, for scenarios
 /// @param inputs   for programs
-/// @param warnings  receives what programs hold beyond LinuxCNC's rules and values
-/// that no machine has; may be nullptr
-std::vector<Fault> check_file(const std::string& path, const std::vector<std::string>& changes,
-                              const ProgramInputs& inputs, std::vector<Fault>* warnings = nullptr);
+CheckedFile check_file(const std::string& path, const std::vector<std::string>& changes,
+                       const ProgramInputs& inputs);
 
 }  // namespace servomill::sim::programs

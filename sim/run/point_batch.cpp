@@ -13,7 +13,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "sim/run/test_comparison.h"
 #include "sim/system/memory_limit.h"
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "plant/vocabulary/progress.h"
+#include "sim/preparation/prepare_cases.h"
 #include "sim/preparation/stability_check.h"
 #include "sim/run/isolated_case.h"
 #include "sim/system/worker_thread.h"
@@ -53,6 +54,13 @@ CaseOutput run_one(const preparation::PreparedCase& prepared,
   return out;
 }
 
+void teach(const model::Scenario& scenario, std::vector<preparation::PreparedCase>& cases,
+           const RunControl& control) {
+  const preparation::RunEstimate takes = preparation::estimate(scenario, cases, control.threads);
+  if (takes.trial_runs > 0 && control.trials_come) control.trials_come(takes);
+  preparation::teach(scenario, cases, control.cache);
+}
+
 RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutput> outputs) {
   RunOutput out;
   std::vector<evaluation::CaseData> data;
@@ -65,7 +73,7 @@ RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutpu
 }  // namespace
 
 preparation::RunEstimate check_scenario(const model::Scenario& scenario) {
-  const std::vector<preparation::PreparedCase> prepared = preparation::prepare_cases(scenario);
+  const std::vector<preparation::PreparedCase> prepared = preparation::prepare_untaught(scenario);
   std::vector<Fault> faults;
   for (const preparation::PreparedCase& one : prepared) {
     if (one.stops_with().empty()) continue;
@@ -85,7 +93,8 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
   static const engine::StopFlag kNever = false;
   const engine::StopFlag& stop = control.stop != nullptr ? *control.stop : kNever;
   std::vector<preparation::PreparedCase> prepared =
-      preparation::prepare_cases(scenario, control.cache);
+      preparation::prepare_untaught(scenario, control.cache);
+  teach(scenario, prepared, control);
   if (control.prepared)
     control.prepared(preparation::estimate(scenario, prepared, control.threads));
 

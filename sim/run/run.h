@@ -25,6 +25,9 @@ struct RunControl {
   preparation::PreparationCache* cache = nullptr;  // shared with other runs, may be null
   std::string scratch_folder;  // of long recordings until they are compared; empty: that of
                                // temporary files
+  // what the run takes is known, also its trial runs, which come next; called once, if there are
+  // any
+  std::function<void(const preparation::RunEstimate&)> trials_come;
   // every fault of the input is found, and what the run takes is known; called once
   std::function<void(const preparation::RunEstimate&)> prepared;
   std::function<void(const CaseOutput&)>
@@ -40,8 +43,9 @@ struct RunOutput {
 /// @throws InputError before anything is simulated
 RunOutput run_scenario(const model::Scenario& scenario, const RunControl& control);
 
-/// Prepares every case as for a run, and returns what it would take on one thread.
-/// @throws InputError with the faults of all cases
+/// Prepares every case as for a run, but for runs from which strategies learn, and returns what it
+/// would take on one thread.
+/// @throws InputError with the faults of all cases, as far as they show without these runs
 preparation::RunEstimate check_scenario(const model::Scenario& scenario);
 
 /// Checks what reading a machine leaves open: whether its loops are stable.

@@ -10,7 +10,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/read_scenario.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim {
@@ -44,8 +44,9 @@ inline run::CaseOutput run_named_case(const model::Scenario& scenario, const std
   std::atomic<float> progress = 0.0F;
   const model::CaseSpec* spec = scenario.find_case(name);
   if (spec == nullptr) throw std::logic_error("no case " + name);
-  run::CaseOutput output =
-      run::run_case(preparation::PreparedCase(scenario, *spec), kNever, progress);
+  preparation::PreparedCase prepared(scenario, *spec);
+  prepared.teach();
+  run::CaseOutput output = run::run_case(prepared, kNever, progress);
   EXPECT_TRUE(output.result.outcome.finished) << name << ": " << output.result.outcome.reason;
   return output;
 }

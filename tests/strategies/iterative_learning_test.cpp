@@ -18,7 +18,7 @@ using namespace fake_runs;
 LearningPlan plan_of(int runs, double tolerance = 0.0, bool takes_best = true) {
   LearningPlan plan;
   plan.filter.cutoff = 100.0;
-  plan.runs = runs;
+  plan.setup.runs = runs;
   plan.tolerance = tolerance;
   plan.takes_best = takes_best;
   return plan;

@@ -33,6 +33,7 @@ py::dict estimate_of(const LoadedScenario& loaded) {
   out["file_bytes"] = takes.file;
   out["memory_bytes"] = takes.memory;
   out["computing_s"] = takes.computing;
+  out["trial_runs"] = takes.trial_runs;
   return out;
 }
 

@@ -51,8 +51,9 @@ std::string to_json(const std::vector<Fault>& faults) {
 std::size_t check(const std::string& path, const Options& options,
                   sim::programs::ProgramInputs inputs, JsonList& list, ProgressLine& line) {
   inputs.trials = std::make_shared<controllers::SharedTrials>();
-  std::vector<Fault> warnings;
-  const auto faults = sim::programs::check_file(path, options.list("set"), inputs, &warnings);
+  const sim::programs::CheckedFile checked =
+      sim::programs::check_file(path, options.list("set"), inputs);
+  const std::size_t faults = checked.faults.size();
   const bool json = options.has("json");
   std::optional<sim::programs::ProgramSurvey> survey;
   if (sim::programs::is_program(path) && (json || !options.has("quiet"))) {
@@ -63,20 +64,22 @@ std::size_t check(const std::string& path, const Options& options,
   if (json) {
     list.add(sim::system::JsonObject()
                  .text("file", path)
-                 .raw("faults", to_json(faults))
-                 .raw("warnings", to_json(warnings))
+                 .raw("faults", to_json(checked.faults))
+                 .raw("warnings", to_json(checked.warnings))
+                 .text_or_null("not_run", checked.not_run)
                  .raw("program", survey ? sim::programs::to_json(*survey) : "null")
                  .line());
-    return faults.size();
+    return faults;
   }
-  for (const Fault& warning : warnings) {
+  for (const Fault& warning : checked.warnings) {
     fmt::print(stderr, "{}: warning: {}\n", to_string(warning.place), warning.message);
   }
-  for (const Fault& fault : faults) fmt::print(stderr, "{}\n", to_string(fault));
-  if (options.has("quiet")) return faults.size();
-  if (faults.empty()) fmt::print("{}: no faults\n", path);
+  for (const Fault& fault : checked.faults) fmt::print(stderr, "{}\n", to_string(fault));
+  if (options.has("quiet")) return faults;
+  if (faults == 0) fmt::print("{}: no faults\n", path);
+  if (!checked.not_run.empty()) fmt::print("{}: not run: {}\n", path, checked.not_run);
   if (survey) fmt::print("{}", sim::programs::to_text(*survey));
-  return faults.size();
+  return faults;
 }
 
 }  // namespace
@@ -86,7 +89,8 @@ int check_command(const Arguments& arguments) {
       "check", "FILE... [--set KEY=VALUE]... [--tools TABLE] [--machine M.toml] [--json]",
       "Checks scenarios and machines (.toml), cutter locations (.cls, .apt, .csv) and programs\n"
       "(all others) and prints every fault with file:line:column. Scenarios are prepared as for a\n"
-      "run, up to the first tick, at every point of their sweep.\n\n"
+      "run, up to the first tick, at every point of their sweep. Runs from which strategies learn\n"
+      "are not made; their number is printed.\n\n"
       "Of each program it prints units, work offsets, tools, extent, cycle time, the controls "
       "that\n"
       "read it as it stands, and for the others the first line that stops them. Positions are\n"

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
@@ -187,10 +188,16 @@ int run_command(const Arguments& arguments) {
     store->add(one);
     kept.add(one);
   };
-  control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+  bool is_told = false;  // trial runs take time, too, and come first
+  const auto tell = [&](const sim::preparation::RunEstimate& takes) {
+    if (std::exchange(is_told, true) || !sim::preparation::is_worth_telling(takes)) return;
     const auto hidden = line.hidden();
-    if (sim::preparation::is_worth_telling(takes))
-      fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
+    fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
+  };
+  control.trials_come = tell;
+  control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+    tell(takes);
+    const auto hidden = line.hidden();
     if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
     sim::preparation::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);

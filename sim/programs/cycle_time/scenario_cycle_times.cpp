@@ -63,6 +63,7 @@ std::vector<CycleTimeReport> scenario_cycle_times(const std::string& path,
   for (const model::CaseSpec& spec : scenario.cases) {
     if (!cases.empty() && std::find(cases.begin(), cases.end(), spec.name) == cases.end()) continue;
     prepared.push_back(std::make_unique<preparation::PreparedCase>(scenario, spec, &cache));
+    prepared.back()->teach(&cache);
     const preparation::PreparedParts parts = prepared.back()->parts();
     const auto known = std::find(motions.begin(), motions.end(), &parts.motion);
     if (known != motions.end()) {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "sim/engine/simulate.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "tests/sim/engine/circles.h"
 #include "tests/sim/small_scenario.h"
 

@@ -16,7 +16,7 @@
 
 #include "sim/engine/simulate.h"
 #include "sim/input/scenario_source.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim::preparation::preparation_cache_test {

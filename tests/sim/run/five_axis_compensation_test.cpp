@@ -5,7 +5,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/model/scenario.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::five_axis_compensation_test {

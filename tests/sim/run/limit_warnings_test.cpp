@@ -4,7 +4,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/simulate.h"
 #include "sim/preparation/preparation_cache.h"
-#include "sim/preparation/prepared_case.h"
+#include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::limit_warnings_test {
