@@ -12,6 +12,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/system/json.h"
@@ -237,7 +238,9 @@ HeatRegression regress(const HeatReadings& readings, const plant::MachineChain& 
   std::map<std::vector<double>, std::vector<const HeatReading*>> poses;
   for (const HeatReading& row : readings.rows) poses[pose_of(row)].push_back(&row);
   Sums sums(terms);
+  Stage stage("poses", static_cast<double>(poses.size()));
   for (const auto& [pose, rows] : poses) {
+    stage.advance();
     const std::vector<Vector3d> effects = effects_at(*rows.front(), chain, terms);
     for (Index direction = 0; direction < 3; ++direction) {
       const Group group = group_of(rows, direction);

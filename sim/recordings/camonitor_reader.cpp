@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/checked_rows.h"
 #include "sim/system/counted.h"
 
@@ -202,7 +203,11 @@ Recording parse_camonitor(std::string_view text, const std::string& file) {
     throw InputError({file, lines.back().number}, "the file ends within a line: it is truncated");
   }
   Monitor monitor(file);
-  for (const TextLine& line : lines) monitor.read(line);
+  Stage stage("lines", static_cast<double>(lines.size()));
+  for (const TextLine& line : lines) {
+    monitor.read(line);
+    stage.advance();
+  }
   Recording out = monitor.finished();
   check(out);
   return out;

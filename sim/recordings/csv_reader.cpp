@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/delimited_text.h"
 #include "sim/system/counted.h"
 
@@ -112,7 +113,9 @@ class Table {
     read_headings();
     refuse_same_names();
     columns_.resize(layout_.columns);
+    Stage stage("lines", static_cast<double>(lines_.size()));
     for (std::size_t i = layout_.first; i < lines_.size(); ++i) {
+      stage.reach(static_cast<double>(i));
       if (is_comment(lines_[i].text)) continue;
       read_row(lines_[i], i + 1 == lines_.size() && !ends_with_line_end);
     }

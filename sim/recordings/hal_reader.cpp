@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/checked_rows.h"
 #include "sim/system/counted.h"
 
@@ -80,7 +81,9 @@ Recording parse_halscope(std::string_view text, const std::string& file) {
   const double period = period_ns(lines.front(), file);
   Recording out{file, "halscope of LinuxCNC", {Base{}}, {}, {}};
   char decimal = '.';
+  Stage stage("lines", static_cast<double>(lines.size()));
   for (std::size_t i = 1; i < lines.size(); ++i) {
+    stage.reach(static_cast<double>(i));
     const auto fields = split_fields(lines[i].text, ' ');
     const Place place{file, lines[i].number};
     if (i == 1) {
@@ -133,7 +136,9 @@ Recording parse_halsampler(std::string_view text, const std::string& file) {
   std::vector<double>& numbers = out.bases[0].values;
   std::size_t overruns = 0;
   char decimal = '.';
+  Stage stage("lines", static_cast<double>(lines.size()));
   for (std::size_t i = 0; i < lines.size(); ++i) {
+    stage.reach(static_cast<double>(i));
     const Place place{file, lines[i].number};
     if (is_overrun(lines[i])) {
       ++overruns;

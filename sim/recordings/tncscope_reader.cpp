@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/checked_rows.h"
 #include "sim/recordings/csv_reader.h"
 #include "sim/system/counted.h"
@@ -43,7 +44,9 @@ class ScopeFile {
     if (i == lines_.size()) {
       throw InputError({out_.file}, "has no section %[DATA]: it is truncated or of another kind");
     }
+    Stage stage("lines", static_cast<double>(lines_.size()));
     for (++i; i < lines_.size(); ++i) {
+      stage.reach(static_cast<double>(i));
       if (!lines_[i].text.starts_with('%')) read_row(lines_[i], i + 1 == lines_.size());
     }
     for (Curve& curve : curves_) finish(curve);

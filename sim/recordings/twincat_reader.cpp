@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/checked_rows.h"
 #include "sim/recordings/survey.h"
 #include "sim/system/counted.h"
@@ -120,7 +121,9 @@ class ScopeExport {
       }
       groups_.push_back(std::move(group));
     }
+    Stage stage("lines", static_cast<double>(lines_.size()));
     for (std::size_t i = head_.first; i < lines_.size(); ++i) {
+      stage.reach(static_cast<double>(i));
       if (lines_[i].text.starts_with(kEnd)) break;
       read_row(lines_[i]);
     }

@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/numerics/complex_solver.h"
 
 namespace servomill::sim::responses {
@@ -119,7 +120,9 @@ MeasuredResponse local_polynomial(std::span<const double> input, std::span<const
   out.periods = 1;
   const double freedom = static_cast<double>(window) - 2.0 * (s.order + 1);
   double shares = 0.0;
+  Stage stage("lines", static_cast<double>(U.size()));
   for (std::size_t k = 1; k < U.size(); ++k) {
+    stage.reach(static_cast<double>(k));
     ResponseLine line;
     line.frequency = s.rate * static_cast<double>(k) / static_cast<double>(input.size());
     if (level[k] < s.excited * greatest || line.frequency < s.from || line.frequency > s.to) {

@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 
 namespace servomill::sim::responses {
 namespace {
@@ -18,7 +19,9 @@ std::vector<Spectrum> transforms(std::span<const double> signal, const PeriodSet
                                  std::size_t periods) {
   Eigen::FFT<double> fft;
   std::vector<Spectrum> out(periods);
+  Stage stage("periods", static_cast<double>(periods));
   for (std::size_t p = 0; p < periods; ++p) {
+    stage.reach(static_cast<double>(p));
     const auto one = signal.subspan((s.skip + p) * s.samples, s.samples);
     fft.fwd(out[p], std::vector<double>(one.begin(), one.end()));
     out[p].resize(s.samples / 2);
@@ -107,7 +110,9 @@ MeasuredResponse maximum_likelihood(std::span<const double> input, std::span<con
   out.periods = periods;
   out.unexcited = lines.back() - lines.front() + 1 - lines.size();
   const double step = s.rate / static_cast<double>(s.samples);
+  Stage stage("lines", static_cast<double>(lines.size()));
   for (const std::size_t k : lines) {
+    stage.advance();
     ResponseLine line;
     line.frequency = step * static_cast<double>(k);
     line.input = U[k];

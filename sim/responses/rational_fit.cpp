@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/numerics/decompositions.h"
 #include "sim/numerics/dense_solver.h"
 #include "sim/responses/response_misfit.h"
@@ -223,7 +224,10 @@ RationalFit fit_rational(const MeasuredResponse& response, const RationalOrder& 
   double floor = 1.0;
   Eigen::VectorXd x = fitter.start(line_weights(response, floor));
   std::vector<double> weight;
-  for (int round = 0; round < 4; ++round) {
+  constexpr int kRounds = 4;
+  Stage rounds("rounds", kRounds, Steps::unlike);
+  for (int round = 0; round < kRounds; ++round) {
+    rounds.reach(round);
     weight = line_weights(response, floor);
     x = fitter.descend(x, weight);
     floor = median_misfit(response, fitter.at_lines(x));

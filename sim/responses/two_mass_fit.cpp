@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/responses/response_misfit.h"
 
 namespace servomill::sim::responses {
@@ -155,7 +156,10 @@ TwoMassFit fit_two_mass(const MeasuredResponse& response, const std::string& nam
   // all lines alike first, then as exactly as they are measured
   double floor = 1.0;
   Solved solved;
-  for (int round = 0; round < 4; ++round) {
+  constexpr int kRounds = 4;
+  Stage rounds("rounds", kRounds, Steps::unlike);
+  for (int round = 0; round < kRounds; ++round) {
+    rounds.reach(round);
     solved = solve(positive, line_weights(positive, floor), x);
     x = solved.x;
     floor = median_misfit(positive, at_lines(positive, model_of(x.data())));

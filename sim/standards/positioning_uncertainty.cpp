@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "plant/vocabulary/progress.h"
 #include "sim/config/document.h"
 #include "sim/config/reader.h"
 
@@ -106,7 +107,9 @@ Moments simulate(const PositioningTest& test, const PositioningContributions& co
   const PositioningValues value = positioning_parameters(test.up, test.down);
   ErrorTrials errors(test, contributions, sources, seed);
   PositioningValues sum{}, squares{};
+  Stage stage("draws", static_cast<double>(trials));
   for (std::size_t n = 0; n < trials; ++n) {
+    stage.advance();
     const PositioningValues trial = errors.next();
     for (std::size_t k = 0; k < kPositioningParameters; ++k) {
       const double off = trial[k] - value[k];

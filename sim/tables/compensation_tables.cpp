@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/tables/grid_tables.h"
 
@@ -204,7 +205,9 @@ std::vector<CompensationTable> tables_of(const TableSource& source,
                                          const FormatRules& rules) {
   const LineCorrection correction(source), small(scaled_down(source));
   std::vector<CompensationTable> out;
+  Stage stage("axes", static_cast<double>(lines.size()), Steps::unlike);
   for (const TableLine& line : lines) {
+    stage.advance();
     if (!line.wanted) continue;
     for (int output = 0; output < kJoints; ++output) {
       const bool own = output == line.joint;

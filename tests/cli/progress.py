@@ -2,6 +2,7 @@
 """The line that shows how far a command is: on a terminal only, from two seconds on, and gone at the end. progress.py SERVOMILL"""
 import os
 import pty
+import random
 import re
 import select
 import signal
@@ -183,6 +184,28 @@ class Shown(unittest.TestCase):
             out.write("G21 G90\nF1000\n" + "".join(f"G1 X{n % 97} Y{n % 89}\n" for n in range(1_000_000)) + "M2\n")
         terminal = self.start("check", "long.ngc")
         terminal.wait_for(r"of \d+ lines")
+        self.interrupted(terminal)
+
+    def write_noise(self, rows):
+        """A recording of two channels without a period."""
+        noise = random.Random(1)
+        with open(os.path.join(self.folder, "noise.csv"), "w", encoding="utf-8") as out:
+            out.write("time [s];u [A];y [mm/s]\n")
+            out.writelines(f"{0.001 * n:.3f};{noise.gauss(0, 1):.6f};{noise.gauss(0, 1):.6f}\n" for n in range(rows))
+
+    def test_counts_lines_of_a_spectrum(self):
+        self.write_noise(1_000_000)
+        terminal = self.start("response", "noise.csv", "--input", "u", "--output", "y")
+        terminal.wait_for(BAR + r".* of 500000 lines")
+        self.interrupted(terminal)
+
+    def test_counts_lines_of_a_recording(self):
+        names = ";".join(f"channel {n} [A]" for n in range(40))
+        with open(os.path.join(self.folder, "wide.csv"), "w", encoding="utf-8") as out:
+            out.write(f"time [s];{names}\n")
+            out.writelines(f"{0.001 * n:.3f}{';1.5' * 40}\n" for n in range(1_000_000))
+        terminal = self.start("recording", "wide.csv")
+        terminal.wait_for(r"of 1000001 lines")
         self.interrupted(terminal)
 
     def test_fits_on_a_line_of_the_terminal(self):
