@@ -16,6 +16,8 @@ import unittest
 
 CMAKE, BUILD = sys.argv.pop(1), pathlib.Path(sys.argv.pop(1)).resolve()
 COMMANDS = 25    # of the program, at least
+CACHE = (BUILD / "CMakeCache.txt").read_text()
+WITH_MODULE, WITH_PAGE = "SERVOMILL_PYTHON:BOOL=ON" in CACHE, "SERVOMILL_PAGE:BOOL=ON" in CACHE
 DRIVE_BASH = """
 source "$1"; shift
 COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
@@ -98,6 +100,28 @@ class Installed(unittest.TestCase):
         installed = self.prefix / "share/doc/servomill/examples/plugin"
         for name in ("CMakeLists.txt", "quadrant.cpp"):
             self.assertEqual((installed / name).read_bytes(), (example / name).read_bytes())
+
+    @unittest.skipUnless(WITH_MODULE, "the module is not built")
+    def test_brings_notebooks_that_run_without_the_source_tree(self):
+        notebooks = {one.stem: one for one in (self.prefix / "share/doc/servomill/examples/notebooks").iterdir()}
+        self.assertEqual(set(notebooks), {"the_paper", "my_machine", "my_strategy"})
+        (module,) = self.prefix.glob("lib/python*/dist-packages")
+        cells = json.loads(notebooks["my_strategy"].read_text())["cells"]  # the one that takes a second
+        code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+        done = subprocess.run(["/usr/bin/python3", "-c", code], cwd=self.here, capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": str(module), "MPLBACKEND": "Agg"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("12.0 ms ahead", done.stdout)
+        for name, notebook in notebooks.items():
+            self.assertNotIn("../", notebook.read_text(), name)
+
+    def test_tells_where_its_files_are(self):
+        page = gzip.decompress((self.prefix / "share/man/man1/servomill.1.gz").read_bytes()).decode().replace("\\-", "-")
+        files = re.findall(r"^\.I (share/\S+)", page.split(".SH FILES")[1], re.MULTILINE)
+        self.assertEqual(len(files), 4)
+        for file in files:
+            is_left_out = "page" in file and not WITH_PAGE or "notebooks" in file and not WITH_MODULE
+            self.assertTrue(is_left_out or (self.prefix / file).exists(), file)
 
     def test_exports_axes_with_the_installed_library(self):
         self.run_program("fmu", "iso/circular", "--axis", "X", "-o", "x.fmu")

@@ -21,6 +21,22 @@ constexpr std::array<ExitStatus, 5> kExitStatuses = {{{0, "done"},
                                                       {3, "the system failed"},
                                                       {130, "interrupted"}}};
 
+struct InstalledFile {
+  std::string_view name, contents;
+};
+constexpr std::array<InstalledFile, 4> kInstalledFiles = {{
+    {"share/servomill/scenarios/",
+     "scenarios, machines, programs and readings; servomill list "
+     "scenarios prints the names that commands take"},
+    {"share/servomill/page/servomill.html",
+     "the page of results, which a browser also opens "
+     "without servomill view"},
+    {"share/doc/servomill/examples/plugin/", "a strategy as a shared library, to begin with"},
+    {"share/doc/servomill/examples/notebooks/",
+     "with the Python module: the paper in ten cells, a "
+     "measured machine, a strategy of one's own"},
+}};
+
 // Text that roff prints as it is.
 std::string escaped(std::string_view text) {
   std::string out;
@@ -108,6 +124,12 @@ std::string manual_page(const CommandTexts& texts, std::string_view summary) {
   out += ".SH EXIT STATUS\n";
   for (const ExitStatus& one : kExitStatuses) {
     out += fmt::format(".TP\n.B {}\n{}\n", one.status, escaped(one.meaning));
+  }
+  if (is_program) {
+    out += ".SH FILES\nIn the prefix of the installation (/usr, /usr/local):\n";
+    for (const InstalledFile& one : kInstalledFiles) {
+      out += fmt::format(".TP\n.I {}\n{}\n", escaped(one.name), escaped(one.contents));
+    }
   }
   return out + (is_program ? "" : ".SH SEE ALSO\n.BR servomill (1)\n");
 }

@@ -14,7 +14,7 @@ from .commands import (Calibration, Compensated, Curve, Estimate, Fit, Function,
 from .errors import Fault, InputError, SystemFailed
 from .files import StoredRun, Sweep, open
 from .results import Case, Comparison, Row, Run
-from .scenario import Scenario, load, scenarios
+from .scenario import Scenario, load, scenario_folder, scenarios
 from .signals import Description, Signals
 from .strategies import Blocks, Parameter, split, strategy
 
@@ -22,5 +22,5 @@ __all__ = [
     "Blocks", "Calibration", "Case", "Comparison", "Compensated", "Curve", "Description", "Estimate", "Fault", "Fit", "Function",
     "Identification", "InputError", "Location", "Loop", "Moves", "Parameter", "PostProcessed", "Program", "Row", "Run",
     "Scenario", "Setup", "Signals", "StoredRun", "Sweep", "SystemFailed", "__version__", "bode", "calibrate", "canon", "compare",
-    "compensate", "identify", "load", "load_plugin", "open", "post", "run", "scenarios", "split", "strategy", "sweep",
+    "compensate", "identify", "load", "load_plugin", "open", "post", "run", "scenario_folder", "scenarios", "split", "strategy", "sweep",
 ]

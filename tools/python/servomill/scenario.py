@@ -1,5 +1,6 @@
 """Scenarios: read, checked, and changed."""
 import os
+import pathlib
 import tomllib
 from typing import Any, Dict, List, Mapping, Optional, Union
 
@@ -54,7 +55,8 @@ class Scenario:
         return value
 
     def estimate(self) -> Dict[str, float]:
-        """Prepares every case and returns what a run would take: motion_s, rows, size_bytes, memory_bytes, computing_s."""
+        """Prepares every case and returns what a run would take: motion_s, rows, size_bytes, memory_bytes, computing_s, and
+        trial_runs, which are part of that: strategies have yet to learn from them."""
         return self._core.estimate()
 
     def __repr__(self) -> str:
@@ -62,8 +64,22 @@ class Scenario:
 
 
 def _installed() -> str:
-    """Folder share/servomill of the installation that this module belongs to."""
-    return os.path.join(os.path.dirname(_core.__file__), _core.share)
+    """Folder with `scenarios` that this module belongs to: share/servomill of its installation, or the source tree of its build."""
+    share = os.path.normpath(os.path.join(os.path.dirname(_core.__file__), _core.share))
+    source = pathlib.Path(__file__).resolve().parents[3]  # a build has links to this file
+    if not os.path.isdir(os.path.join(share, "scenarios")) and (source / "scenarios" / "machines").is_dir():
+        return str(source)
+    return share
+
+
+def scenario_folder() -> pathlib.Path:
+    """Folder of the scenarios that this module brings, with the machines, programs and readings that they name.
+
+    >>> import servomill
+    >>> (servomill.scenario_folder() / "machines" / "hsm600u.toml").exists()
+    True
+    """
+    return pathlib.Path(_installed(), "scenarios")
 
 
 def scenarios() -> List[str]:
