@@ -51,9 +51,16 @@ bool take(std::string_view& bytes, Part& part) {
 
 MachineInstance::MachineInstance(const MachineConstants& machine, const Log& log) : log_(log) {
   assert(!machine.axes.empty());
+  const auto of_axis = [log, stops = stops_](Severity severity, const std::string& message) {
+    if (severity == Severity::stop) {
+      stops->push_back(message);
+    } else {
+      log(severity, message);
+    }
+  };
   for (const AxisConstants& axis : machine.axes) {
     axes_.push_back(
-        std::make_unique<AxisInstance>(std::make_shared<const AxisConstants>(axis), log));
+        std::make_unique<AxisInstance>(std::make_shared<const AxisConstants>(axis), of_axis));
     joints_.push_back(axis.joint);
   }
   if (!machine.kinematics) return;
@@ -97,7 +104,7 @@ bool MachineInstance::terminate() {
 }
 
 void MachineInstance::reset() {
-  stopped_ = in_event_mode_ = false;
+  in_event_mode_ = false;
   p_ST_ = default_p_ST_;
   for (const auto& axis : axes_) axis->reset();
 }
@@ -123,7 +130,10 @@ bool MachineInstance::get_of_tool(std::uint32_t n, double& value) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (!axes_[i]->get(kPosition, Q[joints_[i]])) return false;
   }
-  value = tool_->values(Q, p_ST_)[n];
+  if (!tool_outputs_ || tool_outputs_->Q != Q || tool_outputs_->p_ST != p_ST_) {
+    tool_outputs_ = {Q, p_ST_, tool_->values(Q, p_ST_)};
+  }
+  value = tool_outputs_->values[n];
   return true;
 }
 
@@ -200,37 +210,49 @@ Step MachineInstance::step(double current, double step) {
 }
 
 Step MachineInstance::step_all(double current, double step) {
-  if (stopped_) {
+  if (is_stopped()) {
     refuse("the NC has stopped the machine");
     return Step::refused;
   }
   // only several axes may have to step back
   const Memory before = axes_.size() > 1 ? memory() : Memory();
   double end = std::numeric_limits<double>::infinity();
+  stops_->clear();
+  std::vector<double> stopped_at;  // as stops_
   for (const auto& axis : axes_) {
     const Step done = axis->step(current, step);
     if (done == Step::refused) {
       if (axis != axes_.front()) restore(before);
       return done;
     }
-    if (done == Step::stopped) end = std::min(end, axis->time());
+    if (done == Step::done) continue;
+    stopped_at.push_back(axis->time());
+    end = std::min(end, axis->time());
   }
-  stopped_ = end < std::numeric_limits<double>::infinity();
-  if (!stopped_) return Step::done;
-  return axes_.size() > 1 ? stop_at(current, end, before) : Step::stopped;
-}
-
-// All axes go to the position period in which the first was stopped.
-Step MachineInstance::stop_at(double current, double end, const Memory& before) {
-  for (std::size_t n = 0; n < axes_.size(); ++n) {
-    axes_[n]->restore(before.axes[n]);
-    if (end > current) axes_[n]->step(current, end - current);
+  if (stopped_at.empty()) return Step::done;
+  for (std::size_t n = 0; n < stopped_at.size(); ++n) {
+    if (stopped_at[n] == end) log_(Severity::stop, (*stops_)[n]);
   }
+  if (axes_.size() > 1) stop_at(current, end, before);
   return Step::stopped;
 }
 
+// The others go to the position period in which the first were stopped.
+void MachineInstance::stop_at(double current, double end, const Memory& before) {
+  for (std::size_t n = 0; n < axes_.size(); ++n) {
+    if (axes_[n]->is_stopped() && axes_[n]->time() == end) continue;
+    axes_[n]->restore(before.axes[n]);
+    if (end > current) axes_[n]->step(current, end - current);
+  }
+}
+
+bool MachineInstance::is_stopped() const {
+  return std::any_of(axes_.begin(), axes_.end(),
+                     [](const auto& axis) { return axis->is_stopped(); });
+}
+
 MachineInstance::Memory MachineInstance::memory() const {
-  Memory memory{stopped_, in_event_mode_, {}, p_ST_};
+  Memory memory{in_event_mode_, {}, p_ST_};
   for (const auto& axis : axes_) memory.axes.push_back(axis->memory());
   return memory;
 }
@@ -239,16 +261,15 @@ bool MachineInstance::restore(const Memory& memory) {
   for (std::size_t n = 0; n < axes_.size(); ++n) {
     if (!axes_[n]->restore(memory.axes.at(n))) return false;
   }
-  stopped_ = memory.stopped;
   in_event_mode_ = memory.in_event_mode;
   p_ST_ = memory.p_ST;
   return true;
 }
 
-// "1" or "0" for stopped, and for event mode; then of each axis the number of its bytes, and these;
+// "1" or "0" for event mode; then of each axis the number of its bytes, and these;
 // last the tip of the tool with its checksum.
 std::string MachineInstance::bytes_of(const Memory& memory) const {
-  std::string bytes = {memory.stopped ? '1' : '0', memory.in_event_mode ? '1' : '0'};
+  std::string bytes = {memory.in_event_mode ? '1' : '0'};
   for (std::size_t n = 0; n < axes_.size(); ++n) {
     const std::string own = axes_[n]->bytes_of(memory.axes.at(n));
     append(bytes, std::uint64_t{own.size()});
@@ -263,10 +284,9 @@ std::optional<MachineInstance::Memory> MachineInstance::memory_from(std::string_
     refuse("the serialized state is damaged, or of another axis or version");
     return std::nullopt;
   };
-  const auto is_flag = [](char c) { return c == '0' || c == '1'; };
-  if (bytes.size() < 2 || !is_flag(bytes[0]) || !is_flag(bytes[1])) return damaged();
-  Memory memory{bytes[0] == '1', bytes[1] == '1', {}, {}};
-  bytes.remove_prefix(2);
+  if (bytes.empty() || (bytes[0] != '0' && bytes[0] != '1')) return damaged();
+  Memory memory{bytes[0] == '1', {}, {}};
+  bytes.remove_prefix(1);
   for (const auto& axis : axes_) {
     std::uint64_t size = 0;
     if (!take(bytes, size) || bytes.size() < size) return damaged();

@@ -36,7 +36,7 @@ class MachineInstance {
   /// next tick of a clock.
   Step step(double current, double step);
   double time() const { return axes_.front()->time(); }
-  bool is_stopped() const { return stopped_; }
+  bool is_stopped() const;
 
   /// FMI 3: clocks are read in event mode, which follows initialization and then whatever step ends
   /// where a clock ticks.
@@ -51,7 +51,7 @@ class MachineInstance {
   double next_event_time() const;
 
   struct Memory {
-    bool stopped = false, in_event_mode = false;
+    bool in_event_mode = false;
     std::vector<AxisInstance::Memory> axes;
     Eigen::Vector3d p_ST = Eigen::Vector3d::Zero();
   };
@@ -70,14 +70,22 @@ class MachineInstance {
   bool set_of_tool(std::uint32_t n, double value);
   bool refuse(const std::string& why) const;
   Step step_all(double current, double step);
-  Step stop_at(double current, double end, const Memory& before);
+  void stop_at(double current, double end, const Memory& before);
 
   Log log_;
   std::vector<std::unique_ptr<AxisInstance>> axes_;
   std::vector<int> joints_;   // of the axes
   std::optional<Tool> tool_;  // of a whole machine
   Eigen::Vector3d default_p_ST_ = Eigen::Vector3d::Zero(), p_ST_ = default_p_ST_;
-  bool stopped_ = false;
+  // Outputs of the tool at these positions: they are asked for one after the other.
+  struct ToolOutputs {
+    Joints Q;
+    Eigen::Vector3d p_ST;
+    ToolValues values;
+  };
+  std::optional<ToolOutputs> tool_outputs_;
+  // why axes were stopped in the step that is tried: it counts for the first of them alone
+  std::shared_ptr<std::vector<std::string>> stops_ = std::make_shared<std::vector<std::string>>();
   bool events_used_ = false, early_return_ = false;
   bool in_event_mode_ = false;
 };

@@ -66,6 +66,27 @@ TEST(MachineInstance, StopsAllAxesWhereTheNcStopsTheFirst) {
   EXPECT_EQ(both.step(1 * ms, 1 * ms), Step::refused);
 }
 
+// Both would be stopped within the step, Y later than X.
+TEST(MachineInstance, SaysWhyTheFirstWasStoppedAndNoMore) {
+  std::vector<std::string> said;
+  MachineInstance both(axes_of({0, 1}), [&](Severity severity, const std::string& why) {
+    if (severity == Severity::stop) said.push_back(why);
+  });
+  ASSERT_TRUE(both.set_up(0.0) && both.enter_initialization() && both.exit_initialization());
+  move(both, 2, 0, 10);
+  both.set(kSetpoint, 20 * mm);
+  both.set(kAxisStride + kSetpoint, 4 * mm);
+  EXPECT_EQ(both.step(10 * ms, 1.0), Step::stopped);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].substr(0, said[0].find(':')), "axis X");
+  EXPECT_TRUE(both.is_stopped());
+  const std::string bytes = both.bytes_of(both.memory());
+  MachineInstance other = stepping({0, 1});
+  ASSERT_TRUE(other.restore(*other.memory_from(bytes)));
+  EXPECT_TRUE(other.is_stopped());
+  EXPECT_EQ(other.step(10 * ms, 1 * ms), Step::refused);
+}
+
 TEST(MachineInstance, GoesOnFromBytes) {
   MachineInstance both = stepping({0, 1}), other = stepping({0, 1});
   move(both, 2, 0, 33);
