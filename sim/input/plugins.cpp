@@ -20,23 +20,25 @@ namespace {
 // In resolved documents: a result is data, and must not have code run that it names.
 constexpr std::string_view kLoaded = "loaded:";
 
-// A number without a unit that is known would be taken as one in SI.
-void check_units(const strategies::Entry& entry, const std::string& file) {
-  for (const ParameterSpec& one : entry.parameters) {
-    if (one.unit.empty() || config::parse_unit(one.unit).unit) continue;
-    throw InputError({file}, fmt::format("strategy {}: parameter {} has the unknown unit '{}'",
-                                         entry.name, one.name, one.unit));
-  }
-}
-
 void load(const std::string& file, const Place& at) {
   strategies::load_plugin(file, at);
   for (const strategies::LoadedPlugin& plugin : strategies::loaded_plugins()) {
-    for (const strategies::Entry* entry : plugin.entries) check_units(*entry, plugin.file);
+    for (const strategies::Entry* entry : plugin.entries) {
+      refuse_unknown_units(entry->parameters, entry->name, plugin.file);
+    }
   }
 }
 
 }  // namespace
+
+void refuse_unknown_units(std::span<const ParameterSpec> parameters, std::string_view strategy,
+                          const std::string& from) {
+  for (const ParameterSpec& one : parameters) {
+    if (one.unit.empty() || config::parse_unit(one.unit).unit) continue;
+    throw InputError({from}, fmt::format("strategy {}: parameter {} has the unknown unit '{}'",
+                                         strategy, one.name, one.unit));
+  }
+}
 
 void load_plugin(const std::string& file) { load(file, {}); }
 

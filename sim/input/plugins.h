@@ -2,7 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
+
+#include "plant/vocabulary/parameters.h"
 
 namespace servomill::sim::config {
 class Reader;
@@ -20,6 +24,12 @@ void isolate_plugins();
 /// Sets the function that receives, on a thread of its own, a sentence about a plug-in that did not
 /// return or crashed, before the process ends with status 3.
 void on_plugin_failure(std::function<void(const std::string& why)> then);
+
+/// A number without a unit that is known would be taken as one in SI.
+/// @param from  of messages: who declares the parameters of the strategy
+/// @throws InputError for a parameter of a strategy that has an unknown unit
+void refuse_unknown_units(std::span<const ParameterSpec> parameters, std::string_view strategy,
+                          const std::string& from);
 
 /// Loads those of the key `plugins` of a scenario. A resolved document has the names of the files
 /// alone, and those must have been loaded: reading a result runs no code that it names.

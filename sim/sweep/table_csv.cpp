@@ -83,6 +83,15 @@ std::string csv_name(const std::string& path) {
   return (path.ends_with(".h5") ? path.substr(0, path.size() - 3) : path) + ".csv";
 }
 
+std::string writable_table(std::string path, const Selection& selection, const std::string& shard,
+                           bool force) {
+  using system::Existing;
+  if (!shard.empty()) path = shard_name(path, selection);
+  path = system::output_target(path, force ? Existing::replaced : Existing::resumed);
+  system::output_target(csv_name(path), Existing::replaced);
+  return path;
+}
+
 void refuse_foreign_csv(const std::string& path, bool force) {
   system::output_target(path, system::Existing::replaced);
   std::error_code ignored;

@@ -12,7 +12,7 @@
 
 #include "plant/vocabulary/checksum.h"
 #include "plant/vocabulary/input_error.h"
-#include "sim/config/quantity.h"
+#include "sim/input/plugins.h"
 #include "strategies/plugin_file.h"
 #include "tools/python/computing.h"
 #include "tools/python/strategy_parts.h"
@@ -46,16 +46,9 @@ class PythonStrategy final : public strategies::Strategy {
   Made made_;
 };
 
-void check_unit(const DeclaredStrategy& declared, const DeclaredKey& key) {
-  if (key.unit.empty() || sim::config::parse_unit(key.unit).unit) return;
-  throw InputError({declared.name},
-                   "parameter " + key.name + " has the unknown unit '" + key.unit + "'");
-}
-
 void complete(DeclaredStrategy& declared) {
   declared.label = "strategy " + declared.name + " (Python)";
   for (const DeclaredKey& key : declared.keys) {
-    check_unit(declared, key);
     declared.specs.push_back({.name = key.name,
                               .help = key.help,
                               .unit = key.unit,
@@ -63,6 +56,7 @@ void complete(DeclaredStrategy& declared) {
                               .min = key.min,
                               .max = key.max});
   }
+  sim::input::refuse_unknown_units(declared.specs, declared.name, "servomill.strategy");
   strategies::Entry& entry = declared.entry;
   entry.name = declared.name;
   entry.summary = declared.summary;

@@ -12,7 +12,6 @@
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
 #include "sim/sweep/table_csv.h"
-#include "sim/system/output_name.h"
 #include "tools/python/computing.h"
 #include "tools/python/scenario.h"
 
@@ -25,16 +24,6 @@ struct SweepTarget {
   std::string path, points, shard;
   bool force = false;
 };
-
-// The table that is gone on with, or begun; where it is written.
-std::string table_target(const SweepTarget& target, const sim::sweep::Selection& selection) {
-  using sim::system::Existing;
-  std::string path = target.path;
-  if (!target.shard.empty()) path = sim::sweep::shard_name(path, selection);
-  path = sim::system::output_target(path, target.force ? Existing::replaced : Existing::resumed);
-  sim::system::output_target(sim::sweep::csv_name(path), Existing::replaced);
-  return path;
-}
 
 std::vector<bool> points_done(const sim::sweep::SweepTable& table) {
   std::vector<bool> done;
@@ -49,7 +38,7 @@ std::string run_sweep(const LoadedScenario& loaded, const SweepTarget& target, u
   const sim::sweep::Sweep sweep(loaded.path, loaded.changes, loaded.text);
   const sim::sweep::Selection selection =
       sim::sweep::read_selection(sweep.design().size(), target.points, target.shard);
-  std::string path = table_target(target, selection);
+  std::string path = sim::sweep::writable_table(target.path, selection, target.shard, target.force);
   sweep.refuse_hopeless();
   sim::sweep::SweepTable table(path, target.force, sweep.base(),
                                sim::sweep::columns_of(sweep.base()), selection);

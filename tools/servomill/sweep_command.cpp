@@ -16,7 +16,6 @@
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
 #include "sim/sweep/table_csv.h"
-#include "sim/system/output_name.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
 #include "tools/servomill/json_list.h"
@@ -122,13 +121,10 @@ struct SweepFiles {
 // Files that a sweep writes; refused where it may not.
 SweepFiles files_of(const Options& options, const sim::sweep::Sweep& sweep,
                     const sim::sweep::Selection& selection) {
-  std::string out = output_name(options, sweep.base().name, "_sweep");
+  const std::string out = output_name(options, sweep.base().name, "_sweep");
   const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
-  if (options.has("shard")) out = sim::sweep::shard_name(out, selection);
-  out = sim::system::output_target(
-      out, options.has("force") ? sim::system::Existing::replaced : sim::system::Existing::resumed);
-  sim::system::output_target(sim::sweep::csv_name(out), sim::system::Existing::replaced);
-  return {out, signals};
+  const std::string shard = options.has("shard") ? options.get<std::string>("shard") : "";
+  return {sim::sweep::writable_table(out, selection, shard, options.has("force")), signals};
 }
 
 // Prints which points of a table are there before a sweep goes on.

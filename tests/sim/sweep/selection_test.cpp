@@ -1,10 +1,14 @@
 #include "sim/sweep/selection.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/sweep/table_csv.h"
 
 namespace servomill::sim::sweep::selection_test {
 namespace {
@@ -80,6 +84,17 @@ TEST(ReadSelection, SaysWhatIsWrong) {
 TEST(ShardName, StandsBeforeTheEnding) {
   EXPECT_EQ(shard_name("a/out.h5", {0, 9, 2, 8}), "a/out.2-of-8.h5");
   EXPECT_EQ(shard_name("out", {0, 9, 1, 1}), "out.1-of-1");
+}
+
+TEST(WritableTable, IsThatOfTheShardAndRefusedWhereItIsAFolder) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / ("tables_" + std::to_string(getpid()));
+  fs::create_directories(folder / "taken.csv");
+  const std::string path = folder / "out.h5";
+  EXPECT_EQ(writable_table(path, {0, 9, 1, 1}, "", false), path);
+  EXPECT_EQ(writable_table(path, {0, 9, 2, 8}, "2/8", false), (folder / "out.2-of-8.h5").string());
+  EXPECT_THROW(writable_table(folder / "taken.h5", {0, 9, 1, 1}, "", true), InputError);
+  fs::remove_all(folder);
 }
 
 }  // namespace
