@@ -215,7 +215,7 @@ class Lessons {
   SharedMotion original_;    // of the program before other strategies
 };
 
-// What `step` returns, its faults at the place of the strategy.
+// Result of `step`; its faults get the place of the strategy.
 template <typename Step>
 auto with_place(const LearningCase& one, std::size_t number, const Step& step) {
   try {

@@ -38,7 +38,7 @@ TEST(TaughtCases, HaveMadeTheirTrialRuns) {
   EXPECT_FALSE(cases[1].parts().trials[0].empty());
 }
 
-// What is estimated before them takes longer by as many runs as there are.
+// The estimate before them is longer by as many runs as there are.
 TEST(Estimate, ContainsTheTrialRunsToCome) {
   const model::Scenario scenario = small_scenario(kProgram, kPlain + learning("two", 2));
   std::vector<PreparedCase> cases = prepare_untaught(scenario);

@@ -99,6 +99,7 @@ export class Columns {
     this.report = report;
     this.columns = new Map();
     this.pyramids = new Map();
+    this.found = new Map();
     this.wanted = 0;
     this.done = 0;
     this.queue = Promise.resolve();
@@ -108,6 +109,26 @@ export class Columns {
   forget() {
     this.columns.clear();
     this.pyramids.clear();
+    this.found.clear();
+  }
+
+  /**
+   * The result of a search in a column, which is made once.
+   * @template T
+   * @param {string} what
+   * @param {object} spec
+   * @param {() => Promise<T>} search
+   * @returns {Promise<T>}
+   */
+  once(what, spec, search) {
+    const key = JSON.stringify([what, spec]);
+    let result = this.found.get(key);
+    if (!result) {
+      result = search();
+      this.found.set(key, result);
+      result.catch(() => this.found.delete(key));
+    }
+    return result;
   }
 
   /** @returns {Promise<Column>} */

@@ -26,7 +26,9 @@ class Points {
 }
 
 /** First rows behind a gap of a recording of windows. */
-export async function gapRows(columns, spec) {
+const gapRows = (columns, spec) => columns.once("gaps", spec, () => findGaps(columns, spec));
+
+async function findGaps(columns, spec) {
   const [column, pyramid] = [await columns.column(spec), await columns.pyramid(spec)];
   const rows = [];
   const { size, min, max } = pyramid.levels[0];

@@ -11,7 +11,9 @@ const CIRCLE_POINTS = 7200; // of a circle that is drawn
  * @param {{file: number, servo: string}} request
  * @returns {Promise<{section: number, from: number, to: number, time: [number, number], s: [number, number]}[]>}
  */
-export async function sections(columns, { file, servo }) {
+export const sections = (columns, request) => columns.once("passes", request, () => findPasses(columns, request));
+
+async function findPasses(columns, { file, servo }) {
   const spec = (name) => ({ file, path: `${servo}/${name}`, column: 0 });
   const [column, pyramid] = [await columns.column(spec("section")), await columns.pyramid(spec("section"))];
   const passes = [];
