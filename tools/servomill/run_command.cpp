@@ -157,6 +157,15 @@ void add_run_options(Options& options) {
                 "calls exit() or does not return within 10 s ends its case, not the command");
 }
 
+// Prints what a long run takes: before its trial runs, which take time, too, or else before it.
+void tell_once(bool& is_told, const sim::preparation::RunEstimate& takes, ProgressLine& line) {
+  if (std::exchange(is_told, true)) return;
+  const auto hidden = line.hidden();
+  if (sim::preparation::is_worth_telling(takes))
+    fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
+  if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
+}
+
 }  // namespace
 
 int run_command(const Arguments& arguments) {
@@ -188,17 +197,10 @@ int run_command(const Arguments& arguments) {
     store->add(one);
     kept.add(one);
   };
-  bool is_told = false;  // trial runs take time, too, and come first
-  const auto tell = [&](const sim::preparation::RunEstimate& takes) {
-    if (std::exchange(is_told, true) || !sim::preparation::is_worth_telling(takes)) return;
-    const auto hidden = line.hidden();
-    fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
-  };
-  control.trials_come = tell;
+  bool is_told = false;
+  control.trials_come = [&](const auto& takes) { tell_once(is_told, takes, line); };
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
-    tell(takes);
-    const auto hidden = line.hidden();
-    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
+    tell_once(is_told, takes, line);
     sim::preparation::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
