@@ -5,7 +5,6 @@
 """
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -14,8 +13,6 @@ import unittest
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 PATIENCE = 60  # s, far more than anything here takes
-LEARNING = os.path.join(HERE, "..", "..", "scenarios", "precompensation", "s_part.toml")
-MAX_CHECK = 5  # s of processor; the trial runs take 15
 
 # structure and limits: no drives
 ROUTER = """name = "router"
@@ -392,20 +389,6 @@ name = "cycle_time"
         self.assertIn("part.ngc:2:1: error", faults("ignore_codes = []\n", 'ignore_codes = ["M82"]\n'))
         done = self.check(program, "--machine", "machine.toml", status=0)
         self.assertNotIn("error", done.stderr)
-
-    # Trial runs take as long as the case itself: of this scenario many times as long as all that is checked.
-    def test_trial_runs_are_counted_and_not_made(self):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run([SERVOMILL, "check", LEARNING], capture_output=True, text=True, timeout=PATIENCE, check=True)
-        took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        self.assertRegex(done.stdout, r"no faults\n.*: not run: \d+ trial runs from which strategies learn in cases .*learning")
-        self.assertLess(took, MAX_CHECK)
-        json_ = subprocess.run([SERVOMILL, "check", LEARNING, "--json"], capture_output=True, text=True, timeout=PATIENCE, check=True)
-        self.assertIn("trial runs", json.loads(json_.stdout)[0]["not_run"])
-        self.write("part.ngc", "G21\nM2\n")
-        plain = subprocess.run([SERVOMILL, "check", "part.ngc", "--json"], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE,
-                               check=True)
-        self.assertIsNone(json.loads(plain.stdout)[0]["not_run"])
 
     def test_a_work_offset_of_an_axis_that_the_machine_lacks(self):
         done = self.check("G0 X1\nM2\n", "--machine", "router.toml", "--work-offset", "C=5", status=2)

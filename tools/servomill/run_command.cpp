@@ -158,8 +158,9 @@ void add_run_options(Options& options) {
 }
 
 // Prints what a long run takes: before its trial runs, which take time, too, or else before it.
-void tell_once(bool& is_told, const sim::preparation::RunEstimate& takes, ProgressLine& line) {
-  if (std::exchange(is_told, true)) return;
+void print_estimate_once(bool& is_printed, const sim::preparation::RunEstimate& takes,
+                         ProgressLine& line) {
+  if (std::exchange(is_printed, true)) return;
   const auto hidden = line.hidden();
   if (sim::preparation::is_worth_telling(takes))
     fmt::print(stderr, "estimate: {}\n", sim::preparation::to_string(takes));
@@ -197,10 +198,10 @@ int run_command(const Arguments& arguments) {
     store->add(one);
     kept.add(one);
   };
-  bool is_told = false;
-  control.trials_come = [&](const auto& takes) { tell_once(is_told, takes, line); };
+  bool is_printed = false;
+  control.trials_come = [&](const auto& takes) { print_estimate_once(is_printed, takes, line); };
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
-    tell_once(is_told, takes, line);
+    print_estimate_once(is_printed, takes, line);
     sim::preparation::refuse_full_disk(scenario, takes, control.scratch_folder);
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
