@@ -108,6 +108,10 @@ class Adjuster {
       out_.errors.component(function.name) =
           function.basis.function(out_.values.segment(function.first, function.basis.size()));
     }
+    for (const SoughtGrid& grid : unknowns.grids) {
+      out_.errors.component(grid.name).grids.emplace_back(
+          grid.basis.points(out_.values.segment(grid.first, grid.basis.size())));
+    }
     const Deviations machine(chain_, out_.errors);
     out_.residuals.clear();
     for (const Observation& one : observations_.all) {
@@ -368,14 +372,20 @@ class Adjuster {
 
 Adjustment adjust(const readings::Readings& readings, const Observations& observations,
                   const plant::MachineChain& chain, std::vector<SoughtLocation> locations,
-                  std::vector<SoughtFunction> functions, const AdjustmentOptions& options) {
+                  std::vector<SoughtFunction> functions, std::vector<SoughtGrid> grids,
+                  const AdjustmentOptions& options) {
   Unknowns unknowns{.set_up = observations.set_up,
                     .locations = std::move(locations),
-                    .functions = std::move(functions)};
+                    .functions = std::move(functions),
+                    .grids = std::move(grids)};
   int first = unknowns.first_function();
   for (SoughtFunction& function : unknowns.functions) {
     function.first = first;
     first += function.basis.size();
+  }
+  for (SoughtGrid& grid : unknowns.grids) {
+    grid.first = first;
+    first += grid.basis.size();
   }
   return Adjuster(readings, observations, chain, std::move(unknowns), options).run();
 }

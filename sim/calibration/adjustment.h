@@ -9,6 +9,7 @@
 
 #include "plant/geometry/error_model.h"
 #include "sim/calibration/function_basis.h"
+#include "sim/calibration/grid_basis.h"
 #include "sim/calibration/normal_equations.h"
 #include "sim/calibration/observations.h"
 
@@ -32,20 +33,32 @@ struct SoughtFunction {
                               // is straight between them
 };
 
-/// The unknowns in their order: set-up, location errors, functions. Of unknowns that the readings
-/// know only in combination, the later one is left out (0), so that the earlier one holds the
-/// combination.
+/// What a component error has over its axis and another one, beside a function of its axis.
+struct SoughtGrid {
+  plant::ErrorName name;
+  GridBasis basis;
+  double size = 0.3e-3;  // m or rad; expected of each of its coefficients
+  int first = 0;         // unknown, in Adjustment::values
+};
+
+/// "EXX over X and Z"
+std::string name_of(const SoughtGrid& grid);
+
+/// The unknowns in their order: set-up, location errors, functions, grids. Of unknowns that the
+/// readings know only in combination, the later one is left out (0), so that the earlier one holds
+/// the combination.
 struct Unknowns {
   std::vector<SetUpUnknown> set_up;
   std::vector<SoughtLocation> locations;
   std::vector<SoughtFunction> functions;
+  std::vector<SoughtGrid> grids;
 
   int first_location() const { return static_cast<int>(set_up.size()); }
   int first_function() const { return first_location() + static_cast<int>(locations.size()); }
   int size() const;
   /// Standard deviation that is expected of an unknown, about 0.
   std::optional<double> prior(int unknown) const;
-  /// "EC0Y", "EXX", "X, laser: zero"
+  /// "EC0Y", "EXX", "EXX over X and Z", "X, laser: zero"
   std::string name(int unknown, const readings::Readings& readings) const;
 };
 
@@ -90,10 +103,11 @@ struct AdjustmentOptions {
   bool predicts = false;  // leaves the readings of each target out in turn
 };
 
-/// @param locations, functions  what is looked for; `first` is set here
+/// @param locations, functions, grids  what is looked for; `first` is set here
 Adjustment adjust(const readings::Readings& readings, const Observations& observations,
                   const plant::MachineChain& chain, std::vector<SoughtLocation> locations,
-                  std::vector<SoughtFunction> functions, const AdjustmentOptions& options = {});
+                  std::vector<SoughtFunction> functions, std::vector<SoughtGrid> grids,
+                  const AdjustmentOptions& options = {});
 
 /// An unknown of which less than this share is its own counts as a combination of others.
 inline constexpr double kOwnShare = 1e-4;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "sim/calibration/short_waves.h"
+#include "sim/calibration/sought_grids.h"
 #include "sim/metrology/location_errors.h"
 
 namespace servomill::sim::calibration {
@@ -253,16 +254,18 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
     location.size = settings_of(settings, name).size.value_or(location.size);
     locations.push_back(location);
   }
+  const std::vector<SoughtGrid> grids =
+      sought_grids(out.readings, out.observations, chain, settings);
   out.smoothness = choose_smoothness(out.settings, [&](const CalibrationSettings& tried) {
     return adjust(out.readings, out.observations, chain, locations,
-                  sought_functions(out.readings, out.observations, chain, tried, {}),
+                  sought_functions(out.readings, out.observations, chain, tried, {}), grids,
                   {.robust = tried.robust, .predicts = true});
   });
   std::vector<SoughtFunction> functions =
       sought_functions(out.readings, out.observations, chain, settings, {});
   const AdjustmentOptions options{.robust = settings.robust};
   const auto adjusted = [&](const Observations& observations) {
-    return adjust(out.readings, observations, chain, locations, functions, options);
+    return adjust(out.readings, observations, chain, locations, functions, grids, options);
   };
   out.adjustment = adjusted(out.observations);
   const std::vector<Axis> none = axes_without_reversal(out.adjustment, settings);

@@ -14,6 +14,12 @@
 
 namespace servomill::sim::calibration {
 
+/// A grid over the axis of an error and another one, as a form asks for it.
+struct GridSettings {
+  Axis across = Axis::X;                    // the other axis
+  std::array<std::optional<int>, 2> knots;  // of its own axis, of the other one; none: the targets
+};
+
 /// Form of one error, or of all, as the table `adjustment` of a file of readings asks for it.
 struct FormSettings {
   std::optional<int> degree;
@@ -24,6 +30,7 @@ struct FormSettings {
   std::optional<int> reversal_degree;
   std::optional<double> reversal_distance;  // m or rad
   std::optional<double> size;               // m or rad; standard deviation that is expected
+  std::vector<GridSettings> grids = {};     // of one error: over another axis, too
 };
 
 struct CalibrationSettings {
@@ -94,6 +101,26 @@ struct KnownFunction {
 /// Every function of which something is known, at `points` equally spaced places, more where it has
 /// shorter periods.
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points = 41);
+
+/// What a component error has over two axes beside its mean over the other one.
+struct KnownGrid {
+  plant::ErrorName name;
+  GridForm form;
+  double least = 0.0, most = 0.0;  // m or rad, at its knots
+  double sigma = 0.0;              // m or rad, largest standard uncertainty at its knots
+  bool is_combined = false;        // a part of it is left out, or holds what was left out
+};
+std::vector<KnownGrid> known_grids(const Adjustment& adjustment);
+
+/// Error at positions of its own axis, at one position of the other axis of its grid.
+struct KnownLine {
+  plant::ErrorName name;
+  Axis across = Axis::X;
+  double at = 0.0;                      // m or rad of the other axis
+  std::vector<double> s, value, sigma;  // m or rad
+};
+/// At each knot of the other axis of each grid, whose function of the own axis is part of it.
+std::vector<KnownLine> lines_of_grids(const Adjustment& adjustment);
 
 /// "EA0C is determined only in combination: EA0Y holds EA0Y + EA0C", one sentence for each
 /// combination; functions without any effect on the readings in one sentence.

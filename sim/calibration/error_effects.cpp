@@ -35,6 +35,11 @@ ErrorEffects::ErrorEffects(const plant::MachineChain& chain, const Unknowns& unk
     errors.component(function.name) = plant::constant(kUnitError);
     unit_.emplace_back(chain, errors);
   }
+  for (const SoughtGrid& grid : unknowns.grids) {
+    plant::ErrorModel errors;
+    errors.component(grid.name) = plant::constant(kUnitError);
+    unit_.emplace_back(chain, errors);
+  }
 }
 
 void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)>& add) const {
@@ -57,6 +62,23 @@ void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)
                              : size_ + line_of_[f] + value.index - function.basis.size();
       add(column, effect * value.value);
     }
+  }
+  visit_grids(pose, add);
+}
+
+void ErrorEffects::visit_grids(const Pose& pose,
+                               const std::function<void(int, double)>& add) const {
+  const std::size_t first_unit = unknowns_.locations.size() + unknowns_.functions.size();
+  std::vector<BasisValue> values;
+  for (std::size_t g = 0; g < unknowns_.grids.size(); ++g) {
+    const SoughtGrid& grid = unknowns_.grids[g];
+    const double effect = pose.weight * unit_[first_unit + g].first_order_at(pose) / kUnitError;
+    if (std::abs(effect) < kNothing) continue;
+    const auto& axes = grid.basis.form().axes;
+    values.clear();
+    grid.basis.evaluate(pose.Q[*chain_.layout.joint_of(axes[0])],
+                        pose.Q[*chain_.layout.joint_of(axes[1])], values);
+    for (const BasisValue& value : values) add(grid.first + value.index, effect * value.value);
   }
 }
 

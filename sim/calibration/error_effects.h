@@ -9,7 +9,8 @@
 
 namespace servomill::sim::calibration {
 
-/// Effects of location errors and functions at poses, to first order about the ideal machine.
+/// Effects of location errors, functions and grids at poses, to first order about the ideal
+/// machine.
 ///
 /// Unknowns are followed by the lines of functions (FunctionBasis): columns of a row are `size()`
 /// unknowns and behind them `lines()` lines, and the row of the unknowns alone is
@@ -33,12 +34,14 @@ class ErrorEffects {
   Eigen::RowVectorXd row(const Pose& pose) const;
 
  private:
+  void visit_grids(const Pose& pose, const std::function<void(int, double)>& add) const;
+
   const plant::MachineChain& chain_;
   const Unknowns& unknowns_;
   int size_;
   Eigen::MatrixXd P_;
   std::vector<int> line_of_;      // first line of each function
-  std::vector<Deviations> unit_;  // of each location error and each function
+  std::vector<Deviations> unit_;  // of each location error, function and grid
 };
 
 /// Covariance of the deviation of the tip (3x3, m^2, in W) that is left once the adjusted errors

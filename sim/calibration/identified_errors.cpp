@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <stdexcept>
 
 #include "plant/vocabulary/units.h"
-#include "sim/calibration/report.h"
 #include "sim/calibration/short_waves.h"
-#include "sim/input/machine_document.h"
-#include "sim/input/read_machine.h"
 #include "sim/input/write_identified.h"
-#include "sim/system/write_file.h"
 
 namespace servomill::sim::calibration {
 namespace {
@@ -23,8 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using plant::ErrorFunction;
 using plant::ErrorName;
-
-constexpr double kSame = 1e-13;  // m, rad; units round
 
 // One number of a function in the file: its key behind the name, its size in SI.
 struct Entry {
@@ -94,9 +86,11 @@ std::string list(const double* numbers, std::size_t count) {
   return fmt::format("[{}]", fmt::join(numbers, numbers + count, ", "));
 }
 
+// What the table of an error has of a function.
 // @param short_periods  of waves whose amplitudes are 0, as far as is known
-std::string line_of(const ErrorName& name, const FunctionForm& form, const VectorXd& numbers,
-                    const std::vector<double>& short_periods) {
+std::vector<std::string> parts_of(const ErrorName& name, const FunctionForm& form,
+                                  const VectorXd& numbers,
+                                  const std::vector<double>& short_periods) {
   const Names names = names_of(name);
   std::vector<std::string> parts;
   const double* at = numbers.data();
@@ -132,7 +126,28 @@ std::string line_of(const ErrorName& name, const FunctionForm& form, const Vecto
                                 names.value, list(at, std::size_t(form.reversal_degree + 1)),
                                 names.travel, form.reversal_distance / names.travel_si));
   }
-  return fmt::format("{} = {{ {} }}", plant::to_string(name), fmt::join(parts, ", "));
+  return parts;
+}
+
+// A grid as the file has it.
+std::string grid_text(const ErrorName& name, const plant::GridPoints& points) {
+  std::vector<std::string> at, rows;
+  for (std::size_t axis = 0; axis < points.axes.size(); ++axis) {
+    std::vector<double> shown = points.at[axis];
+    for (double& position : shown) position /= is_linear(points.axes[axis]) ? mm : deg;
+    at.push_back(list(shown.data(), shown.size()));
+  }
+  const std::size_t across = points.at[1].size();
+  std::vector<double> values = points.error;
+  for (double& value : values) value /= um;
+  for (std::size_t i = 0; i < points.at[0].size(); ++i) {
+    rows.push_back(list(values.data() + i * across, across));
+  }
+  const bool linear = is_linear(points.axes[0]);
+  const char* units = linear != is_linear(points.axes[1]) ? "mm_deg" : linear ? "mm" : "deg";
+  return fmt::format("{{ axes = \"{}{}\", at_{} = [{}], value_{} = [{}] }}", letter(points.axes[0]),
+                     letter(points.axes[1]), units, fmt::join(at, ", "), names_of(name).value,
+                     fmt::join(rows, ", "));
 }
 
 // Collects keys, units, values and the linear map from the unknowns to the numbers.
@@ -145,6 +160,8 @@ class Collector {
     const Unknowns& unknowns = adjustment_.unknowns;
     for (std::size_t k = 0; k < unknowns.locations.size(); ++k) add_location(k);
     for (std::size_t f = 0; f < unknowns.functions.size(); ++f) add_function(f);
+    for (const SoughtGrid& grid : unknowns.grids) add_grid(grid);
+    add_components();
     const auto n = Index(out_.values.values.size());
     MatrixXd G = MatrixXd::Zero(n, unknowns.size());
     for (const auto& [row, column, factor] : map_) G(row, column) += factor;
@@ -193,6 +210,9 @@ class Collector {
       const SoughtFunction& function = unknowns.functions[f];
       numbers += entries_of(function.name, function.basis.form()).size();
       if (adjustment_.short_waves.at(f) > 0.0) ++with_waves;
+    }
+    for (const SoughtGrid& grid : unknowns.grids) {
+      numbers += grid.basis.points(VectorXd::Zero(grid.basis.size())).error.size();
     }
     const int free = kMaxCovarianceNumbers - static_cast<int>(numbers);
     return std::clamp(free / std::max(2 * static_cast<int>(with_waves), 1), 0, kUsual);
@@ -244,7 +264,42 @@ class Collector {
       waves = short_waves_of(function.basis, periods_);
       add_waves(function, size, first, entries, waves);
     }
-    out_.lines.push_back(line_of(function.name, form, numbers, waves.periods));
+    components_.push_back(
+        {function.name, parts_of(function.name, form, numbers, waves.periods), {}});
+  }
+
+  // Numbers of a grid have no unit in their list.
+  void add_grid(const SoughtGrid& grid) {
+    const int n = grid.basis.size();
+    if (!is_known(grid.first, n)) return;
+    const auto points = grid.basis.points(adjustment_.values.segment(grid.first, n));
+    auto of = std::find_if(components_.begin(), components_.end(),
+                           [&](const Component& one) { return one.name == grid.name; });
+    if (of == components_.end()) of = components_.insert(of, {grid.name, {}, {}});
+    const std::size_t across = points.at[1].size();
+    const Index first = Index(out_.values.values.size());
+    for (std::size_t k = 0; k < points.error.size(); ++k) {
+      add_number(fmt::format("{}.grid[{}].value_{}[{}][{}]", plant::to_string(grid.name),
+                             of->grids.size(), names_of(grid.name).value, k / across, k % across),
+                 "1", points.error[k] / um);
+    }
+    for (int i = 0; i < n; ++i) {
+      const auto column = grid.basis.points(VectorXd::Unit(n, i)).error;
+      for (std::size_t k = 0; k < column.size(); ++k) {
+        if (column[k] != 0.0) map_.push_back({first + Index(k), grid.first + i, column[k] / um});
+      }
+    }
+    of->grids.push_back(grid_text(grid.name, points));
+  }
+
+  void add_components() {
+    for (Component& one : components_) {
+      if (!one.grids.empty()) {
+        one.parts.push_back(fmt::format("grid = [{}]", fmt::join(one.grids, ", ")));
+      }
+      out_.lines.push_back(
+          fmt::format("{} = {{ {} }}", plant::to_string(one.name), fmt::join(one.parts, ", ")));
+    }
   }
 
   // Errors of variance 1 by the numbers that they change.
@@ -252,6 +307,12 @@ class Collector {
     Index first = 0;
     double variance = 0.0;  // m^2, rad^2
     MatrixXd map;           // numbers x errors
+  };
+
+  // Table of one component error.
+  struct Component {
+    ErrorName name;
+    std::vector<std::string> parts, grids;
   };
 
   struct Part {
@@ -264,81 +325,14 @@ class Collector {
   int periods_;
   std::vector<Part> map_;
   std::vector<WaveNumbers> waves_;
+  std::vector<Component> components_;
   IdentifiedErrors out_;
 };
-
-std::string text_of(const Calibration& calibration, const IdentifiedErrors& errors,
-                    const std::string& machine, const std::string& model) {
-  std::string out =
-      fmt::format("# Errors identified from {}\n",
-                  std::filesystem::path(calibration.readings.path).filename().string());
-  for (const std::string& sentence : unidentifiable_sentences(calibration)) {
-    out += fmt::format("# {}\n", sentence);
-  }
-  out += fmt::format("based_on = {}  # machine that was measured\n\n[errors.{}]\n",
-                     config::quoted_text(machine), model);
-  for (const std::string& line : errors.lines) out += line + "\n";
-  if (errors.values.keys.size() > std::size_t(kMaxCovarianceNumbers)) {
-    return out + fmt::format("# The covariance of these {} numbers is not written: at most {}.\n",
-                             errors.values.keys.size(), kMaxCovarianceNumbers);
-  }
-  return out + "\n[identified]\n" + input::table_lines(errors.values);
-}
-
-bool same_functions(const Adjustment& adjustment, const plant::ErrorModel& read) {
-  for (const auto& [name, size] : adjustment.unknowns.locations) {
-    if (std::abs(read.location(name) - adjustment.errors.location(name)) > kSame) return false;
-  }
-  for (const KnownFunction& known : functions_along_travel(adjustment)) {
-    for (const double direction : {-1.0, 0.0, 1.0}) {
-      const auto one = plant::travelling(read.component(known.name), direction);
-      const auto other = plant::travelling(adjustment.errors.component(known.name), direction);
-      for (const double s : known.s) {
-        if (std::abs(one.value(s) - other.value(s)) > kSame) return false;
-      }
-    }
-  }
-  return true;
-}
-
-void refuse_unreadable(const std::string& text, const std::string& path,
-                       const Calibration& calibration, const IdentifiedErrors& errors,
-                       const std::string& model) {
-  input::InputFiles files;
-  const input::MachineDocument read = input::machine_document_of_text(text, path, files);
-  const input::MachineDescription machine = input::described(read.document);
-  const auto found = machine.errors.find(model);
-  if (found == machine.errors.end() || !same_functions(calibration.adjustment, found->second)) {
-    throw std::logic_error(path + ": the error model differs when read back");
-  }
-  if (read.identified && (read.identified->values != errors.values.values ||
-                          read.identified->covariance != errors.values.covariance)) {
-    throw std::logic_error(path + ": the covariance differs when read back");
-  }
-}
 
 }  // namespace
 
 IdentifiedErrors identified_errors(const Calibration& calibration, const std::string& model) {
   return Collector(calibration.adjustment, model).collect();
-}
-
-void write_identified_errors(const std::string& path, const Calibration& calibration,
-                             const std::string& machine, const std::string& model, bool force) {
-  system::refuse_unwritable_text(path, force);
-  if (input::read_machine_description(machine).errors.contains(model)) {
-    throw InputError(
-        {machine},
-        fmt::format("already has an error model {}; choose another name with --model", model));
-  }
-  const IdentifiedErrors errors = identified_errors(calibration, model);
-  if (errors.values.keys.empty()) {
-    throw InputError({calibration.readings.path}, "does not determine any error");
-  }
-  const std::string text =
-      text_of(calibration, errors, input::machine_seen_from(path, machine), model);
-  refuse_unreadable(text, path, calibration, errors, model);
-  system::write_text_file(path, text, force);
 }
 
 }  // namespace servomill::sim::calibration

@@ -61,6 +61,25 @@ std::string group_table(const Calibration& calibration) {
   return system::text_table(std::move(lines), 0, {2, 3, 4, 5, 6});
 }
 
+// "0 to 500 mm"
+std::string range_text(const std::vector<double>& knots, Axis axis) {
+  const double unit = is_linear(axis) ? mm : deg;
+  return fmt::format("{:g} to {:g} {}", knots.front() / unit, knots.back() / unit,
+                     is_linear(axis) ? "mm" : "deg");
+}
+
+// Beside the function of the own axis.
+std::vector<std::string> grid_line(const KnownGrid& known) {
+  const auto& [own, across] = known.form.axes;
+  return {
+      fmt::format("{} over {} and {}", plant::to_string(known.name), letter(own), letter(across)),
+      fmt::format("{:.3f} to {:.3f}", known.least / um, known.most / um),
+      fmt::format("{:.2g}", 2.0 * known.sigma / um),
+      is_linear(known.name.direction) ? "um" : "urad",
+      range_text(known.form.knots[0], own) + ", " + range_text(known.form.knots[1], across),
+      known.is_combined ? "in combination" : ""};
+}
+
 std::string error_table(const Calibration& calibration) {
   const Adjustment& adjustment = calibration.adjustment;
   Lines lines = {{"error", "value", "+- (k = 2)", "unit", "over", ""}};
@@ -80,20 +99,17 @@ std::string error_table(const Calibration& calibration) {
   for (const KnownFunction& known : functions_along_travel(adjustment)) {
     const auto [least, most] = std::minmax_element(known.value.begin(), known.value.end());
     const double sigma = *std::max_element(known.sigma.begin(), known.sigma.end());
-    const bool linear = is_linear(known.name.axis);
-    const double unit = linear ? mm : deg;
     lines.push_back(
         {plant::to_string(known.name), fmt::format("{:.3f} to {:.3f}", *least / um, *most / um),
          fmt::format("{:.2g}", 2.0 * sigma / um), is_linear(known.name.direction) ? "um" : "urad",
-         fmt::format("{:g} to {:g} {}", known.s.front() / unit, known.s.back() / unit,
-                     linear ? "mm" : "deg"),
-         remark(known.name)});
+         range_text(known.s, known.name.axis), remark(known.name)});
     if (!known.reversal) continue;
     const auto& [value, uncertainty] = *known.reversal;
     lines.push_back({"  reversal", fmt::format("{:.3f}", value / um),
                      fmt::format("{:.2g}", 2.0 * uncertainty / um),
                      is_linear(known.name.direction) ? "um" : "urad", "", "up minus down"});
   }
+  for (const KnownGrid& known : known_grids(adjustment)) lines.push_back(grid_line(known));
   return system::text_table(std::move(lines), 0, {1, 2});
 }
 
@@ -111,7 +127,7 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
 std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
       "{}: its residuals are {:.1f} times what its uncertainty of {} implies; the "
-      "uncertainty, the form of the errors (knots) or the set-up is not as stated",
+      "uncertainty, the form of the errors (knots, a grid over another axis) or the set-up is not as stated",
       placed_name(group), std::sqrt(result.ratio()),
       in_unit(result.uncertainty, is_angular(group)));
 }
@@ -261,6 +277,17 @@ std::string function_table(const Calibration& calibration) {
           fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", plant::to_string(known.name),
                       known.s[i] / (linear ? mm : deg), linear ? "mm" : "deg", known.value[i] / um,
                       known.sigma[i] / um, unit(known.name), remark(known.name));
+    }
+  }
+  for (const KnownLine& line : lines_of_grids(adjustment)) {
+    const bool linear = is_linear(line.name.axis), across = is_linear(line.across);
+    const std::string name =
+        fmt::format("{} at {} {:g} {}", plant::to_string(line.name), letter(line.across),
+                    line.at / (across ? mm : deg), across ? "mm" : "deg");
+    for (std::size_t i = 0; i < line.s.size(); ++i) {
+      out += fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", name,
+                         line.s[i] / (linear ? mm : deg), linear ? "mm" : "deg", line.value[i] / um,
+                         line.sigma[i] / um, unit(line.name), remark(line.name));
     }
   }
   return out;

@@ -79,6 +79,18 @@ std::string report_json(const Calibration& calibration,
   for (const KnownFunction& known : functions_along_travel(adjustment)) {
     errors.push_back(function_json(adjustment, known));
   }
+  for (const KnownGrid& known : known_grids(adjustment)) {
+    const auto& [own, across] = known.form.axes;
+    errors.push_back(JsonObject()
+                         .text("error", plant::to_string(known.name))
+                         .text("unit", unit_of(is_linear(known.name.direction)))
+                         .text("axes", fmt::format("{}{}", letter(own), letter(across)))
+                         .number("min", known.least / um)
+                         .number("max", known.most / um)
+                         .number("U", 2.0 * known.sigma / um)
+                         .boolean("is_combined", known.is_combined)
+                         .line());
+  }
   return JsonObject()
       .raw("groups", system::json_list(groups))
       .raw("errors", system::json_list(errors))

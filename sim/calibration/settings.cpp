@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "sim/calibration/calibration.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kMaxDegree = 20;
 constexpr std::int64_t kMaxKnots = 1000;
+constexpr int kMaxGridKnots = 100;
 constexpr std::array<std::string_view, 1> kByData = {"auto"};
 
 // Size that is expected of errors along (um) or about (urad).
@@ -66,6 +68,59 @@ FormSettings read_form(config::Reader& table, bool linear) {
   return form;
 }
 
+// `{ axes = "XZ", knots = [5, 3] }` of an error of X.
+GridSettings read_grid(config::Reader& table, const plant::ErrorName& name,
+                       const JointLayout& layout) {
+  GridSettings out;
+  const std::size_t before = table.faults();
+  const std::string axes = table.text("axes");
+  if (table.faults() > before) {
+    table.skip_rest();
+    return out;
+  }
+  const char own = letter(name.axis);
+  const std::size_t other = axes.size() == 2 && axes[0] == own ? 1 : 0;
+  const auto across = axes.size() == 2 ? axis_of(axes[other]) : std::nullopt;
+  if (!across || axes[1 - other] != own || axes[other] == own || !layout.joint_of(*across)) {
+    table.fault("axes", fmt::format("must be {0} and another axis of the machine, as \"{0}{1}\"",
+                                    own, own == 'Z' ? 'X' : 'Z'));
+  } else {
+    out.across = *across;
+  }
+  if (!table.has("knots")) return out;
+  const std::vector<double> knots = table.reals("knots", config::kNumber);
+  const auto is_count = [](double n) {
+    return n == std::floor(n) && n >= 2.0 && n <= double(kMaxGridKnots);
+  };
+  if (knots.size() != 2 || !std::all_of(knots.begin(), knots.end(), is_count)) {
+    table.fault("knots",
+                fmt::format("must be two integers, a number for each of axes, from 2 to {}",
+                            kMaxGridKnots));
+    return out;
+  }
+  out.knots = {static_cast<int>(knots[1 - other]), static_cast<int>(knots[other])};
+  return out;
+}
+
+std::vector<GridSettings> read_grids(config::Reader& form, const plant::ErrorName& name,
+                                     const JointLayout& layout) {
+  std::vector<GridSettings> out;
+  if (form.is("grid", config::Value::Type::list)) {
+    for (config::Reader& one : form.tables("grid")) out.push_back(read_grid(one, name, layout));
+  } else if (form.has("grid")) {
+    config::Reader one = form.table("grid");
+    out.push_back(read_grid(one, name, layout));
+  }
+  for (std::size_t k = 1; k < out.size(); ++k) {
+    const auto is_same = [&](const GridSettings& one) { return one.across == out[k].across; };
+    if (std::any_of(out.begin(), out.begin() + std::ptrdiff_t(k), is_same)) {
+      form.fault("grid", fmt::format("has two grids over {} and {}", letter(name.axis),
+                                     letter(out[k].across)));
+    }
+  }
+  return out;
+}
+
 std::array<Axis, 2> read_frame(config::Reader& table, const JointLayout& layout) {
   std::array<Axis, 2> out = {Axis::X, Axis::Y};
   if (!table.has("frame")) return out;
@@ -113,7 +168,10 @@ CalibrationSettings read_settings(const std::string& path, const JointLayout& la
     try {
       const plant::ErrorName name = plant::parse_error_name(key, layout, form.place(key));
       FormSettings settings;
-      if (!name.is_location) settings = read_form(one, is_linear(name.axis));
+      if (!name.is_location) {
+        settings = read_form(one, is_linear(name.axis));
+        settings.grids = read_grids(one, name, layout);
+      }
       settings.size = read_size(one, is_linear(name.direction));
       out.forms.emplace_back(name, settings);
     } catch (const InputError& error) {

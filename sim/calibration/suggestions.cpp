@@ -43,6 +43,7 @@ Unknowns without_set_up(const Unknowns& unknowns) {
   Unknowns out = unknowns;
   out.set_up.clear();
   for (SoughtFunction& function : out.functions) function.first -= unknowns.first_location();
+  for (SoughtGrid& grid : out.grids) grid.first -= unknowns.first_location();
   return out;
 }
 

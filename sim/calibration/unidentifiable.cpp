@@ -59,7 +59,11 @@ class Sentences {
   std::vector<std::string> all() {
     for (const SoughtFunction& function : unknowns_.functions) {
       const auto found = functions_.find(plant::to_string(function.name));
-      if (found != functions_.end()) add_sentence(function, found->second);
+      if (found != functions_.end()) add_sentence(found->first, function.basis, found->second);
+    }
+    for (const SoughtGrid& grid : unknowns_.grids) {
+      const auto found = functions_.find(name_of(grid));
+      if (found != functions_.end()) add_sentence(found->first, grid.basis, found->second);
     }
     add_hardly_determined();
     if (!without_effect_.empty()) {
@@ -154,9 +158,9 @@ class Sentences {
     }
   }
 
-  void add_sentence(const SoughtFunction& function, const LeftOutOfFunction& left_out) {
-    const std::string own = plant::to_string(function.name);
-    const bool whole = left_out.functions == function.basis.size();
+  template <typename Basis>
+  void add_sentence(const std::string& own, const Basis& basis, const LeftOutOfFunction& left_out) {
+    const bool whole = left_out.functions == basis.size();
     if (left_out.errors.empty() && left_out.set_up.empty()) {
       if (whole) {
         without_effect_.push_back(own);

@@ -9,7 +9,27 @@ namespace servomill::sim::calibration {
 int Unknowns::size() const {
   int out = first_function();
   for (const SoughtFunction& function : functions) out += function.basis.size();
+  for (const SoughtGrid& grid : grids) out += grid.basis.size();
   return out;
+}
+
+namespace {
+
+// Of functions or grids, that of an unknown; nullptr: it is of none of them.
+template <typename Sought>
+const Sought* owner_of(const std::vector<Sought>& all, int unknown) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Sought& one) {
+    return unknown >= one.first && unknown < one.first + one.basis.size();
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string name_of(const SoughtGrid& grid) {
+  const auto& axes = grid.basis.form().axes;
+  return fmt::format("{} over {} and {}", plant::to_string(grid.name), letter(axes[0]),
+                     letter(axes[1]));
 }
 
 std::string Unknowns::name(int unknown, const readings::Readings& readings) const {
@@ -21,11 +41,10 @@ std::string Unknowns::name(int unknown, const readings::Readings& readings) cons
   if (unknown < first_function()) {
     return plant::to_string(locations[static_cast<std::size_t>(unknown - first_location())].name);
   }
-  const auto found =
-      std::find_if(functions.begin(), functions.end(), [&](const SoughtFunction& function) {
-        return unknown < function.first + function.basis.size();
-      });
-  return plant::to_string(found->name);
+  if (const SoughtFunction* function = owner_of(functions, unknown)) {
+    return plant::to_string(function->name);
+  }
+  return name_of(*owner_of(grids, unknown));
 }
 
 std::optional<double> Unknowns::prior(int unknown) const {
@@ -33,10 +52,8 @@ std::optional<double> Unknowns::prior(int unknown) const {
   if (unknown < first_function()) {
     return locations[static_cast<std::size_t>(unknown - first_location())].size;
   }
-  const auto found = std::find_if(functions.begin(), functions.end(), [&](const SoughtFunction& f) {
-    return unknown < f.first + f.basis.size();
-  });
-  return found->size;
+  if (const SoughtFunction* function = owner_of(functions, unknown)) return function->size;
+  return owner_of(grids, unknown)->size;
 }
 
 double GroupResult::ratio() const {

@@ -68,16 +68,23 @@ void refuse_repeated_keys(config::Reader& table, const IdentifiedValues& values)
   }
 }
 
-// "value_um[3]" as "value_um" and 3; without an index: the whole.
-std::pair<std::string_view, std::optional<std::size_t>> name_and_index(std::string_view part) {
+// "value_um[3][0]" as "value_um" and 3, 0; without indices: the whole.
+std::pair<std::string_view, std::vector<std::size_t>> name_and_indices(std::string_view part) {
   const std::size_t bracket = part.find('[');
-  if (bracket == std::string_view::npos || part.back() != ']') return {part, std::nullopt};
-  std::size_t index = 0;
-  for (const char digit : part.substr(bracket + 1, part.size() - bracket - 2)) {
-    if (digit < '0' || digit > '9') return {part, std::nullopt};
-    index = 10 * index + static_cast<std::size_t>(digit - '0');
+  if (bracket == std::string_view::npos || part.back() != ']') return {part, {}};
+  std::vector<std::size_t> indices;
+  for (std::string_view rest = part.substr(bracket); !rest.empty();) {
+    const std::size_t end = rest.find(']');
+    if (rest.front() != '[' || end == std::string_view::npos) return {part, {}};
+    std::size_t index = 0;
+    for (const char digit : rest.substr(1, end - 1)) {
+      if (digit < '0' || digit > '9') return {part, {}};
+      index = 10 * index + static_cast<std::size_t>(digit - '0');
+    }
+    indices.push_back(index);
+    rest.remove_prefix(end + 1);
   }
-  return {part.substr(0, bracket), index};
+  return {part.substr(0, bracket), indices};
 }
 
 const config::Value* item_of(const config::Value* list, std::size_t index) {
@@ -94,7 +101,7 @@ std::optional<double> value_in(const config::Value& value, std::string_view key,
     if (unit == kPlainNumber) return number;
     const std::size_t dot = key.rfind('.');
     const auto own =
-        config::unit_of_key(name_and_index(key.substr(dot + 1)).first, wanted.quantity);
+        config::unit_of_key(name_and_indices(key.substr(dot + 1)).first, wanted.quantity);
     return *number * (own ? own->factor : 1.0) / wanted.factor;
   }
   if (value.type != config::Value::Type::text) return std::nullopt;
@@ -164,10 +171,10 @@ const config::Value* value_at(const config::Value& root, std::string_view key) {
   const config::Value* at = &root;
   while (at != nullptr && !key.empty()) {
     const std::size_t dot = key.find('.');
-    const auto [name, index] = name_and_index(key.substr(0, dot));
+    const auto [name, indices] = name_and_indices(key.substr(0, dot));
     if (at->type != config::Value::Type::table) return nullptr;
     at = at->find(name);
-    if (index) at = item_of(at, *index);
+    for (const std::size_t index : indices) at = item_of(at, index);
     key = dot == std::string_view::npos ? std::string_view() : key.substr(dot + 1);
   }
   return at;

@@ -41,7 +41,8 @@ struct IdentifiedValues {
 /// @param machine  all keys of the file; the others are left alone
 std::optional<IdentifiedValues> read_identified(config::Reader& machine);
 
-/// Value at a dotted key, items of lists as "value_um[3]"; nullptr: there is none.
+/// Value at a dotted key, items of lists as "value_um[3]", of lists in
+/// lists as "value_um[3][0]"; nullptr: there is none.
 const config::Value* value_at(const config::Value& root, std::string_view key);
 
 /// True if a value is a number, in its own unit or that of its key, and the same as one in `unit`

@@ -331,6 +331,8 @@ Readings read_readings(const std::string& path, const plant::MachineChain& chain
   config::Reader root(document);
   Readings out;
   out.path = path;
+  out.lower = lower;
+  out.upper = upper;
   if (root.has("machine")) out.machine = root.text("machine");
   root.raw("adjustment");  // belongs to the calibration
   read_instruments(root, out);

@@ -134,6 +134,9 @@ struct Readings {
   std::vector<Instrument> instruments;
   std::vector<Artefact> artefacts;
   std::vector<Group> groups;
+  Joints lower = Joints::Constant(-std::numeric_limits<double>::infinity());  // travel (m, rad)
+  Joints upper = Joints::Constant(std::numeric_limits<double>::infinity());   // infinite: endless,
+                                                                              // or not known
 };
 
 /// "laser.csv:7", the place of a row.

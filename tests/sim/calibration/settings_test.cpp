@@ -49,6 +49,42 @@ EYX = { knots = 9 }
   EXPECT_EQ(settings.forms[1].second.number_of_knots, 9);
 }
 
+TEST_F(Settings, GiveErrorsGridsOverAnotherAxis) {
+  const CalibrationSettings settings = read(R"([adjustment.form]
+EZX = { knots = 9, grid = { axes = "XZ", knots = [5, 3] } }
+EYX = { grid = [{ axes = "ZX", knots = [4, 7] }, { axes = "XY" }] }
+)");
+  ASSERT_EQ(settings.forms.size(), 2u);
+  const FormSettings &one = settings.forms[0].second, &two = settings.forms[1].second;
+  EXPECT_EQ(one.number_of_knots, 9);
+  ASSERT_EQ(one.grids.size(), 1u);
+  EXPECT_EQ(one.grids[0].across, Axis::Z);
+  EXPECT_EQ(one.grids[0].knots, (std::array<std::optional<int>, 2>{5, 3}));
+  ASSERT_EQ(two.grids.size(), 2u);
+  EXPECT_EQ(two.grids[0].across, Axis::Z);
+  EXPECT_EQ(two.grids[0].knots, (std::array<std::optional<int>, 2>{7, 4}));
+  EXPECT_EQ(two.grids[1].across, Axis::Y);
+  EXPECT_FALSE(two.grids[1].knots[0]);
+}
+
+TEST_F(Settings, RefuseGridsOfOtherAxes) {
+  const std::string rule = "; must be X and another axis of the machine, as \"XZ\"\n";
+  for (const char* axes : {"YZ", "X", "XX", "XB", "XYZ", "Xq"}) {
+    EXPECT_EQ(
+        faults(std::string("[adjustment.form]\nEZX = { grid = { axes = \"") + axes + "\" } }\n"),
+        std::string("adjustment.form.EZX.grid.axes = \"") + axes + "\"" + rule);
+  }
+  EXPECT_EQ(faults("[adjustment.form]\nEZX = { grid = { axes = \"XZ\", knots = [5, 1] } }\n"),
+            "adjustment.form.EZX.grid.knots = [5, 1]; must be two integers, a number for each of "
+            "axes, from 2 to 100\n");
+  EXPECT_EQ(
+      faults("[adjustment.form]\nEZX = { grid = [{ axes = \"XZ\" }, { axes = \"ZX\" }] }\n"),
+      "adjustment.form.EZX.grid = [{ axes = \"XZ\" }, { axes = \"ZX\" }]; has two grids over X "
+      "and Z\n");
+  EXPECT_EQ(faults("[adjustment.form]\nlinear = { grid = { axes = \"XZ\" } }\n"),
+            "adjustment.form.linear.grid is not known\n");
+}
+
 TEST_F(Settings, NameAllThatIsWrong) {
   EXPECT_EQ(
       faults("[adjustment]\nerrors = [\"EXX\", \"EQX\"]\nframe = \"XX\"\n[adjustment.form]\n"
