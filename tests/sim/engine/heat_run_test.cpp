@@ -65,6 +65,33 @@ TEST(HeatRun, RisesAndGrowsByTheClosedForm) {
   }
 }
 
+// An axis that is measured at its motor goes further on a warm screw. As an error of the body that
+// the screw is, and as the growth of the screw in the loop: the same between two rests.
+TEST(HeatRun, OfAScrewIsItsGrowthWhereTheMotorMeasures) {
+  const auto stroke = [](const std::string& machine, const std::string& feedback) {
+    const run::CaseOutput out = run_named_case(
+        small_scenario("G21 G90 G94\nG4 P0.3\nG1 X50 F3000\nG4 P0.5\nM30\n",
+                       kRecord + kCase + "[machine_override.nc]\nposition_feedback = \"" +
+                           feedback + "\"\n" + machine),
+        "one");
+    const records::Series& servo = out.result.servo;
+    const std::size_t x = servo.column("tool_position_true", 'X').value();
+    return servo.at(servo.rows() - 1, x) - servo.at(1000, x);  // mm
+  };
+  const std::string growth =
+      "[machine_override.axis.X.screw]\nexpansion = 11.5e-6\nfixed_at = "
+      "\"200 mm\"\ntemperature_rise = 10.0\n";
+  const std::string body =
+      "[machine_override.heat]\nstart_degC = 30.0\nsurroundings = { room = { mean_degC = 30.0 } }\n"
+      "[machine_override.heat.body.screw]\ncapacity_J_per_K = 500.0\nconductance_W_per_K = { room "
+      "= 4.0 }\nerrors_per_K = { EXX = { um_per_m = 11.5, constant_um = -2.3 } }\n";
+  const double cold = stroke("", "motor");
+  constexpr double kLonger = 11.5e-6 * 10.0 * 50.0;  // mm
+  EXPECT_NEAR(stroke(growth, "motor") - cold, kLonger, 2e-6);
+  EXPECT_NEAR(stroke(body, "motor") - cold, kLonger, 2e-6);
+  EXPECT_NEAR(stroke(growth, "scale") - stroke("", "scale"), 0.0, 0.01 * kLonger);
+}
+
 TEST(HeatRun, OfAMotorIsResistanceTimesTheSquareOfItsCurrent) {
   const run::CaseOutput out = run_of("kind = \"motor\", axis = \"X\", resistance = 0.5");
   const records::Series& servo = out.result.servo;

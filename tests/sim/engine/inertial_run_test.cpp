@@ -177,6 +177,44 @@ TEST(InertialRun, agrees_with_cvode) {
   }
 }
 
+// The structure is coupled to the drives at the instants of a run; rows in between are more of
+// them. The motion of the slides is the same to rounding, so that all that differs is the coupling.
+TEST(InertialRun, halving_the_coupling_step_divides_the_error_by_four_at_least) {
+  constexpr int kCoarse = 100, kExact = 10;  // us
+  const auto with_rows_each = [](int us) {
+    return run_named_case(
+               small_scenario(
+                   kCorner,
+                   "[machine_override]\nfriction_model = \"none\"\n" +
+                       structure("XX = { gain_um_per_m_s2 = 10000.0, frequency_Hz = 480.0, damping "
+                                 "= 0.02 }\n") +
+                       kCase + fmt::format("[record]\nperiod_ms = {}\n", us * 1e-3)),
+               "one")
+        .result.servo;
+  };
+  const records::Series exact = with_rows_each(kExact);
+  const auto error_of = [&](int us) {
+    const records::Series servo = with_rows_each(us);
+    const std::size_t e = *servo.column("inertial_deflection", 'X'),
+                      slide = *servo.column("true_linear", 'X');
+    double most = 0.0;
+    for (std::size_t n = 0; n * kCoarse / us < servo.rows(); ++n) {
+      const std::size_t row = n * static_cast<std::size_t>(kCoarse / us),
+                        same = n * static_cast<std::size_t>(kCoarse / kExact);
+      if (same >= exact.rows()) break;
+      EXPECT_NEAR(servo.at(row, slide), exact.at(same, slide), 1e-9);  // mm
+      most = std::max(most, std::abs(servo.at(row, e) - exact.at(same, e)));
+    }
+    return most;
+  };
+  const double whole = error_of(kCoarse), half = error_of(kCoarse / 2);
+  RecordProperty("whole_nm", fmt::format("{:.3g}", whole * 1e3));
+  RecordProperty("half_nm", fmt::format("{:.3g}", half * 1e3));
+  EXPECT_GT(whole, 1e-3);
+  EXPECT_LE(half, whole / 4.0);
+  EXPECT_NEAR(whole / half, 16.0, 3.0);  // the spline of the position is of order 4
+}
+
 TEST(InertialRun, of_ideal_axes_is_that_of_the_setpoint) {
   constexpr double R = 20.0, v = 100.0;
   const run::CaseOutput out = run_named_case(
