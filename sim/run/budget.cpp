@@ -9,50 +9,17 @@
 #include <memory>
 #include <optional>
 #include <ranges>
+#include <set>
 #include <utility>
 
 #include "plant/vocabulary/progress.h"
 #include "sim/evaluation/path_signal.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/run/at_places.h"
 
 namespace servomill::sim::run {
 namespace {
-
-// Reads a signal at the places of a budget, one after the other; constant beyond its ends.
-class AtPlaces {
- public:
-  /// @pre the signal has samples
-  AtPlaces(evaluation::PathSignal signal, const Budget& places)
-      : signal_(std::move(signal)), s_(places.s), turned_(places.turned) {
-    signal_.next(now_);
-    has_ahead_ = signal_.next(ahead_);
-  }
-
-  double next() {
-    const double s = s_.next(), turned = turned_.next();
-    while (has_ahead_ && !is_behind(ahead_, s, turned)) {
-      now_ = ahead_;
-      has_ahead_ = signal_.next(ahead_);
-    }
-    if (!has_ahead_ || is_behind(now_, s, turned)) return now_.value;
-    const bool moves = key(ahead_.s) > key(now_.s);
-    const double share = moves ? (s - now_.s) / (ahead_.s - now_.s)
-                               : (turned - now_.turned) / (ahead_.turned - now_.turned);
-    return now_.value + share * (ahead_.value - now_.value);
-  }
-
- private:
-  static double key(double s) { return std::round(s * 1e6); }  // nm: cases differ by rounding
-  static bool is_behind(const evaluation::PathSample& sample, double s, double turned) {
-    return std::pair(key(sample.s), sample.turned) > std::pair(key(s), turned);
-  }
-
-  evaluation::PathSignal signal_;
-  records::StoredSignal::Reader s_, turned_;
-  evaluation::PathSample now_, ahead_;
-  bool has_ahead_ = false;
-};
 
 using Runs = std::map<std::string, std::shared_ptr<const CaseOutput>>;  // by case
 
@@ -78,6 +45,7 @@ class BudgetRun {
         present_[name] = present(all, scenario, *scenario.find_case(name));
       }
     }
+    asked_ = present_;
   }
 
   std::vector<Budget> find() {
@@ -103,6 +71,7 @@ class BudgetRun {
       with = std::move(less);
     }
     for (Budget& budget : budgets_) finish(budget, with);
+    find_pairs(smooth);
     return stopped() ? std::vector<Budget>{} : std::move(budgets_);
   }
 
@@ -113,7 +82,7 @@ class BudgetRun {
   // others are those of `former`.
   Runs run(const Causes& removed, const Causes& already, const Runs& former) {
     Runs out = former;
-    const model::Scenario changed = without(scenario_, removed, already, present_);
+    const model::Scenario changed = without(scenario_, removed, already, asked_);
     if (!changed.cases.empty() && !stopped()) {
       RunControl control;
       control.threads = control_.threads;
@@ -126,7 +95,7 @@ class BudgetRun {
         out[name] = std::make_shared<const CaseOutput>(std::move(one));
       }
     }
-    runs_.advance();
+    if (stage_ != nullptr) stage_->advance();
     return out;
   }
 
@@ -243,6 +212,76 @@ class BudgetRun {
     });
   }
 
+  // Pairs of causes that make large remainders, by runs of the cases that have them alone.
+  void find_pairs(const Runs& smooth) {
+    stage_ = nullptr;
+    asked_.clear();
+    std::set<std::pair<Cause, Cause>> wanted;
+    for (const Budget& budget : budgets_) {
+      if (!budget.has_large_remainder()) continue;
+      for (const std::string& name : {budget.quantity.cases.front(), budget.quantity.baseline}) {
+        if (!name.empty()) asked_[name] = present_.at(name);
+      }
+      for (const auto& pair : pairs_of(budget)) wanted.insert(pair);
+    }
+    if (wanted.empty()) return;
+    Stage stage("pairs of causes", static_cast<double>(wanted.size()));
+    for (const auto& [a, b] : wanted) {
+      if (stopped()) return;
+      const Runs less = run({Cause::measurement, a, b}, {Cause::measurement}, smooth);
+      for (Budget& budget : budgets_) {
+        if (budget.has_large_remainder() && pairs_of(budget).contains({a, b})) {
+          add_pair(budget, {a, b}, smooth, less);
+        }
+      }
+      stage.advance();
+    }
+    for (Budget& budget : budgets_) sum_pairs(budget);
+  }
+
+  // Also of causes that have nothing alone: a limit that is not reached, say.
+  static std::set<std::pair<Cause, Cause>> pairs_of(const Budget& budget) {
+    std::set<std::pair<Cause, Cause>> out;
+    const auto has = [&](Cause cause) {
+      return budget.parts[static_cast<std::size_t>(cause)].present;
+    };
+    for (const Cause a : kAdding) {
+      for (const Cause b : kAdding) {
+        if (a < b && has(a) && has(b)) out.insert({a, b});
+      }
+    }
+    return out;
+  }
+
+  // A run that stops without both says nothing of them.
+  void add_pair(Budget& budget, std::array<Cause, 2> causes, const Runs& with,
+                const Runs& less) const {
+    auto one = at_places(budget, with), other = at_places(budget, less);
+    budget.note.clear();
+    if (!one || !other) return;
+    BudgetPair pair;
+    pair.causes = causes;
+    const auto& parts = budget.parts;
+    records::StoredSignal::Reader a(parts[static_cast<std::size_t>(causes[0])].signal);
+    records::StoredSignal::Reader b(parts[static_cast<std::size_t>(causes[1])].signal);
+    fill(budget, pair, [&] { return one->next() - other->next() - a.next() - b.next(); });
+    budget.pairs.push_back(std::move(pair));
+  }
+
+  void sum_pairs(Budget& budget) const {
+    if (budget.pairs.empty()) return;
+    std::sort(budget.pairs.begin(), budget.pairs.end(),
+              [](const BudgetPair& x, const BudgetPair& y) { return x.rms > y.rms; });
+    records::StoredSignal::Reader remainder(budget.remainder.signal);
+    std::vector<records::StoredSignal::Reader> pairs;
+    for (const BudgetPair& pair : budget.pairs) pairs.emplace_back(pair.signal);
+    fill(budget, budget.unexplained, [&] {
+      double left = remainder.next();
+      for (records::StoredSignal::Reader& pair : pairs) left -= pair.next();
+      return left;
+    });
+  }
+
   // complete, without measurement, each that adds, all of these, each of the chain
   static constexpr double kRuns = 3.0 + std::size(kAdding) + std::size(kChain);
 
@@ -251,8 +290,10 @@ class BudgetRun {
   preparation::PreparationCache cache_;
   std::shared_ptr<records::SignalStore> store_;
   std::map<std::string, Causes> present_;  // by case
+  std::map<std::string, Causes> asked_;    // those of the cases that are run
   std::vector<Budget> budgets_;
   Stage runs_{"runs", kRuns};
+  Stage* stage_ = &runs_;
 };
 
 // The quantities of a scenario, and those of all cases and axes that it has none of.
@@ -313,6 +354,11 @@ std::vector<Budget> find_budgets(const model::Scenario& scenario,
                                  std::span<const model::QuantitySpec> quantities,
                                  const BudgetControl& control) {
   return BudgetRun(scenario, quantities, control).find();
+}
+
+bool Budget::has_large_remainder() const {
+  constexpr double kShare = 0.1, kLeast = 0.05;  // of the residual; um
+  return note.empty() && remainder.rms > std::max(kShare * residual.rms, kLeast);
 }
 
 std::optional<double> Budget::group_at_place(CauseGroup group) const {

@@ -29,6 +29,11 @@ struct BudgetPart : BudgetSignal {
   bool present = false;  // the case has it; else all is 0, and no signal stored
 };
 
+/// What two causes do together, beside what each has alone.
+struct BudgetPair : BudgetSignal {
+  std::array<Cause, 2> causes{};
+};
+
 /// With R the residual along the path, R(-c) that of a run without the causes c and R(c) that of a
 /// run with no others, at equal arc length (where the tip stands, at an equal share of what rotary
 /// axes turn meanwhile); m = measurement, i = interpolation, l = lag, d = delay:
@@ -55,6 +60,15 @@ struct BudgetPart : BudgetSignal {
 /// ones would hide it. m is taken away first, since the steps of encoders (some 20 nm) would be in
 /// every other difference.
 ///
+/// Where the remainder is more than a tenth of the residual and 0.05 um (rms), pairs of the causes
+/// in (6) are taken away, too, and show which of them make it:
+///
+///     pair(a, b) = R(-m) - R(-m, -a, -b) - part(a) - part(b)                              (8)
+///
+/// Its sum over all pairs is the remainder, but for what three causes do together (and what the
+/// chain does with them): `unexplained`. A signal like x = a + b + I(a, b) has the part a + I(a, b)
+/// for either, the remainder -I(a, b) and the pair -I(a, b).
+///
 /// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
 /// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
 /// else `uncorrected`: the imposed displacement that imposed_error_residual wants and nobody brings
@@ -71,8 +85,12 @@ struct Budget {
   double place_s = 0.0;   // mm
   std::array<BudgetPart, kCauses> parts;
   BudgetSignal remainder;
-  std::string note;  // why there is none: "case table stopped: ..."
+  std::vector<BudgetPair> pairs;  // largest first; of remainders that are too large
+  BudgetSignal unexplained;       // remainder less pairs
+  std::string note;               // why there is none: "case table stopped: ..."
 
+  /// True if the remainder is so large that its pairs are looked for.
+  bool has_large_remainder() const;
   double sum_at_place() const { return residual.at_place - remainder.at_place; }
   /// Sum of the parts of a group at the place, um; empty if the case has no cause of it.
   std::optional<double> group_at_place(CauseGroup group) const;

@@ -38,7 +38,9 @@ std::string causes_help() {
       "(measurement first, of all), so that parts do not depend on an order; what these do "
       "together "
       "is\n"
-      "in the remainder. What stays without all is uncorrected, uncorrectable or imposed.\n"
+      "in the remainder; where that is more than a tenth of the residual, pairs of causes are\n"
+      "taken away, too, and show which of them make it. What stays without all is uncorrected, "
+      "uncorrectable or imposed.\n"
       "Their sums by kind: static geometry, servo, inertia, heat, force, imposed.\n"
       "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
       "tool_deviation,\n"
@@ -134,6 +136,25 @@ std::string groups_of(const sim::run::Budget& budget) {
   return text;
 }
 
+std::string name_of(const sim::run::BudgetPair& pair) {
+  return fmt::format("{} with {}", sim::run::info_of(pair.causes[0]).name,
+                     sim::run::info_of(pair.causes[1]).name);
+}
+
+// Pairs that make a large remainder, and what is left of it.
+void print_pairs(const sim::run::Budget& budget) {
+  constexpr double kShown = 0.05;  // of the remainder
+  if (budget.pairs.empty()) return;
+  for (const sim::run::BudgetPair& pair : budget.pairs) {
+    if (pair.rms < kShown * budget.remainder.rms) continue;
+    fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it", micrometres(pair.at_place), "",
+               micrometres(pair.rms), name_of(pair));
+  }
+  fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it",
+             micrometres(budget.unexplained.at_place), "", micrometres(budget.unexplained.rms),
+             "of three and more");
+}
+
 void print_budget(const sim::run::Budget& budget) {
   fmt::print("\n{}\n", title_of(budget.quantity));
   if (!budget.note.empty()) {
@@ -158,6 +179,7 @@ void print_budget(const sim::run::Budget& budget) {
   fmt::print("  {:<18} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
   print_line("remainder", budget.remainder.at_place, share(budget.remainder.at_place),
              budget.remainder.rms, "combined effects of causes");
+  print_pairs(budget);
   print_line("residual", whole, 1.0, budget.residual.rms, "");
   fmt::print("  by kind: {}\n", groups_of(budget));
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
@@ -187,7 +209,21 @@ std::string budget_json(const sim::run::Budget& budget) {
   }
   out.raw("kinds", kinds.line());
   out.number("remainder", budget.remainder.at_place);
-  return out.number("remainder_rms", budget.remainder.rms).line();
+  out.number("remainder_rms", budget.remainder.rms);
+  if (budget.pairs.empty()) return out.line();
+  std::vector<std::string> pairs;
+  for (const sim::run::BudgetPair& pair : budget.pairs) {
+    const std::vector<std::string> causes = {std::string(sim::run::info_of(pair.causes[0]).name),
+                                             std::string(sim::run::info_of(pair.causes[1]).name)};
+    pairs.push_back(sim::system::JsonObject()
+                        .raw("causes", sim::system::json_texts(causes))
+                        .number("at_place", pair.at_place)
+                        .number("rms", pair.rms)
+                        .line());
+  }
+  out.raw("pairs", sim::system::json_list(pairs))
+      .number("unexplained", budget.unexplained.at_place);
+  return out.number("unexplained_rms", budget.unexplained.rms).line();
 }
 
 void add_budget_options(Options& options) {

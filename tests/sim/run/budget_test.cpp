@@ -97,6 +97,54 @@ TEST(Budget, AddsUpForExperiment1) {
   EXPECT_GT(part(budgets[2], Cause::interpolation).rms, part(budgets[2], Cause::lag).rms);
 }
 
+// Errors over two axes that are known in part, friction, modes, a bed, heat and single teeth: what
+// no cause alone explains, and where that is much no pair of them, is within a tenth of what stays,
+// or 0.05 um.
+TEST(Budget, AddsUpOnAMachineWithEveryCause) {
+  const std::string toml =
+      "machine_errors = \"measured\"\n"
+      "[machine_override]\nfriction_model = \"lugre\"\nstructural_mode = [{ direction = [1.0, 0.3, "
+      "0.0], stiffness = \"40 N/um\", frequency_Hz = 55.0, damping = 0.05 }, { direction = [-0.3, "
+      "1.0, 0.0], stiffness = \"50 N/um\" }]\n"
+      "[machine_override.inertial_deflection]\nXX = { gain_um_per_m_s2 = 1.0, frequency_Hz = 55.0, "
+      "damping = 0.05 }\nYX = { gain_um_per_m_s2 = 0.2 }\nYY = { gain_um_per_m_s2 = 1.2, "
+      "frequency_Hz = 45.0, damping = 0.04, along = \"Z\", slope_um_per_m_s2_per_m = -1.0 }\n"
+      "[machine_override.axis.X]\nmachine_bed = { mass = 5500.0, frequency_Hz = 18.0, damping = "
+      "0.04 }\n"
+      "[machine_override.heat]\nstart_degC = 24.0\nsurroundings = { room = { mean_degC = 20.0 } }\n"
+      "[machine_override.heat.body.head]\ncapacity_J_per_K = 5e4\nconductance_W_per_K = { room = "
+      "10.0 }\nerrors_per_K = { EYZ = { constant_um = -0.8 }, EXX = { um_per_m = 10.0 } }\n"
+      "[errors.measured]\nEXX = { um_per_m = 40.0 }\nEYX = { harmonic = { amplitude_um = 12.0, "
+      "period_mm = 50.0 }, grid = { axes = \"XZ\", at_mm = [[-400, 0, 400], [-400, 0, 400]], "
+      "value_um = [[0, 5, 2], [1, -4, 3], [2, 6, -8]] } }\n"
+      "[errors.identified]\nEXX = { um_per_m = 36.0 }\nEYX = { harmonic = { amplitude_um = 10.0, "
+      "period_mm = 50.0 } }\n"
+      "[part]\n[[part.stock]]\nbox = { from_mm = [-20.0, -20.0, -20.0], to_mm = [60.0, 60.0, 0.0] "
+      "}\n[[program.tool]]\nnumber = 1\nlength_mm = 110.0\ndiameter_mm = 8.0\nteeth = 4\n"
+      "[cutting]\nmaterial = \"42CrMo4\"\nforce = \"instantaneous\"\n"
+      "[record]\nperiod_ms = 0.2\n"
+      "[[case]]\nname = \"one\"\n[[case.strategy]]\ntype = \"gcode\"\nmodel = \"identified\"\n";
+  const model::Scenario scenario = small_scenario(
+      "G17 G21 G40 G90 G94 G64 P0.002\nT1 M6\nG43 H1\nS4775 M3\nG0 X-30 Y0\nZ-1\n(MSG, slot)\nG1 "
+      "X10 "
+      "F1394\nG3 X20 Y10 J10\nG1 Y20\n(MSG, leave)\nG1 Y30\nM30\n",
+      toml);
+  const std::vector<std::string> also = {"tool_deviation"};
+  const auto budgets = find_budgets(scenario, budget_quantities(scenario, also, {"slot"}));
+  ASSERT_EQ(budgets.size(), 3U);
+  for (const Budget& budget : budgets) {
+    ASSERT_EQ(budget.note, "");
+    expect_sum(budget);
+    const std::string axis(1, budget.quantity.axis);
+    const double left =
+        budget.has_large_remainder() ? budget.unexplained.rms : budget.remainder.rms;
+    RecordProperty(axis + "_residual_um", fmt::format("{:.3f}", budget.residual.rms));
+    RecordProperty(axis + "_remainder_um", fmt::format("{:.3f}", budget.remainder.rms));
+    RecordProperty(axis + "_left_um", fmt::format("{:.4f}", left));
+    EXPECT_LE(left, std::max(0.1 * budget.residual.rms, 0.05)) << axis;
+  }
+}
+
 // Without lag: 144 um identified, of which the limit lets 100 pass, where 120 are true. The wrong
 // identification alone does no harm, and without it the limit would take 20 um; without the limit
 // it adds 24. So the limit has -20 - 24 = -44 and the identification 0, and 24 are both together.
@@ -110,6 +158,11 @@ TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
   EXPECT_NEAR(part(budget, Cause::saturation).at_place, -44.0, kSteps);
   EXPECT_NEAR(part(budget, Cause::identification).at_place, 0.0, kSteps);
   EXPECT_NEAR(budget.remainder.at_place, 24.0, kSteps);
+  // the largest pair is all of it
+  ASSERT_FALSE(budget.pairs.empty());
+  EXPECT_EQ(budget.pairs[0].causes, (std::array{Cause::saturation, Cause::identification}));
+  EXPECT_NEAR(budget.pairs[0].at_place, 24.0, kSteps);
+  EXPECT_LE(budget.unexplained.rms, 1e-6);
 }
 
 // The tip stands while C turns under tool-centre-point control: arc length does not tell where. The
