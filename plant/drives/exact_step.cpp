@@ -44,6 +44,7 @@ ExactStep::ExactStep(const FeedDriveParams& params, double base_period, Tick lon
       prepare(sticking, gap, coarsest);
     }
   }
+  if (params.is_linear() && params.on_bed()) prepare_held();
   const FrictionParams& f = params.friction;
   // Newton's iteration squares a correction, relative to the speed over which friction bends.
   double bend = f.kind == FrictionKind::regularised ? std::min(f.v0, f.vs) : f.vs;
@@ -311,6 +312,7 @@ int ExactStep::lengthened(int wanted, int coarsest, double error) const {
 void ExactStep::advance(LaneState& s, double command, double F, Tick step) const {
   assert(step > 0);
   if (params_.current_is_command()) s.i = command;
+  if (!held_.empty()) return advance_held(s, command, params_.F_load + F, step << sub_ticks_);
   find_slide_mode(s, F);
   const int coarsest = static_cast<int>(linear_.front().ladder.size()) - 1;
   int wanted = std::clamp(coarsest - s.control.halvings, 0, coarsest);

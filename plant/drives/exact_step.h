@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct Resolution {
 ///   1. the defect of the parabola at h/4 and 3h/4 moves the slide by less than the tolerance,
 ///   2. nothing happens in it: the slide does not stop or break away (set-valued friction) or
 ///      reverse (LuGre: |v|), no flank takes hold or lets go (backlash).
+/// A linear drive on a bed takes steps as long as the ladder has them: its force is constant.
 /// In the finest sub-step the event is located by a secant and the drive goes on in its new mode.
 /// Every event consumes at least that length, so that bouncing without end ends.
 class ExactStep {
@@ -70,6 +72,12 @@ class ExactStep {
     DriveEquations<7> on_bed;
     std::vector<BedPropagator> bed;
   };
+  // The motion over a sub-step under a constant force.
+  struct Held {
+    // from i, w, delta, v, command, force, b, db/dt: to v, i, w, delta, x (an increment), b, db/dt
+    static constexpr std::size_t kColumns = 8, kRows = 8;  // the last row fills up a register
+    std::array<std::array<double, kRows>, kColumns> columns{};
+  };
   struct Trial {
     std::array<LaneState, kNodes> at;  // h/4, h/2, 3h/4, h
     double error = 0.0;                // m; infinite if the collocation was not solved
@@ -81,6 +89,8 @@ class ExactStep {
 
   static double direction(SlideMode slide) { return slide == SlideMode::negative ? -1.0 : 1.0; }
   void prepare(bool sticking, bool gap, int coarsest);
+  void prepare_held();
+  void advance_held(LaneState& s, double command, double force, std::int64_t steps) const;
   bool sticks(const LaneState& s) const;
   const Linear& linear_of(const LaneState& s) const;
   void find_slide_mode(LaneState& s, double F) const;
@@ -111,6 +121,7 @@ class ExactStep {
   bool has_kink_ = false;              // friction is continuous at v = 0, its slope is not
   std::array<int, 4> linear_index_{};  // by 2 gap + sticking
   std::vector<Linear> linear_;
+  std::vector<Held> held_;  // of a linear drive on a bed, for each length of the ladder
 };
 
 }  // namespace servomill::plant
