@@ -13,18 +13,18 @@ void ExactStep::prepare_held() {
     const Propagator& P = linear.ladder[level];
     const BedPropagator& bed = linear.bed[level];
     Held& held = held_.emplace_back();
-    const auto add = [&](std::size_t to, const auto& slide, const auto& at_bed) {
+    const auto take = [&](std::size_t to, const auto& slide, const auto& at_bed) {
       std::array<double, Held::kRows>& column = held.columns[to];
       column[0] += slide[kEnd];
       for (std::size_t k = 0; k < 4; ++k) column[1 + k] += slide[Propagator::kCurrent + k];
       for (std::size_t k = 0; k < 2; ++k) column[5 + k] += at_bed[2 * kEnd + k];
     };
-    for (std::size_t from = 0; from <= kCommand; ++from) add(from, P.slide[from], bed.bed[from]);
+    for (std::size_t from = 0; from <= kCommand; ++from) take(from, P.slide[from], bed.bed[from]);
     for (std::size_t from = kForce; from < Propagator::kColumns; ++from) {
-      add(kForce, P.slide[from], bed.bed[from]);
+      take(kForce, P.slide[from], bed.bed[from]);
     }
     for (std::size_t n = 0; n < 2; ++n) {
-      add(kForce + 1 + n, bed.slide[n], bed.bed[Propagator::kColumns + n]);
+      take(kForce + 1 + n, bed.slide[n], bed.bed[Propagator::kColumns + n]);
     }
   }
 }

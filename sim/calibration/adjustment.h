@@ -33,7 +33,7 @@ struct SoughtFunction {
                               // is straight between them
 };
 
-/// What a component error has over its axis and another one, beside a function of its axis.
+/// A component error over its axis and another one, beside a function of its axis.
 struct SoughtGrid {
   plant::ErrorName name;
   GridBasis basis;

@@ -102,7 +102,7 @@ struct KnownFunction {
 /// shorter periods.
 std::vector<KnownFunction> functions_along_travel(const Adjustment& adjustment, int points = 41);
 
-/// What a component error has over two axes beside its mean over the other one.
+/// A component error over two axes beside its mean over the other one, as it was found.
 struct KnownGrid {
   plant::ErrorName name;
   GridForm form;

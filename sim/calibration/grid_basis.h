@@ -1,4 +1,4 @@
-/// What a component error has over two axes beside its mean over the other one.
+/// Component errors over two axes, beside their mean over the other one.
 #pragma once
 
 #include <Eigen/Core>

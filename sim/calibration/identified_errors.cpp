@@ -86,7 +86,7 @@ std::string list(const double* numbers, std::size_t count) {
   return fmt::format("[{}]", fmt::join(numbers, numbers + count, ", "));
 }
 
-// What the table of an error has of a function.
+// A function as the table of its error has it.
 // @param short_periods  of waves whose amplitudes are 0, as far as is known
 std::vector<std::string> parts_of(const ErrorName& name, const FunctionForm& form,
                                   const VectorXd& numbers,

@@ -127,7 +127,8 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
 std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
       "{}: its residuals are {:.1f} times what its uncertainty of {} implies; the "
-      "uncertainty, the form of the errors (knots, a grid over another axis) or the set-up is not as stated",
+      "uncertainty, the form of the errors (knots, a grid over another axis) or the set-up is not "
+      "as stated",
       placed_name(group), std::sqrt(result.ratio()),
       in_unit(result.uncertainty, is_angular(group)));
 }

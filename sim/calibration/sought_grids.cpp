@@ -12,8 +12,8 @@ namespace {
 
 using plant::ErrorName;
 
-constexpr double kSamePlace = 1e-6;                          // m, rad
-constexpr std::array<std::size_t, 2> kMostPlaces = {17, 9};  // that are knots; else equally spaced
+constexpr double kSamePlace = 1e-6;                      // m, rad
+constexpr std::array<std::size_t, 2> kPlaces = {17, 9};  // that are knots; else equally spaced
 
 // Places of a joint on the lines of an axis, without lines among all readings; ascending.
 std::vector<double> places_on_lines(const readings::Readings& readings,
@@ -58,7 +58,7 @@ class GridSeeker {
       const int joint = *layout_.joint_of(form.axes[k]);
       form.travel[k] = {readings_.lower[joint], readings_.upper[joint]};
       refuse_endless(name, form.axes[k], form.travel[k]);
-      form.knots[k] = knots(name, form.axes[k], joint, asked.knots[k], kMostPlaces[k]);
+      form.knots[k] = knots(name, form.axes[k], joint, asked.knots[k], kPlaces[k]);
       for (double& end : form.travel[k]) {  // of unknown travel
         if (!std::isfinite(end)) end = form.knots[k].front();
       }

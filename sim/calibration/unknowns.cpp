@@ -15,7 +15,7 @@ int Unknowns::size() const {
 
 namespace {
 
-// Of functions or grids, that of an unknown; nullptr: it is of none of them.
+// The function or grid that has an unknown; nullptr: none of them.
 template <typename Sought>
 const Sought* owner_of(const std::vector<Sought>& all, int unknown) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const Sought& one) {

@@ -357,8 +357,8 @@ std::vector<Budget> find_budgets(const model::Scenario& scenario,
 }
 
 bool Budget::has_large_remainder() const {
-  constexpr double kShare = 0.1, kLeast = 0.05;  // of the residual; um
-  return note.empty() && remainder.rms > std::max(kShare * residual.rms, kLeast);
+  constexpr double kShare = 0.1, kSmallest = 0.05;  // of the residual; um
+  return note.empty() && remainder.rms > std::max(kShare * residual.rms, kSmallest);
 }
 
 std::optional<double> Budget::group_at_place(CauseGroup group) const {

@@ -29,7 +29,7 @@ struct BudgetPart : BudgetSignal {
   bool present = false;  // the case has it; else all is 0, and no signal stored
 };
 
-/// What two causes do together, beside what each has alone.
+/// Joint effect of two causes, beside what each has alone.
 struct BudgetPair : BudgetSignal {
   std::array<Cause, 2> causes{};
 };
@@ -60,8 +60,8 @@ struct BudgetPair : BudgetSignal {
 /// ones would hide it. m is taken away first, since the steps of encoders (some 20 nm) would be in
 /// every other difference.
 ///
-/// Where the remainder is more than a tenth of the residual and 0.05 um (rms), pairs of the causes
-/// in (6) are taken away, too, and show which of them make it:
+/// If the remainder is more than a tenth of the residual and 0.05 um (rms), pairs of the causes in
+/// (6) are taken away, too, and show which of them make it:
 ///
 ///     pair(a, b) = R(-m) - R(-m, -a, -b) - part(a) - part(b)                              (8)
 ///

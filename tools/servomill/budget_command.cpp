@@ -136,7 +136,7 @@ std::string groups_of(const sim::run::Budget& budget) {
   return text;
 }
 
-std::string name_of(const sim::run::BudgetPair& pair) {
+std::string pair_name(const sim::run::BudgetPair& pair) {
   return fmt::format("{} with {}", sim::run::info_of(pair.causes[0]).name,
                      sim::run::info_of(pair.causes[1]).name);
 }
@@ -148,7 +148,7 @@ void print_pairs(const sim::run::Budget& budget) {
   for (const sim::run::BudgetPair& pair : budget.pairs) {
     if (pair.rms < kShown * budget.remainder.rms) continue;
     fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it", micrometres(pair.at_place), "",
-               micrometres(pair.rms), name_of(pair));
+               micrometres(pair.rms), pair_name(pair));
   }
   fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it",
              micrometres(budget.unexplained.at_place), "", micrometres(budget.unexplained.rms),

@@ -35,7 +35,7 @@ CalibrationSettings with_grid(const plant::ErrorName& name, Axis across) {
   return out;
 }
 
-// Of a machine with errors drawn at random, also of its grids.
+// A machine with errors drawn at random, also in its grids.
 Truth truth_with_grids(const Unknowns& unknowns, Normal& normal) {
   Truth out = random_truth(unknowns, normal);
   for (const SoughtGrid& grid : unknowns.grids) {
