@@ -57,7 +57,7 @@ ROWS = [
     (["table", SCENARIO, "--format", "isg", "-o", "isg"], dict, {"format", "tables", "left", "verified", "notes", "files"}),
     (["table", "errors.toml", "--machine", MACHINE, "--format", "klipper", "-o", "klipper"], dict, {"format", "skew", "mesh", "files"}),
     (["compensate", "cut.ngc", "-m", MACHINE, "--errors", "errors.toml", "--work-offset", "X=0,Y=0,Z=0", "-o", "cut_out.ngc"], dict,
-     {"blocks_before", "largest_um", "left_line", "uncertainty", "assumed"}),
+     {"blocks_before", "largest_um", "left_line", "uncertainty", "servo", "assumed"}),
     (["check", SCENARIO, "gallery/part.ngc"], list, {"file", "faults", "warnings", "not_run", "program"}),
     (["check", "gallery/part.ngc", "--quiet"], list, {"file", "faults", "warnings", "not_run", "program"}),
     (["post", "part.cls", "-m", MACHINE, "-o", "post.ngc", "--tool-length", "0", "--feed", "500"], dict,

@@ -145,6 +145,11 @@ void add_correction_options(Options& options) {
   options.add()("errors", text()->value_name("E.toml"),
                 "file of error models [errors.NAME], instead of the machine's own");
   options.add()("model", text()->value_name("NAME"), "error model; required if there are several");
+  options.add()("servo", text()->value_name("MODEL.toml"),
+                "machine file of an identified model, such as servomill identify writes: corrects "
+                "what it predicts of servo, friction and structure together with the errors");
+  options.add()("cutoff", text()->default_value("40 Hz")->value_name("\"40 Hz\""),
+                "with --servo: the offset is low-passed there");
   options.add()("set", texts()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
@@ -225,6 +230,8 @@ sim::programs::CompensateRequest compensate_request(const Options& options) {
   request.error_file = text_of(options, "errors");
   request.model = text_of(options, "model");
   request.changes = options.list("set");
+  request.servo_file = text_of(options, "servo");
+  request.cutoff = *positive_option(options, "cutoff", sim::config::kRate, "Hz");
   request.tolerance = *positive_option(options, "tolerance", sim::config::kLength, "um");
   constexpr double kMin = 1e-9;  // m; control and machine know nothing of less
   if (request.tolerance < kMin * (1.0 - 1e-9)) {

@@ -25,7 +25,9 @@
 #include "sim/programs/compensate/highest_z.h"
 #include "sim/programs/compensate/linuxcnc_writer.h"
 #include "sim/programs/compensate/program_corrector.h"
+#include "sim/programs/compensate/servo_offset.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
+#include "sim/programs/compensate/step_moves.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/line_stage.h"
 #include "sim/programs/verification/verification.h"
@@ -45,6 +47,8 @@ const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateReq
   const std::string& file = request.error_file.empty() ? request.machine_file : request.error_file;
   std::vector<std::string_view> names;
   for (const auto& [key, model] : models) names.push_back(key);
+  static const plant::ErrorModel kNone;
+  if (names.empty() && !request.servo_file.empty() && request.model.empty()) return kNone;
   if (names.empty()) {
     throw InputError({file},
                      request.error_file.empty()
@@ -89,8 +93,11 @@ WalkOptions walk_options(const CompensateRequest& request, const model::MachineS
 
 std::string header_line(const CompensateRequest& request, const std::string& machine,
                         const std::string& model) {
-  return fmt::format("servomill compensate: {} for {}, errors {}",
-                     fs::path(request.program_file).filename().string(), machine, model);
+  std::string out = fmt::format("servomill compensate: {} for {}",
+                                fs::path(request.program_file).filename().string(), machine);
+  if (!model.empty()) out += ", errors " + model;
+  if (request.servo_file.empty()) return out;
+  return out + ", servo model " + fs::path(request.servo_file).filename().string();
 }
 
 std::unique_ptr<ProgramWriter> writer_of(const CompensateRequest& request,
@@ -129,11 +136,19 @@ struct Preparation {
                    ? described.errors
                    : input::read_error_file(request.error_file,
                                             input::MachineAxes(described.machine))),
-        correction(described.machine.chain, model_of(models, request, model), request.axes),
+        errors(model_of(models, request, model)),
+        correction(described.machine.chain,
+                   request.servo_file.empty() ? errors : plant::ErrorModel{}, request.axes),
         known(read_work_knowledge(request, described.machine)),
         options(walk_options(request, described.machine, known.setup)) {
     const model::NcSettings& nc = described.machine.nc;
-    known.depends_on_place = depends_on_place(correction, nc.lower, nc.upper);
+    known.depends_on_place =
+        !request.servo_file.empty() || depends_on_place(correction, nc.lower, nc.upper);
+    take_start(request);
+    if (!request.servo_file.empty()) follow_model(request);
+  }
+
+  void take_start(const CompensateRequest& request) {
     if (request.start.empty()) return;
     const AxisValues start = axis_values("--start", request.start, &layout, false);
     options.start = known.setup.start = start.words;
@@ -142,13 +157,42 @@ struct Preparation {
     if (options.is_for_other_control) options.is_start_known[2] = false;
   }
 
+  // The blocks that LinuxCNC runs are those of every dialect.
+  std::vector<Move> moves_with(const CompensateRequest& request, const SharedOffset& offset) const {
+    Correction along(described.machine.chain, {}, request.axes);
+    along.follow(offset);
+    WalkOptions walk = options;
+    walk.is_for_other_control = false;
+    walk.is_start_known.fill(true);
+    Summary summary;
+    ProgramCorrector corrector(walk, known.setup.tools, along, summary);
+    StepMoves moves(corrector);
+    controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
+                                         known.setup);
+    while (const auto block = interpreter.next_block()) {
+      throw_if_interrupted();
+      moves.write(*block);
+    }
+    return std::move(moves).moves();
+  }
+
+  void follow_model(const CompensateRequest& request) {
+    SharedOffset offset;
+    servo = predict_servo(
+        request, described.machine, errors, known.setup,
+        [&](const SharedOffset& one) { return moves_with(request, one); }, offset);
+    correction.follow(offset);
+  }
+
   input::MachineDescription described;
   const JointLayout& layout;
   ErrorModels models;
   std::string model;
+  const plant::ErrorModel& errors;
   Correction correction;
   WorkKnowledge known;
   WalkOptions options;
+  std::optional<ServoPrediction> servo;  // of the model that the correction follows
 };
 
 // Reads the written program back and compares it with the original.
@@ -301,6 +345,7 @@ Compensated compensate(const CompensateRequest& request) {
   refuse_too_many_blocks(request, known.setup);
 
   Compensated out;
+  out.summary.servo = prepared.servo;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
   out.uncertainty = point_uncertainty(request, prepared);

@@ -20,6 +20,8 @@ struct CompensateRequest {
   std::string error_file;            // of error models, or empty: those of the machine's file
   std::string model;                 // its name; empty: the only one
   std::vector<std::string> changes;  // "KEY=VALUE", of the machine
+  std::string servo_file;            // machine file of an identified model; empty: errors alone
+  double cutoff = 40.0;              // Hz, of the offset against what that model predicts
   double tolerance = 1e-6;           // m
   double max_block = 0.0;            // m, where the correction varies; 0: no limit
   bool corrects_rapids = false;

@@ -34,10 +34,11 @@ class Fitter {
          const FitOptions& options)
       : move_(move), correction_(correction), options_(options), begin_(begin) {
     turns_ = move.turns_axes();
+    is_timed_ = correction.follows_path();
   }
 
   std::vector<FittedBlock> fit() {
-    const bool wants_arcs = move_.arc && options_.allow_arcs && !turns_;
+    const bool wants_arcs = move_.arc && options_.allow_arcs && !turns_ && !is_timed_;
     look(wants_arcs);
     if (wants_arcs) {
       turns_ = varies_in_turn();
@@ -54,7 +55,7 @@ class Fitter {
   // ---- looking
   Look look_at(double t) const {
     Look one{t, move_.at(t), {}};
-    one.d = move_.frame.turned_back(correction_.at(move_.frame.machine(one.c)));
+    one.d = move_.frame.turned_back(correction_.at(move_.frame.machine(one.c), move_.s(t)));
     one.c += one.d;
     return one;
   }
@@ -66,12 +67,28 @@ class Fitter {
     const auto n = std::max(1, static_cast<int>(std::ceil(blocks - 1e-9)));
     looks_.clear();
     looks_.push_back(look_at(0.0));
-    for (int i = 1; i <= n; ++i) {
+    for (const double t : places(n)) {
       throw_if_interrupted();
-      const Look b = look_at(i == n ? 1.0 : static_cast<double>(i) / n);
+      const Look b = look_at(t);
       refine(Look(looks_.back()), b, kMaxHalvings);
       looks_.push_back(b);
     }
+  }
+
+  // Ends of n equal shares, and the rows of an offset along the path, between which it swings.
+  std::vector<double> places(int n) const {
+    std::vector<double> out;
+    for (int i = 1; i <= n; ++i) out.push_back(i == n ? 1.0 : static_cast<double>(i) / n);
+    const double way = move_.s_end - move_.s_begin;
+    for (const double s : correction_.rows_between(move_.s_begin, move_.s_end)) {
+      out.push_back((s - move_.s_begin) / way);
+    }
+    std::sort(out.begin(), out.end());
+    constexpr double kSame = 1e-9;
+    const auto is_same = [](double a, double b) { return b - a < kSame; };
+    out.erase(std::unique(out.begin(), out.end(), is_same), out.end());
+    out.back() = 1.0;
+    return out;
   }
 
   // Looks between a and b until what lies between two of them is known.
@@ -128,7 +145,7 @@ class Fitter {
   // ---- lines
   bool is_on_chord(const Look& one, const AxisWords& a, const AxisWords& b, double f) const {
     const Vector3d p = one.c.head<3>(), from = a.head<3>(), way = b.head<3>() - from;
-    if (turns_) {
+    if (turns_ || is_timed_) {
       const AxisWords off = one.c - (a + f * (b - a));
       return off.head<3>().norm() <= kForBlocks * options_.tolerance &&
              off.tail<3>().norm() <= kForBlocks * options_.tolerance_turn;
@@ -280,7 +297,8 @@ class Fitter {
   const Correction& correction_;
   const FitOptions& options_;
   AxisWords begin_;
-  bool turns_ = false;  // rotary axes move, programmed or corrected
+  bool turns_ = false;     // rotary axes move, programmed or corrected
+  bool is_timed_ = false;  // what was learnt along the path belongs to a share of the move
   bool by_correction_ = false;
   std::vector<Look> looks_;
   std::vector<FittedBlock> out_;
@@ -318,7 +336,7 @@ bool ProgrammedMove::turns_axes() const { return (end - begin).tail<3>().norm() 
 
 AxisWords corrected(const ProgrammedMove& move, const Correction& correction, double t) {
   const AxisWords work = move.at(t);
-  return work + move.frame.turned_back(correction.at(move.frame.machine(work)));
+  return work + move.frame.turned_back(correction.at(move.frame.machine(work), move.s(t)));
 }
 
 std::vector<FittedBlock> fit(const ProgrammedMove& move, const Correction& correction,

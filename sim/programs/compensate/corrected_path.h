@@ -6,7 +6,8 @@
 /// From where a block begins the next one reaches as far as no such place is off by more than the
 /// tolerance:
 ///   - where X, Y and Z alone move, off the line or circle, wherever along it
-///   - where rotary axes move, off where the NC is at the same share of the block
+///   - where rotary axes move, or the correction was learnt along the path, off where the NC is at
+///     the same share of the block
 /// Blocks end on the corrected path. Arcs become arcs, several if they must: an ellipse, as skew
 /// makes of a circle, is a few arcs or a thousand lines.
 #pragma once
@@ -35,7 +36,9 @@ struct ProgrammedMove {
   AxisWords begin = AxisWords::Zero(), end = AxisWords::Zero();  // 6; m, rad
   std::optional<ArcSweep> arc;
   WorkFrame frame;
+  double s_begin = 0.0, s_end = 0.0;  // m, on the path of the original program
 
+  double s(double t) const { return s_begin + t * (s_end - s_begin); }
   AxisWords at(double t) const;
   double length() const;  // of X Y Z, m; 0 where rounding alone moves them
   bool turns_axes() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "plant/vocabulary/units.h"
 
@@ -84,6 +85,27 @@ AxisWords Correction::at(const AxisWords& machine) const {
                                                     strategies::Iterations::converged, Q);
   }
   return d;
+}
+
+AxisWords Correction::at(const AxisWords& machine, double s) const {
+  return offset_ != nullptr ? layout().words(offset_->at_place(s)) : at(machine);
+}
+
+void Correction::follow(std::shared_ptr<const strategies::PathOffset> offset) {
+  offset_ = std::move(offset);
+}
+
+std::vector<double> Correction::rows_between(double s_begin, double s_end) const {
+  if (offset_ == nullptr) return {};
+  const strategies::PathTimes& times = *offset_->times;
+  const auto first = std::upper_bound(times.s.begin(), times.s.end(), s_begin);
+  const auto from = static_cast<std::size_t>(first - times.s.begin());
+  std::vector<double> out;
+  for (std::size_t n = (from + times.every - 1) / times.every * times.every;
+       n < times.s.size() && times.s[n] < s_end; n += times.every) {
+    if (out.empty() || times.s[n] > out.back()) out.push_back(times.s[n]);
+  }
+  return out;
 }
 
 strategies::Residual Correction::residual(const AxisWords& machine) const {

@@ -11,6 +11,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
 #include "strategies/axis_displacement.h"
+#include "strategies/path_offset.h"
 #include "strategies/pose_compensation.h"
 
 namespace servomill::sim::programs {
@@ -43,9 +44,18 @@ class Correction {
   /// Displacement of the tip between both directions of one axis at a place (m).
   double reversal_at(const AxisWords& machine, Axis axis);
 
+  /// From here on the correction is an offset that was learnt along the path of the program.
+  void follow(std::shared_ptr<const strategies::PathOffset> offset);
+  bool follows_path() const { return offset_ != nullptr; }
+  /// Arc lengths (m) in between at which such an offset has its rows, ascending.
+  std::vector<double> rows_between(double s_begin, double s_end) const;
+
   /// Correction added to the machine coordinates of the program (6; m, rad), so that the machine
   /// with the identified errors puts the tool where the ideal one would: F_ni(Q + d) = F_i(Q).
   AxisWords at(const AxisWords& machine) const;
+  /// The same, or the offset that was learnt there.
+  /// @param s  m, on the path of the original program
+  AxisWords at(const AxisWords& machine, double s) const;
 
   /// Residual after that correction.
   strategies::Residual residual(const AxisWords& machine) const;
@@ -64,7 +74,8 @@ class Correction {
   double longest_reversal_ = 0.0;
   Directions directions_{};
   std::map<Directions, std::unique_ptr<Model>> models_;
-  Model* model_ = nullptr;  // of the directions
+  Model* model_ = nullptr;                                // of the directions
+  std::shared_ptr<const strategies::PathOffset> offset_;  // along the path; nullptr: of the errors
 };
 
 /// Shares of an arc at which the direction of travel of one of these machine axes changes, 0 and 1

@@ -206,6 +206,8 @@ Step ProgramCorrector::next(const Move& move, const ExecutedBlock& block, bool i
   frame.offset = move.end_machine - frame.turned(move.end);
   step.programmed.begin = frame.work(programmed_);
   step.programmed.end = move.end;
+  step.programmed.s_begin = move.s_begin;
+  step.programmed.s_end = move.s_end;
   if (move.kind == MoveKind::arc) {
     step.programmed.arc = ArcSweep(step.programmed.begin.head<3>(), move.end.head<3>(),
                                    move.arc.centre, move.arc.normal_axis, move.arc.turns);
@@ -257,6 +259,8 @@ void ProgramCorrector::fit_piece(Step& step, double t_begin, double t_end,
   ProgrammedMove piece = whole;
   piece.begin = whole.at(t_begin);
   piece.end = whole.at(t_end);
+  piece.s_begin = whole.s(t_begin);
+  piece.s_end = whole.s(t_end);
   if (whole.arc && t_end - t_begin < 1.0) {
     ArcSweep& arc = *piece.arc;
     arc.angle += t_begin * arc.sweep;

@@ -65,6 +65,8 @@ std::vector<std::string> Summary::report(const JointLayout& layout) const {
       "path at feed {:.1f} mm, corrected {:+.4f} %; time at feed {:.1f} s, corrected {:+.4f} %",
       length / mm, 100.0 * share(corrected_length - length, length), time,
       100.0 * share(corrected_time - time, time)));
+  if (!servo) return out;
+  for (std::string& line : servo->report()) out.push_back(std::move(line));
   return out;
 }
 
@@ -102,6 +104,7 @@ std::string Summary::json(const JointLayout& layout, std::string_view uncertaint
       .fixed("undirected_um", undirected_width / um, kSmall)
       .integer("ends_outside_travel", outside_count)
       .raw("uncertainty", uncertainty)
+      .raw("servo", servo ? servo->json() : "null")
       .boolean("unrolled", unrolled)
       .raw("assumed", system::json_texts(assumed, system::JsonSpacing::none))
       .line();

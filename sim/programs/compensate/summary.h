@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
+#include "sim/programs/compensate/servo_prediction.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::programs {
@@ -32,12 +33,13 @@ struct Summary {
   strategies::Residual left;
   std::size_t reversals = 0;    // of axes at feed, whose errors depend on the direction of travel
   double reversal_width = 0.0;  // m, largest change of the tip at one
-  double reversal_distance = 0.0;  // m, travel that one takes at most
-  std::optional<At> undirected;    // first feed with an axis that has not travelled yet
-  double undirected_width = 0.0;   // m, by which the tip may be off there
-  std::string smoothing;           // what the control's leaves; empty: not set
-  bool unrolled = false;           // loops, subroutines
-  bool has_expressions = false;    // became numbers
+  double reversal_distance = 0.0;        // m, travel that one takes at most
+  std::optional<At> undirected;          // first feed with an axis that has not travelled yet
+  double undirected_width = 0.0;         // m, by which the tip may be off there
+  std::optional<ServoPrediction> servo;  // of the model; none: errors alone are corrected
+  std::string smoothing;                 // what the control's leaves; empty: not set
+  bool unrolled = false;                 // loops, subroutines
+  bool has_expressions = false;          // became numbers
   bool has_cycles = false, has_cutter_compensation = false;
   std::map<int, double> tools;       // m, length of each tool that worked
   std::vector<std::string> assumed;  // one sentence each

@@ -27,7 +27,11 @@ double angle_between(const ArcSweep& arc, const AxisWords& from, const AxisWords
 }  // namespace
 
 CorrectedCurve::CorrectedCurve(const OriginalAction& action, const Correction& correction)
-    : correction_(correction), begin_(action.begin), end_(action.move.end_machine) {
+    : correction_(correction),
+      begin_(action.begin),
+      end_(action.move.end_machine),
+      s_begin_(action.move.s_begin),
+      s_end_(action.move.s_end) {
   if (action.move.kind == MoveKind::arc) {
     arc_ = arc_sweep(action.move, begin_.head<3>());
     if (arc_->r_begin < kFlat) arc_.reset();
@@ -46,7 +50,8 @@ AxisWords CorrectedCurve::programmed(double t) const {
 
 AxisWords CorrectedCurve::at(double t) const {
   const AxisWords programmed_position = programmed(t);
-  AxisWords out = programmed_position + correction_.at(programmed_position);
+  AxisWords out =
+      programmed_position + correction_.at(programmed_position, s_begin_ + t * (s_end_ - s_begin_));
   for (int i = 0; i < kAxisWords; ++i) {
     if (is_held_[static_cast<std::size_t>(i)]) out[i] = held_[i];
   }

@@ -46,6 +46,7 @@ class CorrectedCurve {
 
   const Correction& correction_;
   AxisWords begin_, end_;
+  double s_begin_, s_end_;  // m, on the path of the original program
   std::optional<ArcSweep> arc_;
   double length_ = 0.0, angle_ = 0.0;
   AxisFlags6 is_held_{};

@@ -101,7 +101,7 @@ ReplayComparison::Targets ReplayComparison::targets_of(const OriginalAction& act
   }
   out.programmed = out.corrected = action.move.end_machine;
   if (action.is_machine_position) return out;
-  out.corrected += correction_.at(action.move.end_machine);
+  out.corrected += correction_.at(action.move.end_machine, action.move.s_end);
   out.is_programmed_allowed = !is_all_known;
   return out;
 }
