@@ -87,7 +87,7 @@ strategies::Entry entry_of(const strategies::LearningPlan& plan, const JointLayo
   return entry;
 }
 
-// What the model cannot be told of the control.
+// Refuses settings of the control that the model does not have.
 void refuse_unmodelled(const CompensateRequest& request, const controllers::ProgramSetup& setup) {
   const auto refuse = [](const char* option, const char* why) {
     throw InputError({option}, fmt::format("cannot be used with --servo: {}", why));
@@ -125,7 +125,7 @@ std::string kinematics_of(const plant::MachineChain& chain) {
   return out;
 }
 
-// What was identified on another machine corrects nothing on this one.
+// A model of another machine corrects nothing on this one.
 void refuse_other_machine(const std::string& file, const input::MachineDescription& model,
                           const model::MachineSettings& machine) {
   if (!model.has_drives) {
