@@ -68,7 +68,7 @@ strategies::LearningPlan plan_of(const CompensateRequest& request) {
   plan.setup.turns = request.axes == strategies::DisplacedAxes::all;
   plan.setup.sigma_0 = std::sin(1.0 * deg);  // the default of the strategies
   plan.setup.cutoff = plan.filter.cutoff = request.cutoff;
-  plan.runs = kRuns;
+  plan.setup.runs = kRuns;
   plan.tolerance = request.tolerance;
   return plan;
 }
