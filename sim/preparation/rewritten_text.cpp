@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/printer.h"
@@ -145,19 +146,18 @@ class ReadBack {
     if (!read) return move;
     const auto wanted = wanted_.next();
     if (!wanted) {
-      if (move.kind == MoveKind::end) return move;
+      if (move.kind == MoveKind::end) return placed(move, rewritten_.back());
       refuse(rewritten_.back(), "the text of the rewritten program continues after its end");
     }
     if (const auto why = difference(*wanted, *read)) refuse_text(*wanted->move, *why);
+    // dwells and the end of the program, too: in the text their place is one along its own path
+    move = placed(std::move(move), *wanted->move);
     if (!is_motion(move.kind)) return move;
     if ((move.end_machine - wanted->move->end_machine).cwiseAbs().maxCoeff() > kPrinted) {
       refuse(*wanted->move,
              "cannot be rewritten in work coordinates that the program tilts, rotates or shifts "
              "(G52, G92, G10)");
     }
-    move.line = wanted->move->line;
-    move.s_begin = wanted->move->s_begin;
-    move.s_end = wanted->move->s_end;
     return move;
   }
 
@@ -166,6 +166,12 @@ class ReadBack {
   }
 
  private:
+  static Move placed(Move move, const Move& wanted) {
+    move.line = wanted.line;
+    move.s_begin = is_motion(move.kind) ? wanted.s_begin : wanted.s_end;
+    move.s_end = wanted.s_end;
+    return move;
+  }
   [[noreturn]] void refuse(const Move& move, std::string_view why) const {
     throw InputError({request_.program_file, move.line},
                      fmt::format("case {}: {}", request_.case_name, why));

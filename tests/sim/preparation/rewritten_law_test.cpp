@@ -3,6 +3,8 @@
 // programs of every class, every strategy that rewrites.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <random>
 
@@ -162,12 +164,30 @@ void require_same(const std::vector<Move>& original, const MoveList& read, bool 
   if (!ends) throw InputError({kFile}, "does something else: goes on");
 }
 
+// Line and arc length of dwells, tool changes, stops and the end: those of the original.
+void require_places(const std::vector<Move>& moves, const std::vector<Move>& read) {
+  const auto waits = [](const std::vector<Move>& all) {
+    std::vector<Move> out;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(out), [](const Move& move) {
+      return move.kind == MoveKind::dwell || move.kind == MoveKind::tool ||
+             move.kind == MoveKind::stop || move.kind == MoveKind::end;
+    });
+    return out;
+  };
+  const std::vector<Move> wanted = waits(moves), found = waits(read);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (found.at(i).line == wanted[i].line && found[i].s_end == wanted[i].s_end) continue;
+    throw InputError({kFile, wanted[i].line}, "does something else: waits at another place");
+  }
+}
+
 void check(const Rewriting& rewriting, const std::string& program) {
   const Shop& s = shop();
   const std::vector<Move> moves = controllers::interpret(program, kFile, s.setup);
   const RewrittenText out =
       through_text(rewriting.strategy->rewrite(moves),
                    {kFile, "random", "random", s.machine.chain.layout, s.setup});
+  require_places(moves, out.moves.all());
   if (!rewriting.has_errors) require_same(moves, out.moves, rewriting.keeps_way);
 }
 
