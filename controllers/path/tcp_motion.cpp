@@ -89,7 +89,7 @@ class Tracer {
     double t = 0.0;
     Joints Q;
   };
-  // What the tolerance of a chord is divided by.
+  // Tolerances of a chord, before they are divided among its joints.
   struct Budget {
     Joints begin;
     double whole = 0.0;     // m, tolerance of the tip

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "sim/limits/mean_derivative.h"
+#include "sim/limits/path_check.h"
 
 namespace servomill::sim::limits {
 namespace {

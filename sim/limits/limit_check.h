@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim/limits/log_signals.h"
-#include "sim/limits/path_check.h"
-#include "sim/limits/programmed_path.h"
+#include "sim/limits/path_report.h"
+#include "sim/limits/program_request.h"
 #include "sim/model/machine.h"
 
 namespace servomill::sim::limits {

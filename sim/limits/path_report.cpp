@@ -1,11 +1,11 @@
-// Recorded motion against the path of its program, as text and as JSON.
+#include "sim/limits/path_report.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
-#include "sim/limits/path_check.h"
 #include "sim/system/counted.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"

@@ -12,6 +12,7 @@
 #include "sim/preparation/case_program.h"
 #include "sim/programs/known_positions.h"
 #include "sim/programs/named_axes.h"
+#include "sim/programs/placed_program.h"
 
 namespace servomill::sim::limits {
 namespace {

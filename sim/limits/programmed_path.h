@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,14 +9,9 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/engine/program_path.h"
-#include "sim/programs/placed_program.h"
+#include "sim/limits/program_request.h"
 
 namespace servomill::sim::limits {
-
-struct ProgramRequest {
-  programs::ProgramPlacement placement;
-  std::optional<double> tolerance = {};  // m, in place of that of the program and of the machine
-};
 
 struct ProgrammedPath {
   std::string program;

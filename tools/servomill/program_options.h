@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/programs/canonical_moves.h"
-#include "sim/programs/placed_program.h"
+#include "sim/programs/program_placement.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

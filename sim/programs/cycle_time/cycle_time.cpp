@@ -8,6 +8,7 @@
 #include "sim/input/implausible.h"
 #include "sim/programs/cycle_time/motion_booking.h"
 #include "sim/programs/known_positions.h"
+#include "sim/programs/placed_program.h"
 #include "sim/system/counted.h"
 
 namespace servomill::sim::programs {

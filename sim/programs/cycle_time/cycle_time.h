@@ -8,7 +8,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/cycle_time/time_account.h"
-#include "sim/programs/placed_program.h"
+#include "sim/programs/program_placement.h"
 
 namespace servomill::sim::programs {
 
