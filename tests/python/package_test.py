@@ -57,8 +57,7 @@ class Installation(unittest.TestCase):
     def test_is_complete(self):
         with tempfile.TemporaryDirectory() as prefix:
             subprocess.run([CMAKE, "--install", BUILD, "--prefix", prefix, "--component", "python"], check=True, capture_output=True)
-            (package,) = pathlib.Path(prefix).rglob("servomill")
-            self.assertEqual(package.parent.name, "dist-packages")
+            (package,) = pathlib.Path(prefix).glob("lib/python*/dist-packages/servomill")
             self.assertTrue({path.name for path in PACKAGE.iterdir() if path.is_file()} <= {path.name for path in package.iterdir()})
             printed = self.printed("import servomill; print(servomill.__file__, servomill.__version__)", package, prefix)
             self.assertEqual(printed.split(), [str(package / "__init__.py"), servomill.__version__])

@@ -53,7 +53,11 @@ class Table(unittest.TestCase):
             rows.append(x)
         log = self.write("log.txt", "overrun\n" + "".join(f"{k} {x:.6f} 0.000000 0.000000 4 \n" for k, x in enumerate(rows, 1000)))
         self.assertAlmostEqual(table.motion_time(log), 0.14, delta=TICK)
-        self.assertAlmostEqual(table.acceleration_factor(SERVOMILL, log, self.machine), 2.0, delta=0.02)
+        program = self.write("part.ngc", "G21 G90 G64 P0.1\nG1 X5 F6000\nY5\nM2\n")  # the log ends at 3.84 mm, before its corner
+        acceleration, path, corner = table.findings(SERVOMILL, log, self.machine, program)
+        self.assertAlmostEqual(acceleration, 2.0, delta=0.02)
+        self.assertLess(path, 1e-3)
+        self.assertEqual(corner, 0.0)
 
 
 if __name__ == "__main__":
