@@ -17,7 +17,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 LEARNING = os.path.join(HERE, "..", "..", "scenarios", "precompensation", "s_part.toml")
-LONG = ["-j1", "--set", "program.feed_override=0.001", "--set", "record.period_ms=10"]
+LONG = ["-j1", "--set", "program.feed_override=0.0002", "--set", "record.period_ms=50"]
 MANY = ["-j1", "--set", 'sweep={"program.feed_override"=[%s]}' % ",".join(f"{0.002 + 0.0001 * n:.4f}" for n in range(8))]
 DELAY = 2.0  # s, before anything is shown
 MAX_END = 0.5  # s, after an interrupt
