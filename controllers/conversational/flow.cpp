@@ -166,14 +166,17 @@ void Translator::assign_words(Words& words) {
       if (more == nullptr) fail(word->place, fmt::format("'{}' without a number", word->text));
       text = more->text;
     }
-    if (text == "FMAX" || text == "MAX" || text == "FAUTO" || text == "AUTO") {
-      const bool is_max = text.ends_with("MAX");
-      if (!is_max && !tool_call_feed_) fail(word->place, "FAUTO: the last TOOL CALL has no F");
-      assign(*name, is_max ? 99999.999 : *tool_call_feed_ / (is_inch_ ? 2.54 : 1.0));
-      continue;
-    }
-    assign(*name, value(operand_of(text, word->place)));
+    const auto feed = feed_of_name(text, word->place);
+    assign(*name, feed ? *feed : value(operand_of(text, word->place)));
   }
+}
+
+// FMAX and FAUTO as values; nullopt: another text.
+std::optional<double> Translator::feed_of_name(const std::string& text, const Place& place) const {
+  if (text == "FMAX" || text == "MAX") return 99999.999;
+  if (text != "FAUTO" && text != "AUTO") return std::nullopt;
+  if (!tool_call_feed_) fail(place, "FAUTO: the last TOOL CALL has no F");
+  return *tool_call_feed_ / (is_inch_ ? 2.54 : 1.0);
 }
 
 // FN 14 ends a program with a message; FN 15, 16, 19, 20, 26, 27 and 38 write and wait, without

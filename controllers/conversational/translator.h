@@ -109,6 +109,7 @@ class Translator {
   bool read_of_control(int number, std::span<const HeidenhainWord> rest);
   void assign(const QName& name, double value);
   void assign_words(Words& words);
+  std::optional<double> feed_of_name(const std::string& text, const Place& place) const;
   void refresh_system_parameters();
   ProgramFile& program() { return *files_[file_]; }
 

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "plant/vocabulary/interrupt.h"
@@ -284,33 +285,35 @@ class Tracer {
 
   void note_slowing(const TcpMotion& motion, const Move& move, const Joints& Q_begin) {
     if (motion.time == 0.0 || motion.first == motion.last) return;
-    const std::array<const Joints*, 3> limits = {&limits_.v, &limits_.a, &limits_.j};
-    FeedReduction worst;
-    double least = 1.0;
+    std::optional<FeedReduction> worst;
     // a rotary joint first: where it is too slow the linear ones only follow it
     for (const auto& [first, end] : {std::pair(kLinearJoints, kJoints), {0, kLinearJoints}}) {
       Rates rates(Q_begin);
       for (const JointChord& chord : out_.chords_of(motion)) {
         rates.go_to(chord, motion.time * chord.fraction);
-        const double from_singular =
-            circle_ ? machine_.inverse().distance_from_singular(machine_.tool_axis(chord.end))
-                    : 0.5 * std::numbers::pi;
-        const std::size_t orders = from_singular < kNearSingular ? rates.known() : 1;
-        for (std::size_t n = 1; n <= orders; ++n) {
-          for (int j = first; j < end; ++j) {
-            if (!layout_.has(j) || rates.of(n)[j] <= (*limits[n - 1])[j]) continue;
-            const FeedReduction here{move.line,      j,
-                                     rates.of(n)[j], (*limits[n - 1])[j],
-                                     from_singular,  static_cast<int>(n)};
-            if (here.share() >= least) continue;
-            least = here.share();
-            worst = here;
-          }
-        }
+        find_slowest(rates, chord, move.line, first, end, worst);
       }
-      if (least < 1.0) break;
+      if (worst) break;
     }
-    if (least < 1.0) out_.slowed.push_back(worst);
+    if (worst) out_.slowed.push_back(*worst);
+  }
+
+  // Joints first ... end - 1 that are too slow behind a chord; the slowest so far is in `worst`.
+  void find_slowest(const Rates& rates, const JointChord& chord, int line, int first, int end,
+                    std::optional<FeedReduction>& worst) const {
+    const std::array<const Joints*, 3> limits = {&limits_.v, &limits_.a, &limits_.j};
+    const double from_singular =
+        circle_ ? machine_.inverse().distance_from_singular(machine_.tool_axis(chord.end))
+                : 0.5 * std::numbers::pi;
+    const std::size_t orders = from_singular < kNearSingular ? rates.known() : 1;
+    for (std::size_t n = 1; n <= orders; ++n) {
+      for (int j = first; j < end; ++j) {
+        if (!layout_.has(j) || rates.of(n)[j] <= (*limits[n - 1])[j]) continue;
+        const FeedReduction here{
+            line, j, rates.of(n)[j], (*limits[n - 1])[j], from_singular, static_cast<int>(n)};
+        if (here.share() < (worst ? worst->share() : 1.0)) worst = here;
+      }
+    }
   }
 
   const ToolCentrePoint& machine_;

@@ -257,39 +257,48 @@ std::vector<std::string> warnings(const Calibration& calibration) {
   return out;
 }
 
+namespace {
+
+// One row for each position of an error along an axis.
+std::string function_rows(const std::string& label, const ErrorName& name,
+                          const std::vector<double>& at, const std::vector<double>& values,
+                          const std::vector<double>& sigma, bool is_combined_with_others) {
+  const bool linear = is_linear(name.axis);
+  std::string out;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    out += fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", label, at[i] / (linear ? mm : deg),
+                       linear ? "mm" : "deg", values[i] / um, sigma[i] / um,
+                       is_linear(name.direction) ? "um" : "urad", is_combined_with_others ? 1 : 0);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string function_table(const Calibration& calibration) {
   const Adjustment& adjustment = calibration.adjustment;
   const Unknowns& unknowns = adjustment.unknowns;
   std::string out = "error,position,position_unit,value,standard_uncertainty,unit,in_combination\n";
-  const auto remark = [&](const ErrorName& name) { return is_combined(adjustment, name) ? 1 : 0; };
-  const auto unit = [](const ErrorName& name) { return is_linear(name.direction) ? "um" : "urad"; };
   for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
     const int u = unknowns.first_location() + int(k);
     const ErrorName& name = unknowns.locations[k].name;
     if (!(adjustment.covariance(u, u) > 0.0)) continue;
-    out +=
-        fmt::format("{},,,{:.6f},{:.6f},{},{}\n", plant::to_string(name), adjustment.values[u] / um,
-                    std::sqrt(adjustment.covariance(u, u)) / um, unit(name), remark(name));
+    out += fmt::format("{},,,{:.6f},{:.6f},{},{}\n", plant::to_string(name),
+                       adjustment.values[u] / um, std::sqrt(adjustment.covariance(u, u)) / um,
+                       is_linear(name.direction) ? "um" : "urad",
+                       is_combined(adjustment, name) ? 1 : 0);
   }
   for (const KnownFunction& known : functions_along_travel(adjustment)) {
-    const bool linear = is_linear(known.name.axis);
-    for (std::size_t i = 0; i < known.s.size(); ++i) {
-      out +=
-          fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", plant::to_string(known.name),
-                      known.s[i] / (linear ? mm : deg), linear ? "mm" : "deg", known.value[i] / um,
-                      known.sigma[i] / um, unit(known.name), remark(known.name));
-    }
+    out += function_rows(plant::to_string(known.name), known.name, known.s, known.value,
+                         known.sigma, is_combined(adjustment, known.name));
   }
   for (const KnownLine& line : lines_of_grids(adjustment)) {
-    const bool linear = is_linear(line.name.axis), across = is_linear(line.across);
-    const std::string name =
+    const bool across = is_linear(line.across);
+    const std::string label =
         fmt::format("{} at {} {:g} {}", plant::to_string(line.name), letter(line.across),
                     line.at / (across ? mm : deg), across ? "mm" : "deg");
-    for (std::size_t i = 0; i < line.s.size(); ++i) {
-      out += fmt::format("{},{:.6f},{},{:.6f},{:.6f},{},{}\n", name,
-                         line.s[i] / (linear ? mm : deg), linear ? "mm" : "deg", line.value[i] / um,
-                         line.sigma[i] / um, unit(line.name), remark(line.name));
-    }
+    out += function_rows(label, line.name, line.s, line.value, line.sigma,
+                         is_combined(adjustment, line.name));
   }
   return out;
 }
