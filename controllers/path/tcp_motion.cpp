@@ -170,8 +170,9 @@ class Tracer {
 
   bool split(const Point& a, const Point& b, const RotaryKnot& from, const RotaryKnot& to,
              int halvings_left) {
-    if (halvings_left == 0 || error_of(a, b) <= kChordShare * T_) {
-      add(a, b, to.is_even);
+    const double error = error_of(a, b);
+    if (halvings_left == 0 || error <= kChordShare * T_) {
+      add(a, b, error, to.is_even);
       return true;
     }
     const auto middle = point_at(0.5 * (a.t + b.t), from, to);
@@ -190,11 +191,11 @@ class Tracer {
     return worst;
   }
 
-  void add(const Point& a, const Point& b, bool is_even) {
+  void add(const Point& a, const Point& b, double error, bool is_even) {
     const double arm = plant::jacobian(machine_.chain(), b.Q, p_ST_)
                            .J_pQ.rightCols<kJoints - kLinearJoints>()
                            .norm();
-    const double missed = std::min(kMoreThanSeen * error_of(a, b), kChordShare * T_);
+    const double missed = std::min(kMoreThanSeen * error, kChordShare * T_);
     budgets_.push_back({a.Q, T_, T_ - missed, arm, kAxisShare * axis_tolerance_});
     out_.chords.push_back({b.Q, b.t, 0.0, 0.0, is_even});
     Q_ = b.Q;

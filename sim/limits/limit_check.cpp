@@ -131,7 +131,7 @@ class LimitWalk {
   LimitResult out_;
 };
 
-// The recording begins where the machine stands before the program.
+// The recording begins at the position of the machine before the program.
 PathReport path_report(const ProgramRequest& request, const LoggedPath& log) {
   const ProgrammedPath program = programmed_path(request, log.at.front());
   PathReport out = check_path(program, log);

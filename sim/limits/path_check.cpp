@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
@@ -110,12 +111,15 @@ class PathCheck {
   // Corners that the motion has passed.
   void find_corners() {
     const engine::ProgramPath& path = program_.path;
-    std::optional<std::size_t> before;  // the piece before that has a direction
+    std::optional<Piece> before;  // the piece before that has a direction
+    std::size_t index = 0;
     for (std::size_t i = 0; i < path.size(); ++i) {
       if (i % kAtOnce == 0) throw_if_interrupted();
-      if (!(path.piece(i).curve.length() > kMinLength)) continue;
-      if (before) look_at_corner(*before, path.piece(*before), path.piece(i));
-      before = i;
+      Piece here = path.piece(i);
+      if (!(here.curve.length() > kMinLength)) continue;
+      if (before) look_at_corner(index, *before, here);
+      before = std::move(here);
+      index = i;
     }
   }
 

@@ -24,14 +24,22 @@ bool is_straight(const Piece& piece) {
   return piece.curve.sweep() == 0.0 && piece.curve.length() - chord <= kStraight;
 }
 
+// The tip is where all of them put it.
+bool has_all_rotary(const LoggedPath& log, const JointLayout& layout) {
+  return std::all_of(kAllAxes.begin(), kAllAxes.end(), [&](Axis axis) {
+    return is_linear(axis) || !layout.joint_of(axis) ||
+           log.is_recorded[static_cast<std::size_t>(index_of(axis))];
+  });
+}
+
 }  // namespace
 
 PathFollower::PathFollower(const ProgrammedPath& program, const LoggedPath& log)
     : program_(program), log_(log) {
-  if (log.has_rotary()) return;
   for (std::size_t i = 0; i < program.path.size(); ++i) {
     const Piece one = program.path.piece(i);
     if (!one.is_tip) continue;
+    if (has_all_rotary(log, program.machine->chain().layout)) return;
     throw InputError({program.program, one.line},
                      "controls the tool tip: the path needs the positions of the rotary axes, "
                      "which the recording lacks");
@@ -81,33 +89,35 @@ double PathFollower::rotary_radius_of(const Piece& piece) const {
 }
 
 double PathFollower::length_of(const Piece& piece) const {
-  return piece.curve.length() +
-         rotary_radius_of(piece) * (piece.end - piece.begin).tail<3>().norm();
+  return piece.curve.length() + weighted(piece, piece.end - piece.begin).tail<3>().norm();
 }
 
 double PathFollower::reach(std::size_t sample) {
   const Piece& here = piece(index_);
-  AxisWords step = in_coordinates_of(here, sample) - in_coordinates_of(here, sample_);
-  step.tail<3>() *= rotary_radius_of(here);
+  const AxisWords step =
+      weighted(here, in_coordinates_of(here, sample) - in_coordinates_of(here, sample_));
   return kSteps * step.norm() + kDistances * distance_ + kMargin;
 }
 
-double PathFollower::cost(const Piece& piece, const AxisWords& p, double share) const {
-  AxisWords d = piece.curve.at(share) - p;
+// Metres; axes that are not recorded do not count.
+AxisWords PathFollower::weighted(const Piece& piece, AxisWords d) const {
   d.tail<3>() *= rotary_radius_of(piece);
   for (std::size_t i = 3; i < log_.is_recorded.size(); ++i) {
     if (!log_.is_recorded[i]) d[static_cast<int>(i)] = 0.0;
   }
-  return d.squaredNorm();
+  return d;
+}
+
+double PathFollower::cost(const Piece& piece, const AxisWords& p, double share) const {
+  return weighted(piece, piece.curve.at(share) - p).squaredNorm();
 }
 
 PathFollower::Candidate PathFollower::nearest(const Piece& piece, const AxisWords& p, double low,
                                               double high) const {
   double share = high;
   if (is_straight(piece)) {
-    AxisWords d = piece.end - piece.begin, from = p - piece.begin;
-    d.tail<3>() *= rotary_radius_of(piece);
-    from.tail<3>() *= rotary_radius_of(piece);
+    const AxisWords d = weighted(piece, piece.end - piece.begin);
+    const AxisWords from = weighted(piece, p - piece.begin);
     const double square = d.squaredNorm();
     if (square > 0.0) share = d.dot(from) / square;
   } else {

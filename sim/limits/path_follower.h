@@ -30,7 +30,7 @@ struct PathPlace {
 class PathFollower {
  public:
   /// Both must outlive this.
-  /// @throws InputError where the program controls the tip and the rotary axes are not recorded
+  /// @throws InputError where the program controls the tip and a rotary axis is not recorded
   PathFollower(const ProgrammedPath& program, const LoggedPath& log);
 
   /// @param sample  not before the one of the last call
@@ -47,6 +47,7 @@ class PathFollower {
   const engine::ProgramPath::Piece& piece(std::size_t index);
   double length_of(const engine::ProgramPath::Piece& piece) const;
   double rotary_radius_of(const engine::ProgramPath::Piece& piece) const;
+  AxisWords weighted(const engine::ProgramPath::Piece& piece, AxisWords d) const;
   Candidate nearest(const engine::ProgramPath::Piece& piece, const AxisWords& p, double low,
                     double high) const;
   double cost(const engine::ProgramPath::Piece& piece, const AxisWords& p, double share) const;

@@ -14,8 +14,8 @@ struct LineDeviation {
   double tolerance = 0.0;  // m
   double deviation = 0.0;  // m, of a sample from the path
   double time = 0.0;       // s, when; -inf: no sample is in the line
-  std::optional<double> rotary =
-      {};  // rad, of a rotary axis or of the tool axis; none: not recorded
+  /// rad, of a rotary axis or of the tool axis; none: not recorded
+  std::optional<double> rotary = {};
   /// m, between the corner at the end of the line and the motion; none: no corner
   std::optional<double> corner = {};
   double corner_time = 0.0;   // s, when it is passed

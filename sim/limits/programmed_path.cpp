@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "controllers/gcode/readers/plane_frame.h"
-#include "controllers/gcode/request.h"
 #include "controllers/path/path_limits.h"
 #include "sim/preparation/case_program.h"
 #include "sim/programs/known_positions.h"
@@ -20,7 +18,7 @@ namespace {
 using controllers::ExecutedBlock;
 using programs::AxisFlags;
 
-constexpr int kG10 = 100;  // ten times
+constexpr AxisFlags kAllKnown = {true, true, true, true, true, true};
 
 // Offsets that the program needs and that nobody has given. With the position before the program
 // all others follow.
@@ -32,7 +30,7 @@ class OffsetKnowledge {
   /// @throws InputError at the first position that depends on one
   void check(const ExecutedBlock& block) {
     if (block.request == nullptr) return;
-    if (programs::non_modal_code(block) == kG10) follow_G10(block);
+    given_.learn_G10(block, kAllKnown);
     const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
                                    [](const Move& move) { return is_motion(move.kind); });
     if (!moves) return;
@@ -44,24 +42,9 @@ class OffsetKnowledge {
   }
 
  private:
-  void follow_G10(const ExecutedBlock& block) {
-    const auto& words = *block.request;
-    const int L = static_cast<int>(std::lround(words['L']));
-    int P = words.has('P') ? static_cast<int>(std::lround(words['P'])) : 0;
-    if (L == 1 && words.has('Z')) given_.tool_lengths.insert(P);
-    if (L != 2 && L != 20) return;
-    if (P == 0) P = block.state->work_system;
-    if (P < 1 || P > controllers::kWorkSystems) return;
-    AxisFlags& known = given_.work_offset[static_cast<std::size_t>(P - 1)];
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (!programs::names_axis(block, kAllAxes[i])) continue;
-      known[i] = known[i] || L == 20 || !block.state->is_incremental;
-    }
-  }
-
   // G53 names machine coordinates; G28 and G30 go to places that the control has stored.
   void refuse_stored_place(const ExecutedBlock& block) const {
-    constexpr int kG53 = 530;
+    constexpr int kG53 = 530;  // ten times
     if (programs::non_modal_code(block) == kG53 || given_.has_stored_places) return;
     throw InputError({*block.file, block.line},
                      "goes to a place that the control has stored; --parameter-file gives it");

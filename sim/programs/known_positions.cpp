@@ -76,18 +76,19 @@ bool KnownPositions::offset_is_known(std::size_t i) const {
   return i < 2 && offsets_.is_rotated ? is_known(0) && is_known(1) : is_known(i);
 }
 
-// G10 L2 gives work offsets, L20 by the position; L1 gives a tool.
-void KnownPositions::follow_G10(const ExecutedBlock& block) {
+void GivenPlaces::learn_G10(const ExecutedBlock& block, const AxisFlags& position_is_known) {
+  if (non_modal_code(block) != kG10) return;
   const auto& words = *block.request;
   const int L = static_cast<int>(std::lround(words['L']));
   int P = words.has('P') ? static_cast<int>(std::lround(words['P'])) : 0;
-  if (L == 1 && words.has('Z')) given_.tool_lengths.insert(P);
+  if (L == 1 && words.has('Z')) tool_lengths.insert(P);
   if (L != 2 && L != 20) return;
   if (P == 0) P = block.state->work_system;
   if (P < 1 || P > controllers::kWorkSystems) return;
-  AxisFlags& known = given_.work_offset[static_cast<std::size_t>(P - 1)];
+  AxisFlags& known = work_offset[static_cast<std::size_t>(P - 1)];
   for (std::size_t i = 0; i < kAxisWords; ++i) {
-    if (names(block, i)) known[i] = L == 2 ? known[i] || !block.state->is_incremental : machine_[i];
+    if (names(block, i))
+      known[i] = L == 2 ? known[i] || !block.state->is_incremental : position_is_known[i];
   }
 }
 
@@ -104,7 +105,7 @@ void KnownPositions::follow_shift(const ExecutedBlock& block) {
 void KnownPositions::begin_line(const ExecutedBlock& block) {
   const Offsets before = offsets_;
   offsets_ = offsets_of(block);
-  if (non_modal_code(block) == kG10) follow_G10(block);
+  given_.learn_G10(block, machine_);
   follow_shift(block);
   const bool control_changes = before.controls_tip != offsets_.controls_tip;
   for (std::size_t i = 0; i < kAxisWords; ++i) {

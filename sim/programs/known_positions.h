@@ -19,6 +19,10 @@ struct GivenPlaces {
   std::set<int> tool_lengths;      // numbers of tools of known length
   bool has_stored_places = false;  // of G28 and G30: a parameter file
   bool has_machine = false;        // that turns the rotary axes of G53.1 and G43.5
+
+  /// A block with G10: L2 gives work offsets, L20 by the position; L1 gives a tool.
+  /// @param position_is_known  of the machine, before the block
+  void learn_G10(const controllers::ExecutedBlock& block, const AxisFlags& position_is_known);
 };
 
 /// First number of the work systems G54.1 P0 ... next to 1 ... 9.
@@ -64,7 +68,6 @@ class KnownPositions {
   };
 
   static Offsets offsets_of(const controllers::ExecutedBlock& block);
-  void follow_G10(const controllers::ExecutedBlock& block);
   void follow_shift(const controllers::ExecutedBlock& block);
   bool tool_is_known(const Offsets& now) const;
   bool offset_is_known(std::size_t i) const;

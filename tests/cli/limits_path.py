@@ -180,6 +180,10 @@ class Path(in_folder.InFolder):
         refused = self.servomill("limits", "log.csv", "--machine", machine, "--program", "tcp.ngc", "--tool-length", "1=50", *ZERO, status=2)
         self.assertIn("tcp.ngc:3: error: controls the tool tip: the path needs the positions of the rotary axes, which the recording lacks", refused.stderr)
 
+        self.write("half.csv", "time [s],X [mm],Y [mm],Z [mm],B [deg]\n0,0,0,0,0\n0.001,0,0,0,0\n0.002,0,0,0,0\n")  # C is unknown, not 0
+        refused = self.servomill("limits", "half.csv", "--machine", machine, "--program", "tcp.ngc", "--tool-length", "1=50", *ZERO, status=2)
+        self.assertIn("which the recording lacks", refused.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -40,8 +40,8 @@ void declare_limits_options(Options& options) {
       "resolution of samples, bare numbers in um (of rotary axes in urad, of velocities per "
       "s); default: the step of which all samples are multiples");
   options.add()("program,p", text("PROGRAM"),
-                "program that the log is of: its path is compared, too; the log begins where the "
-                "machine stands before it");
+                "program that the log is of: its path is compared, too; the log begins at the "
+                "position of the machine before it");
   options.add()("tolerance", text("\"20 um\""),
                 "of the path, bare numbers in um; default: P of G64, of G64 without P "
                 "nc.path_tolerance of the machine file, of G61 0.1 um");
