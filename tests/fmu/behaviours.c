@@ -272,6 +272,25 @@ static int stops_where_the_nc_does(const struct Unit* unit) {
   return fine;
 }
 
+/* The description says that no output depends on an input of the same communication point. */
+static int passes_no_input_through(const struct Unit* unit) {
+  static const char* const kInputs[] = {"position_setpoint", "velocity_setpoint",
+                                        "acceleration_setpoint", "load", "feedback_displacement"};
+  struct Axis axis = initialised_axis(unit);
+  int fine = 1;
+  for (int n = 0; n < 60; ++n) fine &= move_on(&axis, n, 1);
+  const struct Sample before = sample_of(&axis);
+  const double error = get(&axis, "following_error");
+  for (size_t n = 0; n < sizeof kInputs / sizeof *kInputs; ++n) {
+    fine &= set(&axis, kInputs[n], 1e-3) && moved_alike(before, sample_of(&axis)) &&
+            get(&axis, "following_error") == error;
+  }
+  fine &= unit->api.step(unit, axis.instance, 60 * kMs, kMs) == kOk &&
+          !moved_alike(before, sample_of(&axis));
+  end(&axis);
+  return fine;
+}
+
 static int names_its_version(const struct Unit* unit) { return unit->api.names_its_version(unit); }
 
 const struct Behaviour kBehaviours[] = {
@@ -295,6 +314,8 @@ const struct Behaviour kBehaviours[] = {
     {"reset", "2.1.6", "2.3.1", "a reset axis is a new one", resets},
     {"wrong_calls", "4.2.4", "2.3", "wrong calls are refused and change nothing",
      refuses_wrong_calls},
+    {"no_feedthrough", "2.2.8", "2.4.8", "inputs change no output of their communication point",
+     passes_no_input_through},
     {"logger", "2.1.5", "2.3.1", "refusals are logged in a category of the description",
      logs_in_its_categories},
     {"stop", "4.2.2", "4.2.1", "the NC stops the machine: the FMU ends", stops_where_the_nc_does},
