@@ -40,7 +40,8 @@ class Evidence(unittest.TestCase):
         return done.returncode, result
 
     def test_both_sides_of_every_comparison(self):
-        for wanted, inside, outside in (("= 0", 0, 1), ("<= 0.5", 0.5, 0.51), (">= 40", 40, 39), ("< 2", 1, 2), ("> 2", 3, 2)):
+        for wanted, inside, outside in (("= 0", 0, 1), ("<= 0.5", 0.5, 0.51), (">= 40", 40, 39), ("< 2", 1, 2), ("> 2", 3, 2),
+                                        ("2 to 3", 2, 1.9), ("2 to 3", 3, 3.1)):
             for value, status in ((inside, 0), (outside, 1)):
                 found, result = self.one(ROW.format(wanted, f"echo largest {value}", NUMBER))
                 self.assertEqual((found, result["pass"], result["measured"]), (status, status == 0, value), wanted)
@@ -79,7 +80,9 @@ class Evidence(unittest.TestCase):
 
     def test_faults_of_a_table_are_named(self):
         for rows, message in ((ROW.format("about 3", "true", NUMBER),
-                               'topic.toml: error: row 1: wanted = "about 3"; must be "passes" or such as "<= 0.5"'),
+                               'topic.toml: error: row 1: wanted = "about 3"; must be "passes" or such as "<= 0.5", "94 to 96"'),
+                              (ROW.format("2 to many", "true", ""),
+                               'topic.toml: error: row 1: wanted = "2 to many"; must be "passes" or such as "<= 0.5", "94 to 96"'),
                               (ROW.format("= 3", "true", ""), "topic.toml: error: row 1: find is missing, and '= 3' needs a number"),
                               (ROW.format("passes", "true", "colour = 1"), "topic.toml: error: row 1: unknown key colour; "),
                               ("", "topic.toml: error: row is missing")):
