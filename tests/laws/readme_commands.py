@@ -19,8 +19,10 @@ import readmes
 
 PATIENCE = 300.0  # s, for a command that takes less than 5 s on an idle machine; sanitizers take twenty times as long
 SLOW = (  # take longer than 5 s: parsed only
-    r"budget |converge |sweep ",
+    r"budget |converge |plan-calibration |sweep ",
     r"run scenarios/(iso|parts|precompensation)/",
+    r"run scenarios/(standards/rotary|structure/experiment2|thermal/corrected_day)\b",
+    r"bode scenarios/structure/bed\b",
 )
 PLACEHOLDER = re.compile(r"\b(SCENARIO|SECTION|PROGRAM|COMMAND|OUT|SHARD|FILE|KEY|NAME|FORMAT|FOLDER|PART|M\.toml|I/N|I-of-N|A-B)\b|\.\.\.|\.\*|\*")
 INPUT = re.compile(r"\.(toml|ngc|cls|h5|tbl|var|csv|nc|mat|xml)$")
