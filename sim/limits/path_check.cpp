@@ -173,6 +173,8 @@ class PathCheck {
 
 }  // namespace
 
+bool LineDeviation::is_sampled() const { return std::isfinite(time); }
+
 double LineDeviation::factor() const {
   return std::max(deviation, corner.value_or(0.0)) / tolerance;
 }

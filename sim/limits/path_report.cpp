@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "plant/vocabulary/units.h"
 #include "sim/system/counted.h"
@@ -37,9 +36,6 @@ std::string verdict(const PathReport& report) {
   return fmt::format("beyond the tolerance in {}", system::counted(beyond, "line"));
 }
 
-// Lines between two samples have none.
-std::string time_text(double t) { return std::isfinite(t) ? fmt::format("{:.6g}", t) : ""; }
-
 std::string length_text(double x) { return fmt::format("{:.6f}", x / mm); }
 
 }  // namespace
@@ -59,7 +55,8 @@ std::string to_text(const PathReport& report, std::size_t top) {
   if (has_rotary) rows.front().push_back("rotary deg");
   for (const LineDeviation& one : shown) {
     rows.push_back({std::to_string(one.line), length_text(one.tolerance) + " mm",
-                    length_text(one.deviation) + " mm", time_text(one.time),
+                    one.is_sampled() ? length_text(one.deviation) + " mm" : "",
+                    one.is_sampled() ? fmt::format("{:.6g}", one.time) : "",
                     one.corner ? length_text(*one.corner) + " mm" : "",
                     one.corner ? fmt::format("{:.6g}", one.corner_time) : "",
                     fmt::format("{:.3f}", one.factor()), report.is_beyond(one) ? "beyond" : ""});
@@ -75,8 +72,8 @@ std::string to_json(const PathReport& report, std::size_t top) {
     JsonObject line;
     line.integer("line", one.line)
         .number("tolerance_mm", one.tolerance / mm)
-        .number("deviation_mm", one.deviation / mm)
-        .number("time_s", one.time)
+        .raw("deviation_mm", one.is_sampled() ? system::json_number(one.deviation / mm) : "null")
+        .raw("time_s", one.is_sampled() ? system::json_number(one.time) : "null")
         .raw("corner_mm", one.corner ? system::json_number(*one.corner / mm) : "null")
         .raw("corner_time_s", one.corner ? system::json_number(one.corner_time) : "null")
         .raw("rotary_deg", one.rotary ? system::json_number(*one.rotary / deg) : "null")

@@ -21,6 +21,8 @@ struct LineDeviation {
   double corner_time = 0.0;   // s, when it is passed
   double corner_floor = 0.0;  // m, by which the motion may pass between two samples
 
+  /// False: all of the line lies between two samples, and the deviation is not known.
+  bool is_sampled() const;
   /// The larger of both, of the tolerance.
   double factor() const;
 };

@@ -5,6 +5,7 @@
 """
 import json
 import os
+import re
 import sys
 import unittest
 
@@ -83,6 +84,16 @@ class Path(in_folder.InFolder):
         narrow = self.path(program, rounded, "--tolerance", "35 um", status=1)  # the corner is beyond it, the path is not
         self.assertEqual(narrow["lines_beyond"], 1)
         self.assertEqual([line["line"] for line in narrow["lines"] if line["beyond"]], [2])
+
+    def test_what_lies_between_two_samples_is_not_known(self):
+        places = np.concatenate([samples([(0, 0, 0), (10, 0, 0)])[:-1], samples([(10, 1e-4, 0), (10, 10, 0)])[1:]])
+        program = "G21 G90 G64 P0.05\nG1 X10 F3000\nX10.0001 Y0.0001\nX10 Y10\nM2\n"
+        line = self.lines(program, places)[3]
+        self.assertIsNone(line["deviation_mm"])
+        self.assertIsNone(line["time_s"])
+        self.assertIsNotNone(line["corner_mm"])
+        shown = next(row for row in self.limits(program, places, "--top", "9").stdout.splitlines() if row.split()[:1] == ["3"])
+        self.assertEqual(len(re.findall(r"\d mm", shown)), 2)  # tolerance and corner
 
     def test_both_sides_of_the_tolerance(self):
         shifted = samples([(0, 0, 0), (20, 0, 0)])
