@@ -33,23 +33,6 @@ def truth_of(machine, key):
     return name, function.values[int(re.search(r"\[(\d+)\]", rest)[1])] / unit
 
 
-def at_knots(keys, errors):
-    """Keys without those of waves, and the matrix from all numbers to theirs: an error at a knot of its table is the value there
-    and what its waves have there (amplitude sin(2 pi s / period + phase))."""
-    kept = [key for key in keys if ".harmonic" not in key]
-    J = np.zeros((len(kept), len(keys)))
-    for row, key in enumerate(kept):
-        J[row, keys.index(key)] = 1.0
-        name, knot = re.fullmatch(r"errors\.identified\.(\w+)\.(?:table\.value\w*\[(\d+)\]|.*)", key).groups()
-        for n, wave in enumerate(errors[name].get("harmonic", []) if knot is not None else []):
-            s = next(errors[name]["table"][at] for at in ("at_mm", "at_deg") if at in errors[name]["table"])[int(knot)]
-            period = next(wave[word] for word in ("period_mm", "period_deg") if word in wave)
-            amplitude = next(word for word in wave if word.startswith("amplitude"))
-            column = keys.index(f"errors.identified.{name}.harmonic[{n}].{amplitude}")
-            J[row, column] = np.sin(2.0 * np.pi * s / period + np.deg2rad(wave.get("phase_deg", 0.0)))
-    return kept, J
-
-
 class Machines(unittest.TestCase):
     def calibrate(self, folder, kind, seed):
         machine = foreign_readings.make(folder, seed, kind)
@@ -60,20 +43,18 @@ class Machines(unittest.TestCase):
             written = tomllib.load(file)
         with open(os.path.join(folder, "errors.csv"), encoding="utf-8") as file:
             combined = {line.split(",")[0] for line in file if line.rstrip().endswith(",1")}
-        return machine, written["identified"], written["errors"]["identified"], combined, done
+        return machine, written["identified"], combined, done
 
     def measure(self, kind, count):
         inside, all_of, squares, ranks, left_out, warnings = {}, {}, 0.0, 0, set(), []
         with tempfile.TemporaryDirectory() as folder:
             for seed in range(1, count + 1):
-                machine, identified, errors, combined, done = self.calibrate(folder, kind, seed)
+                machine, identified, combined, done = self.calibrate(folder, kind, seed)
                 truth = projected(machine) if kind == "three" else machine
                 left_out |= combined
                 warnings += [f"{kind} {seed}: {line}" for line in done.stderr.splitlines()]
-                keys, J = at_knots(identified["keys"], errors)
-                named = [truth_of(truth, key) for key in keys]
-                values = J @ np.array(identified["values"])
-                C = J @ np.array(identified["covariance"]) @ J.T
+                named = [truth_of(truth, key) for key in identified["keys"]]
+                values, C = np.array(identified["values"]), np.array(identified["covariance"])
                 used = [k for k, (name, _) in enumerate(named) if name not in combined and C[k, k] > 0]
                 e = np.array([values[k] - named[k][1] for k in used])
                 C = C[np.ix_(used, used)]

@@ -15,6 +15,15 @@ def random_function(random, knots, sigma, lost=0.0):
     return Function(knots, random.normal(0.0, sigma, len(knots)), lost)
 
 
+def forms(machine):
+    """Says that the errors of this machine are straight between their knots: otherwise the intervals would be those of any error."""
+    text = "\n[adjustment.form]\n"
+    for name, function in machine.components.items():
+        knots = function.knots if name[2] in "XYZ" else np.degrees(function.knots)
+        text += f"{name} = {{ knots_{'mm' if name[2] in 'XYZ' else 'deg'} = [{', '.join(f'{knot:.9g}' for knot in knots)}] }}\n"
+    return text
+
+
 def three_axes(seed):
     random = np.random.default_rng([seed, 1])
     knots = {"X": np.linspace(0, 800, 11), "Y": np.linspace(0, 600, 11), "Z": np.linspace(-400, 0, 11)}
@@ -78,7 +87,7 @@ def measure_three(machine, knots, folder, seed):
     head = 'machine = "machine.toml"\n\n[[instrument]]\nname = "laser"\nscale_uncertainty_um_per_m = 0.25\n\n'
     head += '[[artefact]]\nname = "plate"\ncentres = "plate.csv"\nuncertainty_um = 0.3\nscale_uncertainty_um_per_m = 0.3\n\n'
     with open(os.path.join(folder, "readings.toml"), "w", encoding="utf-8") as file:
-        file.write(head + "\n".join(bench.text))
+        file.write(head + "\n".join(bench.text) + forms(machine))
 
 
 # Structures with their two rotary axes, the centres of these (mm) and the location errors that a machine of that kind can have.
@@ -146,7 +155,7 @@ def measure_five(machine, knots, folder, seed):
             file.write(f"[axis.{axis}]\ntravel_mm = [{lower}, {upper}]\n\n")
         file.write(f"[axis.{tilting}]\ntravel_deg = [-110, 110]\ncentre_mm = [{centre}]\n\n[axis.C]\n")
     with open(os.path.join(folder, "readings.toml"), "w", encoding="utf-8") as file:
-        file.write('machine = "machine.toml"\n\n[[instrument]]\nname = "laser"\nscale_uncertainty_um_per_m = 0.25\n\n' + "\n".join(bench.text))
+        file.write('machine = "machine.toml"\n\n[[instrument]]\nname = "laser"\nscale_uncertainty_um_per_m = 0.25\n\n' + "\n".join(bench.text) + forms(machine))
 
 
 def make(folder, seed, kind):
