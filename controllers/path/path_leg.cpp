@@ -2,12 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace servomill::controllers {
 namespace {
 
 constexpr double kReversal = -0.5;  // cosine of the sharpest corner that is not a stop
 constexpr double kLongLeg = 3.0;    // windows, below it corners share their curvature
+
+// What the limits of the joints allow along a direction, in which a joint that does not move, or that
+// the machine does not have, limits nothing.
+double along(const Joints& limits, const Joints& direction) {
+  constexpr double kStill = 1e-12;
+  const Joints d = direction.cwiseAbs();
+  return (d.array() > kStill)
+      .select(limits.array() / d.array().max(kStill), std::numeric_limits<double>::infinity())
+      .minCoeff();
+}
 
 }  // namespace
 
@@ -51,7 +62,7 @@ FeedLimit LegRules::feed_limit(const Move& move, const Leg& leg) const {
 double LegRules::speed_along(const Leg& leg, const Move& move) const {
   const Joints d = leg.tangent_begin.cwiseAbs();
   const FeedLimit feed = feed_limit(move, leg);
-  double v = limits_.v.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
+  double v = along(limits_.v, d);
   const double linear = d.head<kLinearJoints>().norm();
   const double rotary = d.tail<kJoints - kLinearJoints>().norm();
   if (linear > 0.0) v = std::min(v, feed.linear / linear);
@@ -80,13 +91,11 @@ bool LegRules::stopping_is_faster(const Leg& from, const Leg& to, const Joints& 
   const double L = std::min(from.length, to.length);
   if (L < kLongLeg * w) return false;
   const Joints d = from.tangent_end.cwiseAbs().cwiseMax(to.tangent_begin.cwiseAbs());
-  const double a = limits_.a.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
-  const double j = limits_.j.cwiseQuotient(d.cwiseMax(1e-12)).minCoeff();
+  const double a = along(limits_.a, d), j = along(limits_.j, d);
   const double peak = std::pow(L * std::sqrt(j) / 2.0, 2.0 / 3.0);  // rest to rest on the leg
   const double v = std::min({from.feed, to.feed, peak});
-  const Joints bend = turn.cwiseAbs().cwiseMax(1e-12);
-  const double v_c = std::min(std::cbrt(limits_.j.cwiseQuotient(bend).minCoeff() * w * w),
-                              std::sqrt(limits_.a.cwiseQuotient(bend).minCoeff() * w));
+  const double v_c = std::min(std::cbrt(along(limits_.j, turn) * w * w),
+                              std::sqrt(along(limits_.a, turn) * w));
   if (v_c >= v) return false;
   const auto ramp = [&](double dv) {
     return dv * j > a * a ? dv / a + a / j : 2.0 * std::sqrt(dv / j);

@@ -54,6 +54,22 @@ TEST(OneLine, IsLimitedByTheWeakestAxisOfItsDirection) {
   EXPECT_NEAR(fastest, 0.1, kRounding);
 }
 
+// The limits of axes that a machine does not have are 0.
+TEST(Corners, AreTheSameOnAMachineWithoutRotaryAxes) {
+  JointLimits three_axes = machine_limits();
+  for (Joints* limits : {&three_axes.v, &three_axes.a, &three_axes.j}) limits->tail<2>().setZero();
+  PathOptions narrow, wide;
+  narrow.tolerance = 0.2 * um;  // a stop is quicker than the rounding
+  wide.tolerance = 1.0 * mm;
+  for (const PathOptions& options : {narrow, wide}) {
+    const Program corner = Program().line(0.1, 0, 0, 0.1).line(0.1, 0.1, 0, 0.1);
+    const Trajectory three = corner.plan(options, three_axes), five = corner.plan(options);
+    EXPECT_EQ(three.duration(), five.duration());
+    EXPECT_EQ(three.chains().size(), five.chains().size());
+    EXPECT_EQ(three.chains().size(), options.tolerance < 1 * um ? 2U : 1U);
+  }
+}
+
 TEST(OneLine, DoesNotDependOnHowFinelyItIsCut) {
   const double whole = Program().line(0.05, 0.03, 0, 0.1).plan().duration();
   for (const int n : {2, 10, 1000}) {
