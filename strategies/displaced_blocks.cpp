@@ -39,8 +39,8 @@ class Rewriter {
     t_ = 0.0;
     if (way.controls_tip()) {
       cut();
-    } else if (move.kind == MoveKind::rapid) {
-      // displaced at its end only: nothing is cut on the way
+    } else if (move.kind == MoveKind::rapid || move.synchronised != Synchronised::no) {
+      // displaced at its end only: nothing is cut on the way, or the spindle turns with the whole
       reach(place(1.0, Q_));
     } else if (way.length() == 0.0 && way.turn().any()) {
       // Rotary axes alone keep their angular feed: X, Y and Z wait where they are, and the next

@@ -107,7 +107,7 @@ class Canon:
     def motion(self, kind, end, **more):
         linear = kind == "arc" or any(abs(p - q) > LEAST_MOVE for p, q in zip(end[:3], self.at[:3]))
         record = {"t": kind, "end": end, "mend": self.in_machine(end)}
-        if kind in ("feed", "arc", "probe"):
+        if kind in ("feed", "arc", "probe") and self.sync is None:
             record.update(feed=self.feed["linear" if linear else "rotary"], fmode=self.feed_mode)
         if self.sync is not None and kind in ("feed", "arc", "tap"):
             record["sync"] = self.sync

@@ -104,7 +104,9 @@ std::string_view kind_name(const Move& move) {
     case MoveKind::rapid:
       return "rapid";
     case MoveKind::feed:
-      return move.number == 0 ? "feed" : "probe";
+      return move.synchronised == Synchronised::tap_in ? "tap"
+             : move.number == 0                        ? "feed"
+                                                       : "probe";
     case MoveKind::arc:
       return "arc";
     case MoveKind::spline:
@@ -195,7 +197,9 @@ void add_own_fields(const Move& move, std::string& out) {
     case MoveKind::end:
       return;
     case MoveKind::feed:
-      return add_feed(move, out);
+      if (move.synchronised == Synchronised::no) return add_feed(move, out);
+      out += R"(,"sync":)";
+      return add_number(move.value / mm, out);
     case MoveKind::arc:
       add_feed(move, out);
       return add_arc(move, out);

@@ -306,6 +306,9 @@ class Interpreter::Machine {
   void note_unit_of_control();
   void straight();
   void note_of_long_turn(const AxisWords& begin, const AxisWords& end);
+  void synchronised();  // G33, G33.1
+  void require_synchronised() const;
+  void synchronised_to(const AxisWords& end, double length, double lead, Synchronised kind);
   void probe();  // G38.2 ... G38.5
   void require_probing() const;
   void require_known_height() const;

@@ -37,8 +37,8 @@ constexpr auto kGCodes = std::to_array<Code>({
     {281, g_non_modal, true, ""},
     {300, g_non_modal, true, "", true},
     {301, g_non_modal, true, ""},
-    {330, g_motion, false, ""},
-    {331, g_motion, false, ""},
+    {330, g_motion, true, "K", true},
+    {331, g_motion, true, "K", true},
     {382, g_motion, true, "", true},
     {383, g_motion, true, "", true},
     {384, g_motion, true, "", true},
@@ -152,7 +152,6 @@ struct Refusal {
 
 constexpr auto kGRefusals = std::to_array<Refusal>({
     {70, 80, "diameter and radius mode are for turning; this is a milling simulator"},
-    {330, 331, "the spindle angle is not simulated, so the axes cannot follow it"},
     {700, 722, "turning cycles are for lathes; this is a milling simulator"},
     {760, 760, "threading is for lathes; this is a milling simulator"},
     {960, 960, "constant surface speed is for turning; program the speed with G97 S"},

@@ -46,6 +46,7 @@ void Interpreter::Machine::motion() {
   if (code == 20 || code == 30) arc();
   if (is_bezier(code)) bezier();
   if (code == kNurbsPoint) nurbs_point();
+  if (code == 330 || code == 331) synchronised();
   if (code >= 382 && code <= 385) probe();
   if (is_canned_cycle(code)) canned_cycle(motion_before);
 }

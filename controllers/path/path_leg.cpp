@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace servomill::controllers {
 namespace {
@@ -10,8 +11,8 @@ namespace {
 constexpr double kReversal = -0.5;  // cosine of the sharpest corner that is not a stop
 constexpr double kLongLeg = 3.0;    // windows, below it corners share their curvature
 
-// What the limits of the joints allow along a direction, in which a joint that does not move, or that
-// the machine does not have, limits nothing.
+// What the limits of the joints allow along a direction, in which a joint that does not move, or
+// that the machine does not have, limits nothing.
 double along(const Joints& limits, const Joints& direction) {
   constexpr double kStill = 1e-12;
   const Joints d = direction.cwiseAbs();
@@ -26,8 +27,14 @@ Leg leg_of(const Move& move) {
   Leg leg;
   leg.rapid = move.kind == MoveKind::rapid;
   leg.stop_after = move.path_mode == PathMode::exact_stop;
+  leg.is_synchronised = move.synchronised != Synchronised::no;
   leg.exact_corners = move.path_mode == PathMode::exact_path;
   return leg;
+}
+
+JointLimits limits_of(const Leg& leg, JointLimits limits) {
+  limits.a *= leg.acceleration_share;
+  return limits;
 }
 
 void set_tolerances(Leg& leg, std::span<const JointChord> chords, double rotary_radius) {
@@ -53,7 +60,7 @@ FeedLimit LegRules::feed_limit(const Move& move, const Leg& leg) const {
   FeedLimit feed;
   if (options_.block_time > 0.0) feed.path = leg.length / options_.block_time;
   if (leg.rapid) return feed;
-  const double value = move.feed * options_.feed_override;
+  const double value = move.feed * (leg.is_synchronised ? 1.0 : options_.feed_override);
   (leg.rotary_only ? feed.rotary : feed.linear) =
       leg.rotary_only ? value * options_.rotary_radius : value;
   return feed;
@@ -70,7 +77,15 @@ double LegRules::speed_along(const Leg& leg, const Move& move) const {
   return std::min(v, feed.path);
 }
 
+double LegRules::acceleration_share(const Leg& leg, const Move& move) const {
+  if (!leg.is_synchronised) return 1.0;
+  const double a = along(limits_.a, leg.tangent_begin);
+  const double lead = std::abs(move.value) / (2.0 * std::numbers::pi);  // m a radian
+  return std::min(1.0, lead * options_.spindle_acceleration / a);
+}
+
 bool LegRules::must_stop(const Leg& from, const Leg& to) const {
+  if (from.is_synchronised || to.is_synchronised) return true;
   if (from.rapid != to.rapid || from.rotary_only != to.rotary_only) return true;
   const double cosine = from.tangent_end.dot(to.tangent_begin);
   if (cosine < kReversal) return true;
@@ -94,8 +109,8 @@ bool LegRules::stopping_is_faster(const Leg& from, const Leg& to, const Joints& 
   const double a = along(limits_.a, d), j = along(limits_.j, d);
   const double peak = std::pow(L * std::sqrt(j) / 2.0, 2.0 / 3.0);  // rest to rest on the leg
   const double v = std::min({from.feed, to.feed, peak});
-  const double v_c = std::min(std::cbrt(along(limits_.j, turn) * w * w),
-                              std::sqrt(along(limits_.a, turn) * w));
+  const double v_c =
+      std::min(std::cbrt(along(limits_.j, turn) * w * w), std::sqrt(along(limits_.a, turn) * w));
   if (v_c >= v) return false;
   const auto ramp = [&](double dv) {
     return dv * j > a * a ? dv / a + a / j : 2.0 * std::sqrt(dv / j);

@@ -22,10 +22,15 @@ struct Leg {
   // m, of rotary joints, scaled, where they round corners as well
   double rotary_tolerance = std::numeric_limits<double>::infinity();
   double feed = 0.0;  // m/s along the scaled path
+  bool is_synchronised = false;
+  double acceleration_share = 1.0;  // of the axes' acceleration, that the spindle can follow
 };
 
 /// The leg of a move, but for its length and its tangents.
 Leg leg_of(const Move& move);
+
+/// Of these limits, those that its spindle can follow.
+JointLimits limits_of(const Leg& leg, JointLimits limits);
 
 /// Tolerances of a move under TCP control, as its first and its last chord have them; none: 0.
 void set_tolerances(Leg& leg, std::span<const JointChord> chords, double rotary_radius);
@@ -48,8 +53,12 @@ class LegRules {
   /// Programmed speed (m/s) along the scaled path, where it goes straight.
   double speed_along(const Leg& leg, const Move& move) const;
 
+  /// Share of the acceleration of the axes that a spindle which turns with them can follow.
+  double acceleration_share(const Leg& leg, const Move& move) const;
+
   /// Tells if the motion stops between two legs: from rapid to feed, from rotary-only to other
-  /// moves, at reversals, at the corners of G61, and where a stop is faster than a rounding.
+  /// moves, at reversals, at the corners of G61, around what the spindle turns with, and where a
+  /// stop is faster than a rounding.
   bool must_stop(const Leg& from, const Leg& to) const;
 
  private:

@@ -1,6 +1,8 @@
 /// Limits of the joints for the path planner, and its tolerances of the programmed path.
 #pragma once
 
+#include <limits>
+
 #include "plant/vocabulary/axes.h"
 
 namespace servomill::controllers {
@@ -21,6 +23,7 @@ struct PathOptions {
   double feed_override = 1.0;        // factor on feeds
   double rapid_override = 1.0;       // factor on the joint speeds of rapids
   double tolerance_share = 1.0;      // factor on tolerances of the program (G64 P)
+  double spindle_acceleration = std::numeric_limits<double>::infinity();  // rad/s2, under G33
   double block_time = 0.0;           // s, least time of a block: what the NC needs to prepare it
 };
 

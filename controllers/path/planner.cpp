@@ -52,13 +52,13 @@ class Planner {
       const std::size_t i = next++;
       out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
       switch (move.kind) {
+        case MoveKind::spline:
+          add_spline(move, i);
+          break;
         case MoveKind::rapid:
         case MoveKind::feed:
         case MoveKind::arc:
-        case MoveKind::spline:
-          if (move.kind == MoveKind::spline)
-            add_spline(move, i);
-          else if (move.tool_control == ToolControl::none)
+          if (move.tool_control == ToolControl::none)
             add_motion(move, i);
           else
             add_tip_motion(move, i);
@@ -87,15 +87,17 @@ class Planner {
 
   Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
 
+  // A move that moves nothing.
+  void stand(const Leg& leg) {
+    if (leg.stop_after) finish_chain();
+  }
+
   void add_motion(const Move& move, std::size_t index) {
     assert(move.kind == MoveKind::rapid || move.feed > 0.0);
     const Joints Q_end = layout_.joints(move.end_machine);
     const Joints u_end = scaled(Q_end);
     const Joints step = u_end - u_;
-    if (move.kind != MoveKind::arc && step.isZero(0.0)) {
-      if (move.path_mode == PathMode::exact_stop) finish_chain();
-      return;
-    }
+    if (move.kind != MoveKind::arc && step.isZero(0.0)) return stand(leg_of(move));
     Leg leg = leg_of(move);
     std::optional<ArcSweep> arc;
     if (move.kind == MoveKind::arc) {
@@ -109,6 +111,7 @@ class Planner {
     leg.length = arc ? arc->length() : step.norm();
     leg.tolerance = rules_.tolerance_of(move);
     leg.feed = rules_.speed_along(leg, move);
+    leg.acceleration_share = rules_.acceleration_share(leg, move);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
     ChainSpeeds::Span span = begin_span(index, leg);
     span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
@@ -143,10 +146,7 @@ class Planner {
   void add_spline(const Move& move, std::size_t index) {
     assert(move.tool_control == ToolControl::none && move.feed > 0.0);
     const SplineCurve& curve = move.spline->curve;
-    if (curve.length() == 0.0) {
-      if (move.path_mode == PathMode::exact_stop) finish_chain();
-      return;
-    }
+    if (curve.length() == 0.0) return stand(leg_of(move));
     const SplineCurve::State begin = curve.state(0.0), end = curve.state(curve.length());
     Leg leg = leg_of(move);
     leg.tangent_begin = with_linear(Joints::Zero(), begin.tangent);
@@ -188,10 +188,7 @@ class Planner {
     assert(motion != nullptr);
     const std::span<const JointChord> chords = tip_.chords_of(*motion);
     const Leg leg = tip_leg(move, *motion, chords);
-    if (leg.length == 0.0) {
-      if (leg.stop_after) finish_chain();
-      return;
-    }
+    if (leg.length == 0.0) return stand(leg);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
     const double time = time_of(*motion);
     double from = 0.0;
@@ -334,7 +331,9 @@ class Planner {
       chain.t = t_;
       chain.begin = out_.end_;
       chain.end = Q_;
-      chain.plan = memory_.plan(vertices_, speeds_, [this] { return plan_chain(); });
+      const auto make = [this] { return plan_chain(); };
+      chain.plan =
+          last_->acceleration_share < 1.0 ? make() : memory_.plan(vertices_, speeds_, make);
       chain.duration = chain.plan->law.duration;
       chain.spans.assign(speeds_.spans.begin(), speeds_.spans.end());
       chain.shares = std::move(shares_);
@@ -350,7 +349,7 @@ class Planner {
     auto plan = std::make_shared<Chain::Plan>();
     plan->path = smooth(std::move(vertices_), limits_.j);
     plan->path.pieces.shrink_to_fit();
-    plan->law = fastest_law(plan->path, speeds_, limits_, options_);
+    plan->law = fastest_law(plan->path, speeds_, limits_of(*last_, limits_), options_);
     return plan;
   }
 

@@ -37,6 +37,14 @@ enum class PathMode : std::uint8_t {
   continuous,  // G64 P: corners are rounded within `path_tolerance`
 };
 
+/// Motion that the spindle turns with: `value` of the move is the lead, m a revolution.
+enum class Synchronised : std::uint8_t {
+  no,
+  thread,   // G33
+  tap_in,   // G33.1 to its depth
+  tap_out,  // and back, the spindle reversed
+};
+
 /// Circle or helix from the point before to `end`, about `centre`; normal is one of the principal
 /// axes: 0 for G19 (YZ), 1 for G18 (ZX), 2 for G17 (XY).
 struct Arc {
@@ -79,9 +87,11 @@ struct Move {
       FeedMode::units_per_minute;  // how it was programmed; `feed` is the same quantity
   PathMode path_mode = PathMode::continuous;
   double path_tolerance = 0.0;  // m; 0 with `continuous`: the machine's default
-  double value = 0.0;  // dwell: s; spindle: rad/s; feed per revolution: m or rad a revolution
+  double value = 0.0;  // dwell: s; spindle: rad/s; feed per revolution: m or rad a revolution;
+                       // synchronised: lead, m a revolution, as programmed
   int number = 0;
   ToolControl tool_control = ToolControl::none;
+  Synchronised synchronised = Synchronised::no;  // kind feed
   int direction = 0;        // spindle: 1 clockwise (M3), -1 (M4), 0 off
   int work_offset = 1;      // 1 is G54, 9 is G59.3
   bool is_shifted = false;  // work coordinates lie elsewhere than those of G54 when the program

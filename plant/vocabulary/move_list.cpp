@@ -46,8 +46,8 @@ struct Indices {
 template <class Each>
 void visit(Move& move, Indices& at, Each each) {
   auto& [kind, line, end, end_machine, arc, centre_machine, feed, feed_mode, path_mode,
-         path_tolerance, value, number, tool_control, direction, work_offset, is_shifted,
-         tool_offset, tool_axis, plane, spline, text, s_begin, s_end] = move;
+         path_tolerance, value, number, tool_control, synchronised, direction, work_offset,
+         is_shifted, tool_offset, tool_axis, plane, spline, text, s_begin, s_end] = move;
   auto& [normal_axis, centre, turns] = arc;
   (void)plane, (void)spline, (void)text;
   each.number(s_begin);
@@ -62,7 +62,7 @@ void visit(Move& move, Indices& at, Each each) {
   each.integers(direction, work_offset);
   each.integers(tool_offset, at.plane);
   each.integers(at.text, at.spline);
-  each.small(kind, feed_mode, path_mode, tool_control, is_shifted);
+  each.small(kind, feed_mode, path_mode, tool_control, is_shifted, synchronised);
 }
 constexpr std::size_t kBegin = 0, kLine = 1, kEnd = 23;  // places of s_begin, line, s_end
 

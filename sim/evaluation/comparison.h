@@ -20,6 +20,7 @@ struct UncertainErrors;
 namespace servomill::sim::evaluation {
 
 struct ProbedFeature;
+struct SpindleMotion;
 
 /// Errors by heat of the parts of a day.
 struct DayFigures {
@@ -42,6 +43,7 @@ struct CaseData {
   std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
   // rows of feed motion outside the windows of the recording, by section; empty: none
   std::vector<std::size_t> left_out = {};
+  std::shared_ptr<const SpindleMotion> spindle = {};   // as the program turns it
   std::optional<DayFigures> day = {};  // none: no day, or one without parts
 };
 

@@ -8,6 +8,7 @@
 #include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
+#include "sim/evaluation/spindle_quantities.h"
 #include "sim/evaluation/uncertainty_quantities.h"
 
 namespace servomill::sim::evaluation {
@@ -15,8 +16,9 @@ namespace servomill::sim::evaluation {
 std::span<const QuantityEntry> quantities() {
   static const std::vector<QuantityEntry> kQuantities = [] {
     std::vector<QuantityEntry> all;
-    for (const auto family : {path_quantities(), uncertainty_quantities(), circular_quantities(),
-                              r_test_quantities(), probe_quantities(), day_quantities()}) {
+    for (const auto family :
+         {path_quantities(), uncertainty_quantities(), circular_quantities(), r_test_quantities(),
+          probe_quantities(), spindle_quantities(), day_quantities()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

@@ -229,6 +229,18 @@ void skip_structure(config::Reader& table) {
   for (const char* key : {"inertial_deflection", "heat"}) table.raw(key);
 }
 
+std::optional<model::SpindleDrive> read_spindle(config::Reader& nc) {
+  if (!nc.has("spindle")) return std::nullopt;
+  config::Reader table = nc.table("spindle");
+  model::SpindleDrive out;
+  out.acceleration =
+      table.real("acceleration_rpm_per_s", config::kAngularAcceleration, {config::above(0.0)});
+  if (table.has("Kv")) out.Kv = table.real("Kv", config::kRate, {config::above(0.0)});
+  out.velocity_feed_forward = table.real_or("velocity_feed_forward", 0.0, config::kNumber,
+                                            {config::at_least(0.0), config::at_most(1.0)});
+  return out;
+}
+
 // The reading and planning of programs.
 void read_planning(config::Reader& nc, model::NcSettings& out) {
   out.program_reader =
@@ -248,6 +260,7 @@ void read_planning(config::Reader& nc, model::NcSettings& out) {
   if (nc.has("spindle_time_s")) {
     out.spindle_time = nc.real("spindle_time_s", config::kTime, {config::at_least(0.0)});
   }
+  out.spindle = read_spindle(nc);
 }
 
 // A machine file without drives: structure, travel, limits, errors.

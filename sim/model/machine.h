@@ -62,6 +62,13 @@ struct GainPlaces {
   Place Kv, velocity_bandwidth, winding_bandwidth;
 };
 
+/// Position control of the spindle, for motion that it turns with (G33, G33.1).
+struct SpindleDrive {
+  double acceleration = 0.0;           // rad/s2
+  std::optional<double> Kv;            // 1/s, position gain; none: unknown
+  double velocity_feed_forward = 0.0;  // share
+};
+
 struct NcSettings {
   LoopPeriods periods;
   std::array<controllers::CascadeParams, kJoints> cascade;
@@ -79,6 +86,7 @@ struct NcSettings {
   // s, for cycle times; a simulation does not wait; none: unknown
   std::optional<double> tool_change_time;
   std::optional<double> spindle_time;  // of each start, stop and change of speed
+  std::optional<SpindleDrive> spindle;
   NominalFilter filter;
   std::array<GainPlaces, kJoints> gain_place;
   bool check_stability = true;  // refuse gains with which the linear loop diverges

@@ -62,6 +62,7 @@ controllers::PathOptions path_options(const model::NcSettings& nc, double feed_o
   options.feed_override = feed_override;
   options.block_time = nc.block_time;
   options.tolerance_share = nc.tolerance_share;
+  if (nc.spindle) options.spindle_acceleration = nc.spindle->acceleration;
   return options;
 }
 

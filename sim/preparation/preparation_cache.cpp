@@ -212,10 +212,11 @@ void add(system::MemoKey& key, const controllers::JointLimits& limits) {
 
 void add(system::MemoKey& key, const controllers::PathOptions& options) {
   const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
-               feed_override, rapid_override, tolerance_share, block_time] = options;
+               feed_override, rapid_override, tolerance_share, spindle_acceleration, block_time] =
+      options;
   for (const double value :
        {tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius, feed_override,
-        rapid_override, tolerance_share, block_time}) {
+        rapid_override, tolerance_share, spindle_acceleration, block_time}) {
     key.add(value);
   }
 }

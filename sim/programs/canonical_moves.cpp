@@ -195,6 +195,7 @@ std::vector<Fault> canon(const std::string& program_file, const ProgramInputs& i
   try {
     while (const Move* move = interpreter.next()) {
       stage.at(move->line);
+      if (move->synchronised == Synchronised::tap_out) continue;  // of the record before
       controllers::add_canon_json(*move, lines);
       lines += '\n';
       if (lines.size() >= kWrittenAtOnce) flush();

@@ -53,6 +53,18 @@ double largest_feed(const preparation::PreparedParts& one) {
   return largest * one.scenario.program.feed_override;
 }
 
+// G33 and G33.1 with a spindle of which nothing is known.
+std::optional<std::string> unknown_spindle(const preparation::PreparedParts& one) {
+  if (one.scenario.machine_of(one.spec).nc.spindle) return std::nullopt;
+  const auto first = first_move(
+      one.program.moves, [](const Move& move) { return move.synchronised != Synchronised::no; });
+  if (!first) return std::nullopt;
+  return fmt::format(
+      "{}:{}: warning: the acceleration of the spindle is not known: motion that it turns with is "
+      "planned as quick as the axes; set nc.spindle.acceleration_rpm_per_s of the machine",
+      one.scenario.program.file, first->line);
+}
+
 // Cases that the feedback hardware delays beside others that it does not.
 std::optional<std::string> uneven_hardware(const preparation::PreparedParts& noted) {
   std::vector<std::string> with, without;
@@ -206,6 +218,7 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   }
   add_overshoots(one, out);
   if (auto cold = cold_drives(one)) out.push_back(std::move(*cold));
+  if (auto spindle = unknown_spindle(one)) out.push_back(std::move(*spindle));
   if (auto uneven = uneven_hardware(one)) out.push_back(std::move(*uneven));
   if (auto off_path = cut_off_path(one, result.off_path)) out.push_back(std::move(*off_path));
   for (const strategies::Saturation& saturation : result.saturations)

@@ -4,6 +4,7 @@
 
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/cutter_path.h"
+#include "sim/evaluation/spindle_quantities.h"
 #include "sim/model/machine_test.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
@@ -42,6 +43,7 @@ evaluation::CaseData CaseOutput::data() const {
           signal_delay,
           uncertain,
           result.left_out,
+          spindle,
           day && !day->cycles.empty() ? std::optional(figures_of(*day)) : std::nullopt};
 }
 
@@ -55,6 +57,8 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.blocks = p.motion.blocks;
   out.sections = prepared.sections();
   out.touches = p.program.touches;
+  out.spindle = std::make_shared<const evaluation::SpindleMotion>(
+      evaluation::spindle_motion(p.program.moves, p.scenario.machine_of(p.spec).nc));
   out.chain = p.scenario.machine_of(p.spec).chain;
   out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);

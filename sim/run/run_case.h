@@ -42,7 +42,8 @@ struct CaseOutput {
   std::shared_ptr<const model::UncertainErrors> uncertain;  // errors of the machine; or none
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped
   std::optional<evaluation::PartFit> part_fit;    // of them, where there is a nominal part
-  std::vector<preparation::Touch> touches;        // of the program's probing moves
+  std::shared_ptr<const evaluation::SpindleMotion> spindle;
+  std::vector<preparation::Touch> touches;  // of the program's probing moves
   std::vector<LearntRuns> learnt;
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   std::shared_ptr<const DayCourse> day;                  // likewise; or none

@@ -207,6 +207,17 @@ class Totals(Case):
         self.assertAlmostEqual(done["feed_s"], jerk_alone(0.01, 0.1 / 60), places=6)
         self.assertEqual(done["unknown"], ["1 probing move, planned to the programmed end"])
 
+    def test_rigid_tapping_takes_the_acceleration_of_the_spindle(self):
+        program = "G21 G90 S1200 M3\nG33.1 Z-10 K1\nM2\n"
+        unknown = self.json(program, *START)
+        self.assertEqual(unknown["unknown"][-1], "2 moves of G33 or G33.1, planned as if the spindle were as quick as the axes: "
+                                                 "no nc.spindle in the machine file")
+        self.assertAlmostEqual(unknown["feed_s"], 2 * jerk_alone(0.01, 1.2 / 60), places=6)
+        self.write("spindle.toml", ROUTER.replace("[axis.X]", "[nc.spindle]\nacceleration_rpm_per_s = 6000.0\n[axis.X]"))
+        known = self.json(program, *START, machine="spindle.toml")
+        self.assertAlmostEqual(known["feed_s"], 2 * s_curve(0.01, 1.2 / 60, a=6000 / 60 * 1e-3), places=6)
+        self.assertFalse([line for line in known["unknown"] if "G33" in line])
+
     def test_a_feed_override(self):
         half = self.json(self.PROGRAM, *START, "--feed-override", "0.5")
         self.assertAlmostEqual(half["feed_s"], jerk_alone(0.05, 0.005), places=6)

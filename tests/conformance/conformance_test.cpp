@@ -124,7 +124,9 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   try {
     Interpreter interpreter(read_file(program), program.string(), setup);
     while (const Move* move = interpreter.next()) {
-      if (move->kind != MoveKind::coolant) records.push_back(record_of(canon_json(*move)));
+      const bool is_told =
+          move->kind != MoveKind::coolant && move->synchronised != Synchronised::tap_out;
+      if (is_told) records.push_back(record_of(canon_json(*move)));
     }
   } catch (const InputError& error) {
     records.push_back(record_of(canon_error_json("")));

@@ -289,5 +289,22 @@ TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
   EXPECT_NEAR(out[1].feed, 500.0 * mm_per_min, 1e-12);
 }
 
+// The spindle turns with the whole of a move: only its end is corrected.
+TEST(Gcode, DoesNotDivideATap) {
+  plant::ErrorModel errors;
+  errors.component("EXX"_err) = plant::harmonic(20.0 * um, 20.0 * mm, 0.0);
+  std::vector<Move> moves = there_and_back();
+  EXPECT_GT(rewritten(machine_with(errors), moves).size(), 2U);
+  moves[0].synchronised = Synchronised::tap_in;
+  moves[1].synchronised = Synchronised::tap_out;
+  for (Move& move : moves) move.value = 1.5 * mm;
+  const std::vector<Move> tap = rewritten(machine_with(errors), moves);
+  ASSERT_EQ(tap.size(), 2U);
+  EXPECT_NEAR(tap[0].end_machine[0], 5.0 * mm - 20.0 * um, 0.1 * um);  // a quarter of the wave
+  EXPECT_NEAR(tap[1].end_machine[0], 0.0, 1e-12);
+  EXPECT_EQ(tap[0].synchronised, Synchronised::tap_in);
+  EXPECT_EQ(tap[1].value, 1.5 * mm);
+}
+
 }  // namespace
 }  // namespace servomill::strategies::gcode_test

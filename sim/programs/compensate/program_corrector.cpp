@@ -151,6 +151,10 @@ void ProgramCorrector::refuse(const Move& move, const AxisFlags& was_known) cons
                                  "cannot be compensated; {}",
                                  kWriteAxes));
   }
+  if (move.synchronised != Synchronised::no) {
+    throw InputError({options_.file, move.line},
+                     "motion that the spindle turns with (G33, G33.1) cannot be compensated");
+  }
   if (move.kind == MoveKind::spline) {
     throw InputError({options_.file, move.line},
                      "splines (G5, G5.1, G5.2) cannot be compensated; post-process them to short "

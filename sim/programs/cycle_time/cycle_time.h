@@ -34,6 +34,7 @@ struct CycleTimeReport {
   bool has_texts = true;                   // the files are there to be read
   std::optional<double> tool_change_time;  // s, each; none: unknown
   std::optional<double> spindle_time;      // s, each start, stop and change of speed
+  bool knows_spindle = false;              // its acceleration, under G33
   std::vector<int> left_out = {};          // lines of moves from positions that are not known
   int unknown_dwells = 0;                  // in a unit that controls do not agree on
   /// Lines of moves that are not known, by cycle ("CYCL DEF 251").

@@ -40,6 +40,7 @@ void MotionBooking::finish(CycleTimeReport& report, bool warns_of_travel) {
   report.accounts = accountant_.take();
   report.tool_change_time = machine_.nc.tool_change_time;
   report.spindle_time = machine_.nc.spindle_time;
+  report.knows_spindle = machine_.nc.spindle.has_value();
   report.left_out = duration_.left_out();
   report.unknown_dwells = duration_.unknown_dwells();
   report.unknown_moves = duration_.unknown_moves();

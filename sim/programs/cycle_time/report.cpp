@@ -50,6 +50,11 @@ std::vector<std::string> CycleTimeReport::unknown() const {
     add(accounts.spindle_changes, "change",
         " of spindle speed: no nc.spindle_time_s in the machine file");
   }
+  if (!knows_spindle) {
+    add(accounts.synchronised, "move",
+        " of G33 or G33.1, planned as if the spindle were as quick as the axes: no nc.spindle in "
+        "the machine file");
+  }
   add(accounts.stops, "stop", " until the operator goes on");
   add(accounts.probings, "probing move", ", planned to the programmed end");
   add(unknown_dwells, "dwell", " in a unit that controls do not agree on");

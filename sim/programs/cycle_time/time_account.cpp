@@ -188,9 +188,11 @@ void TimeAccountant::book_travel(const Move& move, std::uint16_t file) {
   const bool is_linear = move.s_end > move.s_begin;
   const double travel = is_linear ? length : 0.0;
   const bool is_rapid = move.kind == MoveKind::rapid;
-  const double at_feed =
-      is_rapid || !(move.feed > 0.0) ? 0.0 : length / (move.feed * options_.feed_override);
+  const bool is_synchronised = move.synchronised != Synchronised::no;
+  const double feed = move.feed * (is_synchronised ? 1.0 : options_.feed_override);
+  const double at_feed = is_rapid || !(feed > 0.0) ? 0.0 : length / feed;
   if (move.kind == MoveKind::feed && move.number >= 2) ++out_.probings;
+  if (is_synchronised) ++out_.synchronised;
   for (TimeShare* share : {&out_.total, &out_.tools[tool_], &out_.sections[section_].second}) {
     (is_rapid ? share->rapid_travel : share->feed_travel) += travel;
     share->at_feed += at_feed;

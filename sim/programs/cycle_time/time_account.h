@@ -61,6 +61,7 @@ struct TimeAccounts {
   int tool_changes = 0;                                     // to another tool
   int spindle_changes = 0;                                  // starts, stops and changes of speed
   int stops = 0;                                            // M0, M1, M60
+  int synchronised = 0;                                     // moves that the spindle turns with
   int probings = 0;                                         // G38.2 ... G38.5
 };
 

@@ -82,8 +82,6 @@ TEST(RefusedCodes, HaveAReasonEach) {
   };
   EXPECT_EQ(fault("G7"),
             "G7: diameter and radius mode are for turning; this is a milling simulator");
-  EXPECT_EQ(fault("G33.1"),
-            "G33.1: the spindle angle is not simulated, so the axes cannot follow it");
   EXPECT_EQ(fault("G38.3"), "G38.3 without an axis word");
   EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles are for lathes; this is a milling simulator");
   EXPECT_EQ(fault("G76"), "G76: threading is for lathes; this is a milling simulator");

@@ -26,6 +26,19 @@ std::string note_of(const CaseOutput& output) {
   return output.notes.empty() ? "none" : output.notes.front();
 }
 
+TEST(Spindle, OfUnknownAccelerationIsTold) {
+  const auto note = [](const std::string& spindle) {
+    const model::Scenario scenario = small_scenario("G21 S1000 M3\nG0 Z1\nG33.1 Z-2 K1\nM2\n",
+                                                    "[[case]]\nname = \"one\"\n" + spindle);
+    return note_of(run_named_case(scenario, "one"));
+  };
+  EXPECT_EQ(note("[machine_override.nc.spindle]\nacceleration_rpm_per_s = 5000.0\n"), "none");
+  EXPECT_EQ(note(""),
+            "small.ngc:3: warning: the acceleration of the spindle is not known: motion that it "
+            "turns with is planned as quick as the axes; set nc.spindle.acceleration_rpm_per_s of "
+            "the machine");
+}
+
 // From X50 to X60 and back to X50 at 100 mm/s, and at X150 to X50 again, less what lag and ramps
 // do.
 TEST(Saturation, IsToldWithItsLimitLineAndTime) {
