@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -280,6 +279,26 @@ class BudgetRun {
       for (records::StoredSignal::Reader& pair : pairs) left -= pair.next();
       return left;
     });
+    for (BudgetPart& part : budget.parts) {
+      if (part.present) share_pairs(budget, part);
+    }
+  }
+
+  // A cause with half of each of its pairs.
+  void share_pairs(const Budget& budget, BudgetPart& part) const {
+    constexpr double kHalf = 0.5;
+    records::StoredSignal::Reader alone(part.signal);
+    std::vector<records::StoredSignal::Reader> pairs;
+    for (const BudgetPair& pair : budget.pairs) {
+      if (pair.causes[0] == part.cause || pair.causes[1] == part.cause) {
+        pairs.emplace_back(pair.signal);
+      }
+    }
+    fill(budget, part.share, [&] {
+      double value = alone.next();
+      for (records::StoredSignal::Reader& pair : pairs) value += kHalf * pair.next();
+      return value;
+    });
   }
 
   // complete, without measurement, each that adds, all of these, each of the chain
@@ -296,59 +315,7 @@ class BudgetRun {
   Stage* stage_ = &runs_;
 };
 
-// The quantities of a scenario, and those of all cases and axes that it has none of.
-std::vector<model::QuantitySpec> asked_for(const model::Scenario& scenario,
-                                           std::span<const std::string> also) {
-  std::vector<model::QuantitySpec> out = scenario.quantities;
-  const JointLayout& layout = scenario.machine.chain.layout;
-  for (const std::string& name : also) {
-    assert(is_of_any_case(name));
-    const auto has_name = [&](const model::QuantitySpec& one) { return one.name == name; };
-    if (std::any_of(out.begin(), out.end(), has_name)) continue;
-    model::QuantitySpec one;
-    one.name = name;
-    for (const model::CaseSpec& each : scenario.cases) one.cases.push_back(each.name);
-    for (int joint = 0; joint < kLinearJoints; ++joint) {
-      if (!layout.has(joint)) continue;
-      one.axis = layout.letter_of(joint);
-      out.push_back(one);
-    }
-  }
-  return out;
-}
-
 }  // namespace
-
-bool is_of_any_case(std::string_view quantity) {
-  if (!evaluation::has_path_signal(quantity)) return false;
-  const evaluation::QuantityEntry& info = evaluation::quantity_entry(quantity);
-  return !info.needs_baseline && !info.needs_imposed;
-}
-
-std::vector<model::QuantitySpec> budget_quantities(const model::Scenario& scenario,
-                                                   std::span<const std::string> also,
-                                                   const std::vector<std::string>& sections) {
-  std::vector<model::QuantitySpec> out;
-  for (const model::QuantitySpec& asked : asked_for(scenario, also)) {
-    model::QuantitySpec one = asked;
-    const std::string_view derived_from = evaluation::quantity_entry(one.name).derived_from;
-    if (!derived_from.empty()) one.name = derived_from;
-    if (!evaluation::has_path_signal(one.name)) continue;
-    one.statistic = "max";
-    one.reference.clear();
-    one.basis.clear();
-    if (!sections.empty()) one.sections = sections;
-    for (const std::string& name : asked.cases) {
-      one.cases = {name};
-      const bool known = std::any_of(out.begin(), out.end(), [&](const model::QuantitySpec& other) {
-        return other.name == one.name && other.axis == one.axis && other.baseline == one.baseline &&
-               other.sections == one.sections && other.cases == one.cases;
-      });
-      if (!known) out.push_back(one);
-    }
-  }
-  return out;
-}
 
 std::vector<Budget> find_budgets(const model::Scenario& scenario,
                                  std::span<const model::QuantitySpec> quantities,
@@ -361,12 +328,28 @@ bool Budget::has_large_remainder() const {
   return note.empty() && remainder.rms > std::max(kShare * residual.rms, kSmallest);
 }
 
-std::optional<double> Budget::group_at_place(CauseGroup group) const {
+namespace {
+
+// Sum of the present parts of a group; which of their values, the caller says.
+template <class ValueOf>
+std::optional<double> sum_of_group(const Budget& budget, CauseGroup group, ValueOf value_of) {
   std::optional<double> sum;
-  for (const BudgetPart& part : parts) {
-    if (part.present && info_of(part.cause).group == group) sum = sum.value_or(0.0) + part.at_place;
+  for (const BudgetPart& part : budget.parts) {
+    if (part.present && info_of(part.cause).group == group) {
+      sum = sum.value_or(0.0) + value_of(part);
+    }
   }
   return sum;
+}
+
+}  // namespace
+
+std::optional<double> Budget::group_at_place(CauseGroup group) const {
+  return sum_of_group(*this, group, [](const BudgetPart& part) { return part.at_place; });
+}
+
+std::optional<double> Budget::group_share_at_place(CauseGroup group) const {
+  return sum_of_group(*this, group, [](const BudgetPart& part) { return part.share.at_place; });
 }
 
 }  // namespace servomill::sim::run

@@ -27,6 +27,7 @@ struct BudgetSignal {
 struct BudgetPart : BudgetSignal {
   Cause cause = Cause::lag;
   bool present = false;  // the case has it; else all is 0, and no signal stored
+  BudgetSignal share;    // with half of each of its pairs (9); where pairs were looked for
 };
 
 /// Joint effect of two causes, beside what each has alone.
@@ -69,6 +70,18 @@ struct BudgetPair : BudgetSignal {
 /// chain does with them): `unexplained`. A signal like x = a + b + I(a, b) has the part a + I(a, b)
 /// for either, the remainder -I(a, b) and the pair -I(a, b).
 ///
+/// Half of each pair then is the share of either of its causes:
+///
+///     share(c) = part(c) + sum over b of pair(c, b) / 2      for causes in (6)
+///              = part(c)                                     for all others                (9)
+///     R        = sum of the shares + unexplained                                          (10)
+///
+/// Of x above it is a + I(a, b) / 2. (9) is the Shapley value of the causes in (6) where they
+/// interact in pairs alone: what a cause adds, averaged over all orders in which causes can be
+/// added. So shares depend on no order either; what is left is what three causes and more do
+/// together. Source: L. S. Shapley, A value for n-person games, Annals of Mathematics Studies 28
+/// (1953).
+///
 /// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
 /// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
 /// else `uncorrected`: the imposed displacement that imposed_error_residual wants and nobody brings
@@ -94,21 +107,9 @@ struct Budget {
   double sum_at_place() const { return residual.at_place - remainder.at_place; }
   /// Sum of the parts of a group at the place, um; empty if the case has no cause of it.
   std::optional<double> group_at_place(CauseGroup group) const;
+  /// The same of their shares (9). @pre there are pairs
+  std::optional<double> group_share_at_place(CauseGroup group) const;
 };
-
-/// True if each case has this quantity, asked for or not: tool_deviation, following_error.
-bool is_of_any_case(std::string_view quantity);
-
-/// Quantities of a scenario that have a budget, each case of each once: realised_ratio and
-/// lag_time stand for imposed_error_residual; statistics do not matter.
-/// @param also      quantities of any case; where the scenario has none of that name, of all cases
-///                  and linear axes
-/// @param sections  of the program, in place of those of the quantities; none: as they are, and
-///                  all of it for `also`
-/// @pre is_of_any_case(also)
-std::vector<model::QuantitySpec> budget_quantities(const model::Scenario& scenario,
-                                                   std::span<const std::string> also = {},
-                                                   const std::vector<std::string>& sections = {});
 
 struct BudgetControl {
   unsigned threads = 0;  // 0: one a core

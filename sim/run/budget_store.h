@@ -11,7 +11,9 @@ namespace servomill::sim::run {
 
 /// A file of the kind "budget": /budget/NNN with s, residual, remainder and one signal for each
 /// cause that the case has; attributes case, quantity, axis, sections, base, place, and of each
-/// signal at_place and rms.
+/// signal at_place and rms. Where pairs of causes were looked for: /budget/NNN/pairs with one
+/// signal a pair ("friction_with_cutting") and unexplained, and /budget/NNN/shares with each cause
+/// and half of its pairs, and the remainder of these.
 /// @throws InputError if the file cannot be had under that name, SystemError
 class BudgetStore {
  public:

@@ -324,7 +324,7 @@ class Budget:
     def __init__(self, group):
         self.case, self.quantity, self.axis, self.sections = (
             str(group.attrs[name]) for name in ("case", "quantity", "axis", "sections"))
-        signals = [name for name in group if name != "s"]
+        signals = [name for name, one in group.items() if isinstance(one, h5py.Dataset) and name != "s"]
         kept = of_file.kept_rows(group, deciding=signals)
         self.place, self.s = float(group.attrs["place"]), of_file.read(group["s"], kept)
         parts = {name: BudgetPart(name, float(group[name].attrs["at_place"]), float(group[name].attrs["rms"]),

@@ -9,6 +9,7 @@
 #include "sim/input/read_scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
+#include "sim/run/budget_quantities.h"
 #include "sim/run/budget_store.h"
 #include "sim/run/day_course.h"
 #include "sim/system/json.h"
@@ -39,8 +40,11 @@ std::string causes_help() {
       "together "
       "is\n"
       "in the remainder; where that is more than a tenth of the residual, pairs of causes are\n"
-      "taken away, too, and show which of them make it. What stays without all is uncorrected, "
-      "uncorrectable or imposed.\n"
+      "taken away, too, and show which of them make it: half of a pair is the share of either "
+      "cause,\n"
+      "and what is left of the residual then is of three causes and more. What stays without all "
+      "is\n"
+      "uncorrected, uncorrectable or imposed.\n"
       "Their sums by kind: static geometry, servo, inertia, heat, force, imposed.\n"
       "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
       "tool_deviation,\n"
@@ -118,17 +122,19 @@ std::string micrometres(double value) {
 
 std::string percent(double share) { return fixed(100.0 * share, 1); }
 
-void print_line(std::string_view name, double at_place, double share, double rms,
-                std::string_view help) {
-  fmt::print("  {:<18} {:>9} um {:>7} % {:>9} um  {}\n", name, micrometres(at_place),
-             percent(share), micrometres(rms), help);
+// Columns of one row: where the residual is largest, and along the path.
+std::string columns(const sim::run::BudgetSignal& signal, double whole) {
+  const double share = whole != 0.0 ? signal.at_place / whole : 0.0;
+  return fmt::format("{:>9} um {:>7} % {:>9} um", micrometres(signal.at_place), percent(share),
+                     micrometres(signal.rms));
 }
 
 // "static geometry 0.120 um, servo -0.310 um" at the place of the residual.
-std::string groups_of(const sim::run::Budget& budget) {
+template <class SumOf>
+std::string groups_of(SumOf sum_of) {
   std::string text;
   for (std::size_t g = 0; g < sim::run::kCauseGroups.size(); ++g) {
-    const auto sum = budget.group_at_place(static_cast<sim::run::CauseGroup>(g));
+    const std::optional<double> sum = sum_of(static_cast<sim::run::CauseGroup>(g));
     if (!sum) continue;
     text += fmt::format("{}{} {} um", text.empty() ? "" : ", ", sim::run::kCauseGroups[g],
                         micrometres(*sum));
@@ -144,15 +150,51 @@ std::string pair_name(const sim::run::BudgetPair& pair) {
 // Pairs that make a large remainder, and what is left of it.
 void print_pairs(const sim::run::Budget& budget) {
   constexpr double kShown = 0.05;  // of the remainder
-  if (budget.pairs.empty()) return;
+  const auto print = [](const sim::run::BudgetSignal& signal, const std::string& name) {
+    fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it", micrometres(signal.at_place),
+               "", micrometres(signal.rms), name);
+  };
   for (const sim::run::BudgetPair& pair : budget.pairs) {
-    if (pair.rms < kShown * budget.remainder.rms) continue;
-    fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it", micrometres(pair.at_place), "",
-               micrometres(pair.rms), pair_name(pair));
+    if (pair.rms >= kShown * budget.remainder.rms) print(pair, pair_name(pair));
   }
-  fmt::print("    {:<16} {:>9} um {:>9} {:>9} um  {}\n", "of it",
-             micrometres(budget.unexplained.at_place), "", micrometres(budget.unexplained.rms),
-             "of three and more");
+  print(budget.unexplained, "of three and more");
+}
+
+// The summary where pairs were looked for: causes with half of each of their pairs.
+void print_shares(const sim::run::Budget& budget) {
+  const double whole = budget.residual.at_place;
+  fmt::print("  with half of each pair of causes:\n");
+  for (const sim::run::BudgetPart& part : budget.parts) {
+    if (!part.present) continue;
+    fmt::print("  {:<18} {}\n", sim::run::info_of(part.cause).name, columns(part.share, whole));
+  }
+  fmt::print(
+      "  {:<18} {}  {} % of the residual in rms\n", "remainder", columns(budget.unexplained, whole),
+      percent(budget.residual.rms > 0.0 ? budget.unexplained.rms / budget.residual.rms : 0.0));
+  fmt::print("  by kind: {}\n", groups_of([&](sim::run::CauseGroup group) {
+               return budget.group_share_at_place(group);
+             }));
+}
+
+// The causes that a case has, by (1) to (7) of budget.h.
+void print_parts(const sim::run::Budget& budget) {
+  const double whole = budget.residual.at_place;
+  fmt::print("  {:<18} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
+             "share", "rms");
+  for (const sim::run::BudgetPart& part : budget.parts) {
+    if (!part.present) continue;
+    const sim::run::CauseInfo& info = sim::run::info_of(part.cause);
+    fmt::print("  {:<18} {}  {}\n", info.name, columns(part, whole), info.help);
+  }
+  const double sum = budget.sum_at_place();
+  fmt::print("  {:<18} {:>9} um {:>7} %\n", "sum", micrometres(sum),
+             percent(whole != 0.0 ? sum / whole : 0.0));
+  fmt::print("  {:<18} {}  combined effects of causes\n", "remainder",
+             columns(budget.remainder, whole));
+  if (!budget.pairs.empty()) print_pairs(budget);
+  fmt::print("  {:<18} {}\n", "residual", columns(budget.residual, whole));
+  fmt::print("  by kind: {}\n",
+             groups_of([&](sim::run::CauseGroup group) { return budget.group_at_place(group); }));
 }
 
 void print_budget(const sim::run::Budget& budget) {
@@ -161,28 +203,52 @@ void print_budget(const sim::run::Budget& budget) {
     fmt::print("  none: {}\n", budget.note);
     return;
   }
-  const double whole = budget.residual.at_place;
-  const auto share = [&](double part) { return whole != 0.0 ? part / whole : 0.0; };
-  fmt::print("  {:<18} {:>12} {:>9} {:>12}\n", "cause", fmt::format("at s {:.1f}", budget.place_s),
-             "share", "rms");
-  for (const sim::run::BudgetPart& part : budget.parts) {
-    if (!part.present) continue;
-    const sim::run::CauseInfo& info = sim::run::info_of(part.cause);
-    print_line(info.name, part.at_place, share(part.at_place), part.rms, info.help);
-  }
+  print_parts(budget);
+  if (!budget.pairs.empty()) print_shares(budget);
   std::string absent;
   for (const sim::run::BudgetPart& part : budget.parts) {
     if (part.present) continue;
     absent += fmt::format("{}{}", absent.empty() ? "" : ", ", sim::run::info_of(part.cause).name);
   }
-  const double sum = budget.sum_at_place();
-  fmt::print("  {:<18} {:>9} um {:>7} %\n", "sum", micrometres(sum), percent(share(sum)));
-  print_line("remainder", budget.remainder.at_place, share(budget.remainder.at_place),
-             budget.remainder.rms, "combined effects of causes");
-  print_pairs(budget);
-  print_line("residual", whole, 1.0, budget.residual.rms, "");
-  fmt::print("  by kind: {}\n", groups_of(budget));
   if (!absent.empty()) fmt::print("  not in this case: {}\n", absent);
+}
+
+// Numbers of one cause.
+std::string part_json(const sim::run::BudgetPart& part, bool has_share) {
+  sim::system::JsonObject out;
+  out.number("at_place", part.at_place).number("rms", part.rms);
+  if (has_share) out.number("share", part.share.at_place).number("share_rms", part.share.rms);
+  return out.line();
+}
+
+template <class SumOf>
+std::string kinds_json(SumOf sum_of) {
+  sim::system::JsonObject kinds;
+  for (std::size_t g = 0; g < sim::run::kCauseGroups.size(); ++g) {
+    const std::optional<double> sum = sum_of(static_cast<sim::run::CauseGroup>(g));
+    if (sum) kinds.number(sim::run::kCauseGroups[g], *sum);
+  }
+  return kinds.line();
+}
+
+// Adds pairs of causes, and what they leave.
+void add_pairs(const sim::run::Budget& budget, sim::system::JsonObject& out) {
+  std::vector<std::string> pairs;
+  for (const sim::run::BudgetPair& pair : budget.pairs) {
+    const std::vector<std::string> causes = {std::string(sim::run::info_of(pair.causes[0]).name),
+                                             std::string(sim::run::info_of(pair.causes[1]).name)};
+    pairs.push_back(sim::system::JsonObject()
+                        .raw("causes", sim::system::json_texts(causes))
+                        .number("at_place", pair.at_place)
+                        .number("rms", pair.rms)
+                        .line());
+  }
+  out.raw("pairs", sim::system::json_list(pairs));
+  out.raw("share_kinds", kinds_json([&](sim::run::CauseGroup group) {
+            return budget.group_share_at_place(group);
+          }));
+  out.number("unexplained", budget.unexplained.at_place);
+  out.number("unexplained_rms", budget.unexplained.rms);
 }
 
 std::string budget_json(const sim::run::Budget& budget) {
@@ -197,33 +263,15 @@ std::string budget_json(const sim::run::Budget& budget) {
   sim::system::JsonObject parts;
   for (const sim::run::BudgetPart& part : budget.parts) {
     if (!part.present) continue;
-    parts.raw(
-        sim::run::info_of(part.cause).name,
-        sim::system::JsonObject().number("at_place", part.at_place).number("rms", part.rms).line());
+    parts.raw(sim::run::info_of(part.cause).name, part_json(part, !budget.pairs.empty()));
   }
   out.raw("parts", parts.line()).number("sum", budget.sum_at_place());
-  sim::system::JsonObject kinds;
-  for (std::size_t g = 0; g < sim::run::kCauseGroups.size(); ++g) {
-    const auto sum = budget.group_at_place(static_cast<sim::run::CauseGroup>(g));
-    if (sum) kinds.number(sim::run::kCauseGroups[g], *sum);
-  }
-  out.raw("kinds", kinds.line());
+  out.raw("kinds",
+          kinds_json([&](sim::run::CauseGroup group) { return budget.group_at_place(group); }));
   out.number("remainder", budget.remainder.at_place);
   out.number("remainder_rms", budget.remainder.rms);
-  if (budget.pairs.empty()) return out.line();
-  std::vector<std::string> pairs;
-  for (const sim::run::BudgetPair& pair : budget.pairs) {
-    const std::vector<std::string> causes = {std::string(sim::run::info_of(pair.causes[0]).name),
-                                             std::string(sim::run::info_of(pair.causes[1]).name)};
-    pairs.push_back(sim::system::JsonObject()
-                        .raw("causes", sim::system::json_texts(causes))
-                        .number("at_place", pair.at_place)
-                        .number("rms", pair.rms)
-                        .line());
-  }
-  out.raw("pairs", sim::system::json_list(pairs))
-      .number("unexplained", budget.unexplained.at_place);
-  return out.number("unexplained_rms", budget.unexplained.rms).line();
+  if (!budget.pairs.empty()) add_pairs(budget, out);
+  return out.line();
 }
 
 void add_budget_options(Options& options) {

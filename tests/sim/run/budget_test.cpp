@@ -136,6 +136,7 @@ TEST(Budget, AddsUpOnAMachineWithEveryCause) {
     ASSERT_EQ(budget.note, "");
     expect_sum(budget);
     const std::string axis(1, budget.quantity.axis);
+    if (!budget.pairs.empty()) expect_sum_of_shares(budget);
     const double left =
         budget.has_large_remainder() ? budget.unexplained.rms : budget.remainder.rms;
     RecordProperty(axis + "_residual_um", fmt::format("{:.3f}", budget.residual.rms));
@@ -163,6 +164,37 @@ TEST(Budget, LeavesWhatCausesDoTogetherInTheRemainder) {
   EXPECT_EQ(budget.pairs[0].causes, (std::array{Cause::saturation, Cause::identification}));
   EXPECT_NEAR(budget.pairs[0].at_place, 24.0, kSteps);
   EXPECT_LE(budget.unexplained.rms, 1e-6);
+  // and half of it goes to either: -44 + 12 and 0 + 12
+  EXPECT_NEAR(part(budget, Cause::saturation).share.at_place, -32.0, kSteps);
+  EXPECT_NEAR(part(budget, Cause::identification).share.at_place, 12.0, kSteps);
+  expect_sum_of_shares(budget);
+}
+
+// The share is what a cause adds, averaged over all orders in which causes are added (Shapley):
+// computed here of the four runs that two causes have.
+TEST(Budget, SharesAreTheMeanOverAllOrdersOfTheCauses) {
+  const auto left = [](const char* known, const char* limit) {
+    const std::string toml =
+        root("constant_um = 120.0",
+             std::string("[errors.identified]\nEYX = { constant_um = ") + known + " }\n") +
+        one_case(std::string("type = \"feedback\"\nmodel = \"identified\"\n"
+                             "max_um = ") +
+                     limit + "\n",
+                 "servo = \"ideal\"\n");
+    const Budget budget = budget_of(toml);
+    return budget.residual.at_place;
+  };
+  const double none = left("120.0", "1000.0"), limited = left("120.0", "100.0");
+  const double wrong = left("144.0", "1000.0"), both = left("144.0", "100.0");
+  const double of_limit = 0.5 * ((limited - none) + (both - wrong));
+  const double of_model = 0.5 * ((wrong - none) + (both - limited));
+  const Budget budget = budget_of(
+      root("constant_um = 120.0", "[errors.identified]\nEYX = { constant_um = 144.0 }\n") +
+      one_case("type = \"feedback\"\nmodel = \"identified\"\nmax_um = 100.0\n",
+               "servo = \"ideal\"\n"));
+  constexpr double kSteps = 0.1;  // um, of encoders and more than these
+  EXPECT_NEAR(part(budget, Cause::saturation).share.at_place, of_limit, kSteps);
+  EXPECT_NEAR(part(budget, Cause::identification).share.at_place, of_model, kSteps);
 }
 
 // The tip stands while C turns under tool-centre-point control: arc length does not tell where. The
@@ -180,23 +212,6 @@ TEST(Budget, ComparesByTheTurnWhereTheTipStands) {
   EXPECT_NEAR(part(budget, Cause::uncorrected).at_place, 20.0, 0.01);
   EXPECT_LT(largest(part(budget, Cause::interpolation)), 0.2);  // um, P0.0002
   expect_nothing_else(budget, {Cause::uncorrected, Cause::interpolation}, 0.01);
-}
-
-// Deviation of the tool and following error belong to every case, asked for or not.
-TEST(Budget, IsThereForCasesThatNobodyAsksAbout) {
-  const model::Scenario scenario =
-      small_scenario(kProgram,
-                     "[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n"
-                     "[[quantity]]\nname = \"contour_error\"\n"
-                     "[[quantity]]\nname = \"following_error\"\naxis = \"X\"\n"
-                     "cases = [\"two\"]\n");
-  EXPECT_EQ(budget_quantities(scenario).size(), 1U);
-  const std::vector<std::string> both = {"tool_deviation", "following_error"};
-  const auto quantities = budget_quantities(scenario, both, {"flank"});
-  ASSERT_EQ(quantities.size(), 1U + 2U * 3U);  // as it is; two cases of X, Y, Z
-  for (const model::QuantitySpec& one : quantities) {
-    EXPECT_EQ(one.sections, std::vector<std::string>{"flank"});
-  }
 }
 
 TEST(Budget, RefusesASectionThatTheProgramLacks) {

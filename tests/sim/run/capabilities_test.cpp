@@ -4,6 +4,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/run/budget.h"
+#include "sim/run/budget_quantities.h"
 #include "strategies/feedback.h"
 #include "strategies/none.h"
 #include "strategies/table.h"

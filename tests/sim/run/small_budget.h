@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/run/budget.h"
+#include "sim/run/budget_quantities.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::small_budget {
@@ -53,6 +54,19 @@ inline void expect_sum(const Budget& budget) {
   for (std::size_t n = 0; n < s.size(); ++n) {
     ASSERT_NEAR(sum[n], residual[n], kRounding) << "at s = " << s[n];
   }
+}
+
+// Shares and what pairs leave make the residual, at each place.
+inline void expect_sum_of_shares(const Budget& budget) {
+  constexpr double kRounding = 1e-9;  // um, of sums of some hundred um
+  const std::vector<double> residual = budget.residual.signal.all();
+  std::vector<double> sum = budget.unexplained.signal.all();
+  for (const BudgetPart& one : budget.parts) {
+    const std::vector<double> share = one.share.signal.all();
+    ASSERT_EQ(share.size(), one.present ? sum.size() : 0U);
+    for (std::size_t n = 0; n < share.size(); ++n) sum[n] += share[n];
+  }
+  for (std::size_t n = 0; n < sum.size(); ++n) ASSERT_NEAR(sum[n], residual[n], kRounding);
 }
 
 inline Budget budget_of(const std::string& toml, const char* program = kProgram) {

@@ -140,8 +140,10 @@ function byScale(group) {
 }
 
 function labelOf({ path, attributes }, scale, several) {
-  if (path.startsWith("/budget/"))
-    return `budget of ${[attributes.case, attributes.quantity, attributes.axis, attributes.sections].filter(Boolean).join(" ")}`;
+  if (path.startsWith("/budget/")) {
+    const within = path.split("/").slice(3).map((child) => ` › ${child}`); // pairs, shares
+    return `budget of ${[attributes.case, attributes.quantity, attributes.axis, attributes.sections].filter(Boolean).join(" ")}${within.join("")}`;
+  }
   const inCase = CASE.exec(path);
   const name = (inCase ? (inCase[2] ?? "") : path).slice(1).replaceAll("/", " › ") || "case";
   return several ? `${name} over ${scale || "rows"}` : name;
