@@ -7,13 +7,22 @@ namespace servomill::sim::engine {
 
 using State = plant::ToolPointVibration::State;
 
+namespace {
+
+std::size_t steps_held(double step, double longest) {
+  constexpr double kSpare = 4.0;  // steps
+  return static_cast<std::size_t>(std::ceil(plant::kPassagesBefore * longest / step) + kSpare);
+}
+
+}  // namespace
+
+double ChipRegeneration::memory(double step, double longest) {
+  return static_cast<double>(steps_held(step, longest) * sizeof(State));
+}
+
 ChipRegeneration::ChipRegeneration(const std::vector<plant::StructuralMode>& modes, double step,
                                    double longest)
-    : vibration_(modes, step), step_(step) {
-  constexpr double kSpare = 4.0;  // steps
-  course_.resize(
-      static_cast<std::size_t>(std::ceil(plant::kPassagesBefore * longest / step) + kSpare));
-}
+    : vibration_(modes, step), step_(step), course_(steps_held(step, longest)) {}
 
 void ChipRegeneration::begin(const Eigen::Matrix3d& J_pL) {
   J_pL_ = J_pL;

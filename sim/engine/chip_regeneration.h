@@ -23,6 +23,9 @@ class ChipRegeneration {
   /// @param longest  s, largest time from tooth to tooth
   ChipRegeneration(const std::vector<plant::StructuralMode>& modes, double step, double longest);
 
+  /// Bytes of the course that one of these holds.
+  static double memory(double step, double longest);
+
   /// A step with its force on the tool (3; N, in W). Neither allocates nor throws.
   /// @param J_pL      displacement of the tip in W by that along the linear axes (3 x 3)
   /// @param passage   T, s

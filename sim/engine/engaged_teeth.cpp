@@ -45,6 +45,11 @@ Eigen::Vector3d EngagedTeeth::force(int engagement, double angle, double rotatio
                                                between);
 }
 
+double EngagedTeeth::edges(int engagement) const {
+  const Engagement& at = engagements_[static_cast<std::size_t>(engagement)];
+  return static_cast<double>(at.end - at.first) * chips_[at.tool].teeth();
+}
+
 int EngagedTeeth::teeth(int engagement) const {
   return chips_[engagements_[static_cast<std::size_t>(engagement)].tool].teeth();
 }

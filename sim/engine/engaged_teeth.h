@@ -42,6 +42,8 @@ class EngagedTeeth {
   /// The same of teeth that meet the surface of the displacements before.
   Eigen::Vector3d force(int engagement, double angle, double rotation, double c, double wear,
                         const DisplacementsBefore& before) const;
+  /// Number of slices of all edges that a force of an engagement is summed over.
+  double edges(int engagement) const;
   /// Number of teeth of an engagement.
   int teeth(int engagement) const;
 

@@ -241,6 +241,10 @@ double PreparedCase::recorded_duration() const {
   return inside / looks * whole;
 }
 
+double PreparedCase::tooth_step() const {
+  return parts_->machine().nc.periods.seconds(parts_->tooth_step);
+}
+
 PreparedCase::~PreparedCase() = default;
 PreparedCase::PreparedCase(PreparedCase&&) noexcept = default;
 

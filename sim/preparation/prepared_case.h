@@ -78,6 +78,9 @@ class PreparedCase {
   /// Time recorded of it and of the standstill afterwards, s; about, if there are windows.
   double recorded_duration() const;
 
+  /// Step of the teeth of its cut, s; 0: no single teeth cut.
+  double tooth_step() const;
+
   /// Names of the sections of the original program.
   const std::vector<std::string>& sections() const;
 

@@ -88,7 +88,11 @@ class BudgetRun {
       control.stop = control_.stop;
       control.cache = &cache_;
       control.scratch_folder = control_.scratch_folder;
-      if (removed.empty()) control.prepared = control_.prepared;
+      if (removed.empty() && control_.prepared) {
+        control.prepared = [this](const preparation::RunEstimate& takes) {
+          control_.prepared(budget_estimate(takes, present_, budgets_.size()));
+        };
+      }
       for (CaseOutput& one : run_scenario(changed, control).cases) {
         const std::string name = one.name;
         out[name] = std::make_shared<const CaseOutput>(std::move(one));

@@ -12,6 +12,7 @@
 
 #include "sim/records/stored_signal.h"
 #include "sim/run/budget_causes.h"
+#include "sim/run/budget_estimate.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim::run {
@@ -114,14 +115,9 @@ struct Budget {
 struct BudgetControl {
   unsigned threads = 0;  // 0: one a core
   const engine::StopFlag* stop = nullptr;
-  // what the first run, that of all causes, takes; before it begins
-  std::function<void(const preparation::RunEstimate&)> prepared;
+  std::function<void(const BudgetEstimate&)> prepared;  // before the first run begins
   std::string scratch_folder;  // as in RunControl
 };
-
-/// How often the recordings of a run are on the disk while budgets are found: complete, without
-/// measurement, of the step before and of this one; and the signals.
-inline constexpr double kCopiesOfBudget = 5.0;
 
 /// Budgets of quantities, in their order; runs each case with and without each cause that it has.
 /// @param quantities  of one case each, as budget_quantities gives them

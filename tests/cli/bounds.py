@@ -141,7 +141,7 @@ class Bounds(unittest.TestCase):
                          r"lower record\.max_size_GB = 8 or choose another file \(--output\)\n$")
         status, said = self.run_here("budget", "scenario.toml", "--quantity", "tool_deviation", "-o", "disk/out.h5", "--set", slow)
         self.assertEqual(status, 2, said)
-        self.assertRegex(said, r"^part\.ngc: error: takes 2\.\d GB of disk space while running; \S+/disk has 0\.94 GB free: lower ")
+        self.assertRegex(said, r"^estimate: \d+ runs, each .*\npart\.ngc: error: takes [2-9]\.\d GB of disk space while running; \S+/disk has 0\.94 GB free: lower ")
         self.assertEqual(os.listdir(disk), [])
         subprocess.run(["mount", "-o", "remount,size=1100m", disk], check=True)
         self.first_lines(1, slow, output="disk/out.h5")

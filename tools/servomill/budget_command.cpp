@@ -26,7 +26,9 @@ namespace po = boost::program_options;
 std::string causes_help() {
   std::string out =
       "Splits the residuals of a scenario's cases into the contributions of their causes: runs "
-      "each\ncase again without each cause and compares the signals at equal arc length. Causes:\n";
+      "each\ncase again without each cause and compares the signals at equal arc length. A long "
+      "one first\n"
+      "reports the number of its runs, and what they take. Causes:\n";
   for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
     const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
     out += fmt::format("  {:<18}{}\n", info.name, info.help);
@@ -328,14 +330,19 @@ int budget_command(const Arguments& arguments) {
   sim::run::BudgetControl control;
   control.threads = thread_count(options);
   control.stop = &stop;
-  control.prepared = [&](const sim::preparation::RunEstimate& takes) {
+  control.prepared = [&](const sim::run::BudgetEstimate& takes) {
     const auto hidden = line.hidden();
-    if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
-    if (sim::preparation::is_worth_telling(takes)) {
-      const std::string folder = control.scratch_folder.empty()
-                                     ? std::filesystem::temp_directory_path().string()
-                                     : control.scratch_folder;
-      sim::preparation::refuse_full_disk(scenario, takes, folder, sim::run::kCopiesOfBudget);
+    if (sim::run::is_worth_telling(takes)) {
+      fmt::print(stderr, "estimate: {}\n", sim::run::to_string(takes));
+    }
+    if (takes.run.is_thinned) {
+      fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes.run));
+    }
+    const std::string folder = control.scratch_folder.empty()
+                                   ? std::filesystem::temp_directory_path().string()
+                                   : control.scratch_folder;
+    if (takes.run.file > 0.0 && sim::run::is_worth_telling(takes)) {
+      sim::preparation::refuse_full_disk(scenario, takes.run, folder, takes.disk / takes.run.file);
     }
   };
   if (store) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/input/read_scenario.h"
+#include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::preparation::estimate_test {
@@ -86,6 +88,26 @@ TEST(RunEstimate, MemoryOfAProbedPartDoesNotGrowWithTheDuration) {
   const std::vector<double> half = {1800.0}, nine_times = {16200.0};
   const double least = estimate(of, half, 1).memory, most = estimate(of, nine_times, 1).memory;
   EXPECT_NEAR(most, least, 0.01 * least);
+}
+
+// Steps of teeth that regenerate take ten times as long, and twice the motion twice the steps.
+TEST(RunEstimate, CountsTheStepsOfTeethAndOfTheirRegeneration) {
+  const auto of = [](const std::vector<std::string>& changes) {
+    const model::Scenario scenario =
+        input::read_scenario(SERVOMILL_SOURCE_DIR "/scenarios/parts/chatter.toml", changes);
+    return estimate(scenario, prepare_untaught(scenario), 1);
+  };
+  const RunEstimate average =
+      of({"cutting.force=average", "cutting.regeneration=false", "cmm.tooth_marks=false"});
+  const RunEstimate teeth = of({"cutting.regeneration=false", "cutting.steps_per_tooth=50"});
+  const RunEstimate regenerated = of({"cutting.steps_per_tooth=50"});
+  const double of_teeth = teeth.computing - average.computing;
+  const double of_both = regenerated.computing - average.computing;
+  EXPECT_GT(of_teeth, 0.1 * average.computing);
+  EXPECT_NEAR(of_both, 10.0 * of_teeth, 1e-6 * of_both);
+  const RunEstimate slow = of({"cutting.steps_per_tooth=50", "program.feed_override=0.5"});
+  EXPECT_NEAR(slow.computing / slow.motion, regenerated.computing / regenerated.motion,
+              0.02 * slow.computing / slow.motion);
 }
 
 }  // namespace
