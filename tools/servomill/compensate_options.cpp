@@ -148,8 +148,8 @@ void add_correction_options(Options& options) {
   options.add()("servo", text()->value_name("MODEL.toml"),
                 "machine file of an identified model, such as servomill identify writes: corrects "
                 "what it predicts of servo, friction and structure together with the errors");
-  options.add()("cutoff", text()->default_value("40 Hz")->value_name("\"40 Hz\""),
-                "with --servo: the offset is low-passed there");
+  options.add()("cutoff", text()->value_name("\"40 Hz\""),
+                "with --servo: the offset is low-passed there; default: 40 Hz");
   options.add()("set", texts()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
@@ -231,7 +231,11 @@ sim::programs::CompensateRequest compensate_request(const Options& options) {
   request.model = text_of(options, "model");
   request.changes = options.list("set");
   request.servo_file = text_of(options, "servo");
-  request.cutoff = *positive_option(options, "cutoff", sim::config::kRate, "Hz");
+  if (options.has("cutoff") && request.servo_file.empty()) {
+    throw InputError({"--cutoff"}, "is that of --servo, which is not given");
+  }
+  request.cutoff =
+      positive_option(options, "cutoff", sim::config::kRate, "Hz").value_or(request.cutoff);
   request.tolerance = *positive_option(options, "tolerance", sim::config::kLength, "um");
   constexpr double kMin = 1e-9;  // m; control and machine know nothing of less
   if (request.tolerance < kMin * (1.0 - 1e-9)) {
