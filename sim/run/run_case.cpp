@@ -60,6 +60,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.spindle = std::make_shared<const evaluation::SpindleMotion>(
       evaluation::spindle_motion(p.program.moves, p.scenario.machine_of(p.spec).nc));
   out.chain = p.scenario.machine_of(p.spec).chain;
+  out.frame = model::work_frame(out.chain, p.scenario.program.work_offset + p.spec.work_offset);
   out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
   for (std::size_t k = 0; k < p.trials.size(); ++k) {

@@ -12,6 +12,7 @@
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/model/tip_uncertainty.h"
+#include "sim/model/work_frame.h"
 #include "sim/preparation/touch.h"
 #include "strategies/trial_runs.h"
 namespace servomill::sim::preparation {
@@ -38,6 +39,7 @@ struct CaseOutput {
   std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;
   plant::MachineChain chain;           // the ideal machine
+  model::PartFrame frame;              // work frame of the program
   std::optional<double> signal_delay;  // s, of the feedback hardware; none of an ideal servo
   std::shared_ptr<const model::UncertainErrors> uncertain;  // errors of the machine; or none
   std::vector<evaluation::ProbedFeature> probes;  // empty: nothing is probed, or the case stopped

@@ -14,6 +14,7 @@
 #include "sim/records/nexus.h"
 #include "sim/records/row_keeper.h"
 #include "sim/run/day_course.h"
+#include "sim/run/store_chain.h"
 #include "sim/run/store_day.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
@@ -249,11 +250,12 @@ void RunStore::add(const CaseOutput& one) {
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
   records::Hdf5Group group = root.group(unfinished);
   records::make_nexus_group(group, "NXsubentry", "servo");
+  write_chain(group, one.chain);
   write_series(group.group("servo"), one.result.servo, format_);
   if (one.result.last_ticks.rows() > 0) {
     write_series(group.group("last_ticks"), one.result.last_ticks, format_);
   }
-  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.part_fit);
+  if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.frame, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
   if (!one.tests.empty()) write_tests(group.group("tests"), one.tests);
   write_sections(group.group("sections"), passes_of(one.result.servo), one.sections);

@@ -49,6 +49,13 @@ void write_motion(records::Hdf5Group& group, const metrology::BestFit& fit) {
   group.attribute("alignment_rms_um", fit.rms / um);
 }
 
+void write_frame(records::Hdf5Group& group, const model::PartFrame& frame) {
+  const Eigen::Vector3d origin = frame.p_WG / mm;
+  const Eigen::Matrix3d by_columns = frame.R_WG.transpose();  // rows of R_WG, one after the other
+  group.attribute("work_origin_mm", std::span<const double>(origin.data(), 3));
+  group.attribute("work_axes", std::span<const double>(by_columns.data(), 9));
+}
+
 void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& found) {
   group.attribute("kind", metrology::name_of(found.feature.kind));
   group.counts("point", counted(found.deviation.size()), {"1", "number of the point"});
@@ -106,8 +113,9 @@ evaluation::ProbedFeature read_feature(const records::InputFile& file, const std
 }  // namespace
 
 void write_probes(records::Hdf5Group group, std::span<const evaluation::ProbedFeature> features,
-                  const std::optional<evaluation::PartFit>& fit) {
+                  const model::PartFrame& frame, const std::optional<evaluation::PartFit>& fit) {
   records::make_nexus_group(group, "NXcollection", features.front().name);
+  write_frame(group, frame);
   if (fit) write_motion(group, fit->fit);
   for (std::size_t i = 0; i < features.size(); ++i) {
     records::Hdf5Group of_feature = group.group(features[i].name);

@@ -8,6 +8,7 @@
 
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
+#include "sim/model/work_frame.h"
 #include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 
@@ -27,11 +28,14 @@ namespace servomill::sim::run {
 ///                                       best fit, where there is a nominal part
 ///     aligned_deviation (point, xyz)   um   the measured one minus that
 ///
-/// and the attribute `kind`. Attributes of the group itself, of the best fit (measured -> nominal):
+/// and the attribute `kind`. Attributes of the group itself: the work frame in that of the
+/// workpiece, in which tool positions are recorded, `work_origin_mm` and `work_axes` (the rotation
+/// matrix, row by row), so that p_W = work_axes p + work_origin; of the best fit (measured ->
+/// nominal)
 /// `alignment_shift_um` (of the work zero), `alignment_rotation_urad` (rotation vector),
 /// `alignment_rms_um`.
 void write_probes(records::Hdf5Group group, std::span<const evaluation::ProbedFeature> features,
-                  const std::optional<evaluation::PartFit>& fit);
+                  const model::PartFrame& frame, const std::optional<evaluation::PartFit>& fit);
 
 /// Reads them back, in the order of the plan; nothing if there is no such group.
 /// @throws InputError if what is there does not fit the plan

@@ -14,6 +14,7 @@ SIDE = "scenarios/guevel2025/experiment1.toml"
 COMMANDS = {
     "run": ("run", SIDE, "--set", "record.period_ms=4"),
     "circle": ("run", "tests/page/circle.toml"),
+    "part": ("run", "scenarios/parts/block.toml", "--set", "record.period_ms=2"),
     "windows": ("run", SIDE, "--set", "record.period_ms=4", "--set", 'record.windows.sections=["notch", "flank"]'),
     "day": ("run", "scenarios/thermal/day.toml", "--set", "record.period_ms=50"),
     "sweep": ("sweep", "scenarios/sweeps/blocks_friction.toml"),

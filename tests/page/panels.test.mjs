@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { choose, exported, file, launch, newPage, press, settled } from "./browser.mjs";
-import { column, columnOf, valueOf } from "./reference.mjs";
+import { attributeOf, column, columnOf, valueOf } from "./reference.mjs";
 
 let browser;
 before(async () => {
@@ -115,6 +115,13 @@ describe("path and machine", () => {
     }
     assert.match(await page.$eval(".side pre", (one) => one.textContent), /line 14: G3 X#103 Y#103/);
     assert.equal(await count(page, ".axisbar i"), 5 * 3);
+    assert.equal(await count(page, ".side .chip"), 5);
+    // the table turns about its axis against the counting of C, and X goes where the scale says
+    const places = await page.evaluate(() => Object.fromEntries([..."XYZBC"].map((one) => [one, servomill.side.current.scene.placeOf(one)])));
+    const { X, Y, Z } = none.values;
+    assert.equal(await page.evaluate(() => servomill.side.current.scene.key.includes('"carriesWorkpiece":true')), true);
+    const last = Object.values(places).find((place) => Math.abs(place[1] - Y) < 1e-9 && Math.abs(place[2] - Z) < 1e-9);
+    assert.ok(last, JSON.stringify({ places, X, Y, Z }));
     await set(page, { cursor: { key: "s", value: 100 } });
     const [there] = await page.evaluate(() => servomill.side.current.positions);
     assert.ok(Math.abs(there.values.X - column(file("circle"), "none", "true_linear", 0, "s", 100)) < 1e-9);
@@ -187,6 +194,71 @@ describe("path and machine", () => {
       );
       assert.deepEqual(curves, [rows]);
     }
+    assert.deepEqual(page.faults, []);
+  });
+});
+
+describe("a probed part", () => {
+  let page;
+  before(async () => {
+    page = await opened("part");
+    await side(page, "Path");
+  });
+  after(() => page.close());
+  const view = (text) => page.evaluate(text);
+  const FEATURE = "/cases/as_it_is/probes";
+
+  it("has its points where the file has them, displaced along their normals by their magnified deviation", async () => {
+    await page.select(".side .controls label:nth-child(1) select", await view("servomill.store.state.cases[1].id"));
+    await settled(page);
+    assert.equal(await view("servomill.side.current.case.name"), "as_it_is");
+    await slide(page, 0, 2);
+    const points = await view("servomill.side.current.probes.points");
+    const feature = points[0].feature;
+    const origin = attributeOf(file("part"), FEATURE, "work_origin_mm");
+    const deviation = columnOf(file("part"), `${FEATURE}/${feature}/deviation`);
+    assert.deepEqual([...attributeOf(file("part"), FEATURE, "work_axes")], [1, 0, 0, 0, 1, 0, 0, 0, 1]);
+    for (const k of [0, 1]) {
+      const shown = await view(
+        `servomill.side.current.probes.placeOf(servomill.side.current.probes.points[${k}]).toArray()`,
+      );
+      shown.forEach((value, i) => {
+        const nominal = columnOf(file("part"), `${FEATURE}/${feature}/nominal`, i)[k] + origin[i];
+        const expected = nominal + 0.1 * deviation[k] * columnOf(file("part"), `${FEATURE}/${feature}/normal`, i)[k]; // um x 100
+        assert.ok(Math.abs(value - expected) < 1e-6, `${value} is not ${expected}`);
+      });
+    }
+    // the tool went there: each point lies within the box of its path, grown by the radius of the cutter
+    const { center, radius } = await view("servomill.side.current.lines.sphere");
+    for (const { place } of points) {
+      assert.ok(Math.hypot(place[0] - center.x, place[1] - center.y, place[2] - center.z) < radius + 20);
+    }
+  });
+
+  it("tells of a point under the pointer what it is", async () => {
+    const [x, y] = await view(`(() => {
+      const { probes, camera, canvas } = servomill.side.current;
+      const seen = probes.placeOf(probes.points[3]).project(camera);
+      const box = canvas.getBoundingClientRect();
+      return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
+    })()`);
+    await page.mouse.move(x, y);
+    assert.match(await view("servomill.side.current.probeNote.textContent"), /^\w+, point \d+: .* µm along the normal$/);
+    await page.mouse.move(5, 5);
+  });
+
+  it("is shown with its scale, hidden, and exported as numbers", async () => {
+    const picture = () => view("servomill.side.current.picture()");
+    const [shown, figures] = [await picture(), await view("servomill.side.current.figures().map((one) => one.title)")];
+    assert.equal(figures.length, 2);
+    assert.match(await view("servomill.side.current.probeScale.textContent"), /^probed: −[\d.]+ µm\+[\d.]+ µm$/);
+    await page.click(".side .controls input[type=checkbox]");
+    await settled(page);
+    assert.notEqual(await picture(), shown);
+    assert.ok(await view("servomill.side.current.probeScale.hidden"));
+    assert.equal(await view("servomill.side.current.figures().length"), 1);
+    await page.click(".side .controls input[type=checkbox]");
+    await settled(page);
     assert.deepEqual(page.faults, []);
   });
 });

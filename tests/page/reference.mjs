@@ -22,6 +22,12 @@ export function column(path, name, signal, index, abscissa, at) {
   return x[row] === at ? y[row] : y[row] + ((at - x[row]) / (x[row + 1] - x[row])) * (y[row + 1] - y[row]);
 }
 
+/** An attribute of a group. */
+export function attributeOf(path, group, name) {
+  if (!open.has(path)) open.set(path, new h5wasm.File(path, "r"));
+  return open.get(path).get(group).attrs[name].value;
+}
+
 /** A single number. */
 export function valueOf(path, dataset) {
   if (!open.has(path)) open.set(path, new h5wasm.File(path, "r"));

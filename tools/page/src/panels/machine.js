@@ -4,8 +4,11 @@ import { short } from "../core/ticks.js";
 import { unitText, withUnit } from "../core/units.js";
 import { latestOnly } from "../data/client.js";
 import { cursorScale, valuesAtCursor } from "../data/cursor.js";
+import { chainOf } from "../core/chain.js";
 import { html } from "../shell/dom.js";
+import { colourOf, MachineScene } from "./machine_scene.js";
 
+const SMALLEST = 100; // mm, travel by which the bodies are drawn
 const POSITIONS = ["true_linear", "true_rotary"];
 
 export class MachineView {
@@ -14,7 +17,9 @@ export class MachineView {
     this.place = html("p", { class: "hint" }, "Move the cursor over a plot over time or arc length.");
     this.line = html("pre");
     this.axes = html("div");
-    this.element = html("div", {}, this.place, this.line, this.axes);
+    this.scene = new MachineScene();
+    this.element = html("div", {}, this.place, this.line, this.scene.canvas, this.axes);
+    new ResizeObserver(() => this.scene.resize(this.element.clientWidth)).observe(this.element);
     this.programs = new Map();
     this.ranges = new Map();
     this.follow = latestOnly(() => this.update());
@@ -98,6 +103,7 @@ export class MachineView {
     const { cases, theme } = this.store.state;
     const rows = [];
     const [first] = found;
+    const joints = await this.showBodies(first);
     for (const [k, [name, column, letter, unit]] of first.axes.entries()) {
       const [low, high] = await this.rangeOf(first.one, name, column);
       const share = (value) => (high > low ? Math.min(100, Math.max(0, (100 * (value - low)) / (high - low))) : 50);
@@ -111,7 +117,7 @@ export class MachineView {
         html(
           "tr",
           {},
-          html("th", {}, withUnit(letter, unit)),
+          html("th", {}, ...this.chip(joints, letter), withUnit(letter, unit)),
           html("td", { class: "number" }, short(first.values[k], 7)),
           html("td", { style: "width: 60%" }, html("div", { class: "axisbar" }, ...marks)),
           html("td", { class: "number" }, `${short(low, 4)} … ${short(high, 4)} ${unitText(unit)}`),
@@ -123,6 +129,29 @@ export class MachineView {
       case: one.label,
       values: Object.fromEntries(axes.map(([, , letter], k) => [letter, values[k]])),
     }));
+  }
+
+  /** Moves the bodies of a case; its joints, [] of files without them. */
+  async showBodies({ one, axes, values }) {
+    const result = this.store.state.results[one.file];
+    const joints = chainOf(result.groups.get(one.path).attributes);
+    this.scene.canvas.hidden = joints.length === 0;
+    if (joints.length === 0) return joints;
+    const positions = Object.fromEntries(axes.map(([, , letter], k) => [letter, values[k]]));
+    const travels = await Promise.all(
+      axes.filter(([name]) => name === "true_linear").map(([name, column]) => this.rangeOf(one, name, column)),
+    );
+    this.scene.begin();
+    this.scene.resize(this.element.clientWidth);
+    this.scene.build(joints, Math.max(...travels.flatMap(([low, high]) => [high - low, 0.5 * high, -0.5 * low]), SMALLEST), this.store.state.theme);
+    this.scene.move(joints, positions);
+    return joints;
+  }
+
+  /** Colour of the body that an axis moves. */
+  chip(joints, letter) {
+    const index = joints.findIndex((joint) => joint.letter === letter);
+    return index < 0 ? [] : [html("i", { class: "chip", style: `--colour: ${colourOf(index, this.store.state.theme)}` })];
   }
 
   figures() {

@@ -5,10 +5,11 @@ import { short } from "../core/ticks.js";
 import { unitText } from "../core/units.js";
 import { latestOnly } from "../data/client.js";
 import { cursorScale, valuesAtCursor } from "../data/cursor.js";
-import { html, select, slider, svg } from "../shell/dom.js";
+import { checkbox, html, select, slider, svg } from "../shell/dom.js";
 import { inks } from "../shell/theme.js";
 import { Orbit } from "./orbit.js";
 import { PathLines } from "./path_lines.js";
+import { featuresOf, ProbePoints } from "./probe_points.js";
 
 const POINTS = 30_000;
 const HEIGHT = 380; // pixels
@@ -17,6 +18,7 @@ const COLOURS = [
   ["tool_deviation", "tool deviation"],
 ];
 
+const NEAR = 12; // pixels between the pointer and a point that it means
 const REST = 150; // ms without movement
 
 /** True where there is no graphics card: smooth edges would take most of the time. */
@@ -30,7 +32,7 @@ function drawsInSoftware() {
 
 export class PathView {
   constructor({ store, client }) {
-    Object.assign(this, { store, client, name: "Path", chosen: "", colour: "contour_error", exponent: 2, stale: true });
+    Object.assign(this, { store, client, name: "Path", chosen: "", colour: "contour_error", exponent: 2, stale: true, showsProbes: true });
     this.canvas = html("canvas", {
       class: "scene",
       tabindex: 0,
@@ -40,7 +42,10 @@ export class PathView {
     this.controls = html("div", { class: "controls" });
     this.scale = html("div", { class: "scale" }, html("span"), html("i"), html("span"));
     this.note = html("div", { class: "hint" });
-    this.element = html("div", {}, this.controls, this.canvas, this.scale, this.note);
+    this.probeScale = html("div", { class: "scale", hidden: true }, html("span"), html("i"), html("span"));
+    this.probeNote = html("div", { class: "hint", "aria-live": "polite" });
+    this.element = html("div", {}, this.controls, this.canvas, this.scale, this.note, this.probeScale, this.probeNote);
+    this.canvas.addEventListener("pointermove", (event) => this.point(event));
     this.load = latestOnly(() => this.loadPath());
     this.follow = latestOnly(() => this.showCursor());
     this.limit = latestOnly(() => this.showRange());
@@ -143,6 +148,7 @@ export class PathView {
         this.exponent = e;
         this.magnify();
       }),
+      ...(this.features?.length > 0 ? [checkbox("probed points", this.showsProbes, (shown) => this.toggleProbes(shown))] : []),
     );
   }
 
@@ -159,6 +165,7 @@ export class PathView {
     if (!one || !this.renderer) return;
     this.stale = false;
     if (!this.hasSignal(this.colour)) this.colour = "tool_deviation";
+    this.features = await featuresOf(this.client, this.store.state.results[one.file], one);
     this.showControls();
     const key = `${one.id}|${this.colour}`;
     if (key !== this.loaded) {
@@ -180,6 +187,7 @@ export class PathView {
     this.lines = new PathLines(this.data, dark ? [0.5, 0.53, 0.57] : [0.62, 0.65, 0.69], this.store.state.theme);
     this.lines.resize(this.element.clientWidth, HEIGHT);
     this.scene.add(this.lines.group);
+    this.rebuildProbes(dark ? [0.5, 0.53, 0.57] : [0.62, 0.65, 0.69]);
     this.scene.background = new three.Color(inks().paper);
     const accent = new three.Color(dark ? "#ff8c42" : "#d55e00");
     this.marker.material.color = this.tool.material.color = accent;
@@ -195,8 +203,44 @@ export class PathView {
     this.magnify();
   }
 
+  rebuildProbes(grey) {
+    if (this.probes) {
+      this.scene.remove(this.probes.group);
+      this.probes.dispose();
+    }
+    this.probes = undefined;
+    this.probeNote.textContent = "";
+    this.probeScale.hidden = this.features.length === 0 || !this.showsProbes;
+    if (this.features.length === 0) return;
+    const { theme } = this.store.state;
+    this.probes = new ProbePoints(this.features, grey, theme);
+    this.probes.group.visible = this.showsProbes;
+    this.scene.add(this.probes.group);
+    const largest = short(this.probes.largest, 3);
+    this.probeScale.children[1].style.background = shadeGradient(theme);
+    this.probeScale.firstChild.textContent = `probed: −${largest} µm`;
+    this.probeScale.lastChild.textContent = `+${largest} µm`;
+  }
+
+  toggleProbes(shown) {
+    this.showsProbes = shown;
+    this.probes.group.visible = shown;
+    this.probeScale.hidden = !shown;
+    this.probeNote.textContent = "";
+    this.redraw();
+  }
+
+  /** Tells which probed point the pointer is at. */
+  point({ offsetX, offsetY, buttons }) {
+    if (!this.probes || !this.showsProbes || buttons !== 0) return;
+    const found = this.probes.nearest(this.camera, [this.canvas.clientWidth, this.canvas.clientHeight], [offsetX, offsetY]);
+    const { feature, number, um } = found?.distance <= NEAR ? found.point : {};
+    this.probeNote.textContent = feature === undefined ? "" : `${feature}, point ${number}: ${short(um, 4)} µm along the normal`;
+  }
+
   magnify() {
     this.lines?.magnify(10 ** this.exponent);
+    this.probes?.magnify(10 ** this.exponent);
     this.placeMarker();
     this.redraw();
   }
@@ -287,7 +331,16 @@ export class PathView {
       ...deviation.slice(3 * i, 3 * i + 3),
       colour[i],
     ]);
+    const probed = {
+      title: `probed points of ${this.case.label}`,
+      drawing: drawing.cloneNode(true),
+      table: {
+        head: ["feature", "point", "X_mm", "Y_mm", "Z_mm", "deviation_um"],
+        rows: (this.probes?.points ?? []).map(({ feature, number, place, um }) => [feature, number, ...place, um]),
+      },
+    };
     return [
+      ...(this.probes && this.showsProbes ? [probed] : []),
       {
         title: `path of ${this.case.label}`,
         drawing,

@@ -7,23 +7,26 @@ const VERTEX = `
   attribute vec3 shade;
   uniform float magnification;
   uniform vec2 offset;
+  uniform float size;
   varying vec3 vShade;
   void main() {
     vShade = shade;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position + magnification * deviation, 1.0);
     gl_Position.xy += offset * gl_Position.w;
+    gl_PointSize = size;
   }`;
 const FRAGMENT = `
   uniform float opacity;
   varying vec3 vShade;
   void main() { gl_FragColor = vec4(vShade, opacity); }`;
 
-const material = (opacity) =>
+/** Of lines and points that are displaced by their deviation; size of points in pixels. */
+export const material = (opacity, size = 1) =>
   new three.ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
     transparent: opacity < 1,
-    uniforms: { magnification: { value: 0 }, opacity: { value: opacity }, offset: { value: new three.Vector2() } },
+    uniforms: { magnification: { value: 0 }, opacity: { value: opacity }, offset: { value: new three.Vector2() }, size: { value: size } },
   });
 
 /** Pixels by which a line is drawn again: lines of WebGL are one pixel wide. */

@@ -39,6 +39,10 @@ export function select(label, options, value, onchange) {
 export const button = (text, title, onclick, attributes = {}) =>
   html("button", { type: "button", title, onclick, ...attributes }, text);
 
+/** A box to be ticked, with its label. */
+export const checkbox = (label, checked, onchange) =>
+  html("label", {}, html("input", { type: "checkbox", checked, onchange: (event) => onchange(event.target.checked) }), ` ${label}`);
+
 /** A slider with its label and value; of powers of ten if log. */
 export function slider(label, { min, max, step, value, text }, oninput) {
   const shown = html("output", {}, text(value));

@@ -26,6 +26,7 @@ const SHORTCUTS = [
 const POINTER = [
   ["drag", "zoom to an interval"],
   ["double click", "show all"],
+  ["over a probed point of the path", "its feature and deviation"],
   ["wheel", "zoom, in the plot that has the focus or with Shift or Ctrl"],
 ];
 
