@@ -303,13 +303,10 @@ class Interpreter::Machine {
   int column_of_cause() const;
   void end_queue_at(const Eigen::Vector2d& point);
   void release_queue();
-  void note_unit_of_control();
-  void straight();
+  void note_unit_of_control(), straight();
   void note_of_long_turn(const AxisWords& begin, const AxisWords& end);
   void synchronised();  // G33, G33.1
-  void require_synchronised() const;
-  void synchronised_to(const AxisWords& end, double length, double lead, Synchronised kind);
-  void probe();  // G38.2 ... G38.5
+  void probe();         // G38.2 ... G38.5
   void require_probing() const;
   void require_known_height() const;
   std::optional<ProbeContact> contact_of(const ProbingMove& move);

@@ -146,13 +146,16 @@ class Printer {
 
   // Prints the modes of motion: work system, tool offset, path control.
   void print_modes(const Move& move) {
+    print_offsets(move);
+    change(path_, path_code(move), false);
+  }
+  void print_offsets(const Move& move) {
     change(work_, work_system_code(move.work_offset), true);
     if (move.tool_offset == kOtherToolOffset) {
       throw InputError({{}, move.line, 0},
                        "a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
     }
     change(tool_, tool_code(move.tool_offset), true);
-    change(path_, path_code(move), false);
   }
 
   void print_feed_mode(FeedMode mode) {
@@ -284,6 +287,7 @@ class Printer {
       throw InputError({{}, move.line, 0},
                        "a feed per revolution while the spindle speed is zero cannot be printed");
     }
+    if (move.synchronised != Synchronised::no) return print_synchronised(move);
     print_modes(move);
     const Steps steps = steps_of(move.end);
     if (move.kind == MoveKind::spline) return print_spline(move, steps);
@@ -311,6 +315,32 @@ class Printer {
     line(text);
     if (is_absolute) line("G91.1");
     steps_ = steps;
+  }
+
+  // G33.1 goes back as well; both end at rest without a path mode, and have no F.
+  void print_synchronised(const Move& move) {
+    if (move.synchronised == Synchronised::tap_out) return;
+    constexpr double kLeastSteps = 2.0;
+    if (linear_.step_count((move.s_end - move.s_begin) / mm) < kLeastSteps) {
+      throw InputError({{}, move.line, 0}, "G33 over less than the printed decimals");
+    }
+    print_offsets(move);
+    if (feed_mode_ == feed_mode_code(FeedMode::inverse_time)) {
+      print_feed_mode(FeedMode::units_per_minute);
+    }
+    const bool is_tap = move.synchronised == Synchronised::tap_in;
+    const Steps steps = steps_of(move.end);
+    std::string text = is_tap ? "G33.1" : "G33";
+    for (const Axis axis : kAllAxes) {
+      const auto i = static_cast<std::size_t>(index_of(axis));
+      if (is_tap && !is_linear(axis)) continue;
+      const bool wanted = is_linear(axis) || (steps_ ? steps[i] != (*steps_)[i] : steps[i] != 0.0);
+      if (!wanted) continue;
+      text +=
+          fmt::format(" {}{}", letter(axis), (is_linear(axis) ? linear_ : rotary_).text(steps[i]));
+    }
+    line(text + " K" + significant_text(move.value / mm));
+    if (!is_tap) steps_ = steps;
   }
 
   // A NURBS has no feed in inverse time: its own is that of G94.

@@ -16,11 +16,11 @@ constexpr int kRigidTapping = 331;
 
 }  // namespace
 
-void Interpreter::Machine::require_synchronised() const {
-  const Request::Chosen& chosen = request().motion;
+// The lead is that of the way, also where it is oblique.
+void Interpreter::Machine::synchronised() {
   const int code = request().motion_code();
   const auto refuse = [&](std::string_view why) {
-    fail(chosen.column, fmt::format("{}{}", code_name('G', code), why));
+    fail(request().motion.column, fmt::format("{}{}", code_name('G', code), why));
   };
   if (!has_any_axis() && !request().has_polar()) refuse(" without an axis word");
   if (!request().has('K')) {
@@ -35,36 +35,26 @@ void Interpreter::Machine::require_synchronised() const {
   if (state_.controls_tip()) {
     refuse(" while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
   }
-  for (int i = kLinearJoints; code == kRigidTapping && i < kAxisWords; ++i) {
+  const bool is_tap = code == kRigidTapping;
+  for (int i = kLinearJoints; is_tap && i < kAxisWords; ++i) {
     if (has_axis(i)) refuse(" moves X, Y and Z only (LinuxCNC drops the words of rotary axes)");
   }
-}
-
-// The lead is that of the way, also where it is oblique.
-void Interpreter::Machine::synchronised() {
-  require_synchronised();
-  const bool is_tap = request().motion_code() == kRigidTapping;
   const AxisWords begin = state_.programmed(), end = programmed_end();
   const double length = (end - begin).head<3>().norm();
-  if (!(length > 0.0)) {
-    fail(request().motion.column,
-         fmt::format("{} has no travel of X, Y or Z", code_name('G', request().motion_code())));
-  }
+  if (!(length > 0.0)) refuse(" has no travel of X, Y or Z");
   note_height();
   const double lead = request()['K'] * state_.unit;
-  synchronised_to(end, length, lead, is_tap ? Synchronised::tap_in : Synchronised::thread);
-  if (is_tap) synchronised_to(begin, length, lead, Synchronised::tap_out);
-}
-
-void Interpreter::Machine::synchronised_to(const AxisWords& end, double length, double lead,
-                                           Synchronised kind) {
-  move_to(MoveKind::feed, end, length, 0.0);
-  Move& move = out_.back();
-  move.synchronised = kind;
-  move.value = lead;
-  move.feed_mode = FeedMode::units_per_minute;
-  move.feed = std::abs(lead) * state_.spindle_speed / (2.0 * std::numbers::pi);
-  move.path_mode = PathMode::exact_stop;
+  const auto move_synchronised = [&](const AxisWords& to, Synchronised kind) {
+    move_to(MoveKind::feed, to, length, 0.0);
+    Move& move = out_.back();
+    move.synchronised = kind;
+    move.value = lead;
+    move.feed_mode = FeedMode::units_per_minute;
+    move.feed = std::abs(lead) * state_.spindle_speed / (2.0 * std::numbers::pi);
+    move.path_mode = PathMode::exact_stop;
+  };
+  move_synchronised(end, is_tap ? Synchronised::tap_in : Synchronised::thread);
+  if (is_tap) move_synchronised(begin, Synchronised::tap_out);
 }
 
 }  // namespace servomill::controllers

@@ -11,7 +11,7 @@ namespace {
 constexpr double kReversal = -0.5;  // cosine of the sharpest corner that is not a stop
 constexpr double kLongLeg = 3.0;    // windows, below it corners share their curvature
 
-// What the limits of the joints allow along a direction, in which a joint that does not move, or
+// Limit along a direction, in which a joint that does not move, or
 // that the machine does not have, limits nothing.
 double along(const Joints& limits, const Joints& direction) {
   constexpr double kStill = 1e-12;

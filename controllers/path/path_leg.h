@@ -29,7 +29,7 @@ struct Leg {
 /// The leg of a move, but for its length and its tangents.
 Leg leg_of(const Move& move);
 
-/// Of these limits, those that its spindle can follow.
+/// Limits that the spindle of a leg can follow.
 JointLimits limits_of(const Leg& leg, JointLimits limits);
 
 /// Tolerances of a move under TCP control, as its first and its last chord have them; none: 0.

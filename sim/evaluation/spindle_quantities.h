@@ -24,7 +24,7 @@ struct SynchronisedWay {
   bool goes_back = false;  // out of a tapped hole: the spindle turns on from its lag, reversed
 };
 
-/// Those of a program, and the spindle that turns with them.
+/// Synchronised moves of a program, and the spindle that turns with them.
 struct SpindleMotion {
   std::vector<SynchronisedWay> ways;  // in their order
   std::optional<model::SpindleDrive> drive;

@@ -14,10 +14,7 @@ structure = "[w C' b X Y Z t]"
 structural_mode = [{ direction = [1.0, 0.0, 1.0], stiffness = 5e7, frequency_Hz = 60.0, damping = 0.05 }]
 [machine.nc]
 Kv = 50.0
-[machine.nc.spindle]
-acceleration_rpm_per_s = 1500.0
-Kv = 30.0
-velocity_feed_forward = 0.5
+spindle = { acceleration_rpm_per_s = 1500.0, Kv = 30.0, velocity_feed_forward = 0.5 }
 
 [machine.axis.X]
 drive = "two_mass"

@@ -77,11 +77,11 @@ struct BudgetPair : BudgetSignal {
 ///              = part(c)                                     for all others                (9)
 ///     R        = sum of the shares + unexplained                                          (10)
 ///
-/// Of x above it is a + I(a, b) / 2. (9) is the Shapley value of the causes in (6) where they
-/// interact in pairs alone: what a cause adds, averaged over all orders in which causes can be
-/// added. So shares depend on no order either; what is left is what three causes and more do
-/// together. Source: L. S. Shapley, A value for n-person games, Annals of Mathematics Studies 28
-/// (1953).
+/// In the example x above, a has the share a + I(a, b) / 2. (9) is the Shapley value of the causes
+/// in (6) where they interact in pairs alone: what a cause adds, averaged over all orders in which
+/// causes can be added. So shares depend on no order either; what is left is what three causes and
+/// more do together. Source: L. S. Shapley, A value for n-person games, Annals of Mathematics
+/// Studies 28 (1953).
 ///
 /// The rest (1) is `imposed` where a strategy moves the tool on purpose (generates errors, bends
 /// the path) and the quantity does not take that off, else `uncorrectable` where one knows errors,
@@ -116,7 +116,7 @@ struct BudgetControl {
   unsigned threads = 0;  // 0: one a core
   const engine::StopFlag* stop = nullptr;
   std::function<void(const BudgetEstimate&)> prepared;  // before the first run begins
-  std::string scratch_folder;  // as in RunControl
+  std::string scratch_folder;                           // as in RunControl
 };
 
 /// Budgets of quantities, in their order; runs each case with and without each cause that it has.

@@ -28,7 +28,7 @@ void write(records::Hdf5Group& group, const std::string& name, const BudgetSigna
   data.attribute("rms", signal.rms);
 }
 
-// What a group is the budget of.
+// Attributes that name the residual of a group.
 void write_what(records::Hdf5Group& group, const model::QuantitySpec& quantity) {
   group.attribute("case", quantity.cases.front());
   group.attribute("quantity", quantity.name);

@@ -124,9 +124,9 @@ std::vector<Record> interpreted(const std::filesystem::path& program) {
   try {
     Interpreter interpreter(read_file(program), program.string(), setup);
     while (const Move* move = interpreter.next()) {
-      const bool is_told =
+      const bool is_compared =
           move->kind != MoveKind::coolant && move->synchronised != Synchronised::tap_out;
-      if (is_told) records.push_back(record_of(canon_json(*move)));
+      if (is_compared) records.push_back(record_of(canon_json(*move)));
     }
   } catch (const InputError& error) {
     records.push_back(record_of(canon_error_json("")));

@@ -104,13 +104,12 @@ class Outcomes(StandIn):
                       "1 programs, 0 same, 0 both refuse, 0 refused on purpose, 1 different"])
 
     def test_refused_on_purpose(self):
-        self.program("thread.ngc", "S100 M3\nG33 Z-1 K1 (G1)\nM2\n", "1 SET_SPINDLE_SPEED(0, 100.0000)",
-                     "1 START_SPINDLE_CLOCKWISE(0)", "2 START_SPEED_FEED_SYNC(1.000000,0)",
-                     "2 STRAIGHT_FEED(0.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)", "2 STOP_SPEED_FEED_SYNCH()", "3 PROGRAM_END()")
-        self.says(0, ["thread.ngc: refused on purpose: G33, line 2",
+        self.program("surface_speed.ngc", "S100 M3\nG96 S10 (G1)\nM2\n", "1 SET_SPINDLE_SPEED(0, 100.0000)",
+                     "1 START_SPINDLE_CLOCKWISE(0)", "2 SET_SPINDLE_MODE(0 10.0000)", "3 PROGRAM_END()")
+        self.says(0, ["surface_speed.ngc: refused on purpose: G96, line 2",
                       "1 programs, 0 same, 0 both refuse, 1 refused on purpose, 0 different"])
         self.assertEqual(self.compare("--filter", "none")[0], 1)
-        self.assertEqual(self.compare("--filter", "G76,G33")[0], 0)
+        self.assertEqual(self.compare("--filter", "G76,G96")[0], 0)
 
     def test_not_refused_on_purpose_where_something_differs_before(self):
         self.program("thread.ngc", "G0 X1\nG33 Z-1 K1 F10\nM2\n", "1 STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",

@@ -307,6 +307,20 @@ void tell_parts_without_budget(const sim::model::Scenario& scenario, ProgressLin
   }
 }
 
+// @param folder  of recordings while it computes; empty: that of temporary files
+void print_estimate(const sim::model::Scenario& scenario, const sim::run::BudgetEstimate& takes,
+                    std::string folder) {
+  const bool is_long = sim::run::is_worth_telling(takes);
+  if (is_long) fmt::print(stderr, "estimate: {}\n", sim::run::to_string(takes));
+  if (takes.run.is_thinned) {
+    fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes.run));
+  }
+  if (folder.empty()) folder = std::filesystem::temp_directory_path().string();
+  if (takes.run.file > 0.0 && is_long) {
+    sim::preparation::refuse_full_disk(scenario, takes.run, folder, takes.disk / takes.run.file);
+  }
+}
+
 }  // namespace
 
 int budget_command(const Arguments& arguments) {
@@ -332,18 +346,7 @@ int budget_command(const Arguments& arguments) {
   control.stop = &stop;
   control.prepared = [&](const sim::run::BudgetEstimate& takes) {
     const auto hidden = line.hidden();
-    if (sim::run::is_worth_telling(takes)) {
-      fmt::print(stderr, "estimate: {}\n", sim::run::to_string(takes));
-    }
-    if (takes.run.is_thinned) {
-      fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes.run));
-    }
-    const std::string folder = control.scratch_folder.empty()
-                                   ? std::filesystem::temp_directory_path().string()
-                                   : control.scratch_folder;
-    if (takes.run.file > 0.0 && sim::run::is_worth_telling(takes)) {
-      sim::preparation::refuse_full_disk(scenario, takes.run, folder, takes.disk / takes.run.file);
-    }
+    print_estimate(scenario, takes, control.scratch_folder);
   };
   if (store) {
     const auto path = std::filesystem::absolute(options.get<std::string>("output"));

@@ -42,14 +42,14 @@ TEST(BudgetEstimate, IsToldBeforeTheFirstRun) {
   const model::Scenario scenario =
       small_scenario(kProgram, root("polynomial_um = [0.0, 0.0, 0.05]") + one_case(kTableOverX));
   BudgetControl control;
-  int told = 0;
+  int reports = 0;
   control.prepared = [&](const BudgetEstimate& takes) {
-    ++told;
+    ++reports;
     EXPECT_GT(takes.runs, 3);
     EXPECT_GT(takes.run.rows, 1e3);
   };
   find_budgets(scenario, budget_quantities(scenario), control);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reports, 1);
 }
 
 }  // namespace
