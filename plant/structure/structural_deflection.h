@@ -16,6 +16,8 @@ class StructuralDeflection {
   explicit StructuralDeflection(const std::vector<StructuralMode>& modes);
 
   bool is_rigid() const { return compliance_.isZero(0.0) && modes_.empty(); }
+  /// True if it has modes that are not static.
+  bool vibrates() const { return !modes_.empty(); }
   /// Compliance of the static modes (m/N).
   const Eigen::Matrix3d& static_compliance() const { return compliance_; }
 

@@ -42,13 +42,26 @@ std::string why_implausible(const PositionLoopTerm& term, const Joints& velocity
 
 Outcome stopped_at_begin(const std::string& why) { return {false, false, why, '-', 0.0}; }
 
+namespace {
+
+// Static compliance of the tool point, which regenerates where nothing vibrates.
+Eigen::Matrix3d regenerating_compliance(const model::MachineSettings& machine) {
+  const plant::StructuralDeflection structure(machine.structural_modes);
+  if (structure.vibrates()) return Eigen::Matrix3d::Zero();
+  return Eigen::Matrix3d(machine.structural_compliance.asDiagonal()) +
+         structure.static_compliance();
+}
+
+}  // namespace
+
 CutAlongPath::CutAlongPath(const CaseInputs& in)
     : in_(in),
-      regeneration_(in.regeneration ? std::make_unique<ChipRegeneration>(
-                                          in.machine.structural_modes,
-                                          in.machine.nc.periods.seconds(in.tooth_step),
-                                          in.teeth->longest_passage())
-                                    : nullptr),
+      regeneration_(in.regeneration
+                        ? std::make_unique<ChipRegeneration>(
+                              in.machine.structural_modes,
+                              in.machine.nc.periods.seconds(in.tooth_step),
+                              in.teeth->longest_passage(), regenerating_compliance(in.machine))
+                        : nullptr),
       load_(*in.cutting, in.wear, in.machine.chain, in.machine.structural_compliance, in.teeth,
             in.displaced_cuts, in.machine.structural_modes, regeneration_.get()) {}
 

@@ -165,14 +165,17 @@ Eigen::Vector3d CuttingLoad::regenerated_force(const CuttingTable::Place& at, do
       plant::bearing_share(c) * (wear_.initial + wear_.per_m * at.number(&CuttingTable::Row::cut));
   const double passage =
       2.0 * std::numbers::pi / std::abs(rate_) / teeth_->teeth(cutting->first->teeth);
-  return regeneration_->step(J, passage, [&](const DisplacementsBefore& before) {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    for (const auto& [row, share] : rows) {
-      if (share <= 0.0 || row->teeth < 0) continue;
-      force += share * teeth_->force(row->teeth, angle_, rotation, c, edges, before);
-    }
-    return force;
-  });
+  const Eigen::Vector3d found =
+      regeneration_->step(J, passage, [&](const DisplacementsBefore& before) {
+        Eigen::Vector3d force = Eigen::Vector3d::Zero();
+        for (const auto& [row, share] : rows) {
+          if (share <= 0.0 || row->teeth < 0) continue;
+          force += share * teeth_->force(row->teeth, angle_, rotation, c, edges, before);
+        }
+        return force;
+      });
+  digs_in_ |= regeneration_->digs_in();
+  return found;
 }
 
 Eigen::Vector3d CuttingLoad::deflection(double after) const {

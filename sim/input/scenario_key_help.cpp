@@ -297,7 +297,8 @@ constexpr KeyHelp kScenario[] = {
     {"cutting", "force",
      "\"average\" over a turn of the cutter, or \"instantaneous\": of each tooth at its angle"},
     {"cutting", "regeneration",
-     "true: each tooth meets the surface that the vibrating teeth before it have left (chatter)"},
+     "true: each tooth meets the surface that the teeth before it have left, as they vibrated "
+     "(chatter) or, without modes that vibrate, gave way"},
     {"cutting", "depth_of_cut",
      "\"nominal\", or \"actual\": it follows errors and deflections across the feed"},
     {"cutting", "steps_per_tooth",

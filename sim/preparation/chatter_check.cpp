@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "plant/structure/structural_deflection.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/lobes.h"
 
@@ -35,15 +36,28 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
                          const Joints& start) {
   if (!spec.cutting || !scenario.cutting->regeneration) return;
   const auto refuse = [&](std::string_view why) {
-    throw InputError(scenario.cutting->place,
-                     fmt::format("case {}: regeneration = true needs a mode of the tool point "
-                                 "across the tool ([[structural_mode]] of the machine); {}",
-                                 spec.name, why));
+    throw InputError(
+        scenario.cutting->place,
+        fmt::format("case {}: regeneration = true needs a tool point that gives way across the "
+                    "tool ([[structural_mode]] or structural_stiffness of the machine); {}",
+                    spec.name, why));
   };
   const model::MachineSettings& machine = scenario.machine_of(spec);
-  if (highest_mode(machine) == 0.0) refuse("it has none with frequency_Hz");
   const Eigen::Vector3d k = plant::forward(machine.chain, start, Eigen::Vector3d::Zero()).k_W;
   const Eigen::Vector3d across = k.unitOrthogonal();
+  if (highest_mode(machine) == 0.0) {
+    const Eigen::Matrix3d C =
+        plant::StructuralDeflection(machine.structural_modes).static_compliance() +
+        Eigen::Matrix3d(machine.structural_compliance.asDiagonal());
+    const Eigen::Matrix3d J = plant::linear_jacobian(machine.chain, start);
+    Eigen::Matrix<double, 3, 2> axes;
+    axes << across, k.cross(across);
+    if (C.isZero(0.0)) refuse("it is rigid");
+    if ((axes.transpose() * J * C * J.transpose() * axes).norm() <= 1e-9 * C.norm()) {
+      refuse("it gives way along the tool alone");
+    }
+    return;
+  }
   const auto modes = in_workpiece(machine.structural_modes, machine.chain, start);
   if (frequency::modes_across(modes, across, k.cross(across)).empty()) {
     refuse("all of its modes are along the tool");

@@ -20,11 +20,11 @@ namespace servomill::sim::preparation {
 /// Frequency of the fastest mode of the tool point (1/s); 0: there is none.
 double highest_mode(const model::MachineSettings& machine);
 
-/// Chips regenerate by vibration across the tool.
+/// Chips regenerate by vibration across the tool or, of a machine without modes that vibrate, by
+/// its static compliance.
 /// @param start  Q, where the program begins
 /// @throws InputError at [cutting] if the case is to be cut with regeneration and its machine has
-/// no
-///         mode across the tool
+///         neither across the tool
 void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec& spec,
                          const Joints& start);
 

@@ -42,15 +42,17 @@ plant::FlankEngagement slot(int teeth = 4) {
 // small, then it is constant.
 class Cut {
  public:
-  static constexpr int kRamp = 500;
+  static constexpr int kRamp = 500;  // passages
 
   // @param step  of the teeth, as a share of a tooth passage
   Cut(const plant::FlankEngagement& cut, const std::vector<plant::StructuralMode>& modes,
-      double depth, double turns, double step)
+      double depth, double turns, double step, int ramp = kRamp,
+      const Vector3d& compliance = Vector3d::Zero())
       : passage_(1.0 / (turns * cut.teeth)),
         dt_(step * passage_),
         teeth_(cut.coefficients, true),
-        chain_(plant::make_chain(plant::parse_structure("[w b X Y Z t]"))) {
+        chain_(plant::make_chain(plant::parse_structure("[w b X Y Z t]"))),
+        compliance_(compliance) {
     const plant::Cutter cutter{
         .radius = 5 * mm, .length = 50 * mm, .teeth = cut.teeth, .helix = cut.helix};
     const plant::EngagedArc arc{
@@ -60,8 +62,8 @@ class Cut {
     const auto row = [&](double s, int teeth) {
       return CuttingTable::Row{.s = s, .chip = chip, .turns = turns, .teeth = teeth};
     };
-    table_ = CuttingTable({row(0.0, -1), row(kRamp * kFeed, number), row(1.0, number)});
-    regeneration_.emplace(modes, dt_, passage_);
+    table_ = CuttingTable({row(0.0, -1), row(ramp * kFeed, number), row(1.0, number)});
+    regeneration_.emplace(modes, dt_, passage_, compliance.asDiagonal());
     load_.emplace(table_, wear_, chain_, compliance_, &teeth_, nullptr, kRigid, &*regeneration_);
     load_->start(0.0);
   }
@@ -91,7 +93,7 @@ class Cut {
   EngagedTeeth teeth_;
   plant::MachineChain chain_;
   model::CuttingWear wear_{.initial = 1.0};
-  Vector3d compliance_ = Vector3d::Zero();
+  Vector3d compliance_;
   CuttingTable table_;
   std::optional<ChipRegeneration> regeneration_;
   std::optional<CuttingLoad> load_;
@@ -214,6 +216,29 @@ TEST(ChipRegeneration, flips_where_the_model_flips) {
       const double found = real_multiplier(x, kSteps, Cut::kRamp + 5, Cut::kRamp + 25);
       EXPECT_EQ(found<-1.0, share> 1.0) << turns;
       EXPECT_NEAR(found, model_of.multiplier.real(), kFlipTol) << turns;
+    }
+  }
+}
+
+// A slot cut by four straight teeth without edge forces: F_y = (K_tc c - K_rc (y(t) - y(t - T))) a.
+// A structure with the stiffness k is in balance with it at each instant: with mu = K_rc a / k,
+// y_n = (1 - (mu / (1 + mu))^(n + 1)) K_tc a c / k after n passages. K_tc is small, so that no
+// tooth leaves the cut where its chip begins.
+TEST(ChipRegeneration, of_a_static_structure_takes_up_its_deflection_geometrically) {
+  plant::FlankEngagement cut = slot();
+  cut.coefficients.Kte = cut.coefficients.Kre = cut.coefficients.Kae = 0.0;
+  cut.coefficients.Ktc = 1e-3 * cut.coefficients.Krc;
+  const double depth = 2 * mm, k = 3e6;  // N/m
+  for (const double steps : {20.0, 31.0}) {
+    Cut run(cut, kRigid, depth, 80.0, 1.0 / steps, 0, Vector3d(0.0, 1.0 / k, 0.0));
+    const double mu = cut.coefficients.Krc * depth / k;
+    const double end = cut.coefficients.Ktc * depth * kFeed / k;
+    const std::vector<Eigen::Vector2d> x = run.run(12, 2);
+    ASSERT_GT(mu, 0.1);
+    for (int n = 0; n < 11; ++n) {
+      const double wanted = end * (1.0 - std::pow(mu / (1.0 + mu), n + 1));
+      const double middle = std::abs(x[static_cast<std::size_t>(2 * n + 1)].y());
+      EXPECT_NEAR(middle, wanted, 1e-5 * end) << n << " passages, " << steps << " steps";
     }
   }
 }

@@ -104,12 +104,19 @@ TEST(ChatterCheck, regeneration_needs_teeth_and_modes_across_the_tool) {
   EXPECT_EQ(refusal(common + teeth + "depth_of_cut = \"actual\"\n" + one_case("cut")),
             "cutting.regeneration = true; needs depth_of_cut = \"nominal\": chips follow the "
             "vibration");
-  EXPECT_EQ(refusal(common + teeth + one_case("cut")),
-            "case cut: regeneration = true needs a mode of the tool point across the tool "
-            "([[structural_mode]] of the machine); it has none with frequency_Hz");
+  const std::string needs =
+      "case cut: regeneration = true needs a tool point that gives way across the tool "
+      "([[structural_mode]] or structural_stiffness of the machine); ";
+  EXPECT_EQ(refusal(common + teeth + one_case("cut")), needs + "it is rigid");
   EXPECT_EQ(refusal(common + teeth + one_case("cut") + mode_along("0, 0, 1")),
-            "case cut: regeneration = true needs a mode of the tool point across the tool "
-            "([[structural_mode]] of the machine); all of its modes are along the tool");
+            needs + "all of its modes are along the tool");
+  const auto static_along = [](const std::string& direction) {
+    return "[machine_override]\nstructural_mode = [{ direction = [" + direction +
+           "], stiffness = \"20 N/um\" }]\n";
+  };
+  EXPECT_EQ(refusal(common + teeth + one_case("cut") + static_along("0, 0, 1")),
+            needs + "it gives way along the tool alone");
+  EXPECT_EQ(refusal(common + teeth + one_case("cut") + static_along("0, 1, 0")), "");
 }
 
 }  // namespace
