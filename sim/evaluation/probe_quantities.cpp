@@ -1,5 +1,7 @@
 #include "sim/evaluation/probe_quantities.h"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "plant/vocabulary/units.h"
@@ -7,6 +9,7 @@
 #include "sim/evaluation/probe_fits.h"
 #include "sim/evaluation/statistic.h"
 #include "sim/metrology/best_fit.h"
+#include "sim/metrology/roughness.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::evaluation {
@@ -103,6 +106,24 @@ QuantityValue fitted(const model::QuantitySpec& spec, CaseEvaluation& one, const
   return noted(kFit(spec, named.points.front()), kIsAngle ? deg : um, named.note);
 }
 
+// Ra or Rz of a line; the note states how it was evaluated.
+template <double metrology::Roughness::*kParameter>
+QuantityValue roughness(const model::QuantitySpec& spec, CaseEvaluation& one,
+                        const CaseData* base) {
+  const Named named = named_points(spec, one.data, base);
+  if (!named.is_complete) return {.note = named.note};
+  const Points& points = named.points.front();
+  const auto& targets = points.feature->feature.targets;
+  if (points.d.size() != targets.size()) return {.note = "needs every point; " + points.note};
+  const double length = (targets.back().point - targets.front().point).norm();
+  std::string why_not;
+  const auto found = metrology::roughness_of(
+      points.d, length / (static_cast<double>(targets.size()) - 1.0), why_not);
+  if (!found) return {.note = why_not};
+  return {*found.*kParameter / um, fmt::format("cut-off {:g} mm, evaluated over {:g} mm",
+                                               found->cutoff / mm, found->evaluation_length / mm)};
+}
+
 template <bool kMustBeSquare>
 QuantityValue angle(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData* base) {
   const Named named = named_points(spec, one.data, base);
@@ -144,6 +165,19 @@ constexpr QuantityEntry kQuantities[] = {
      .kinds = kLine,
      .has_fit = true,
      .evaluate = fitted<straightness>},
+    {.name = "roughness_Ra",
+     .unit = "um",
+     .help = "of a probed line of at least 6 cut-offs (0.08, 0.25, 0.8, 2.5 or 8 mm): arithmetic "
+             "mean height over 5 of them (ISO 21920-2, Gaussian filter)",
+     .probes = 1,
+     .kinds = kLine,
+     .evaluate = roughness<&metrology::Roughness::Ra>},
+    {.name = "roughness_Rz",
+     .unit = "um",
+     .help = "likewise: mean of the heights from valley to peak of the 5 sections",
+     .probes = 1,
+     .kinds = kLine,
+     .evaluate = roughness<&metrology::Roughness::Rz>},
     {.name = "flatness",
      .unit = "um",
      .help = "of a probed plane: smallest distance of two parallel planes enclosing it",

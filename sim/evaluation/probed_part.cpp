@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "plant/cutting/floor_marks.h"
 #include "plant/cutting/machined_surface.h"
 #include "plant/cutting/tooth_marks.h"
 #include "plant/vocabulary/interrupt.h"
@@ -119,10 +120,17 @@ class ProbedSurface {
                       Probed& probed) const {
     const auto [pass, position] = cut.place_of(probed.meeting.position);
     if (cut.angles[pass].empty()) return;
-    const auto mark = plant::tooth_mark(
-        cut.passes[pass].cutter,
-        {cut.passes[pass].positions, cut.angles[pass], path_.frame().R_WG, swing_}, target,
-        position);
+    const plant::CutterPass& of = cut.passes[pass];
+    const plant::TurningPath path{of.positions, cut.angles[pass], path_.frame().R_WG, swing_};
+    std::optional<double> mark;
+    if (plant::is_floor(target, of.positions[position])) {
+      const double met = probed.meeting.distance;
+      mark = plant::floor_mark(of.cutter, path, {target.point + met * target.normal, target.normal},
+                               position);
+      if (mark) *mark += met;
+    } else {
+      mark = plant::tooth_mark(of.cutter, path, target, position);
+    }
     probed.lacks_marks = !mark;
     if (mark) probed.meeting.distance = *mark;
   }
@@ -212,7 +220,8 @@ void add_notes(const PartSource& source, const metrology::ProbeSpec& probe,
   }
   if (unmarked > 0) {
     notes.push_back(fmt::format(
-        "{}: warning: case {}: {} of {} points of probe '{}' are not on a wall cut by a flank: "
+        "{}: warning: case {}: {} of {} points of probe '{}' are neither on a wall cut by a flank "
+        "nor on a floor: "
         "cmm.tooth_marks leaves out their marks",
         to_string(probe.place), source.case_name, unmarked, targets.size(), probe.name));
   }

@@ -155,7 +155,7 @@ constexpr KeyHelp kScenario[] = {
     {"cmm", "approach_mm", "approach: distance of the start point from the nominal point"},
     {"cmm", "search_mm", "search distance beyond the nominal point"},
     {"cmm", "tooth_marks",
-     "true: walls cut by a flank have the marks of its single teeth; needs cutting.force"},
+     "true: walls and floors have the marks of single teeth; needs cutting.force"},
     {"probe", "name", "name of the feature"},
     {"probe", "line", "points along a line"},
     {"probe", "plane", "grid of points on a plane"},

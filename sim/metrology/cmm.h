@@ -17,7 +17,7 @@ struct Cmm {
   double clearance =
       1e-3;             // m outside the nominal point the stylus begins its way along the normal
   double depth = 1e-3;  // m inside, where it gives up
-  bool tooth_marks = false;  // walls cut by a flank have the marks of its single teeth
+  bool tooth_marks = false;  // walls and floors have the marks of single teeth
 };
 
 /// One repetition at all points of a feature: the deviation and a normal error along the normal

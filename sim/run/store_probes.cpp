@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/roughness.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 
@@ -56,6 +59,33 @@ void write_frame(records::Hdf5Group& group, const model::PartFrame& frame) {
   group.attribute("work_axes", std::span<const double>(by_columns.data(), 9));
 }
 
+// Roughness profile of a line that is long and dense enough for one, and its parameters.
+void write_roughness(records::Hdf5Group& group, const evaluation::ProbedFeature& found) {
+  const auto& targets = found.feature.targets;
+  if (found.feature.kind != metrology::FeatureKind::line || targets.size() < 2) return;
+  const std::vector<double> mean = metrology::mean_of(found.measured);
+  if (std::any_of(mean.begin(), mean.end(), [](double d) { return std::isnan(d); })) return;
+  const double length = (targets.back().point - targets.front().point).norm();
+  const double spacing = length / (static_cast<double>(targets.size()) - 1.0);
+  std::string why_not;
+  const auto roughness = metrology::roughness_of(mean, spacing, why_not);
+  if (!roughness) return;
+  std::vector<double> x;
+  for (std::size_t i = 0; i < roughness->profile.size(); ++i) {
+    x.push_back(spacing * static_cast<double>(roughness->first + i) / mm);
+  }
+  records::Hdf5Group of = group.group("roughness");
+  of.attribute("Ra_um", roughness->Ra / um);
+  of.attribute("Rz_um", roughness->Rz / um);
+  of.attribute("cutoff_mm", roughness->cutoff / mm);
+  of.attribute("evaluation_length_mm", roughness->evaluation_length / mm);
+  of.list("x", x, {"mm", "from the first point of the line"});
+  of.list("height", in_um(roughness->profile),
+          {"um", "roughness profile: less the mean line of the Gaussian filter at the cut-off"},
+          "x");
+  records::make_nexus_data(of, {"height", {"x"}, {}});
+}
+
 void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& found) {
   group.attribute("kind", metrology::name_of(found.feature.kind));
   group.counts("point", counted(found.deviation.size()), {"1", "number of the point"});
@@ -86,6 +116,7 @@ void write_feature(records::Hdf5Group& group, const evaluation::ProbedFeature& f
     plot.others.push_back("imposed");
   }
   records::make_nexus_data(group, plot);
+  write_roughness(group, found);
 }
 
 evaluation::ProbedFeature read_feature(const records::InputFile& file, const std::string& group,
