@@ -88,7 +88,9 @@ HeatBalance::HeatBalance(const model::MachineSettings& machine)
   const auto n = static_cast<Index>(machine.heat->network.bodies.size());
   power_.resize(n);
   sum_ = VectorXd::Zero(n);
-  course_.step = period * periods_per_step_;
+  row_ = VectorXd::Zero(n);
+  step_ = period * periods_per_step_;
+  course_.step = step_;
   course_.bodies = machine.heat->network.bodies.size();
 }
 
@@ -97,13 +99,43 @@ bool HeatBalance::advance(const HeatInputs& now) {
   sum_ += power_;
   if (++periods_ < periods_per_step_) return false;
   sum_ /= periods_;
-  course_.power.insert(course_.power.end(), sum_.begin(), sum_.end());
-  network_.advance(t_, course_.step, sum_);
-  t_ += course_.step;
+  add_to_course();
+  network_.advance(t_, step_, sum_);
+  t_ += step_;
   periods_ = 0;
   ++steps_;
   sum_.setZero();
   return true;
+}
+
+// Two rows become one where there are too many.
+void HeatBalance::add_to_course() {
+  std::vector<double>& power = course_.power;
+  row_ += sum_;
+  if (++steps_in_row_ < steps_per_row_) return;
+  row_ /= steps_per_row_;
+  power.insert(power.end(), row_.begin(), row_.end());
+  row_.setZero();
+  steps_in_row_ = 0;
+  const std::size_t n = course_.bodies;
+  if (power.size() < kMaxRows * n) return;
+  for (std::size_t row = 0; row < kMaxRows / 2; ++row) {
+    for (std::size_t body = 0; body < n; ++body) {
+      power[row * n + body] = 0.5 * (power[2 * row * n + body] + power[(2 * row + 1) * n + body]);
+    }
+  }
+  power.resize(kMaxRows / 2 * n);
+  steps_per_row_ *= 2;
+  course_.step *= 2.0;
+}
+
+// The work of a row that is not full is spread over a whole one.
+HeatCourse HeatBalance::course() && {
+  if (steps_in_row_ > 0) {
+    row_ /= steps_per_row_;
+    course_.power.insert(course_.power.end(), row_.begin(), row_.end());
+  }
+  return std::move(course_);
 }
 
 HeatRun::HeatRun(const model::MachineSettings& machine, const plant::ErrorModel& errors,

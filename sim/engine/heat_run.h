@@ -53,17 +53,25 @@ class HeatBalance {
   bool advance(const HeatInputs& now);
 
   const Eigen::VectorXd& temperatures() const { return network_.temperatures(); }  ///< K
-  double step() const { return course_.step; }                                     ///< s
+  double step() const { return step_; }                                            ///< s
   Tick steps() const { return steps_; }
-  /// Powers of the run, step after step.
-  HeatCourse course() && { return std::move(course_); }
+  /// Powers of the run, step after step; of a run of more than an hour over so many steps together
+  /// that they take no more memory.
+  HeatCourse course() &&;
 
  private:
+  static constexpr std::size_t kMaxRows = 36'000;  // of the course: an hour of steps; even
+
+  void add_to_course();
+
   HeatSources sources_;
   plant::ThermalNetwork network_;
+  int steps_per_row_ = 1, steps_in_row_ = 0;  // of the course
+  Eigen::VectorXd row_;                       // W, sum over the steps in it
   int periods_per_step_, periods_ = 0;
   Tick steps_ = 0;
-  double t_;  // s, of the day
+  double t_;           // s, of the day
+  double step_ = 0.0;  // s
   Eigen::VectorXd power_, sum_;
   HeatCourse course_;
 };

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "plant/cutting/material.h"
 #include "plant/heat/temperature.h"
@@ -243,6 +245,29 @@ TEST(HeatRun, OfIdealAxesHasTheSpindle) {
   EXPECT_GT(last(servo, "temperature_head"), 20.5);
   EXPECT_NEAR(last(servo, "tool_deviation", 'Z'), -2.0 * (last(servo, "temperature_head") - 20.0),
               1e-4);
+}
+
+// Powers of an hour and a half take no more memory than those of an hour, and are the same work.
+TEST(HeatRun, CourseOfALongRunIsBounded) {
+  const model::Scenario scenario = small_scenario(
+      kStrokes,
+      kRecord + kCase + heat("kind = \"spindle\", speed_rpm = [0, 6000], power_W = [0.0, 60.0]"));
+  HeatBalance balance(scenario.machine);
+  const auto of_hour = static_cast<int>(std::lround(3600.0 / HeatBalance::kStep));
+  const auto of_step = static_cast<int>(std::lround(HeatBalance::kStep / 0.2e-3));
+  double work = 0.0;
+  HeatInputs now;
+  for (int step = 0; step < of_hour * 3 / 2 + 1; ++step) {
+    now.spindle = step % 7 * 90.0;  // rad/s
+    const double power = 60.0 * now.spindle / (6000.0 * 2.0 * std::numbers::pi / 60.0);
+    work += power * HeatBalance::kStep;
+    for (int n = 0; n < of_step; ++n) balance.advance(now);
+  }
+  EXPECT_EQ(balance.steps(), of_hour * 3 / 2 + 1);
+  const HeatCourse course = std::move(balance).course();
+  EXPECT_LE(course.power.size(), 36'000U);
+  EXPECT_DOUBLE_EQ(course.step, 2.0 * HeatBalance::kStep);
+  EXPECT_NEAR(sum_of(course.power) * course.step, work, 1e-9 * work);
 }
 
 }  // namespace
