@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/records/input_file.h"
 #include "sim/records/nexus.h"
 #include "sim/system/counted.h"
@@ -112,11 +114,14 @@ class Hdf5Walk {
   static std::string shown(const std::string& dataset) { return dataset.substr(1); }
 
   void add(std::string name, const std::string& dataset, std::vector<double> samples) {
+    throw_if_interrupted();
+    stage_.advance();
     out_.channels.push_back(
         {std::move(name), units_of(dataset), std::move(samples), out_.bases.size() - 1});
   }
 
   records::InputFile file_;
+  Stage stage_{"channels", 0.0};
   bool is_recording_ = false;
   Recording out_;
 };

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/delimited_text.h"
 #include "sim/system/counted.h"
 
@@ -130,7 +132,12 @@ class MatFile {
   Recording read() {
     out_.file = path_;
     out_.format = "MAT v5";
-    while (Variable variable{Mat_VarReadNextInfo(file_.get())}) take(*variable);
+    Stage stage("variables", 0.0);
+    while (Variable variable{Mat_VarReadNextInfo(file_.get())}) {
+      throw_if_interrupted();
+      take(*variable);
+      stage.advance();
+    }
     const Array* time = nullptr;
     for (const Array& array : arrays_) {
       if (array.columns.size() == 1 && is_time_name(array.name)) time = &array;

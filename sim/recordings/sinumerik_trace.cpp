@@ -10,6 +10,8 @@
 #include <pugixml.hpp>
 #include <utility>
 
+#include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/progress.h"
 #include "sim/recordings/checked_rows.h"
 #include "sim/recordings/xml_document.h"
 
@@ -52,7 +54,10 @@ class TraceFile {
     Base base;
     base.name = index == 0 ? "time" : fmt::format("time {}", index + 1);
     std::vector<double> values(out_.channels.size() - first, kNan);
+    Stage stage("records", 0.0);
     for (const pugi::xml_node record : frame.children("rec")) {
+      throw_if_interrupted();
+      stage.advance();
       read_time(record, base);
       read_values(record, values);
       for (std::size_t i = 0; i < values.size(); ++i) {
