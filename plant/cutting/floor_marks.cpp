@@ -126,7 +126,7 @@ class FloorMarks {
     return d;
   }
 
-  // Where the tooth is ahead by so much, by bisection and the secant in turn.
+  // Share of the step at which the tooth is ahead by so much, by bisection and the secant in turn.
   static double share_where(const Step& step, double wanted) {
     double low = 0.0, high = 1.0;
     double at_low = step.ahead(low) - wanted, at_high = step.ahead(high) - wanted;
