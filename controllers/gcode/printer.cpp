@@ -320,8 +320,8 @@ class Printer {
   // G33.1 goes back as well; both end at rest without a path mode, and have no F.
   void print_synchronised(const Move& move) {
     if (move.synchronised == Synchronised::tap_out) return;
-    constexpr double kLeastSteps = 2.0;
-    if (linear_.step_count((move.s_end - move.s_begin) / mm) < kLeastSteps) {
+    constexpr double kShortest = 2.0;
+    if (linear_.step_count((move.s_end - move.s_begin) / mm) < kShortest) {
       throw InputError({{}, move.line, 0}, "G33 over less than the printed decimals");
     }
     print_offsets(move);

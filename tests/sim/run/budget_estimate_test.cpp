@@ -1,4 +1,4 @@
-/// What budgets take is known before they are found.
+/// Estimates of budgets before they are found.
 #include "sim/run/budget_estimate.h"
 
 #include "tests/sim/run/small_budget.h"
