@@ -135,14 +135,19 @@ class ProbedSurface {
     if (mark) probed.meeting.distance = *mark;
   }
 
-  // Boxes of the first targets, as many as may be held together.
+  // Boxes of the first targets, as many as may be held together. What is near several of them is
+  // held once: at most what is near a box around all of them.
   std::vector<CutterPath::Box> next_boxes(std::span<const plant::ProbeTarget> targets) const {
     std::vector<CutterPath::Box> out;
-    std::size_t held = 0;
+    CutterPath::Box around_all;
+    std::size_t sum = 0, limit = 0;
     for (const plant::ProbeTarget& target : targets) {
       const CutterPath::Box box = around(target);
-      held += path_.positions_near(box);
-      if (!out.empty() && held > held_.at_once) break;
+      const std::size_t near = path_.positions_near(box);
+      sum += near;
+      around_all.extend(box);
+      if (out.empty()) limit = std::max(held_.at_once, 2 * near);
+      if (std::min(sum, path_.positions_near(around_all)) > limit) break;
       out.push_back(box);
     }
     return out;

@@ -39,7 +39,7 @@ double deflection_range(const records::Series& servo);
 /// How many positions of the cutters are in memory, 200 bytes each.
 struct PositionsHeld {
   std::size_t most = 500'000;    // of a longer path only what comes near some points at a time
-  std::size_t at_once = 60'000;  // then, unless a single point has more
+  std::size_t at_once = 60'000;  // then, or twice what a single point has
 };
 
 /// Cuts the part and probes it. Depths do not depend on what is held, but for 1 nm.
