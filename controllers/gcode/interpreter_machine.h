@@ -234,7 +234,7 @@ class Interpreter::Machine {
   void path_control();
   void distance();
   void non_modal();
-  void motion();
+  void motion(), move_as(int code, int motion_before);
   void stop();
 
   // what is saved and restored, one level for each call of a subroutine

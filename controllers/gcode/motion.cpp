@@ -42,6 +42,10 @@ void Interpreter::Machine::motion() {
   }
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
   if (code >= 0) note_unit_of_control();
+  move_as(code, motion_before);
+}
+
+void Interpreter::Machine::move_as(int code, int motion_before) {
   if (code == 0 || code == 10) straight();
   if (code == 20 || code == 30) arc();
   if (is_bezier(code)) bezier();

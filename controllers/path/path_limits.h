@@ -24,7 +24,7 @@ struct PathOptions {
   double rapid_override = 1.0;       // factor on the joint speeds of rapids
   double tolerance_share = 1.0;      // factor on tolerances of the program (G64 P)
   double spindle_acceleration = std::numeric_limits<double>::infinity();  // rad/s2, under G33
-  double block_time = 0.0;           // s, least time of a block: what the NC needs to prepare it
+  double block_time = 0.0;  // s, least time of a block: what the NC needs to prepare it
 };
 
 }  // namespace servomill::controllers

@@ -92,8 +92,8 @@ struct Move {
   int number = 0;
   ToolControl tool_control = ToolControl::none;
   Synchronised synchronised = Synchronised::no;  // kind feed
-  int direction = 0;        // spindle: 1 clockwise (M3), -1 (M4), 0 off
-  int work_offset = 1;      // 1 is G54, 9 is G59.3
+  int direction = 0;                             // spindle: 1 clockwise (M3), -1 (M4), 0 off
+  int work_offset = 1;                           // 1 is G54, 9 is G59.3
   bool is_shifted = false;  // work coordinates lie elsewhere than those of G54 when the program
                             // began: G52, G92, G10, or another work system
   int tool_offset = 0;      // H of G43; 0: none (G49)

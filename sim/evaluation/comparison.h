@@ -43,8 +43,8 @@ struct CaseData {
   std::shared_ptr<const model::UncertainErrors> uncertain = {};  // of the machine; none: not known
   // rows of feed motion outside the windows of the recording, by section; empty: none
   std::vector<std::size_t> left_out = {};
-  std::shared_ptr<const SpindleMotion> spindle = {};   // as the program turns it
-  std::optional<DayFigures> day = {};  // none: no day, or one without parts
+  std::shared_ptr<const SpindleMotion> spindle = {};  // as the program turns it
+  std::optional<DayFigures> day = {};                 // none: no day, or one without parts
 };
 
 /// One line of the printed comparison.

@@ -228,7 +228,8 @@ TEST(TipControlErrors, Vectors) {
           {"G43.5 H1\nG0 X1 K1\nG1 X2 I1 K-0.5 F1",
            "3:1: error: the tool axis (0.894427, 0.000000, -0.447214) needs B = 116.5651 deg; must "
            "be <= 110.0000"},
-          {"G0 X1 K1", "1:7: error: K word without a code that uses it (G2, G3, G33, G33.1, G68.2, G87)"},
+          {"G0 X1 K1",
+           "1:7: error: K word without a code that uses it (G2, G3, G33, G33.1, G68.2, G87)"},
           {"G43.5 H1\nG10 L2 P1 X1\nG28",
            "3:1: error: G28 under tool-centre-point control; G49 first"},
           {"G43.4 H1\nG53 G0 X1", "2:1: error: G53 under tool-centre-point control; G49 first"},
