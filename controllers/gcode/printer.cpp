@@ -190,9 +190,10 @@ class Printer {
     return steps;
   }
 
-  std::string axis_words(const Steps& steps) const {
+  std::string axis_words(const Steps& steps, bool rotary_too = true) const {
     std::string text;
     for (const Axis axis : kAllAxes) {
+      if (!rotary_too && !is_linear(axis)) continue;
       const auto i = static_cast<std::size_t>(index_of(axis));
       const bool of_machine = options_.axes.find(letter(axis)) != std::string::npos;
       const bool wanted = steps_ ? steps[i] != (*steps_)[i] : of_machine || steps[i] != 0.0;
@@ -317,7 +318,7 @@ class Printer {
     steps_ = steps;
   }
 
-  // G33.1 goes back as well; both end at rest without a path mode, and have no F.
+  // G33.1 includes the return. G33 and G33.1 end at rest whatever the path mode, and have no F.
   void print_synchronised(const Move& move) {
     if (move.synchronised == Synchronised::tap_out) return;
     constexpr double kShortest = 2.0;
@@ -330,16 +331,8 @@ class Printer {
     }
     const bool is_tap = move.synchronised == Synchronised::tap_in;
     const Steps steps = steps_of(move.end);
-    std::string text = is_tap ? "G33.1" : "G33";
-    for (const Axis axis : kAllAxes) {
-      const auto i = static_cast<std::size_t>(index_of(axis));
-      if (is_tap && !is_linear(axis)) continue;
-      const bool wanted = is_linear(axis) || (steps_ ? steps[i] != (*steps_)[i] : steps[i] != 0.0);
-      if (!wanted) continue;
-      text +=
-          fmt::format(" {}{}", letter(axis), (is_linear(axis) ? linear_ : rotary_).text(steps[i]));
-    }
-    line(text + " K" + significant_text(move.value / mm));
+    line(fmt::format("{}{} K{}", is_tap ? "G33.1" : "G33", axis_words(steps, !is_tap),
+                     significant_text(move.value / mm)));
     if (!is_tap) steps_ = steps;
   }
 

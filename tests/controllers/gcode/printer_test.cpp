@@ -169,6 +169,16 @@ TEST(Printer, GivesTheFeedOfAnAxisThatMovesBesideThePathInMillimetres) {
   EXPECT_EQ(line_of({moves}, 0, AxisWords::Zero()), "G1 X0.01 Y0 Z0 A0 B0 C0 F500");
 }
 
+// A rotary axis whose word is 0 stands elsewhere after a change of offset.
+TEST(Printer, SynchronisedMotionAfterAChangeOfOffsetNamesAllAxes) {
+  const std::string text = "G43 H1\nS600 M3\nG0 X1 Y2 Z3 A0 B0 C5\nG55\nG33 X0 Z-4 C0 K2\nM2\n";
+  expect_round_trip(text, wide_setup());
+  const std::string printed =
+      print_program(interpret(text, "p.nc", wide_setup()), {.axes = "XYZC"}, "").text;
+  EXPECT_NE(printed.find("G55\nG33 X0 Y-18.4714463 Z-4 A4 B5 C0 K2\n"), std::string::npos)
+      << printed;
+}
+
 TEST(Printer, RoundTripOfEveryFeature) {
   expect_round_trip(
       "(MSG,hello #1)\nS500\nM3\nM3\nM7\nM8\nM9\nM9\nT3 M6\nM4\nG61\nG0 X1\nG61.1 G1 Y2 F100\nG64\n"
