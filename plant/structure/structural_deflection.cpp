@@ -44,4 +44,9 @@ Eigen::Vector3d StructuralDeflection::of_modes() const {
   return d;
 }
 
+Eigen::Matrix3d static_compliance(const std::vector<StructuralMode>& modes,
+                                  const Eigen::Vector3d& of_axes) {
+  return Eigen::Matrix3d(of_axes.asDiagonal()) + StructuralDeflection(modes).static_compliance();
+}
+
 }  // namespace servomill::plant

@@ -44,4 +44,9 @@ class StructuralDeflection {
   std::vector<Resonance> modes_;
 };
 
+/// Static compliance (m/N) of the tool point: that of the static modes and, in addition, of each
+/// linear axis (3; m/N).
+Eigen::Matrix3d static_compliance(const std::vector<StructuralMode>& modes,
+                                  const Eigen::Vector3d& of_axes);
+
 }  // namespace servomill::plant

@@ -46,10 +46,10 @@ namespace {
 
 // Static compliance of the tool point, which regenerates where nothing vibrates.
 Eigen::Matrix3d regenerating_compliance(const model::MachineSettings& machine) {
-  const plant::StructuralDeflection structure(machine.structural_modes);
-  if (structure.vibrates()) return Eigen::Matrix3d::Zero();
-  return Eigen::Matrix3d(machine.structural_compliance.asDiagonal()) +
-         structure.static_compliance();
+  if (plant::StructuralDeflection(machine.structural_modes).vibrates()) {
+    return Eigen::Matrix3d::Zero();
+  }
+  return plant::static_compliance(machine.structural_modes, machine.structural_compliance);
 }
 
 }  // namespace

@@ -47,8 +47,7 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
   const Eigen::Vector3d across = k.unitOrthogonal();
   if (highest_mode(machine) == 0.0) {
     const Eigen::Matrix3d C =
-        plant::StructuralDeflection(machine.structural_modes).static_compliance() +
-        Eigen::Matrix3d(machine.structural_compliance.asDiagonal());
+        plant::static_compliance(machine.structural_modes, machine.structural_compliance);
     const Eigen::Matrix3d J = plant::linear_jacobian(machine.chain, start);
     Eigen::Matrix<double, 3, 2> axes;
     axes << across, k.cross(across);
