@@ -13,9 +13,10 @@ namespace servomill::sim::tables {
 /// correction the tip moves in a plane.
 struct BedMesh {
   int nx = 0, ny = 0;
-  std::array<double, 4> range{};     // m: X from, to, Y from, to
-  std::vector<double> z;             // m, rows along X; rounded as written
-  double before = 0.0, after = 0.0;  // m: largest deviation of Z over the range
+  std::array<double, 4> range{};      // m: X from, to, Y from, to
+  std::vector<double> z;              // m, rows along X; rounded as written
+  double before = 0.0, after = 0.0;   // m: largest deviation of Z over the range
+  std::optional<double> uncertainty;  // m: largest of z, expanded (k = 2); none: not known
 };
 
 }  // namespace servomill::sim::tables

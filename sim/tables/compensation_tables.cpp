@@ -170,6 +170,22 @@ TableLine make_line(const LineRequest& r, const FormatRules& rules) {
                       name));
 }
 
+std::optional<TableLine> finer_line(TableLine line, const FormatRules& rules,
+                                    std::size_t most_points) {
+  const double length = static_cast<double>(line.points - 1) * line.spacing;
+  const bool linear = line.joint < kLinearJoints;
+  double finer = line.spacing;
+  const auto spacing = [&](int n) {
+    return linear && rules.power_of_two ? std::ldexp(kGridStep, n)
+                                        : round_series(linear ? mm : deg, n);
+  };
+  for (int n = 0; spacing(n) < line.spacing * (1.0 - kSlack); ++n) finer = spacing(n);
+  if (finer == line.spacing || points_over(length, finer) > most_points) return std::nullopt;
+  line.spacing = finer;
+  line.points = points_over(length, finer);
+  return line;
+}
+
 bool CompensationTable::is_angle() const {
   return component ? !is_linear(component->direction) : output >= kLinearJoints;
 }

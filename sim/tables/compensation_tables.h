@@ -42,6 +42,11 @@ struct LineRequest {
 ///         axis has no travel
 TableLine make_line(const LineRequest& request, const FormatRules& rules);
 
+/// The next smaller spacing of the round series; none: it has too many points.
+/// @param most_points  of a table
+std::optional<TableLine> finer_line(TableLine line, const FormatRules& rules,
+                                    std::size_t most_points);
+
 /// One column of one table.
 struct CompensationTable {
   TableLine line;
@@ -56,7 +61,9 @@ struct CompensationTable {
   /// Linear between points, constant beyond them.
   /// @param direction  of travel: 1 up, -1 down
   double at(double entry, int direction = 1) const;
-  double largest() const;   ///< magnitude, over the points
+  double largest() const;  ///< magnitude, over the points
+  /// Largest expanded uncertainty (k = 2) of its values (m, rad); none: not known.
+  std::optional<double> uncertainty;
   double residual = 0.0;    // m, rad: largest that linear interpolation and rounding leave
   double steepest() const;  ///< largest magnitude of step over spacing
 };

@@ -9,6 +9,8 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/propagation.h"
+#include "sim/tables/table_uncertainty.h"
 #include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
@@ -105,25 +107,54 @@ std::string marlin_text(const BedMesh& mesh) {
   return out;
 }
 
+// Rows along X.
+std::vector<double> heights_at_points(const Heights& heights, const BedMesh& mesh) {
+  std::vector<double> out;
+  for (int j = 0; j < mesh.ny; ++j) {
+    for (int i = 0; i < mesh.nx; ++i) {
+      out.push_back(heights.at(place(mesh.range[0], mesh.range[1], i, mesh.nx),
+                               place(mesh.range[2], mesh.range[3], j, mesh.ny), 0.0));
+    }
+  }
+  return out;
+}
+
+void take_uncertainty(const TableExport& e, BedMesh& mesh) {
+  if (!e.request.identified) return;
+  const auto numbers = [&](const plant::ErrorModel& errors) -> Eigen::VectorXd {
+    TableSource source = e.source;
+    source.errors = errors;
+    const std::vector<double> z = heights_at_points(Heights(source, e.skew), mesh);
+    return Eigen::Map<const Eigen::VectorXd>(z.data(), Eigen::Index(z.size()));
+  };
+  const Eigen::VectorXd z = numbers(e.source.errors);
+  const Eigen::VectorXd U =
+      model::expanded_uncertainty(numbers, e.source.errors, *e.request.identified);
+  const model::Determination found = determination(z, U);
+  mesh.uncertainty = found.uncertainty();
+  if (found.is_determined()) return;
+  throw InputError(
+      {}, fmt::format("the bed mesh would correct Z by up to {:.3g} um with U(k = 2) up to {:.3g} "
+                      "um: not determined by the calibration; leave out --bed-mesh, or limit it "
+                      "with --travel",
+                      found.largest() / um, found.uncertainty() / um));
+}
+
 }  // namespace
 
-BedMesh bed_mesh_of(const TableSource& source, const std::vector<TableLine>& lines,
-                    const std::optional<SkewSettings>& skew, const std::array<int, 2>& points) {
+BedMesh bed_mesh_of(const TableExport& e) {
   BedMesh out;
-  std::tie(out.nx, out.ny) = std::tuple(points[0], points[1]);
-  for (const TableLine& line : lines) {
+  std::tie(out.nx, out.ny) = std::tuple((*e.request.mesh)[0], (*e.request.mesh)[1]);
+  for (const TableLine& line : e.lines) {
     if (line.joint > 1) continue;
     out.range[std::size_t(2 * line.joint)] = line.from;
     out.range[std::size_t(2 * line.joint + 1)] = line.to;
   }
-  const Heights heights(source, skew);
+  take_uncertainty(e, out);
+  const Heights heights(e.source, e.skew);
   controllers::MeshTable mesh{.nx = out.nx, .ny = out.ny, .range = out.range, .z = {}};
-  for (int j = 0; j < out.ny; ++j) {
-    for (int i = 0; i < out.nx; ++i) {
-      const double x = place(out.range[0], out.range[1], i, out.nx);
-      const double y = place(out.range[2], out.range[3], j, out.ny);
-      mesh.z.push_back(std::round(-heights.at(x, y, 0.0) / kDigit) * kDigit + 0.0);
-    }
+  for (const double z : heights_at_points(heights, out)) {
+    mesh.z.push_back(std::round(-z / kDigit) * kDigit + 0.0);
   }
   out.z = mesh.z;
   for (int n = 0; n < kPlaces * kPlaces; ++n) {
@@ -143,8 +174,11 @@ std::vector<std::string> mesh_report(const TableExport& e) {
                       mesh.range[1] / mm, mesh.range[2] / mm, mesh.range[3] / mm,
                       e.source.reference[2] / mm),
           fmt::format("Z of the tip beside the reference: off by up to {:.1f} um without the mesh, "
-                      "{:.1f} um with",
-                      mesh.before / um, mesh.after / um)};
+                      "{:.1f} um with{}",
+                      mesh.before / um, mesh.after / um,
+                      mesh.uncertainty
+                          ? fmt::format("; U(k = 2) up to {:.3g} um", *mesh.uncertainty / um)
+                          : "")};
 }
 
 TextFile mesh_file(const TableExport& e) {

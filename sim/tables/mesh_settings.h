@@ -9,9 +9,9 @@
 
 namespace servomill::sim::tables {
 
-/// @param skew  correction that acts, too; none: nullopt
-BedMesh bed_mesh_of(const TableSource& source, const std::vector<TableLine>& lines,
-                    const std::optional<SkewSettings>& skew, const std::array<int, 2>& points);
+/// Bed mesh of the requested points, beside the skew correction of the tables.
+/// @throws InputError where the calibration does not determine the heights
+BedMesh bed_mesh_of(const TableExport& tables);
 
 std::vector<std::string> mesh_report(const TableExport& tables);
 

@@ -10,7 +10,10 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/propagation.h"
+#include "sim/model/undetermined_errors.h"
 #include "sim/tables/table_comparison.h"
+#include "sim/tables/table_uncertainty.h"
 #include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
@@ -136,31 +139,78 @@ std::string setting_text(const TableExport& e) {
   }
 }
 
-}  // namespace
+// Directions of motion of the machine with these errors alone.
+Matrix3d directions_of(const TableSource& source, const plant::ErrorModel& errors) {
+  return directions(plant::VolumetricModel(source.chain, errors), source,
+                    [](const Vector3d& p) { return p; });
+}
 
-std::optional<SkewSettings> skew_settings_of(const TableSource& source,
-                                             const std::vector<TableLine>& lines,
-                                             TableFormat format, bool is_required) {
-  const auto linear = std::count_if(
-      lines.begin(), lines.end(), [](const TableLine& line) { return line.joint < kLinearJoints; });
-  if (linear != kLinearJoints) {
-    throw InputError({}, fmt::format("{} corrects machines with X, Y and Z", name_of(format)));
-  }
-  const plant::VolumetricModel machine(source.chain, locations_of(source.errors));
-  const Matrix3d A = directions(machine, source, [](const Vector3d& p) { return p; });
+// a, b and c of commands that let the machine move at right angles.
+Vector3d factors_of(const Matrix3d& A) {
   const Vector3d x = A.col(0), y = A.col(1), z = A.col(2);
-  SkewSettings s;
-  s.a = rounded(x.dot(y) / x.dot(x));
   const Vector3d y_right = y - x.dot(y) / x.dot(x) * x;
   const double c = y_right.dot(z) / y_right.dot(y_right);
-  s.c = rounded(c);
-  s.b = rounded(x.dot(z - c * y) / x.dot(x));
+  return {x.dot(y) / x.dot(x), x.dot(z - c * y) / x.dot(x), c};
+}
+
+// Location errors of X, Y and Z less the squarenesses that are left out.
+plant::ErrorModel squarenesses_of(const plant::ErrorModel& errors, const SkewSettings& s) {
+  plant::ErrorModel out = locations_of(errors);
+  for (const SkewSettings::LeftOut& one : s.left_out) {
+    for (const plant::ErrorName& name : one.squareness) out.location(name) = 0.0;
+  }
+  return out;
+}
+
+// Leaves out what is not determined.
+void take_uncertainty(const TableExport& e, SkewSettings& s) {
+  if (!e.request.identified) return;
+  const auto factors = [&](const plant::ErrorModel& errors) -> Eigen::VectorXd {
+    return factors_of(directions_of(e.source, locations_of(errors)));
+  };
+  const Eigen::VectorXd values = factors(e.source.errors);
+  const Eigen::VectorXd U =
+      model::expanded_uncertainty(factors, e.source.errors, *e.request.identified);
+  s.uncertainty = U;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (determination(values.segment(i, 1), U.segment(i, 1)).is_determined()) continue;
+    s.left_out.push_back({model::kSquarenesses[static_cast<std::size_t>(i)], values[i], U[i]});
+  }
+}
+
+std::string text_of(const SkewSettings::LeftOut& one) {
+  return fmt::format("{}: {:.3g} um/m with U(k = 2) {:.3g} um/m: not determined by the calibration",
+                     to_string(one.squareness[0]), std::abs(one.value) / um, one.uncertainty / um);
+}
+
+[[noreturn]] void refuse_nothing(const TableExport& e, const SkewSettings& s) {
+  std::string why = "X, Y and Z are at right angles";
+  for (const SkewSettings::LeftOut& one : s.left_out) why += "; " + text_of(one);
+  throw InputError({}, fmt::format("{} cannot represent any part of this error model: {}; it "
+                                   "represents EC0Y, EB0Z, EA0Z and the like",
+                                   name_of(e.request.format), why));
+}
+
+}  // namespace
+
+std::optional<SkewSettings> skew_settings_of(const TableExport& e, bool is_required) {
+  const auto linear = std::count_if(e.lines.begin(), e.lines.end(), [](const TableLine& line) {
+    return line.joint < kLinearJoints;
+  });
+  if (linear != kLinearJoints) {
+    throw InputError(
+        {}, fmt::format("{} corrects machines with X, Y and Z", name_of(e.request.format)));
+  }
+  SkewSettings s;
+  take_uncertainty(e, s);
+  const Matrix3d A = directions_of(e.source, squarenesses_of(e.source.errors, s));
+  const Vector3d factors = factors_of(A);
+  s.a = rounded(factors[0]);
+  s.b = rounded(factors[1]);
+  s.c = rounded(factors[2]);
   if (s.a == 0.0 && s.b == 0.0 && s.c == 0.0) {
     if (!is_required) return std::nullopt;
-    throw InputError({},
-                     fmt::format("{} cannot represent any part of this error model: X, Y and Z are "
-                                 "at right angles; it represents EC0Y, EB0Z, EA0Z and the like",
-                                 name_of(format)));
+    refuse_nothing(e, s);
   }
   Matrix3d right = A * command_matrix(s);
   for (int i = 0; i < 3; ++i) {
@@ -168,7 +218,7 @@ std::optional<SkewSettings> skew_settings_of(const TableSource& source,
     right.col(i).normalize();
   }
   s.R = right;
-  s.volume = volume_of(source, lines, s);
+  s.volume = volume_of(e.source, e.lines, s);
   return s;
 }
 
@@ -179,7 +229,12 @@ std::vector<std::string> skew_report(const TableExport& e) {
       fmt::format("document: {}", e.rules().document),
       fmt::format("added to the command: X {:+.3f} um/m of Y, X {:+.3f} um/m of Z, Y {:+.3f} um/m "
                   "of Z",
-                  -s.a / um, -s.b / um, -s.c / um)};
+                  0.0 - s.a / um, 0.0 - s.b / um, 0.0 - s.c / um)};
+  if (s.uncertainty) {
+    const Vector3d U = *s.uncertainty / um;
+    out.push_back(fmt::format("U(k = 2): {:.3g}, {:.3g} and {:.3g} um/m", U[0], U[1], U[2]));
+  }
+  for (const SkewSettings::LeftOut& one : s.left_out) out.push_back("note: 0 for " + text_of(one));
   const Vector3d turn(0.5 * (s.R(2, 1) - s.R(1, 2)), 0.5 * (s.R(0, 2) - s.R(2, 0)),
                       0.5 * (s.R(1, 0) - s.R(0, 1)));
   if (turn.cwiseAbs().maxCoeff() > e.rules().angle_step) {
@@ -226,7 +281,7 @@ std::vector<TextFile> skew_files(const TableExport& e) {
 TableVerification verify_skew(const TableExport& e, const std::vector<TextFile>& files) {
   const controllers::SkewSetting setting = controllers::read_skew_table(
       {files.at(0).name, files.at(0).text}, firmware_of(e.request.format));
-  const plant::VolumetricModel machine(e.source.chain, locations_of(e.source.errors));
+  const plant::VolumetricModel machine(e.source.chain, squarenesses_of(e.source.errors, *e.skew));
   const Matrix3d A =
       directions(machine, e.source, [&](const Vector3d& p) { return setting.commanded(p); });
   const Matrix3d G = A.transpose() * A;

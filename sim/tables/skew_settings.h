@@ -10,11 +10,10 @@
 
 namespace servomill::sim::tables {
 
+/// Factors that a calibration does not determine (table_uncertainty.h) are left out.
 /// @param is_required  axes at right angles are a fault; otherwise nothing is returned
 /// @throws InputError if the machine has no X, Y and Z
-std::optional<SkewSettings> skew_settings_of(const TableSource& source,
-                                             const std::vector<TableLine>& lines,
-                                             TableFormat format, bool is_required);
+std::optional<SkewSettings> skew_settings_of(const TableExport& tables, bool is_required);
 
 std::vector<std::string> skew_report(const TableExport& tables);
 

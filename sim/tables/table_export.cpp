@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
+#include "sim/tables/table_uncertainty.h"
 #include "sim/tables/tool_side_errors.h"
 #include "sim/tables/unknown_errors.h"
 
@@ -123,10 +124,32 @@ double largest_miss(const TableExport& e, const TableLine& line, const FineLine&
   return missed;
 }
 
+// Points leave a larger share of the largest value.
+auto is_coarser_than(double share) {
+  return
+      [share](const CompensationTable& table) { return table.residual > share * table.largest(); };
+}
+
+// Spacings that nobody asked for become smaller until errors are represented, such as those of a
+// screw that repeat every few millimetres.
+void refine(TableExport& e) {
+  for (TableLine& line : e.lines) {
+    const bool is_given = line.joint < kLinearJoints ? e.request.spacing.has_value()
+                                                     : e.request.rotary_spacing.has_value();
+    if (!line.wanted || is_given) continue;
+    const std::size_t most = e.request.most_points.value_or(e.rules().most_points);
+    for (auto finer = std::optional(line); finer; finer = finer_line(*finer, e.rules(), most)) {
+      line = *finer;
+      const auto tables = component_tables_of(e.source, {line}, e.rules());
+      if (std::none_of(tables.begin(), tables.end(), is_coarser_than(0.02))) break;
+    }
+  }
+}
+
 // An error that goes elsewhere between the points of a table, or is the same at all of them.
 std::optional<std::string> too_coarse(const TableExport& e, const TableLine& line,
                                       const FineLine& fine, int output) {
-  constexpr double kMissed = 0.5, kWanted = 0.1;  // of half the span of the error
+  constexpr double kMissed = 0.2, kWanted = 0.1;  // of half the span of the error
   if (is_omitted(e, line.joint, output) || (!e.rules().cross && output != line.joint)) return {};
   const bool is_angle = output >= kLinearJoints;
   const double span = fine.half_span(output);
@@ -153,6 +176,21 @@ std::vector<std::string> too_coarse(const TableExport& e) {
     for (int output = 0; output < kJoints; ++output) {
       if (auto one = too_coarse(e, line, fine, output)) out.push_back(std::move(*one));
     }
+  }
+  return out;
+}
+
+// The same of formats that hold the errors themselves.
+std::vector<std::string> too_coarse_components(const TableExport& e) {
+  std::vector<std::string> out;
+  for (const CompensationTable& table : e.tables) {
+    const double step = table.is_angle() ? e.rules().angle_step : e.rules().length_step;
+    if (!is_coarser_than(0.1)(table) || table.residual <= step) continue;
+    const int j = table.line.joint;
+    out.push_back(fmt::format(
+        "{} over {}: points {:g} {} apart leave {} of an error of up to {}",
+        to_string(*table.component), e.letter(j), table.line.spacing / unit_of(j), unit_name_of(j),
+        size_of(table.is_angle(), table.residual), size_of(table.is_angle(), table.largest())));
   }
   return out;
 }
@@ -186,14 +224,15 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
               reference_of(request, e.lines, machine.chain.layout)};
   refuse_unknown(e);
   if (e.rules().skew) {
-    e.skew = skew_settings_of(e.source, e.lines, request.format, !request.mesh);
-    if (request.mesh) e.mesh = bed_mesh_of(e.source, e.lines, e.skew, *request.mesh);
+    e.skew = skew_settings_of(e, !request.mesh);
+    if (request.mesh) e.mesh = bed_mesh_of(e);
     return e;
   }
   const bool csv = e.rules().components;
   if (e.rules().tool_side) {
     refuse_undocumented_axes(machine.chain, errors, name_of(request.format), {});
   }
+  if (csv) refine(e);
   e.tables = csv ? component_tables_of(e.source, e.lines, e.rules())
                  : tables_of(e.source, e.lines, e.rules());
   if (csv) e.grids = grid_tables_of(e.source, e.lines, e.rules());
@@ -203,15 +242,20 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
     }
   }
   std::erase_if(e.tables, [](const CompensationTable& table) { return table.is_second_order; });
+  take_uncertainty(e);
   if (e.tables.empty() && !(csv && !errors.is_zero())) {
-    const std::string why = csv ? "" : joined(too_coarse(e));
+    const std::string why = csv ? "" : joined(undetermined_lines(e)) + joined(too_coarse(e));
     throw InputError(
         {},
         fmt::format(
             "{} tables over the selected axes cannot represent any part of the error model '{}'{}",
             name_of(request.format), request.model, why));
   }
-  if (csv) return e;
+  if (csv) {
+    e.coarse = too_coarse_components(e);
+    refuse_undetermined_tip(e);
+    return e;
+  }
   e.base = LineCorrection(e.source).base();
   e.left = table_residuals(e.source, e.lines, e.omitted, e.rules());
   e.volume = volume(e.source, e.lines, e.tables);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/model/machine.h"
+#include "sim/model/tip_uncertainty.h"
 #include "sim/tables/bed_mesh.h"
 #include "sim/tables/compensation_tables.h"
 #include "sim/tables/grid_tables.h"
@@ -29,8 +30,11 @@ struct TableRequest {
   int comp_file_type = 0;                  // of LinuxCNC: 0 positions, 1 trims
   std::optional<std::array<int, 2>> mesh;  // points along X and Y of a bed mesh, of firmwares
   std::array<AxisRequest, kJoints> axes;
-  /// Errors that the readings of a calibrated machine leave undetermined (unknown_errors.h).
+  /// Errors that the readings of a calibrated machine leave undetermined
+  /// (sim/model/undetermined_errors.h).
   std::vector<plant::ErrorName> unknown;
+  /// Numbers that a calibration has identified, with their covariance; none: values as given.
+  std::optional<model::UncertainErrors> identified;
 };
 
 struct TableExport {
@@ -40,7 +44,7 @@ struct TableExport {
   std::vector<TableLine> lines;           // one for each axis of the machine
   std::vector<CompensationTable> tables;  // rounded as written
   std::vector<GridTable> grids;           // of errors over several axes
-  std::vector<OmittedTable> omitted;      // of second order in the errors
+  std::vector<OmittedTable> omitted;      // of second order, or not determined
   Joints base = Joints::Zero();           // m, rad: displacement that the reference would need
   std::vector<TableResidual> left;
   Volume volume;

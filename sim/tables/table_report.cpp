@@ -6,6 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
+#include "sim/tables/table_uncertainty.h"
 #include "sim/tables/unknown_errors.h"
 
 namespace servomill::sim::tables {
@@ -27,11 +28,13 @@ std::string title_of(const TableExport& e, const CompensationTable& table) {
 std::string line_of(const TableExport& e, const CompensationTable& table) {
   const int j = table.line.joint;
   return fmt::format(
-      "  {}: {} points, {:g} {} apart from {:g} {}, up to {}; linear interpolation "
-      "and rounding leave up to {}",
-      title_of(e, table), table.line.points, table.line.spacing / unit_of(j), unit_name_of(j),
-      table.line.first / unit_of(j), unit_name_of(j), size_of(table.is_angle(), table.largest()),
-      size_of(table.is_angle(), table.residual));
+             "  {}: {} points, {:g} {} apart from {:g} {}, up to {}; linear interpolation "
+             "and rounding leave up to {}",
+             title_of(e, table), table.line.points, table.line.spacing / unit_of(j),
+             unit_name_of(j), table.line.first / unit_of(j), unit_name_of(j),
+             size_of(table.is_angle(), table.largest()),
+             size_of(table.is_angle(), table.residual)) +
+         uncertainty_text(table);
 }
 
 std::string line_of(const GridTable& grid) {
@@ -116,6 +119,7 @@ std::string directions_in(const TableExport& e, const TableLine& line) {
 
 void add_omitted(const TableExport& e, std::vector<std::string>& out) {
   for (const OmittedTable& table : e.omitted) {
+    if (table.uncertainty) continue;
     out.push_back(fmt::format(
         "note: no table {} over {}: {} at most, of second order in errors of other directions",
         e.letter(table.output), e.letter(table.base),
@@ -222,8 +226,16 @@ void add_notes(const TableExport& e, std::vector<std::string>& out) {
                     size_of(false, e.volume.before), size_of(false, e.volume.after)));
   }
   add_omitted(e, out);
+  for (const std::string& line : undetermined_lines(e)) out.push_back("note: " + line);
   add_table_count(e, out);
   if (e.rules().power_of_two) note_powers_of_two(e, out);
+}
+
+// Does linear interpolation leave more than a digit?
+bool is_interpolated(const TableExport& e) {
+  return std::any_of(e.tables.begin(), e.tables.end(), [&](const CompensationTable& table) {
+    return table.residual > (table.is_angle() ? e.rules().angle_step : e.rules().length_step);
+  });
 }
 
 // Formats that hold the errors themselves.
@@ -248,9 +260,11 @@ void add_unheld(const TableExport& e, std::vector<std::string>& out) {
       return !e.source.errors.component({direction, axis, false}).reversals.empty();
     });
   });
-  out.push_back(has_reversal && e.rules().direction == DirectionRule::none
-                    ? "not in these tables: the dependence on the direction of travel (notes)"
-                    : "not in these tables: nothing");
+  out.push_back(
+      has_reversal && e.rules().direction == DirectionRule::none
+          ? "not in these tables: the dependence on the direction of travel (notes)"
+          : fmt::format("not in these tables: nothing{}",
+                        is_interpolated(e) ? " but what linear interpolation leaves" : ""));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// does not count: the error at the reference position is subtracted everywhere.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sim/tables/compensation_tables.h"
@@ -26,6 +27,8 @@ struct Volume {
 struct OmittedTable {
   int base = 0, output = 0;
   double largest = 0.0;  // m, rad
+  /// Expanded (k = 2; m, rad) of a table that is not determined; none: of second order.
+  std::optional<double> uncertainty = std::nullopt;
 };
 
 /// Errors of which more stays than kNothing, in the order X, Y, Z, A, B, C of their axes, component

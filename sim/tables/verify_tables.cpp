@@ -164,7 +164,14 @@ class Displacements {
     }
     double omitted = 0.0;
     for (const OmittedTable& table : e_.omitted) {
-      if (table.base == line.joint && table.output == output) omitted = table.largest;
+      if (table.base != line.joint || table.output != output) continue;
+      if (!tables.empty()) {
+        throw InputError({tables.front()->file, tables.front()->points.front().line},
+                         fmt::format("not as verified: a table {} over {} is not needed",
+                                     letter(compensated), letter(base)));
+      }
+      if (table.uncertainty) return;
+      omitted = table.largest;
     }
     Comparison c;
     c.file = tables.empty() ? folder_ : tables.front()->file;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
@@ -13,10 +14,10 @@
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/model/undetermined_errors.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
-#include "sim/tables/unknown_errors.h"
 #include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/import_errors.h"
@@ -74,19 +75,16 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
                                             did_you_mean(name, names), there_are));
 }
 
-// Errors of the model that the readings of a calibrated machine leave undetermined.
-std::vector<plant::ErrorName> unknown_of(const Inputs& inputs, const Options& options,
-                                         const std::string& model,
-                                         const plant::ErrorModel& errors) {
+// Numbers that a calibration has identified; none: nobody has calibrated the machine.
+std::optional<sim::model::UncertainErrors> identified_of(const Inputs& inputs,
+                                                         const Options& options,
+                                                         const std::string& model) {
   const JointLayout& layout = inputs.machine.chain.layout;
   if (options.has("machine")) {
-    const auto identified =
-        sim::input::uncertain_errors_of_file(error_file(options), model, layout);
-    if (identified) return sim::tables::unknown_errors(errors, *identified, layout);
-  } else if (inputs.uncertain && inputs.uncertain->model == model) {
-    return sim::tables::unknown_errors(errors, *inputs.uncertain, layout);
+    return sim::input::uncertain_errors_of_file(error_file(options), model, layout);
   }
-  return {};
+  if (inputs.uncertain && inputs.uncertain->model == model) return *inputs.uncertain;
+  return std::nullopt;
 }
 
 // "X=..." of an option that may come once for each axis.
@@ -357,7 +355,11 @@ int table_command(const Arguments& arguments) {
   const Inputs inputs = read_inputs(options);
   sim::tables::TableRequest request = request_of(options, inputs.machine);
   const plant::ErrorModel& errors = model_of(inputs, options, request.model);
-  request.unknown = unknown_of(inputs, options, request.model, errors);
+  request.identified = identified_of(inputs, options, request.model);
+  if (request.identified) {
+    request.unknown =
+        sim::model::undetermined_errors(errors, *request.identified, inputs.machine.chain.layout);
+  }
   const sim::tables::TableExport tables = [&] {
     try {
       return sim::tables::export_tables(inputs.machine, errors, request);

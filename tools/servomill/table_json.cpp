@@ -31,6 +31,7 @@ std::string table_json(const TableExport& e, const sim::tables::CompensationTabl
       .boolean("depends_on_direction", table.depends_on_direction())
       .text("unit", unit_of(table.is_angle()))
       .number("largest", table.largest() / um)
+      .number("uncertainty", table.uncertainty.value_or(kUnknown) / um)
       .number("residual", table.residual / um)
       .line();
 }
@@ -63,10 +64,17 @@ std::string left_json(const sim::tables::TableResidual& one) {
 
 // Commands x -= a y + b z, y -= c z.
 std::string skew_json(const sim::tables::SkewSettings& skew) {
+  const Eigen::Vector3d U = skew.uncertainty.value_or(Eigen::Vector3d::Constant(kUnknown));
+  std::vector<std::string> left_out;
+  for (const auto& one : skew.left_out) left_out.push_back(plant::to_string(one.squareness[0]));
   return JsonObject()
       .number("a_urad", skew.a / urad)
       .number("b_urad", skew.b / urad)
       .number("c_urad", skew.c / urad)
+      .number("uncertainty_a_urad", U[0] / urad)
+      .number("uncertainty_b_urad", U[1] / urad)
+      .number("uncertainty_c_urad", U[2] / urad)
+      .raw("left_out", sim::system::json_texts(left_out))
       .line();
 }
 
@@ -80,6 +88,7 @@ std::string mesh_json(const sim::tables::BedMesh& mesh) {
       .number("Y_to_mm", mesh.range[3] / mm)
       .number("Z_before_um", mesh.before / um)
       .number("Z_after_um", mesh.after / um)
+      .number("uncertainty_um", mesh.uncertainty.value_or(kUnknown) / um)
       .line();
 }
 

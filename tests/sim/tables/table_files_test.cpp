@@ -231,7 +231,7 @@ tables:
   EXX over X: 3 points, 10 mm apart from 0 mm, up to 2.000 um; linear interpolation and rounding leave up to 0.000 um
   EYX over X: 3 points, 10 mm apart from 0 mm, up to 8.000 um; linear interpolation and rounding leave up to 0.500 um
   EAX over X: 3 points, 10 mm apart from 0 mm, up to 20.000 urad; linear interpolation and rounding leave up to 0.000 urad
-not in these tables: nothing
+not in these tables: nothing but what linear interpolation leaves
 sign: deviation of the tool side relative to the workpiece side, along X, Y, Z and about A, B, C right-handed; the columns are functions of the first one
 )");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/undetermined_errors.h"
 #include "tests/sim/tables/small_machine.h"
 #include "tests/text.h"
 
@@ -28,7 +29,7 @@ class Unknown : public testing::Test {
 
   TableRequest request(TableFormat format) const {
     TableRequest out = request_of(format);
-    out.unknown = unknown_errors(errors_, identified_, machine_.chain.layout);
+    out.unknown = model::undetermined_errors(errors_, identified_, machine_.chain.layout);
     return out;
   }
 

@@ -1,0 +1,32 @@
+/// Errors that a calibration has not determined: unknown, not 0.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "plant/geometry/error_model.h"
+#include "sim/model/tip_uncertainty.h"
+
+namespace servomill::sim::model {
+
+/// Squarenesses of XY, XZ and YZ, as turns of either axis.
+inline constexpr std::array<std::array<plant::ErrorName, 2>, 3> kSquarenesses = {{
+    {{{Axis::C, Axis::Y, true}, {Axis::C, Axis::X, true}}},
+    {{{Axis::B, Axis::Z, true}, {Axis::B, Axis::X, true}}},
+    {{{Axis::A, Axis::Z, true}, {Axis::A, Axis::Y, true}}},
+}};
+
+/// Meaningful component errors over the position of an axis.
+std::vector<plant::ErrorName> components_of(const JointLayout& layout, Axis axis);
+
+/// Component errors and squarenesses of the machine that have neither an identified number nor a
+/// value in the model. A squareness may be given for either of its two axes: EC0X or EC0Y.
+std::vector<plant::ErrorName> undetermined_errors(const plant::ErrorModel& errors,
+                                                  const UncertainErrors& identified,
+                                                  const JointLayout& layout);
+
+/// "ECY, ECZ"
+std::string list_of(const std::vector<plant::ErrorName>& names);
+
+}  // namespace servomill::sim::model
