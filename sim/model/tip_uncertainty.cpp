@@ -44,35 +44,50 @@ std::size_t TipUncertainty::unit_of(const plant::MachineChain& chain,
   return units_.size() - 1;
 }
 
-Eigen::Matrix3d TipUncertainty::covariance(const Joints& Q, const Vector3d& p_ST,
-                                           const Joints& directions) const {
+Eigen::Matrix3Xd TipUncertainty::effects(const Joints& Q, const Vector3d& p_ST,
+                                         const Joints& directions) const {
   Eigen::Matrix3Xd shift(3, Index(units_.size()));
   for (std::size_t i = 0; i < units_.size(); ++i) {
     shift.col(Index(i)) = units_[i].model.first_order_error(Q, p_ST).dp_W / kUnitError;
   }
-  // numbers without effect here, such as most of a table, are left out
   const AxisWords q = layout_.words(Q);
-  Eigen::Matrix3Xd J(3, Index(numbers_.size()));
-  std::vector<Index> acting;
+  Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, Index(numbers_.size()));
   for (std::size_t k = 0; k < numbers_.size(); ++k) {
-    Vector3d effect = Vector3d::Zero();
     for (const Part& part : numbers_[k]) {
       const double s = Q[part.joint], direction = directions[part.joint];
       const double change =
           travelling(part.above, s, q, direction) - travelling(part.below, s, q, direction);
-      effect += 0.5 * change * shift.col(Index(part.unit));
+      J.col(Index(k)) += 0.5 * change * shift.col(Index(part.unit));
     }
-    if (effect.isZero(0.0)) continue;
-    J.col(Index(acting.size())) = effect;
-    acting.push_back(Index(k));
+  }
+  return J;
+}
+
+// Numbers without effect, such as most of a table, are left out.
+Eigen::Matrix3d TipUncertainty::covariance_of(const Eigen::Matrix3Xd& effects) const {
+  Eigen::Matrix3Xd J(3, effects.cols());
+  std::vector<Index> acting;
+  for (Index k = 0; k < effects.cols(); ++k) {
+    if (effects.col(k).isZero(0.0)) continue;
+    J.col(Index(acting.size())) = effects.col(k);
+    acting.push_back(k);
   }
   const auto n = Index(acting.size());
   return J.leftCols(n) * correlation_(acting, acting) * J.leftCols(n).transpose();
 }
 
+Eigen::Matrix3d TipUncertainty::covariance(const Joints& Q, const Vector3d& p_ST,
+                                           const Joints& directions) const {
+  return covariance_of(effects(Q, p_ST, directions));
+}
+
+Vector3d TipUncertainty::expanded(const Eigen::Matrix3Xd& effects) const {
+  return kCoverageFactor * covariance_of(effects).diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
 Vector3d TipUncertainty::expanded(const Joints& Q, const Vector3d& p_ST,
                                   const Joints& directions) const {
-  return kCoverageFactor * covariance(Q, p_ST, directions).diagonal().cwiseMax(0.0).cwiseSqrt();
+  return expanded(effects(Q, p_ST, directions));
 }
 
 }  // namespace servomill::sim::model

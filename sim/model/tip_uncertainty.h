@@ -40,6 +40,14 @@ class TipUncertainty {
  public:
   TipUncertainty(const plant::MachineChain& chain, const UncertainErrors& errors);
 
+  /// Effects J of the numbers on the tip, each by one standard deviation (3 x numbers; m, in W).
+  Eigen::Matrix3Xd effects(const Joints& Q, const Eigen::Vector3d& p_ST,
+                           const Joints& directions) const;
+
+  /// Expanded uncertainty (k = 2) of a sum of effects, such as the difference of two places, where
+  /// a common shift has no part in it (3; m).
+  Eigen::Vector3d expanded(const Eigen::Matrix3Xd& effects) const;
+
   /// @param Q           joints (5; m, rad)
   /// @param p_ST        tip in the spindle nose (3; m)
   /// @param directions  of travel of the joints, -1 to 1; 0: the mean of both (5)
@@ -52,6 +60,8 @@ class TipUncertainty {
                            const Joints& directions) const;
 
  private:
+  Eigen::Matrix3d covariance_of(const Eigen::Matrix3Xd& effects) const;
+
   // Shift of the tip for an error of one (3; m) at the place of a part.
   struct UnitError {
     plant::ErrorName name;

@@ -165,6 +165,10 @@ void add_correction_options(Options& options) {
   options.add()("correct-rapids", "also corrects G0 along its path");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
                 "axes that carry the correction: X, Y and Z only, or all including rotary axes");
+  options.add()(
+      "leave", text()->value_name("Z"),
+      "linear axes that stay as programmed, such as Z or XZ: for errors that the readings "
+      "of a calibrated machine do not determine");
 }
 
 void add_control_options(Options& options) {
@@ -217,6 +221,19 @@ void add_other_options(Options& options) {
   options.add()("quiet,q", "prints only warnings and faults");
 }
 
+std::array<bool, kLinearJoints> left_axes(const Options& options) {
+  std::array<bool, kLinearJoints> out{};
+  for (const char c : text_of(options, "leave")) {
+    const auto axis = axis_of(c);
+    if (!axis || !is_linear(*axis)) {
+      throw InputError({"--leave"}, fmt::format("'{}'; must be letters of X, Y and Z, such as XZ",
+                                                options.get<std::string>("leave")));
+    }
+    out[static_cast<std::size_t>(index_of(*axis))] = true;
+  }
+  return out;
+}
+
 }  // namespace
 
 sim::programs::CompensateRequest compensate_request(const Options& options) {
@@ -246,6 +263,7 @@ sim::programs::CompensateRequest compensate_request(const Options& options) {
       positive_option(options, "max-block", sim::config::kLength, "mm").value_or(0.0);
   request.corrects_rapids = options.has("correct-rapids");
   request.axes = static_cast<strategies::DisplacedAxes>(choice_option(options, "axes", kAxes));
+  request.left = left_axes(options);
   request.dialect = dialect_of(options);
   request.inputs = program_inputs(options);
   request.inputs.machine.clear();  // tool-centre-point control is not corrected

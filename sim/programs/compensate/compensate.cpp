@@ -16,7 +16,6 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
-#include "sim/input/uncertain_errors.h"
 #include "sim/model/design.h"
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/compensate_report.h"
@@ -44,7 +43,7 @@ using ErrorModels = std::map<std::string, plant::ErrorModel>;
 
 const plant::ErrorModel& model_of(const ErrorModels& models, const CompensateRequest& request,
                                   std::string& name) {
-  const std::string& file = request.error_file.empty() ? request.machine_file : request.error_file;
+  const std::string& file = request.file_of_errors();
   std::vector<std::string_view> names;
   for (const auto& [key, model] : models) names.push_back(key);
   static const plant::ErrorModel kNone;
@@ -144,6 +143,7 @@ struct Preparation {
     const model::NcSettings& nc = described.machine.nc;
     known.depends_on_place =
         !request.servo_file.empty() || depends_on_place(correction, nc.lower, nc.upper);
+    correction.leave(request.left);
     take_start(request);
     if (!request.servo_file.empty()) follow_model(request);
   }
@@ -161,6 +161,7 @@ struct Preparation {
   std::vector<Move> moves_with(const CompensateRequest& request, const SharedOffset& offset) const {
     Correction along(described.machine.chain, {}, request.axes);
     along.follow(offset);
+    along.leave(request.left);
     WalkOptions walk = options;
     walk.is_for_other_control = false;
     walk.is_start_known.fill(true);
@@ -267,18 +268,8 @@ void add_clauses(const ProgramWriter& writer, const std::string& file, Compensat
   }
 }
 
-// Uncertainty of the corrected points; nothing where the covariance of the errors is not known.
-std::optional<PointUncertainty> point_uncertainty(const CompensateRequest& request,
-                                                  const Preparation& prepared) {
-  const std::string& file = request.error_file.empty() ? request.machine_file : request.error_file;
-  const auto errors = input::uncertain_errors_of_file(file, prepared.model, prepared.layout);
-  if (errors) {
-    return PointUncertainty(prepared.described.machine.chain, *errors, request.lists_uncertainty);
-  }
-  if (!request.lists_uncertainty) return std::nullopt;
-  throw InputError({file}, fmt::format("has no covariance of the error model '{}' ([identified]); "
-                                       "servomill calibrate -o writes it",
-                                       prepared.model));
+void add_to(std::vector<std::string>& lines, const std::vector<std::string>& more) {
+  lines.insert(lines.end(), more.begin(), more.end());
 }
 
 // Comments at the head of the program.
@@ -287,7 +278,7 @@ std::vector<std::string> header_of(const CompensateRequest& request, const Prepa
   std::vector<std::string> header = {
       header_line(request, prepared.described.machine.name, prepared.model)};
   header.push_back(path_line(request, writer));
-  for (const std::string& one : unrolled_parts(summary)) header.push_back(one);
+  add_to(header, unrolled_parts(summary));
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
   for (const std::string& one : writer.warnings()) header.push_back("warning: " + one);
   return header;
@@ -298,9 +289,9 @@ void add_report(const VerificationReport& verified, const JointLayout& layout, C
   const Summary& summary = out.summary;
   const bool has_uncertainty = out.uncertainty && !out.uncertainty->empty();
   out.report = summary.report(layout);
-  if (has_uncertainty) out.report.push_back(out.uncertainty->report());
+  if (has_uncertainty) add_to(out.report, out.uncertainty->report());
   out.report.push_back(verified.text());
-  for (const std::string& one : unrolled_parts(summary)) out.report.push_back(one);
+  add_to(out.report, unrolled_parts(summary));
   for (const std::string& one : summary.assumed) out.report.push_back("assumed: " + one);
   out.json = summary.json(layout, has_uncertainty ? out.uncertainty->json() : "null");
 }
@@ -348,7 +339,7 @@ Compensated compensate(const CompensateRequest& request) {
   out.summary.servo = prepared.servo;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
-  out.uncertainty = point_uncertainty(request, prepared);
+  out.uncertainty = uncertainty_of(request, machine.chain, prepared.model, prepared.errors);
   ProgramCorrector corrector(prepared.options, known.setup.tools, correction, out.summary,
                              request.records ? &out.record : nullptr,
                              smoothed ? &*smoothed : nullptr,
@@ -360,6 +351,7 @@ Compensated compensate(const CompensateRequest& request) {
   Stage parts("parts", 2.0, Steps::unlike);  // correction, verification
   write_blocks(request, known, interpreter, *writer, highest, out.warnings);
   parts.advance();
+  if (out.uncertainty) out.uncertainty->refuse_undetermined(request.file_of_errors(), request.left);
 
   const std::optional<double> retract = retract_of(request, prepared.described);
   if (prepared.options.is_for_other_control && retract) {

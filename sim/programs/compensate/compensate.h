@@ -1,6 +1,7 @@
 /// Any milling program, corrected for the errors of the machine that runs it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct CompensateRequest {
   double max_block = 0.0;            // m, where the correction varies; 0: no limit
   bool corrects_rapids = false;
   strategies::DisplacedAxes axes = strategies::DisplacedAxes::linear;
+  std::array<bool, kLinearJoints> left{};  // X, Y, Z that stay as programmed
   Dialect dialect = Dialect::linuxcnc;
   std::string program_name;         // other dialects: as the file is called, without extension
   int program_number = 0;           // Fanuc: O; 0: not given
@@ -40,6 +42,10 @@ struct CompensateRequest {
   std::string start;                      // "X=0,Y=0": machine coordinates; or empty
   bool records = false;                   // the path
   bool lists_uncertainty = false;         // of every corrected point
+
+  const std::string& file_of_errors() const {
+    return error_file.empty() ? machine_file : error_file;
+  }
 };
 
 struct Compensated {

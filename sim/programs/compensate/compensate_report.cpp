@@ -30,6 +30,9 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Wor
                   : number < 0 ? fmt::format("tool offset of G43.1: length {:g} mm", length / mm)
                                : fmt::format("tool {}: length {:g} mm", number, length / mm));
   }
+  for (std::size_t i = 0; i < request.left.size(); ++i) {
+    if (request.left[i]) out.push_back(fmt::format("{} stays as programmed (--leave)", "XYZ"[i]));
+  }
   if (!request.start.empty()) out.push_back(fmt::format("the machine starts at {}", request.start));
   return out;
 }

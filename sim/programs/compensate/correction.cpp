@@ -84,11 +84,18 @@ AxisWords Correction::at(const AxisWords& machine) const {
     d.head<3>() = strategies::setpoint_displacement(identified, strategies::Action::compensate,
                                                     strategies::Iterations::converged, Q);
   }
-  return d;
+  return without_left(d);
 }
 
 AxisWords Correction::at(const AxisWords& machine, double s) const {
-  return offset_ != nullptr ? layout().words(offset_->at_place(s)) : at(machine);
+  return offset_ != nullptr ? without_left(layout().words(offset_->at_place(s))) : at(machine);
+}
+
+AxisWords Correction::without_left(AxisWords d) const {
+  for (int i = 0; i < kLinearJoints; ++i) {
+    if (left_[static_cast<std::size_t>(i)]) d[i] = 0.0;
+  }
+  return d;
 }
 
 void Correction::follow(std::shared_ptr<const strategies::PathOffset> offset) {

@@ -36,6 +36,9 @@ class Correction {
   bool has_reversals() const { return longest_reversal_ > 0.0; }
   /// Axes whose errors do.
   const std::array<bool, kAxisWords>& reverses() const { return reverses_; }
+  /// From here on these axes (X, Y, Z) stay where the program puts them.
+  void leave(const std::array<bool, kLinearJoints>& axes) { left_ = axes; }
+
   /// m or rad of travel that a change of direction takes at most
   double longest_reversal() const { return longest_reversal_; }
   /// From here on errors with reversal are those of axes that travel so, long after they turned;
@@ -67,12 +70,15 @@ class Correction {
     strategies::PoseCompensation all;
   };
 
+  AxisWords without_left(AxisWords d) const;
+
   plant::MachineChain chain_;
   plant::ErrorModel errors_;
   strategies::DisplacedAxes axes_;
   std::array<bool, kAxisWords> reverses_{};  // axes whose errors have reversals
   double longest_reversal_ = 0.0;
   Directions directions_{};
+  std::array<bool, kLinearJoints> left_{};
   std::map<Directions, std::unique_ptr<Model>> models_;
   Model* model_ = nullptr;                                // of the directions
   std::shared_ptr<const strategies::PathOffset> offset_;  // along the path; nullptr: of the errors
