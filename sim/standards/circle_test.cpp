@@ -34,7 +34,7 @@ CirclePath& turn_of(CircleTest& test, Sense sense) {
   for (CirclePath& turn : test.turns) {
     if (turn.sense == sense) return turn;
   }
-  return test.turns.emplace_back(CirclePath{sense, {}});
+  return test.turns.emplace_back(CirclePath{sense, {}, {}});
 }
 
 // Refuses arcs, and turns that go the other way than their rows say.
@@ -164,6 +164,58 @@ ReportTable curve_table(const CirclePath& turn, double radius) {
   return out;
 }
 
+// Radius of each point less the cubic through the two points on either side of it (m).
+std::vector<double> off_neighbours(const CirclePath& turn) {
+  const auto n = static_cast<std::ptrdiff_t>(turn.points.size());
+  const auto r = [&](std::ptrdiff_t i) {
+    return turn.points[static_cast<std::size_t>((i + n) % n)].norm();
+  };
+  std::vector<double> out;
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    out.push_back(r(i) - (4.0 * (r(i - 1) + r(i + 1)) - (r(i - 2) + r(i + 2))) / 6.0);
+  }
+  return out;
+}
+
+// Single points far off the curve through their neighbours. They put these off by 2/3 the other
+// way; a step at a reversal does so on one side only.
+void add_outliers(const CirclePath& turn, Report& out) {
+  constexpr double kFar = 10.0;          // of the usual distance
+  constexpr double kDisplay = 0.2 * um;  // usual distance: a step of the display
+  constexpr double kOpposite = 0.5;
+  constexpr std::size_t kFewest = 16;
+  const std::size_t n = turn.points.size();
+  if (n < kFewest) return;
+  const std::vector<double> off = off_neighbours(turn);
+  std::vector<double> sizes;
+  for (const double one : off) sizes.push_back(std::abs(one));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(n / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double usual = std::max(*middle, kDisplay);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double before = off[(i + n - 1) % n] / off[i], after = off[(i + 1) % n] / off[i];
+    if (std::abs(off[i]) <= kFar * usual || before > -kOpposite || after > -kOpposite) continue;
+    out.remarks.push_back(fmt::format(
+        "{}: is {:.4g} um off its neighbours on the circle {}; it is kept in the evaluation: check "
+        "it at the machine",
+        to_string(turn.places[i]), off[i] / um, sense_name(turn.sense)));
+  }
+}
+
+// Rows that are there twice.
+void add_copies(const CirclePath& turn, Report& out) {
+  std::map<std::pair<double, double>, int> lines;
+  for (std::size_t i = 0; i < turn.points.size(); ++i) {
+    const auto [found, is_new] =
+        lines.try_emplace({turn.points[i].x(), turn.points[i].y()}, turn.places[i].line);
+    if (is_new) continue;
+    out.remarks.push_back(
+        fmt::format("{}: equals line {} on the circle {}; it counts: remove what "
+                    "was copied",
+                    to_string(turn.places[i]), found->second, sense_name(turn.sense)));
+  }
+}
+
 }  // namespace
 
 CircleTest read_circle(const std::string& path, double radius) {
@@ -180,7 +232,9 @@ CircleTest read_circle(const std::string& path, double radius) {
                         fmt::format("direction = {}; must be ccw or cw", word)});
       continue;
     }
-    turn_of(out, *sense).points.push_back(point_of(table, row, columns, radius, faults));
+    CirclePath& turn = turn_of(out, *sense);
+    turn.points.push_back(point_of(table, row, columns, radius, faults));
+    turn.places.push_back({path, row.line});
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   check(out, path);
@@ -201,8 +255,9 @@ std::vector<CircleTest> circles_of(const readings::Group& group, const JointLayo
     }
     CircleTest& run =
         runs.try_emplace(one.run, CircleTest{group.name, group.radius, {}}).first->second;
-    turn_of(run, sense > 0.0 ? Sense::counter_clockwise : Sense::clockwise)
-        .points.emplace_back(nominal.normalized() * (group.radius + one.deviation[0]));
+    CirclePath& turn = turn_of(run, sense > 0.0 ? Sense::counter_clockwise : Sense::clockwise);
+    turn.points.emplace_back(nominal.normalized() * (group.radius + one.deviation[0]));
+    turn.places.push_back({group.file, one.line});
   }
   std::vector<CircleTest> out;
   for (auto& [run, test] : runs) {
@@ -253,6 +308,10 @@ Report circle_report(const CircleTest& test) {
           sense_name(turn.sense), std::abs(off) / mm, off > 0.0 ? "larger" : "smaller"));
     }
     add_turn(turns.back(), out);
+    if (turn.places.size() == turn.points.size()) {
+      add_outliers(turn, out);
+      add_copies(turn, out);
+    }
   }
   const bool both = test.turns.size() == 2;
   double G_b = kNone, D = kNone;

@@ -17,6 +17,7 @@ namespace servomill::sim::standards {
 struct CirclePath {
   metrology::Sense sense = metrology::Sense::counter_clockwise;
   std::vector<Eigen::Vector2d> points;  // m, about the centre of the set-up
+  std::vector<Place> places = {};       // of their rows; none: of a simulated test
 };
 
 struct CircleTest {

@@ -228,6 +228,35 @@ double usual_deviation(const Groups& groups) {
   return differ > 1 ? std::max(s, smallest) : s;
 }
 
+// Lengths are taken back to 20 degC; a standard evaluates the rest as it was read.
+void correct(const readings::Group& group, std::vector<TargetReading>& all,
+             std::vector<std::string>& remarks) {
+  constexpr double kReference = 20.0;  // degC
+  if (group.expansion) {
+    std::size_t without = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double T = group.rows[i].temperature;
+      if (std::isnan(T)) ++without;
+      if (std::isnan(T)) continue;
+      all[i].deviation -=
+          group.expansion->coefficient * (T - kReference) * (all[i].target - all[0].target);
+    }
+    remarks.push_back(fmt::format("readings are taken back to 20 degC with {:.3g} um/m/K{}",
+                                  group.expansion->coefficient / 1e-6,
+                                  without == 0 ? ""
+                                               : fmt::format("; {} rows have no temperature and "
+                                                             "are not",
+                                                             without)));
+  }
+  if (group.drifts) {
+    remarks.emplace_back(
+        "drift is not removed: the standard evaluates readings as they were taken");
+  }
+  if (group.dead_path) {
+    remarks.emplace_back("dead_path has no effect on the parameters; it belongs to their U");
+  }
+}
+
 }  // namespace
 
 PositioningFile positioning_of(const readings::Group& group, const JointLayout& layout) {
@@ -259,8 +288,10 @@ PositioningFile positioning_of(const readings::Group& group, const JointLayout& 
   if (!faults.empty()) throw InputError(std::move(faults));
   PositioningFile out;
   out.name = group.name;
+  correct(group, all, out.remarks);
   out.test = arrange(all, angular);
-  out.remarks = outliers(all, angular);
+  const auto off = outliers(all, angular);
+  out.remarks.insert(out.remarks.end(), off.begin(), off.end());
   return out;
 }
 

@@ -139,6 +139,26 @@ class Readings(unittest.TestCase):
             self.assertGreaterEqual(found["G_LSC_ccw"], found["G_ccw"] - 1e-12)
             self.assertGreaterEqual(found["G_b"], max(found["G_ccw"], found["G_cw"]) - 1e-12)
 
+    def test_lengths_of_a_group_are_taken_back_to_20_degrees(self):
+        # 30 degC: 11.5 um/m/K * 10 K * 1 m of a scale of 300 um/m
+        expansion = "expansion = { coefficient_per_K = 11.5e-6 }\ndrift = true\n"
+        with tempfile.TemporaryDirectory() as folder:
+            rows = ["X_mm,direction,deviation_um,temperature_degC"] + [f"{x},{d},{0.3 * x},30" for d, xs in (("forward", range(0, 1001, 100)), ("backward", range(1000, -1, -100)))
+                                                                       for x in xs]
+            with open(os.path.join(folder, "x.csv"), "w", encoding="utf-8") as file:
+                file.write("\n".join(rows) + "\n")
+            found = {}
+            for name, keys in (("as_read", ""), ("at_20", expansion)):
+                with open(os.path.join(folder, "readings.toml"), "w", encoding="utf-8") as file:
+                    file.write(f'machine = "{os.path.join(ROOT, "scenarios", "machines", "router_3axis.toml")}"\n[[group]]\nname = "X"\nkind = "positioning"\n'
+                               f'axis = "X"\nreadings = "x.csv"\nat = {{ Y_mm = 0, Z_mm = -50 }}\npoint_mm = [0, 0, -60]\nuncertainty_um = 1\n{keys}')
+                report = json.loads(evaluate(os.path.join(folder, "readings.toml"), "--standard", "iso230-2", "--json").stdout)[0]
+                found[name] = {value["parameter"]: value["value"] for value in report["parameters"]}["M"], report["notes"]
+        self.assertAlmostEqual(found["as_read"][0], 300e-6, delta=1e-9)
+        self.assertAlmostEqual(found["at_20"][0], 300e-6 - 115e-6, delta=1e-9)
+        self.assertEqual(found["at_20"][1][:2], ["readings are taken back to 20 degC with 11.5 um/m/K",
+                                                 "drift is not removed: the standard evaluates readings as they were taken"])
+
     def test_a_standard_without_its_groups_is_refused(self):
         said = evaluate(self.ROUTER, "--standard", "10791-6", status=2).stderr
         self.assertIn("has no group for iso10791-6", said)

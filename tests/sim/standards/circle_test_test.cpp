@@ -170,4 +170,30 @@ TEST(CircleTest, GroupsOfReadingsAreOneTestARun) {
   EXPECT_NEAR(fit_circle(tests[0]).scale_mismatch, 8.0 * um / kRadius, 1e-9);
 }
 
+// The row of 37.5 deg is off by 20 um; a reversal steps by 20 um, an ellipse has 200 um.
+TEST(CircleTest, NamesAPointOffItsNeighbours) {
+  const auto radial = [](double theta, int direction) {
+    const double step = direction * std::cos(theta) > 0.0 ? 20.0 * um : 0.0;
+    const double outlier = direction > 0 && std::abs(theta - 37.5 * deg) < 1e-6 ? 20.0 * um : 0.0;
+    return 100.0 * um * std::sin(2.0 * theta) + step + outlier;
+  };
+  const Report report = report_of(ball_bar(radial));
+  ASSERT_EQ(report.remarks.size(), 1u);
+  EXPECT_TRUE(report.remarks[0].ends_with(
+      ":39: is 20 um off its neighbours on the circle ccw; it is kept in the evaluation: check it "
+      "at the machine"))
+      << report.remarks[0];
+}
+
+TEST(CircleTest, NamesACopiedRow) {
+  std::string text = ball_bar([](double theta, int) { return 1.0 * um * std::sin(theta); });
+  const std::size_t row = text.find("ccw,10.5,"), end = text.find('\n', row) + 1;
+  text.insert(end, text.substr(row, end - row));
+  const Report report = report_of(text);
+  ASSERT_EQ(report.remarks.size(), 1u);
+  EXPECT_TRUE(report.remarks[0].ends_with(
+      ":13: equals line 12 on the circle ccw; it counts: remove what was copied"))
+      << report.remarks[0];
+}
+
 }  // namespace servomill::sim::standards::circle_test_test
