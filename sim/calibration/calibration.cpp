@@ -161,6 +161,22 @@ std::vector<SoughtFunction> sought_functions(const readings::Readings& readings,
   return out;
 }
 
+// Component errors that are looked for, of axes that stand still in all readings.
+std::vector<ErrorName> unmoved_errors(const readings::Readings& readings,
+                                      const Observations& observations, const JointLayout& layout,
+                                      const CalibrationSettings& settings) {
+  std::vector<ErrorName> out;
+  for (const Axis axis : kAllAxes) {
+    const auto joint = layout.joint_of(axis);
+    if (!joint || places_of(readings, observations, axis, *joint).size() > 1) continue;
+    for (const Axis direction : kAllAxes) {
+      const ErrorName name{direction, axis, false};
+      if (is_sought(settings, name) && !plant::why_meaningless(name, layout)) out.push_back(name);
+    }
+  }
+  return out;
+}
+
 // Axes whose reversal no form asks for, and which is none: a program that is corrected for it would
 // have a step wherever the axis turns.
 std::vector<Axis> axes_without_reversal(const Adjustment& adjustment,
@@ -243,10 +259,12 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
                   .outliers = {},
                   .suspects = {},
                   .smoothness = {},
-                  .one_way = {}};
+                  .one_way = {},
+                  .unmoved = {}};
   out.observations = observations_of(out.readings, chain);
   out.one_way = one_way_axes(out.readings, out.observations, chain.layout);
   const CalibrationSettings& settings = out.settings;
+  out.unmoved = unmoved_errors(out.readings, out.observations, chain.layout, settings);
   std::vector<SoughtLocation> locations;
   for (const ErrorName& name : sought_locations(chain, settings.frame)) {
     if (!is_sought(settings, name)) continue;

@@ -71,10 +71,11 @@ struct Calibration {
   CalibrationSettings settings;
   Observations observations;
   Adjustment adjustment;
-  std::vector<Outlier> outliers;       // largest first
-  std::vector<Suspect> suspects;       // groups that fit with another sign or unit
-  std::vector<Smoothness> smoothness;  // of forms that the data have chosen
-  std::vector<Axis> one_way;           // axes whose positions are read in one direction only
+  std::vector<Outlier> outliers;          // largest first
+  std::vector<Suspect> suspects;          // groups that fit with another sign or unit
+  std::vector<Smoothness> smoothness;     // of forms that the data have chosen
+  std::vector<Axis> one_way;              // axes whose positions are read in one direction only
+  std::vector<plant::ErrorName> unmoved;  // sought errors of axes that no group moves
 };
 
 /// @throws InputError where nothing can be adjusted
@@ -125,6 +126,9 @@ std::vector<KnownLine> lines_of_grids(const Adjustment& adjustment);
 /// "EA0C is determined only in combination: EA0Y holds EA0Y + EA0C", one sentence for each
 /// combination; functions without any effect on the readings in one sentence.
 std::vector<std::string> unidentifiable_sentences(const Calibration& calibration);
+
+/// Errors of which the readings determine nothing: they have no number in the file.
+std::vector<plant::ErrorName> undetermined_errors(const Calibration& calibration);
 
 /// True if a part of an error is left out, or holds what was left out of another.
 bool is_combined(const Adjustment& adjustment, const plant::ErrorName& name);

@@ -332,7 +332,11 @@ class Collector {
 }  // namespace
 
 IdentifiedErrors identified_errors(const Calibration& calibration, const std::string& model) {
-  return Collector(calibration.adjustment, model).collect();
+  IdentifiedErrors out = Collector(calibration.adjustment, model).collect();
+  for (const ErrorName& name : undetermined_errors(calibration)) {
+    out.values.unidentifiable.push_back(fmt::format("errors.{}.{}", model, plant::to_string(name)));
+  }
+  return out;
 }
 
 }  // namespace servomill::sim::calibration

@@ -94,7 +94,8 @@ void refuse_unreadable(const std::string& text, const std::string& path,
     throw std::logic_error(path + ": the error model differs when read back");
   }
   if (read.identified && (read.identified->values != errors.values.values ||
-                          read.identified->covariance != errors.values.covariance)) {
+                          read.identified->covariance != errors.values.covariance ||
+                          read.identified->unidentifiable != errors.values.unidentifiable)) {
     throw std::logic_error(path + ": the covariance differs when read back");
   }
 }

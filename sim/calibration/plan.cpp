@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/error_effects.h"
 #include "sim/calibration/information.h"
+#include "sim/calibration/measurable.h"
 #include "sim/calibration/plan_candidates.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
@@ -25,7 +27,8 @@ using plant::ErrorName;
 constexpr double kLength = 10e-6, kAngle = 20e-6;                  // m, rad; component errors
 constexpr double kLocationLength = 20e-6, kLocationAngle = 50e-6;  // m, rad
 constexpr int kDegree = 3;
-constexpr double kCorner = 0.05;  // of the travel, between its ends and the tips that count
+constexpr double kSeen = 0.005e-6;  // m; smaller uncertainties print as 0
+constexpr double kCorner = 0.05;    // of the travel, between its ends and the tips that count
 
 bool is_endless(const model::MachineSettings& machine, int j) {
   const double travel = machine.nc.upper[j] - machine.nc.lower[j];
@@ -111,6 +114,31 @@ std::vector<MatrixXd> tips_of(const model::MachineSettings& machine, const PlanS
   return out;
 }
 
+// Errors of whose variance the set-ups can tell less than half.
+std::vector<std::string> untold_errors(const Unknowns& unknowns, const MatrixXd& known,
+                                       const MatrixXd& beyond) {
+  constexpr double kShare = 0.5;
+  const Eigen::VectorXd all =
+      known.llt().solve(MatrixXd::Identity(known.rows(), known.cols())).diagonal();
+  const Eigen::VectorXd rest = beyond.cwiseAbs2().rowwise().sum();
+  std::vector<std::string> out;
+  for (int u = 0; u < all.size(); ++u) {
+    const std::string name = unknowns.name(u, {});
+    const bool is_new = std::find(out.begin(), out.end(), name) == out.end();
+    if (rest[u] > kShare * all[u] && is_new) out.push_back(name);
+  }
+  return out;
+}
+
+double worst_beyond(const std::vector<MatrixXd>& tips, const MatrixXd& beyond) {
+  double most = 0.0;
+  if (beyond.cols() == 0) return most;
+  for (const MatrixXd& K : tips) {
+    most = std::max(most, (K * beyond).rowwise().norm().maxCoeff());
+  }
+  return most;
+}
+
 double worst_of(const std::vector<double>& variances) {
   return std::sqrt(*std::max_element(variances.begin(), variances.end()));
 }
@@ -169,7 +197,12 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
     }
   }
   parts.advance();
-  const DesignProblem problem(std::move(candidates), known, tips_of(machine, settings, effects));
+  std::vector<MatrixXd> tips = tips_of(machine, settings, effects);
+  const Measurable parted = measurable(candidates, known, settings.time);
+  out.beyond = worst_beyond(tips, parted.beyond);
+  out.untold = untold_errors(unknowns, known, parted.beyond);
+  for (MatrixXd& K : tips) K = K * parted.projector;
+  const DesignProblem problem(std::move(candidates), known, std::move(tips));
   const Design relaxed = problem.relaxed(settings.time);
   parts.advance();
   const Design whole = problem.whole(relaxed, settings.time);
@@ -204,6 +237,12 @@ std::string report(const Plan& plan, const PlanSettings& settings) {
       "  bound of all plans of these set-ups        {:8.2f} um, efficiency {:.1f} %\n",
       2.0 * plan.before / um, 2.0 * plan.usual / um, 2.0 * plan.after / um, 2.0 * plan.bound / um,
       100.0 * plan.efficiency);
+  if (plan.beyond > kSeen) {
+    out += fmt::format(
+        "  errors that none of these set-ups can tell     {:8.2f} um, not in the others{}\n",
+        2.0 * plan.beyond / um,
+        plan.untold.empty() ? "" : fmt::format(": {}", fmt::join(plan.untold, ", ")));
+  }
   if (plan.after > 0.98 * plan.usual) out += "no gain over the usual set-ups\n";
   return out;
 }
@@ -231,6 +270,8 @@ std::string report_json(const Plan& plan, const PlanSettings& settings) {
       .number("U_plan_um", 2.0 * plan.after / um)
       .number("U_bound_um", 2.0 * plan.bound / um)
       .number("efficiency", plan.efficiency)
+      .number("U_beyond_um", 2.0 * plan.beyond / um)
+      .raw("untold", system::json_texts(plan.untold))
       .line();
 }
 

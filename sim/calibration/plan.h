@@ -30,6 +30,7 @@ struct PlannedSetUp {
   bool through_the_middle = false;  // as ISO 230 places it
 };
 
+/// Uncertainties are those of the errors that the set-ups can tell (measurable.h).
 struct Plan {
   std::vector<PlannedSetUp> set_ups;  // all candidates
   double before = 0.0;                // m, worst standard uncertainty of the tip with what is known
@@ -37,6 +38,8 @@ struct Plan {
   double usual = 0.0;       // m, with lines through the middle of the travel, in the same time
   double bound = 0.0;       // m, that no plan of these candidates goes below
   double efficiency = 1.0;  // of variances: bound^2 / after^2
+  double beyond = 0.0;      // m, worst standard uncertainty of the tip that none of them lowers
+  std::vector<std::string> untold;  // errors of which this is most
 };
 
 /// @param taken  readings that are there already; none: nullptr

@@ -21,6 +21,9 @@ std::string report_json(const Calibration& calibration,
 /// out.
 std::string function_table(const Calibration& calibration);
 
+/// "0.52 um", "1.3 urad": a value (m, rad) of the readings of a group.
+std::string in_unit(double value, const readings::Group& group);
+
 /// Sentences on readings that contradict each other or stand out, with file and line.
 std::vector<std::string> warnings(const Calibration& calibration);
 

@@ -69,6 +69,7 @@ class Sentences {
     if (!without_effect_.empty()) {
       out_.push_back(fmt::format("no reading depends on {}", list(without_effect_)));
     }
+    add_unmoved();
     return std::move(out_);
   }
 
@@ -118,6 +119,18 @@ class Sentences {
     if (!whole.empty()) out_.push_back(fmt::format("hardly determined: {}; {}", list(whole), kWhy));
     if (!part.empty()) {
       out_.push_back(fmt::format("hardly determined in places: {}; {} there", list(part), kWhy));
+    }
+  }
+
+  // One sentence for each axis.
+  void add_unmoved() {
+    std::map<Axis, std::vector<std::string>> errors;
+    for (const plant::ErrorName& name : calibration_.unmoved) {
+      errors[name.axis].push_back(plant::to_string(name));
+    }
+    for (const auto& [axis, names] : errors) {
+      out_.push_back(
+          fmt::format("no group moves {}: nothing is known of {}", letter(axis), list(names)));
     }
   }
 
@@ -189,6 +202,25 @@ class Sentences {
 
 std::vector<std::string> unidentifiable_sentences(const Calibration& calibration) {
   return Sentences(calibration).all();
+}
+
+std::vector<plant::ErrorName> undetermined_errors(const Calibration& calibration) {
+  const Adjustment& adjustment = calibration.adjustment;
+  const Unknowns& unknowns = adjustment.unknowns;
+  std::vector<plant::ErrorName> out;
+  const auto is_known = [&](int first, int count) {
+    return !adjustment.covariance.block(first, first, count, count).isZero(0.0);
+  };
+  for (std::size_t k = 0; k < unknowns.locations.size(); ++k) {
+    if (!is_known(unknowns.first_location() + static_cast<int>(k), 1)) {
+      out.push_back(unknowns.locations[k].name);
+    }
+  }
+  for (const SoughtFunction& function : unknowns.functions) {
+    if (!is_known(function.first, function.basis.size())) out.push_back(function.name);
+  }
+  out.insert(out.end(), calibration.unmoved.begin(), calibration.unmoved.end());
+  return out;
 }
 
 bool is_combined(const Adjustment& adjustment, const plant::ErrorName& name) {

@@ -79,8 +79,15 @@ class Way(unittest.TestCase):
     def test_tables_and_programs_take_the_result(self):
         with open(self.path("router", "part.ngc"), "w", encoding="utf-8") as file:
             file.write("G21 G90 G17 G94 F1000\nG0 X100 Y100 Z-50\nG1 X300 Y300\nM2\n")
-        self.run_in("router", "compensate", "part.ngc", "--machine", "again.toml", "--model", "identified", "-o", "out.ngc",
-                    "--work-offset", "X=0,Y=0,Z=0")
+        corrects = ("compensate", "part.ngc", "--machine", "again.toml", "--model", "identified", "-o", "out.ngc", "--work-offset", "X=0,Y=0,Z=0")
+        refused = self.run_in("router", *corrects, status=2)  # no reading determines Z
+        self.assertRegex(refused.stderr, r"^again.toml: error: the correction of Z would change by up to \S+ um over the program with an uncertainty of up to \S+ um \(k = 2\): not "
+                         "determined by the calibration; leave Z as programmed with --leave Z, or take the measurements that servomill calibrate names\n$")
+        done = self.run_in("router", *corrects, "--leave", "Z")
+        self.assertIn("assumed: Z stays as programmed (--leave)", done.stdout)
+        with open(self.path("router", "out.ngc"), encoding="utf-8") as file:
+            heights = re.findall(r"G[01] .*Z(-?[\d.]+)", file.read())
+        self.assertEqual({float(z) for z in heights}, {-50.0})
 
     def test_the_block_comes_out_better(self):
         printed = self.run_in("router", "run", "part.toml", "-o", "part.h5").stdout
@@ -194,6 +201,11 @@ class Way(unittest.TestCase):
             file.write("\n".join(turned) + "\n")
         warnings = self.run_in("wrong", "calibrate", "readings.toml", "-q").stderr
         self.assertIn('"ball bar XY 2" contradicts the other groups; with the opposite sign it would agree', warnings)
+        refused = self.run_in("wrong", "calibrate", "readings.toml", "-q", "-o", "out.toml", status=2).stderr
+        self.assertIn("readings.toml: error: readings contradict each other (warnings above): no machine is written; mend or remove them, or use "
+                      "--accept-contradictions", refused)
+        self.assertFalse(os.path.exists(self.path("wrong", "out.toml")))
+        self.run_in("wrong", "calibrate", "readings.toml", "-q", "-o", "out.toml", "--accept-contradictions")
         place, value = lines[10].rsplit(",", 1)
         lines[10] = f"{place},{float(value) + 100}"
         with open(self.path("wrong", "ball_bar_XY2.csv"), "w", encoding="utf-8") as file:

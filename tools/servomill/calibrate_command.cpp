@@ -34,6 +34,8 @@ void add_calibrate_options(Options& options) {
                 "error model of the machine file, for --make-up");
   options.add()("seed", po::value<int>()->default_value(1)->value_name("N"),
                 "seed of the noise of --make-up");
+  options.add()("accept-contradictions",
+                "writes the machine although readings contradict each other");
   options.add()("force,f", "replaces outputs that exist");
   options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only faults and warnings");
@@ -59,6 +61,14 @@ void print_suggestions(const std::vector<std::string>& suggestions) {
   if (suggestions.empty()) return;
   fmt::print("\nThese measurements would determine them:\n");
   for (const std::string& suggestion : suggestions) fmt::print("  {}\n", suggestion);
+}
+
+// A machine file that tables and programs would follow.
+void refuse_contradictions(const calibration::Calibration& result, const Options& options) {
+  if (result.suspects.empty() || options.has("accept-contradictions")) return;
+  throw InputError({result.readings.path},
+                   "readings contradict each other (warnings above): no machine is written; mend "
+                   "or remove them, or use --accept-contradictions");
 }
 
 }  // namespace
@@ -114,6 +124,7 @@ int calibrate_command(const Arguments& arguments) {
     if (prints) fmt::print("written to {}\n", table);
   }
   if (!out.empty()) {
+    refuse_contradictions(result, options);
     calibration::write_identified_errors(out, result, machine_file,
                                          options.get<std::string>("model"), options.has("force"));
     if (prints) fmt::print("written to {}\n", out);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/calibration/identified_errors.h"
 #include "sim/calibration/make_up.h"
 #include "sim/calibration/report.h"
 #include "tests/sim/calibration/random_machine.h"
@@ -185,6 +186,57 @@ TEST(Findings, SaysWhereLostMotionStaysUnknown) {
   all.groups = {
       line(readings::Kind::positioning, Axis::X, Joints::Zero(), Eigen::Vector3d::Zero(), 0.5e-6)};
   EXPECT_EQ(calibrated(all).one_way, std::vector<Axis>{Axis::X});
+}
+
+TEST(Findings, NamesTheErrorsOfAnAxisThatNoGroupMoves) {
+  readings::Readings all = shop_readings();
+  std::erase_if(all.groups, [](const readings::Group& group) {
+    return group.axis == Axis::Z || group.kind == readings::Kind::squareness;
+  });
+  for (readings::Group& group : all.groups) {
+    for (readings::Reading& row : group.rows) row.Q[2] = 0.5;
+  }
+  make_up(all, gantry(), {}, 31);
+  const Calibration found = calibrated(all);
+  const auto sentences = unidentifiable_sentences(found);
+  EXPECT_EQ(sentences.back(),
+            "no group moves Z: nothing is known of EXZ, EYZ, EZZ, EAZ, EBZ and ECZ");
+  const auto keys = identified_errors(found, "found").values.unidentifiable;
+  EXPECT_EQ(std::count(keys.begin(), keys.end(), "errors.found.EZZ"), 1);
+  EXPECT_EQ(std::count(keys.begin(), keys.end(), "errors.found.EXX"), 0);
+}
+
+bool warns(const Calibration& found, const std::string& text) {
+  const auto all = warnings(found);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const std::string& one) { return one.find(text) != std::string::npos; });
+}
+
+// Readings in mm in a column of um: their scatter is a thousandth of what is stated.
+TEST(Findings, NamesResidualsThatAreFarTooSmall) {
+  readings::Readings all;
+  all.groups.push_back(line(readings::Kind::positioning, Axis::X, Joints::Zero(),
+                            Eigen::Vector3d::Zero(), 0.3e-6, 41));
+  make_up(all, gantry(), {}, 32);
+  CalibrationSettings settings;
+  settings.form_linear.degree = 1;
+  constexpr const char* kSmall =
+      "of what its uncertainty of 0.3 um implies: readings in a larger unit than stated (mm for "
+      "um), copied rows, or an uncertainty that is stated too large";
+  EXPECT_FALSE(warns(calibrated(all, settings), kSmall));
+  for (readings::Reading& row : all.groups[0].rows) row.deviation /= 1000.0;
+  EXPECT_TRUE(warns(calibrated(all, settings), kSmall));
+}
+
+TEST(Findings, NamesACopiedRow) {
+  readings::Readings all = shop_readings();
+  make_up(all, gantry(), {}, 33);
+  EXPECT_FALSE(warns(calibrated(all), "in every number"));
+  readings::Reading copy = all.groups[2].rows[4];
+  copy.line = 20;
+  all.groups[2].rows.push_back(copy);
+  EXPECT_TRUE(warns(calibrated(all),
+                    ":20: equals line 6 in every number; it counts: remove what was copied"));
 }
 
 }  // namespace

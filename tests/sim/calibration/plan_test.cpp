@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "plant/geometry/volumetric.h"
+#include "plant/kinematics/structure.h"
 #include "sim/calibration/make_up.h"
+#include "sim/calibration/measurable.h"
 #include "sim/calibration/plan_candidates.h"
 #include "tests/number_of.h"
 #include "tests/sim/calibration/shop.h"
@@ -116,6 +118,53 @@ TEST(Plan, RefusesMachinesWithoutTravelAndInstrumentsWithoutUse) {
   machine.nc.upper.setZero();
   EXPECT_EQ(fault_messages([&] { plan_calibration(machine, a_day(), nullptr); }),
             "has no travel_mm in the machine file; a plan needs it\n");
+}
+
+// Two unknowns: one is determined, of the other less than is known already.
+TEST(Measurable, PartsWhatSetUpsCannotTell) {
+  Eigen::MatrixXd known = Eigen::Vector2d(4.0, 1.0).asDiagonal();
+  Eigen::MatrixXd measured = Eigen::Vector2d(40.0, 0.05).asDiagonal();
+  const Measurable parted = measurable({{measured, 1.0}}, known, 10.0);  // ten times: 400, 0.5
+  ASSERT_EQ(parted.beyond.cols(), 1);
+  EXPECT_NEAR(parted.beyond(0, 0), 0.0, 1e-12);
+  EXPECT_NEAR(std::abs(parted.beyond(1, 0)), 1.0, 1e-12);  // its standard deviation
+  EXPECT_TRUE(parted.projector.isApprox(Eigen::Matrix2d(Eigen::Vector2d(1.0, 0.0).asDiagonal())));
+  EXPECT_EQ(measurable({{measured, 1.0}}, known, 30.0).beyond.cols(), 0);  // 1.5
+}
+
+// The variances of both parts add up to that of all, whatever has been taken.
+TEST(Measurable, PartsAreIndependent) {
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(5, 5), B = Eigen::MatrixXd::Random(3, 5);
+  const Eigen::MatrixXd known = A * A.transpose() + Eigen::MatrixXd::Identity(5, 5);
+  const Eigen::MatrixXd measured = 1e3 * B.transpose() * B;  // of rank 3
+  const Measurable parted = measurable({{measured, 1.0}}, known, 1.0);
+  ASSERT_EQ(parted.beyond.cols(), 2);
+  const Eigen::RowVectorXd k = Eigen::RowVectorXd::Random(5);
+  const auto variance = [&](const Eigen::RowVectorXd& row) {
+    return (row * (known + 0.3 * measured).inverse() * row.transpose())(0);
+  };
+  const double beyond = (k * parted.beyond).squaredNorm();
+  EXPECT_NEAR(variance(k * parted.projector) + beyond, variance(k), 1e-9 * variance(k));
+}
+
+// A ball bar tells nothing of the table's C beside what no linear axis shares.
+TEST(Plan, SaysWhatNoSetUpCanTell) {
+  model::MachineSettings machine;
+  machine.chain = plant::make_chain(plant::parse_structure("[w C A b X Y Z t]"));
+  machine.nc.lower << -0.3, -0.3, -0.4, -1.0, 0.0;
+  machine.nc.upper << 0.3, 0.3, 0.0, 1.0, 0.0;
+  PlanSettings settings = a_day();
+  settings.instruments = {PlanInstrument::ballbar};
+  settings.time = 3600.0;
+  const Plan day = plan_calibration(machine, settings, nullptr);
+  EXPECT_GT(day.beyond, day.after);
+  EXPECT_NE(std::find(day.untold.begin(), day.untold.end(), "EAC"), day.untold.end());
+  EXPECT_EQ(std::find(day.untold.begin(), day.untold.end(), "EC0Y"), day.untold.end());
+  EXPECT_LT(day.after, 0.9 * day.before);  // of what it tells
+  EXPECT_NE(report(day, settings).find("errors that none of these set-ups can tell"),
+            std::string::npos);
+  // levels see no turn about the vertical
+  EXPECT_EQ(plan_of_a_day().untold, std::vector<std::string>{"ECZ"});
 }
 
 TEST(PlanCandidates, StayWithinTheTravel) {
