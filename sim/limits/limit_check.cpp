@@ -7,16 +7,19 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/units.h"
 #include "sim/limits/mean_derivative.h"
 #include "sim/limits/path_check.h"
+#include "sim/system/counted.h"
 
 namespace servomill::sim::limits {
 namespace {
 
-constexpr double kFloorShare = 0.05;  // of a limit, that the resolution may take
-constexpr double kLongest = 0.1;      // s, a window that is chosen
-constexpr double kGap = 1.5;          // sampling intervals
-constexpr double kRounding = 1e-3;    // of a limit: digits of logs
+constexpr double kFloorShare = 0.05;      // of a limit, that the resolution may take
+constexpr double kLongest = 0.1;          // s, a window that is chosen
+constexpr double kGap = 1.5;              // sampling intervals
+constexpr double kRounding = 1e-3;        // of a limit: digits of logs
+constexpr double kIntervalDigits = 1e-9;  // of a window: rounding of the sampling interval
 constexpr std::size_t kAtOnce = 1U << 14;
 
 double median_interval(std::span<const double> t) {
@@ -75,7 +78,7 @@ class LimitWalk {
   LimitResult check(double quantum, std::optional<double> window) {
     step_ = window ? std::max<std::size_t>(
                          1, static_cast<std::size_t>(std::lround(*window / nodes() / period_)))
-                   : shortest_step(quantum);
+                   : shortest_step(quantum, longest_step());
     out_.window = static_cast<double>(step_) * nodes() * period_;
     ExcessRuns runs(out_.limit, kGap * period_);
     const std::size_t reach = static_cast<std::size_t>(derivative_) * step_;
@@ -98,23 +101,30 @@ class LimitWalk {
            period_;
   }
 
+  // The longest window that is chosen, and that fits into the log.
+  std::size_t longest_step() const {
+    const double samples = std::min(kLongest / period_ * (1.0 + kIntervalDigits),
+                                    static_cast<double>(signal_.t.size() - 1));
+    return std::max<std::size_t>(1, static_cast<std::size_t>(samples / nodes()));
+  }
+
   // The floor of equal intervals falls with their power.
-  std::size_t shortest_step(double quantum) const {
+  std::size_t shortest_step(double quantum, std::size_t longest) const {
     if (derivative_ == 0) return 1;
     std::size_t step = 1;
-    const double most = kLongest / period_ / derivative_;
     constexpr std::array<double, kMaxOrder + 1> kSums = {0.5, 1.0, 2.0, 4.0};  // of (2)
     const double sum = kSums[static_cast<std::size_t>(derivative_)] * quantum * signal_.unit;
     const auto floor = [&](std::size_t n) {
       return sum / std::pow(static_cast<double>(n) * period_, derivative_);
     };
-    while (floor(step) > kFloorShare * out_.limit && static_cast<double>(step) < most) ++step;
+    while (floor(step) > kFloorShare * out_.limit && step < longest) ++step;
     return step;
   }
 
   void take(const MeanDerivative& mean, std::size_t sample, ExcessRuns& runs) {
     const double value = std::abs(mean.value) * signal_.unit, floor = mean.floor * signal_.unit;
     const int line = signal_.line.empty() ? 0 : signal_.line[sample];
+    ++out_.windows;
     out_.floor = std::max(out_.floor, floor);
     if (value > out_.largest) {
       out_.largest = value;
@@ -143,10 +153,23 @@ PathReport path_report(const ProgramRequest& request, const LoggedPath& log) {
 
 }  // namespace
 
-bool LimitReport::is_within() const {
-  const bool keeps_limits = std::all_of(
-      results.begin(), results.end(), [](const LimitResult& one) { return one.excesses.empty(); });
-  return keeps_limits && (!path || path->lines_beyond() == 0);
+bool LimitReport::is_exceeded() const {
+  const bool exceeds = std::any_of(results.begin(), results.end(),
+                                   [](const LimitResult& one) { return !one.excesses.empty(); });
+  return exceeds || (path && path->lines_beyond() > 0);
+}
+
+std::optional<bool> LimitReport::is_within() const {
+  if (is_exceeded()) return false;
+  const bool is_known = std::all_of(results.begin(), results.end(), [](const LimitResult& one) {
+    return one.is_evaluated() && one.is_resolved;
+  });
+  return is_known ? std::optional(true) : std::nullopt;
+}
+
+bool LimitReport::lacks_evaluation() const {
+  return std::any_of(results.begin(), results.end(),
+                     [](const LimitResult& one) { return !one.is_evaluated(); });
 }
 
 LimitReport check_limits(const recordings::Recording& recording,
@@ -183,7 +206,14 @@ LimitReport check_limits(const recordings::Recording& recording,
                                         out.layout.letter_of(signal.joint)));
         continue;
       }
-      out.results.push_back(LimitWalk(signal, order, limit, period).check(quantum, request.window));
+      const LimitResult& one = out.results.emplace_back(
+          LimitWalk(signal, order, limit, period).check(quantum, request.window));
+      if (one.is_evaluated()) continue;
+      out.notes.push_back(
+          fmt::format("{} of {} is not evaluated: no window of {:.4g} ms without missing samples "
+                      "fits into its {}",
+                      name, out.layout.letter_of(signal.joint), one.window / ms,
+                      system::counted(signal.t.size(), "sample")));
     }
   }
   if (request.program) {

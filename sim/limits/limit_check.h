@@ -32,6 +32,7 @@ struct LimitResult {
   std::string channel;           // from which it is known
   double limit = 0.0;            // SI
   double window = 0.0;           // s, over which means are taken
+  std::size_t windows = 0;       // over which means were taken; 0: not evaluated
   double floor = 0.0;            // SI, by which the resolution of the log may change them, largest
   double largest = 0.0;          // SI, largest mean
   double time = 0.0;             // s, where it is
@@ -40,6 +41,7 @@ struct LimitResult {
   double time_beyond = 0.0;      // s, all of them together
   bool is_resolved = true;       // the floor is below the limit
   double factor() const { return largest / limit; }
+  bool is_evaluated() const { return windows > 0; }
 };
 
 struct LimitReport {
@@ -51,7 +53,10 @@ struct LimitReport {
   std::vector<LimitResult> results;
   std::vector<std::string> notes;
   std::optional<PathReport> path = {};  // if there is a program to compare with
-  bool is_within() const;               ///< no limit and no tolerance is certainly exceeded
+  bool is_exceeded() const;             ///< a limit or a tolerance, with certainty
+  /// None where nothing is exceeded but a limit is not evaluated or not resolved.
+  std::optional<bool> is_within() const;
+  bool lacks_evaluation() const;  ///< of a limit: no window fits into the log
 };
 
 struct LimitRequest {

@@ -32,12 +32,28 @@ PrintedUnit unit_of(const LimitResult& one) {
 std::string line_text(int line) { return line > 0 ? std::to_string(line) : ""; }
 
 std::string beyond_text(const LimitResult& one) {
+  if (!one.is_evaluated()) return "not evaluated";
   if (!one.is_resolved) return "not resolved";
   if (!one.excesses.empty()) {
     return fmt::format("{}, {:.4g} s", system::counted(one.excesses.size(), "time"),
                        one.time_beyond);
   }
   return one.largest > 1.001 * one.limit ? "not certain" : "never";
+}
+
+// A number of an evaluation; "-" where there was none.
+std::string evaluated(const LimitResult& one, std::string text) {
+  return one.is_evaluated() ? std::move(text) : "-";
+}
+
+std::string evaluated_json(const LimitResult& one, double value) {
+  return one.is_evaluated() ? system::json_number(value) : "null";
+}
+
+std::string within_json(const LimitReport& report) {
+  const std::optional<bool> is_within = report.is_within();
+  if (!is_within) return "null";
+  return *is_within ? "true" : "false";
 }
 
 }  // namespace
@@ -55,11 +71,11 @@ std::string to_text(const LimitReport& report, std::size_t top) {
     rows.push_back({std::string(1, report.layout.letter_of(one.joint)),
                     std::string(kLimited[static_cast<std::size_t>(one.order)]),
                     fmt::format("{:.6g}", one.limit / unit.factor),
-                    fmt::format("{:.6g}", one.largest / unit.factor), unit.name,
-                    fmt::format("{:.3f}", one.factor()), fmt::format("{:.6g}", one.time),
-                    line_text(one.line), beyond_text(one),
-                    fmt::format("{:.4g} ms", one.window / ms),
-                    fmt::format("+-{:.2g} %", 100.0 * one.floor / one.limit)});
+                    evaluated(one, fmt::format("{:.6g}", one.largest / unit.factor)), unit.name,
+                    evaluated(one, fmt::format("{:.3f}", one.factor())),
+                    evaluated(one, fmt::format("{:.6g}", one.time)), line_text(one.line),
+                    beyond_text(one), fmt::format("{:.4g} ms", one.window / ms),
+                    evaluated(one, fmt::format("+-{:.2g} %", 100.0 * one.floor / one.limit))});
   }
   out += '\n' + system::text_table(std::move(rows), 1, {2, 3, 5, 6, 7, 9, 10});
   for (const LimitResult& one : report.results) {
@@ -101,15 +117,16 @@ std::string to_json(const LimitReport& report, std::size_t top) {
                           .text("channel", one.channel)
                           .text("unit", unit.name)
                           .number("limit", one.limit / unit.factor)
-                          .number("largest", one.largest / unit.factor)
-                          .number("factor", one.factor())
-                          .number("time_s", one.time)
+                          .raw("largest", evaluated_json(one, one.largest / unit.factor))
+                          .raw("factor", evaluated_json(one, one.factor()))
+                          .raw("time_s", evaluated_json(one, one.time))
                           .raw("line", one.line > 0 ? std::to_string(one.line) : "null")
                           .integer("excesses", one.excesses.size())
-                          .number("time_beyond_s", one.time_beyond)
+                          .raw("time_beyond_s", evaluated_json(one, one.time_beyond))
                           .number("window_s", one.window)
-                          .number("resolution", one.floor / unit.factor)
-                          .boolean("resolved", one.is_resolved)
+                          .raw("resolution", evaluated_json(one, one.floor / unit.factor))
+                          .boolean("evaluated", one.is_evaluated())
+                          .boolean("resolved", one.is_evaluated() && one.is_resolved)
                           .raw("largest_excesses", system::json_list(excesses))
                           .line());
   }
@@ -119,7 +136,7 @@ std::string to_json(const LimitReport& report, std::size_t top) {
       .integer("samples", report.samples)
       .number("duration_s", report.duration)
       .number("period_s", report.period)
-      .boolean("within_limits", report.is_within())
+      .raw("within_limits", within_json(report))
       .raw("results", system::json_list(results))
       .raw("notes", system::json_list(notes))
       .raw("path", report.path ? to_json(*report.path, top) : "null")

@@ -11,6 +11,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
+#include "sim/recordings/delimited_text.h"
 #include "sim/recordings/uniform.h"
 
 namespace servomill::sim::limits {
@@ -88,11 +89,22 @@ class LogReader {
     return out;
   }
 
+  // A channel that may be a position: times that no base was made of are none.
+  std::string example_name() const {
+    for (const Channel& channel : recording_.channels) {
+      const std::string name = small(channel.name);
+      const bool is_time = name.starts_with("time") || name.starts_with("zeit") || name == "t";
+      if (!is_time && !recordings::seconds_of(channel.unit)) return channel.name;
+    }
+    return "NAME";
+  }
+
   const Channel* channel_by_names(const std::vector<std::string>& patterns) const {
     for (const std::string& pattern : patterns) {
       const Channel* found = nullptr;
       for (const Channel& channel : recording_.channels) {
-        if (!fits(small(channel.name), pattern) || !is_of_case(channel)) continue;
+        const std::string name(recordings::name_without_unit(channel.name));
+        if (!fits(small(name), pattern) || !is_of_case(channel)) continue;
         if (found != nullptr) {
           throw InputError({recording_.file},
                            fmt::format("'{}' and '{}' may both be meant; choose with --case or "
@@ -124,7 +136,7 @@ class LogReader {
       throw InputError({recording_.file},
                        fmt::format("no channel is known as an axis by its name ({}); name them, "
                                    "such as --channel \"X={} [mm]\"",
-                                   fmt::join(all_names(), ", "), recording_.channels.front().name));
+                                   fmt::join(all_names(), ", "), example_name()));
     }
     if (!missing.empty()) {
       out_.notes.push_back(fmt::format("no channel is known as {}: not checked", missing));

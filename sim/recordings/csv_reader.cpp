@@ -162,7 +162,8 @@ class Table {
   void take_names(const std::vector<Field>& fields) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
       name_columns_.push_back(fields[i].column);
-      if (!fields[i].text.empty()) headings_[i] = parse_heading(fields[i].text);
+      if (!fields[i].text.empty())
+        headings_[i] = heading_with_suffix(parse_heading(fields[i].text));
     }
   }
 

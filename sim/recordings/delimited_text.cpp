@@ -49,6 +49,35 @@ bool is_word(std::string_view text, std::string_view word) {
          });
 }
 
+struct NamedUnit {
+  std::string_view suffix, symbol;
+};
+
+const NamedUnit* suffix_of(std::string_view name) {
+  static constexpr std::array<NamedUnit, 17> kSuffixes = {{{"_mm", "mm"},
+                                                           {"_um", "um"},
+                                                           {"_nm", "nm"},
+                                                           {"_inch", "inch"},
+                                                           {"_deg", "deg"},
+                                                           {"_rad", "rad"},
+                                                           {"_urad", "urad"},
+                                                           {"_m_per_s", "m/s"},
+                                                           {"_mm_per_s", "mm/s"},
+                                                           {"_m_per_min", "m/min"},
+                                                           {"_mm_per_min", "mm/min"},
+                                                           {"_deg_per_s", "deg/s"},
+                                                           {"_rad_per_s", "rad/s"},
+                                                           {"_m_per_s2", "m/s^2"},
+                                                           {"_mm_per_s2", "mm/s^2"},
+                                                           {"_deg_per_s2", "deg/s^2"},
+                                                           {"_rad_per_s2", "rad/s^2"}}};
+  const auto* const found =
+      std::find_if(kSuffixes.begin(), kSuffixes.end(), [&](const NamedUnit& one) {
+        return name.size() > one.suffix.size() && name.ends_with(one.suffix);
+      });
+  return found == kSuffixes.end() ? nullptr : found;
+}
+
 }  // namespace
 
 std::vector<TextLine> text_lines(std::string_view text) {
@@ -135,6 +164,22 @@ Heading parse_heading(std::string_view text) {
             std::string(trimmed(std::string_view(all).substr(at + 1, all.size() - at - 2)))};
   }
   return {all, ""};
+}
+
+Heading heading_with_suffix(Heading heading) {
+  if (!heading.unit.empty()) return heading;
+  const auto end = heading.name.rfind('_');
+  if (end != std::string::npos && is_time_name(heading.name.substr(0, end)) &&
+      seconds_of(heading.name.substr(end + 1))) {
+    return {heading.name.substr(0, end), heading.name.substr(end + 1)};
+  }
+  if (const NamedUnit* unit = suffix_of(heading.name)) heading.unit = unit->symbol;
+  return heading;
+}
+
+std::string_view name_without_unit(std::string_view name) {
+  if (const NamedUnit* unit = suffix_of(name)) name.remove_suffix(unit->suffix.size());
+  return name;
 }
 
 bool is_time_name(std::string_view name) {

@@ -40,6 +40,14 @@ struct Heading {
 };
 Heading parse_heading(std::string_view text);
 
+/// The heading of a name that ends with its unit, as keys do: "time_s", "X_mm", "v_mm_per_s". Times
+/// lose the ending, other channels keep their name. Units of one letter count for times alone:
+/// "joint_A" may be an axis.
+Heading heading_with_suffix(Heading heading);
+
+/// The name without such an ending.
+std::string_view name_without_unit(std::string_view name);
+
 /// True for the names of a column or variable that holds the time: "time", "t", "Zeit", ...
 bool is_time_name(std::string_view name);
 

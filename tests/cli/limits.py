@@ -95,6 +95,17 @@ class Limits(in_folder.InFolder):
         self.assertIn("channel 'X' has no unit: taken for a position in mm", noted)
         self.assertIn("is no unit of position, velocity or acceleration of X", self.limits(self.csv(trapezoid(), "X [A]"), status=2).stderr)
 
+    def test_names_may_end_with_their_unit(self):
+        log = self.csv(trapezoid(), "X_mm").replace("time [s]", "time_s")
+        done = json.loads(self.limits(log, "--json").stdout)
+        self.assertEqual(done["notes"][0], "X is channel 'X_mm'")
+        self.assertEqual([one["axis"] for one in done["results"]], ["X", "X"])
+
+    def test_a_time_is_not_proposed_as_an_axis(self):
+        log = self.csv(trapezoid(), "slide").replace("time [s]", "time of day")
+        self.assertEqual(self.limits(log, status=2).stderr, "log.csv: error: no channel is known as an axis by its name (time of day, slide); "
+                         'name them, such as --channel "X=slide [mm]"\n')
+
     def test_a_velocity_is_derived_once_less(self):
         speed = 0.05 * np.sin(1.5 * A / 0.05 * T * np.arange(1000))
         one = self.results(self.csv(speed, "X [mm/s]"), status=1)["X", "acceleration"]
@@ -127,6 +138,31 @@ class Limits(in_folder.InFolder):
         self.assertFalse(one["resolved"])
         self.assertEqual(one["excesses"], 0)
         self.assertIn("not resolved", self.limits(self.csv(trapezoid(), decimals=3), "--window", "2 ms").stdout)
+
+    # a jerk needs four samples
+    def test_a_limit_that_is_not_evaluated_is_not_kept(self):
+        rows = self.csv(np.zeros(3), "Y [mm]")
+        done = self.limits(rows, status=1).stdout
+        self.assertIn("  note: jerk of Y is not evaluated: no window of 3 ms without missing samples fits into its 3 samples\n", done)
+        self.assertRegex(done, r"\n +jerk +30000 +- +mm/s\^3 +- +- +not evaluated +3 ms +-\n")
+        report = json.loads(self.limits(rows, "--json", status=1).stdout)
+        self.assertIsNone(report["within_limits"])
+        jerk = report["results"][-1]
+        self.assertEqual([jerk[key] for key in ("largest", "factor", "time_s", "time_beyond_s", "resolution")], [None] * 5)
+        self.assertEqual((jerk["evaluated"], jerk["resolved"]), (False, False))
+        self.limits(self.csv(np.zeros(4), "Y [mm]"))
+
+    def test_a_given_window_longer_than_the_log_is_not_evaluated(self):
+        done = self.limits(self.csv(np.zeros(50)), "--window", "60 ms", status=1).stdout
+        self.assertIn("velocity of X is not evaluated: no window of 60 ms without missing samples fits into its 50 samples", done)
+
+    # 0.1 mm: 4 q / h^3 is above 5 % of 30 m/s^3 up to h = 64 ms, and the rule allows 100 ms for three of them
+    def test_a_chosen_window_is_at_most_100_ms_and_fits_into_the_log(self):
+        coarse = np.round(trapezoid() / 1e-4) * 1e-4
+        for log, window in ((coarse, 0.099), (coarse[100:151], 0.048)):
+            jerk = self.results(self.csv(log, "Y [mm]"))["Y", "jerk"]
+            self.assertAlmostEqual(jerk["window_s"], window, delta=1e-9)
+            self.assertTrue(jerk["evaluated"])
 
     def test_missing_samples_are_no_jump(self):
         rows = self.csv(trapezoid()).splitlines(keepends=True)

@@ -34,7 +34,7 @@ void declare_limits_options(Options& options) {
   options.add()("time-unit", text("us"), "unit of times without a unit in the log; default: s");
   options.add()("window", text("\"5 ms\""),
                 "window of the means, bare numbers in ms; default: the shortest in which the "
-                "resolution of the log takes 5 % of the limit, 100 ms at most");
+                "resolution of the log takes 5 % of the limit, at most 100 ms or the log");
   options.add()(
       "resolution", text("\"1 um\""),
       "resolution of samples, bare numbers in um (of rotary axes in urad, of velocities per "
@@ -83,7 +83,8 @@ int limits_command(const Arguments& arguments) {
       "them by no\nmore than is printed; an excess counts if it is larger than that.\n\n"
       "With --program the motion is followed along the programmed path: how far it leaves it, and "
       "how\nnear it comes to the corners, line by line, against the tolerance.\n\n"
-      "Exit status 1: a limit or a tolerance is exceeded.",
+      "Exit status 1: a limit or a tolerance is exceeded, or a limit is not evaluated because no\n"
+      "window fits into the log.",
       "LOG");
   declare_limits_options(options);
   if (!options.parse(arguments)) return kDone;
@@ -116,7 +117,7 @@ int limits_command(const Arguments& arguments) {
   } else if (!options.has("quiet")) {
     fmt::print("{}", sim::limits::to_text(report, shown));
   }
-  return report.is_within() ? kDone : kMachineStopped;
+  return report.is_exceeded() || report.lacks_evaluation() ? kMachineStopped : kDone;
 }
 
 }  // namespace servomill::tools

@@ -39,6 +39,15 @@ TEST(CsvReader, SignsAreRecognised) {
   }
 }
 
+TEST(CsvReader, NamesMayEndWithTheirUnit) {
+  const Recording recording = parse_csv("time_ms,X_mm\n0,1.5\n1,2.5\n", "a.csv");
+  ASSERT_EQ(recording.channels.size(), 1u);
+  EXPECT_EQ(recording.channels[0].name, "X_mm");
+  EXPECT_EQ(recording.channels[0].unit, "mm");
+  EXPECT_TRUE(recording.bases[0].unit_known);
+  EXPECT_EQ(recording.bases[0].values, (std::vector<double>{0.0, 0.001}));
+}
+
 TEST(CsvReader, BlanksSeparateAndACommentMayBeTheHeading) {
   const Recording recording = parse_csv("# made by numpy\n# time x\n0.0 1e-3\n0.5 2e-3\n", "a");
   EXPECT_EQ(recording.channels.at(0).name, "x");

@@ -63,6 +63,19 @@ TEST(Headings, NameAndUnit) {
   EXPECT_EQ(parse_heading("plain").unit, "");
 }
 
+TEST(Headings, NamesMayEndWithTheirUnit) {
+  EXPECT_EQ(heading_with_suffix({"time_ms", ""}).name, "time");
+  EXPECT_EQ(heading_with_suffix({"t_s", ""}).unit, "s");
+  EXPECT_EQ(heading_with_suffix({"X_mm", ""}).name, "X_mm");
+  EXPECT_EQ(heading_with_suffix({"X_mm", ""}).unit, "mm");
+  EXPECT_EQ(heading_with_suffix({"v_X_mm_per_s2", ""}).unit, "mm/s^2");
+  EXPECT_EQ(heading_with_suffix({"joint_A", ""}).unit, "");
+  EXPECT_EQ(heading_with_suffix({"_mm", ""}).unit, "");
+  EXPECT_EQ(heading_with_suffix({"X_mm", "inch"}).unit, "inch");
+  EXPECT_EQ(name_without_unit("X_mm"), "X");
+  EXPECT_EQ(name_without_unit("joint_A"), "joint_A");
+}
+
 TEST(Units, OfTimeInSeconds) {
   EXPECT_EQ(seconds_of("us"), 1e-6);
   EXPECT_EQ(seconds_of(as_utf8("\xB5s")), 1e-6);
