@@ -340,21 +340,27 @@ void Interpreter::Machine::canned_cycle(int motion_before) {
     words[n] = level * state_.unit;
     return words;
   };
+  const auto next_hole = [&](AxisWords words) {
+    if (request().has_polar()) words.head<2>() = polar_end(words.head<2>());
+    for (int k = 0; k < 3; ++k) {
+      if (k == n || !has_axis(k)) continue;
+      words[k] = axis_word(k) + (state_.is_incremental ? words[k] : 0.0);
+    }
+    return words;
+  };
+  AxisWords over = state_.position;
   double from = in_unit(state_.position[n], state_.unit);
   if (state_.cycle.level < hole.r) {
-    cycle_move(MoveKind::rapid, at_level(state_.position, hole.r));
+    const AxisWords begin = positions_below_r() ? next_hole(over) : over;
+    if (positions_below_r()) cycle_move(MoveKind::rapid, begin);
+    cycle_move(MoveKind::rapid, at_level(begin, hole.r));
     from = hole.r;
   }
   const PathMode path_mode = std::exchange(state_.path_mode, PathMode::exact_path);
   const double path_tolerance = std::exchange(state_.path_tolerance, 0.0);
   const std::vector<CycleStep> steps = cycle_steps(request().motion_code(), hole);
-  AxisWords over = state_.position;
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    if (request().has_polar()) over.head<2>() = polar_end(over.head<2>());
-    for (int k = 0; k < 3; ++k) {
-      if (k == n || !has_axis(k)) continue;
-      over[k] = axis_word(k) + (state_.is_incremental ? over[k] : 0.0);
-    }
+    over = next_hole(over);
     const double level = repeat == 0 && from > hole.r ? from : hole.clear;
     cycle_move(MoveKind::rapid, at_level(over, level));
     if (level > hole.r) cycle_move(MoveKind::rapid, at_level(over, hole.r));

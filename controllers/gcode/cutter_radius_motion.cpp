@@ -72,13 +72,30 @@ void Interpreter::Machine::start_compensation() {
   const bool is_left = chosen.code->tenths < 420;
   compensation.is_on = true;
   compensation.cutter = {std::abs(diameter) / 2.0, is_left == (diameter >= 0.0)};
-  if (diameter == 0.0) {
-    warn(chosen.column, fmt::format("{}: the tool has no diameter; nothing is compensated", name));
-  }
+  compensation.is_radius_unknown = false;
+  if (diameter == 0.0) warn_without_diameter(chosen.column, name);
   const char unused = chosen.code->tenths % 10 == 1 ? 'R' : 'L';  // taken, and left, by LinuxCNC
   if (request().has(unused)) {
     warn(request().word(unused).column, fmt::format("{} has no effect with {}", unused, name));
   }
+}
+
+// Number of the tool whose diameter counts; 0: none is in the spindle.
+int Interpreter::Machine::compensating_tool() const {
+  if (request().of(Group::g_cutter_compensation).code->tenths % 10 == 1) return 0;
+  const int number = request().has('D') ? integer('D') : 0;
+  return number == 0 ? state_.tool : number;
+}
+
+void Interpreter::Machine::warn_without_diameter(int column, const std::string& name) {
+  const int number = compensating_tool();
+  state_.compensation.is_radius_unknown = number > 0 && setup_.tools.entry_of(number) == nullptr;
+  warn(column,
+       state_.compensation.is_radius_unknown
+           ? fmt::format("{}: the diameter of tool {} is unknown; the programmed path is read, not "
+                         "that of the tool; pass a tool table with --tools",
+                         name, number)
+           : fmt::format("{}: the tool has no diameter; nothing is compensated", name));
 }
 
 // Diameter of the tool, m; negative: on the other side of the path.
@@ -98,13 +115,11 @@ double Interpreter::Machine::compensation_diameter() const {
     }
     return request()['D'] * state_.unit;
   }
-  int number = state_.tool;
-  if (request().has('D')) {
-    number = integer('D');
-    if (number < 0) fail_at('D', fmt::format("{} D{}; must be >= 0", name, number));
-    if (number == 0) number = state_.tool;
-    tool_named('D', number);
+  if (request().has('D') && integer('D') < 0) {
+    fail_at('D', fmt::format("{} D{}; must be >= 0", name, integer('D')));
   }
+  const int number = compensating_tool();
+  if (request().has('D')) tool_named('D', number);
   const ToolEntry* tool = setup_.tools.find(number);
   if (tool == nullptr && number != 0) {
     fail(chosen.column, fmt::format("{}: the diameter of tool {} is unknown; pass a tool table "

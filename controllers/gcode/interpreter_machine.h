@@ -195,6 +195,10 @@ class Interpreter::Machine {
   int integer(char letter, double tolerance = kIntegerTol) const;
   bool has_unknown_dwell() const { return is_rewritten_ && reading_.has_unknown_dwell(); }
   bool has_unknown_feed() const;
+  /// A canned cycle from below R goes to the hole at its level before it rises.
+  bool positions_below_r() const {
+    return setup_.reader != Reader::linuxcnc && reading_.positions_below_r();
+  }
 
   // ---- steps of a block, in the order of execution
   // Due if the block has the letter or a code of the group: low bits are letters, then groups.
@@ -229,6 +233,7 @@ class Interpreter::Machine {
   bool is_unknown_length(bool is_added, int number, int column);
   void note_height();
   ToolControl tool_control_of(int code) const;
+  void refuse_codes_beyond_linuxcnc() const;
   void work_system();
   void work_plane();
   void path_control();
@@ -289,6 +294,8 @@ class Interpreter::Machine {
   // cutter radius compensation
   void start_compensation();
   double compensation_diameter() const;
+  int compensating_tool() const;
+  void warn_without_diameter(int column, const std::string& name);
   void refuse_turning_tool(int column, int orientation) const;
   void stop_compensation();
   void refuse_code(Group group) const;

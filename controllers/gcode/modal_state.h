@@ -35,6 +35,7 @@ struct Compensation {
   bool is_on = false;
   bool is_first_corner = false;  // the next corner is that behind the entry
   bool is_entered = false;       // the first move was made: the tool is beside the programmed path
+  bool is_radius_unknown = false;  // no table has the tool: the programmed path is followed
   Cutter cutter;
   Eigen::Vector2d programmed = Eigen::Vector2d::Zero();  // where the programmed path is now
   std::vector<Waiting> queue;            // a motion, and what followed without moving in the plane

@@ -261,6 +261,7 @@ void Interpreter::Machine::run_flow_of_reader() {
 void Interpreter::Machine::run_block() {
   const bool has_vectors = state_.tool_control == ToolControl::tool_axis;
   resolve(block_, parameters_, state_.motion, has_vectors, file(), request_);
+  if (!setup_.takes_five_axis_codes) refuse_codes_beyond_linuxcnc();
   assign_parameters();
   const std::uint64_t asked =
       kAlways | request_.letters | std::uint64_t{request_.groups} << kLetters;

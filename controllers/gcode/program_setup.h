@@ -35,8 +35,11 @@ struct ProgramSetup {
   std::array<double, 9> work_rotation{};                  // about Z, rad
   int work_system = 1;  // in force at the start; 1 is G54. `stored` does not set it
   ToolTable tools;
-  int tool = 0;                                      // in the spindle at the start; 0: none
-  Reader reader = Reader::linuxcnc;                  // whose rules the text follows
+  int tool = 0;                      // in the spindle at the start; 0: none
+  Reader reader = Reader::linuxcnc;  // whose rules the text follows
+  /// The reader linuxcnc takes G43.4, G43.5, G53.1, G68.2 and G69, which LinuxCNC itself lacks, as
+  /// programs have them that are written here.
+  bool takes_five_axis_codes = true;
   DecimalPoint decimal_point = DecimalPoint::unset;  // not for the reader linuxcnc
   std::optional<double> feed;  // m/s, of moves before any F; not for the reader linuxcnc
   /// Work offsets of G54.1 P1 ... and G154 P1 ..., by P; m, rad.

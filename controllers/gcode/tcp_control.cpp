@@ -14,7 +14,22 @@ namespace {
 constexpr double kMinVector = 1e-6;  // length of a tool axis; below it is zero
 constexpr double kLeaning = 1e-4;    // rad of the tool axis off Z of a tilted plane
 
+constexpr bool is_of_five_axes(int tenths) {
+  return tenths == 434 || tenths == kVectorControl || tenths == 531 || tenths == 682 ||
+         tenths == 690;
+}
+
 }  // namespace
+
+void Interpreter::Machine::refuse_codes_beyond_linuxcnc() const {
+  if (setup_.reader != Reader::linuxcnc || setup_.takes_five_axis_codes) return;
+  for (const Group group : {Group::g_tool_length, Group::g_non_modal, Group::g_work_plane}) {
+    const Request::Chosen& chosen = request().of(group);
+    if (chosen.code == nullptr || !is_of_five_axes(chosen.code->tenths)) continue;
+    fail(chosen.column,
+         fmt::format("{} is not supported by linuxcnc", code_name('G', chosen.code->tenths)));
+  }
+}
 
 // Tool length compensation that the codes of the group of G43 leave in force.
 ToolControl Interpreter::Machine::tool_control_of(int code) const {

@@ -61,6 +61,14 @@ std::string message(char name, bool rotary, double value, double limit, bool abo
 
 }  // namespace
 
+std::string outside_travel(const JointLayout& layout, int joint, double low, double high,
+                           double lower, double upper) {
+  const bool above = high > upper;
+  if (!above && low >= lower) return {};
+  return message(layout.letter_of(joint), joint >= kLinearJoints, above ? high : low,
+                 above ? upper : lower, above);
+}
+
 std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
                                  const std::string& file, const TipMotions& tip) {
@@ -81,12 +89,11 @@ std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layo
     const auto& [low, high] = range;
     for (int k = 0; k < kJoints; ++k) {
       if (!layout.has(k)) continue;
-      const bool above = high[k] > upper[k];
-      if (!above && low[k] >= lower[k]) continue;
+      std::string message = outside_travel(layout, k, low[k], high[k], lower[k], upper[k]);
+      if (message.empty()) continue;
       Fault& fault = faults.emplace_back();  // in place: a temporary here confuses g++ 12
       fault.place = {file, move.line, 0};
-      fault.message = message(layout.letter_of(k), k >= kLinearJoints, above ? high[k] : low[k],
-                              above ? upper[k] : lower[k], above);
+      fault.message = std::move(message);
     }
   }
   return faults;

@@ -11,6 +11,12 @@
 
 namespace servomill::controllers {
 
+/// "X moves to 301.0000 mm, outside the travel; must be <= 300.0000"; empty within it.
+/// @param low, high     range of a joint (m, rad)
+/// @param lower, upper  of its travel
+std::string outside_travel(const JointLayout& layout, int joint, double low, double high,
+                           double lower, double upper);
+
 /// Every move that leaves the travel, one fault a joint, arcs with their extreme points.
 /// @param start         joints before the first move (5; m, rad)
 /// @param lower, upper  (5; m, rad), infinite for an endless axis; the bounds belong to the travel

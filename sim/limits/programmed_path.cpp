@@ -34,6 +34,7 @@ class OffsetKnowledge {
     const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
                                    [](const Move& move) { return is_motion(move.kind); });
     if (!moves) return;
+    refuse_unknown_radius(block);
     if (programs::is_place_of_machine(block)) return refuse_stored_place(block);
     if (block.state->is_incremental) return;
     for (const Axis axis : kAllAxes) {
@@ -42,6 +43,13 @@ class OffsetKnowledge {
   }
 
  private:
+  static void refuse_unknown_radius(const ExecutedBlock& block) {
+    const controllers::Compensation& compensation = block.state->compensation;
+    if (!compensation.is_on || !compensation.is_radius_unknown) return;
+    throw InputError({*block.file, block.line},
+                     "the diameter of the tool of G41 or G42 is not given: --tools gives it");
+  }
+
   // G53 names machine coordinates; G28 and G30 go to places that the control has stored.
   void refuse_stored_place(const ExecutedBlock& block) const {
     constexpr int kG53 = 530;  // ten times

@@ -156,9 +156,10 @@ void add(system::MemoKey& key, const plant::ErrorModel& errors) {
 
 void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
-               decimal_point, feed, additional_offsets, ignored_codes, accepts_unknown_lengths,
-               accepts_unknown_dwells, accepts_unknown_positions, accepts_unknown_feeds, is_trial,
-               start, block_delete, subroutine_file, most_jumps, machine, probed, trials] = setup;
+               takes_five_axis_codes, decimal_point, feed, additional_offsets, ignored_codes,
+               accepts_unknown_lengths, accepts_unknown_dwells, accepts_unknown_positions,
+               accepts_unknown_feeds, is_trial, start, block_delete, subroutine_file, most_jumps,
+               machine, probed, trials] = setup;
   static_cast<void>(trials);  // what it holds follows from the program and the setup
   static_cast<void>(probed);  // whoever sets it adds what its answers depend on
   key.add(stored.size());
@@ -177,6 +178,7 @@ void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   add(key, tools);
   key.add(tool);
   key.add(static_cast<int>(reader));
+  key.add(takes_five_axis_codes);
   key.add(static_cast<int>(decimal_point));
   key.add(feed.value_or(0.0));
   key.add(additional_offsets.size());

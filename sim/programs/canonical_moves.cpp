@@ -128,6 +128,7 @@ void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
   if (inputs.reader) {
     setup.reader = static_cast<Reader>(chosen("--reader", *inputs.reader, controllers::kReaders));
   }
+  setup.takes_five_axis_codes = setup.reader != Reader::linuxcnc;
   if (!inputs.decimal_point) return;
   setup.decimal_point = static_cast<DecimalPoint>(
       chosen("--decimal-point", *inputs.decimal_point, controllers::kDecimalPoints));

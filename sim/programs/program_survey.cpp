@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "controllers/gcode/interpreter.h"
@@ -18,6 +19,7 @@
 #include "sim/programs/given_setup.h"
 #include "sim/programs/line_stage.h"
 #include "sim/programs/program_duration.h"
+#include "sim/programs/travel_check.h"
 
 namespace servomill::sim::programs {
 namespace {
@@ -55,7 +57,9 @@ class Surveyor {
         out_(out),
         positions_(inputs.given, inputs.setup.start),
         is_conversational_(inputs.is_conversational) {
-    if (inputs.machine) duration_ = std::make_unique<ProgramDuration>(*inputs.machine);
+    if (!inputs.machine) return;
+    duration_ = std::make_unique<ProgramDuration>(*inputs.machine);
+    travel_.emplace(*inputs.machine);
   }
 
   void add(const ExecutedBlock& block) {
@@ -75,12 +79,20 @@ class Surveyor {
   void finish() {
     if (!duration_) return;
     duration_->finish();
+    out_.outside_travel = travel_->faults(out_.file);
     out_.cycle_time =
-        CycleTime{inputs_.machine->name, duration_->duration(),       duration_->why_unknown(),
+        CycleTime{inputs_.machine->name, duration_->duration(),       why_time_is_unknown(),
                   duration_->left_out(), duration_->unknown_dwells(), duration_->unknown_moves()};
   }
 
  private:
+  std::string why_time_is_unknown() const {
+    if (!duration_->why_unknown().empty()) return duration_->why_unknown();
+    if (out_.read_to > 0) return fmt::format("the program is read up to line {}", out_.read_to);
+    const bool is_empty = duration_->duration() == 0.0 && !duration_->left_out().empty();
+    return is_empty ? "every move is from or to an unknown position" : "";
+  }
+
   void add_move(const Move& move, const ExecutedBlock& block, bool is_last) {
     if (move.kind == MoveKind::tool) ++out_.tool_changes;
     if (move.kind == MoveKind::stop) ++out_.stops;
@@ -88,7 +100,9 @@ class Surveyor {
       if (duration_ && move.kind != MoveKind::message) duration_->add_other(move);
       return;
     }
-    const MoveKnowledge known = positions_.next(move, block, is_last);
+    MoveKnowledge known = positions_.next(move, block, is_last);
+    hide_compensated(block, known);
+    if (travel_) travel_->add(move, known, *block.file);
     out_.extent.add(move, known);
     if (duration_) duration_->add(move, known.distance_is_known);
     if (known.is_place) return;
@@ -98,6 +112,21 @@ class Surveyor {
       out_.unknown_systems.insert(block.frame->additional_system);
     }
     if (block.state->controls_tip() && out_.tcp_controlled == 0) out_.tcp_controlled = move.line;
+  }
+
+  // The path of a tool of unknown radius is off the programmed one in the plane.
+  void hide_compensated(const ExecutedBlock& block, MoveKnowledge& known) {
+    const controllers::Compensation& compensation = block.state->compensation;
+    const bool is_hidden = compensation.is_on && compensation.is_radius_unknown;
+    if (!is_hidden && !is_begin_hidden_) return;
+    if (is_hidden && out_.unknown_radius == 0) out_.unknown_radius = block.line;
+    known.distance_is_known = false;
+    for (std::size_t i = 0; i < kLinearJoints; ++i) {
+      if (i == static_cast<std::size_t>(block.state->normal_axis)) continue;
+      if (is_hidden) known.end_work_is_known[i] = known.end_machine_is_known[i] = false;
+      if (is_begin_hidden_) known.begin_work_is_known[i] = known.begin_machine_is_known[i] = false;
+    }
+    is_begin_hidden_ = is_hidden;
   }
 
   void note_words(const ExecutedBlock& block) {
@@ -163,9 +192,11 @@ class Surveyor {
   ProgramSurvey& out_;
   KnownPositions positions_;
   std::unique_ptr<ProgramDuration> duration_;
+  std::optional<TravelCheck> travel_;
   std::map<int, int> work_system_lines_;  // by MoveKnowledge::work_system; 0: at the start
   int additional_system_ = 0;
   bool is_conversational_;
+  bool is_begin_hidden_ = false;  // of the next move: that of a tool of unknown radius
 };
 
 void survey_moves(const SurveyInputs& inputs, ProgramSurvey& out) {
@@ -188,8 +219,10 @@ ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::
   ReaderVerdict out{controllers::kReaders[reader], {}};
   ProgramSetup own = setup;
   own.reader = static_cast<controllers::Reader>(reader);
-  // the control is set to one of them, and reads the program either way
-  if (own.decimal_point == controllers::DecimalPoint::unset) {
+  own.takes_five_axis_codes = own.reader != controllers::Reader::linuxcnc;
+  // the control is set to one of them, and reads the program either way; the reader that is chosen
+  // counts as it is
+  if (own.decimal_point == controllers::DecimalPoint::unset && own.reader != setup.reader) {
     own.decimal_point = controllers::DecimalPoint::calculator;
   }
   try {

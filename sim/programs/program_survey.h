@@ -65,10 +65,12 @@ struct ProgramSurvey {
   bool has_tool_table = false;
   ProgramExtent extent;
   std::set<int> unknown_systems;        // P of G54.1 whose offset is not given
+  int unknown_radius = 0;               // first line of G41, G42 by a tool that no table has
   int unknown_retract = 0;              // first line of M140 MB MAX without a machine; 0: none
   int tcp_controlled = 0;               // first move under G43.4, G43.5 or G68.2; 0: none
   std::optional<CycleTime> cycle_time;  // with a machine file
   int tool_changes = 0, stops = 0;      // M6; M0, M1, M60
+  std::vector<Fault> outside_travel;    // with a machine file: moves that leave its travel
   std::vector<ReaderVerdict> readers;
   int read_to = 0;  // line of the first fault; 0: read to its end
 };

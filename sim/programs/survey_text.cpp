@@ -146,6 +146,7 @@ std::string needed_options(const ProgramSurvey& survey, Axis axis) {
   }
   if (axis == Axis::Z && survey.unknown_retract > 0) options.emplace_back("--machine");
   if (axis == Axis::Z) options.emplace_back("the tool lengths");
+  if (survey.unknown_radius > 0 && is_linear(axis)) options.emplace_back("--tools");
   std::string text = options.front();
   for (std::size_t i = 1; i < options.size(); ++i) {
     text += (i + 1 == options.size() ? " and " : ", ") + options[i];

@@ -24,7 +24,7 @@ void declare(Options& options) {
   add_program_options(options);
   options.add()("machine", po::value<std::string>()->value_name("M.toml"),
                 "machine that runs the programs: for the cycle time (v_max, a_max and j_max of its "
-                "axes are enough), G43.4, G43.5, G53.1 and G68.2");
+                "axes are enough), the travel of known positions, G43.4, G43.5, G53.1 and G68.2");
   options.add()("work-offset", texts("X=10,Y=-5"),
                 "programs: position of G54 in the machine, mm and deg; G55:X=10,R=30 for another "
                 "one and with a rotation");
@@ -51,15 +51,17 @@ std::string to_json(const std::vector<Fault>& faults) {
 std::size_t check(const std::string& path, const Options& options,
                   sim::programs::ProgramInputs inputs, JsonList& list, ProgressLine& line) {
   inputs.trials = std::make_shared<controllers::SharedTrials>();
-  const sim::programs::CheckedFile checked =
-      sim::programs::check_file(path, options.list("set"), inputs);
-  const std::size_t faults = checked.faults.size();
+  sim::programs::CheckedFile checked = sim::programs::check_file(path, options.list("set"), inputs);
   const bool json = options.has("json");
   std::optional<sim::programs::ProgramSurvey> survey;
-  if (sim::programs::is_program(path) && (json || !options.has("quiet"))) {
+  const bool needs_survey = json || !options.has("quiet") || options.has("machine");
+  if (sim::programs::is_program(path) && needs_survey) {
     survey = sim::programs::survey_program(
         {path, inputs, options.list("work-offset"), options.list("tool-length")});
+    checked.faults.insert(checked.faults.end(), survey->outside_travel.begin(),
+                          survey->outside_travel.end());
   }
+  const std::size_t faults = checked.faults.size();
   const auto hidden = line.hidden();
   if (json) {
     list.add(sim::system::JsonObject()

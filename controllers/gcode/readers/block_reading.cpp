@@ -123,7 +123,7 @@ bool BlockReading::read(std::string_view line, const std::string& file, const Bl
   before_ = memory_;
   applied_.clear();
   notes_.clear();
-  has_unknown_dwell_ = has_unknown_feed_ = false;
+  has_unknown_dwell_ = has_unknown_feed_ = positions_below_r_ = false;
   lines_.clear();
   local_call_.reset();
   words_.emplace(line, block, evaluate);

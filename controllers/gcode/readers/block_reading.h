@@ -117,6 +117,8 @@ class BlockReading {
   bool has_unknown_dwell() const { return has_unknown_dwell_; }
   /// F of the block only holds the place of a feed that no block gives.
   bool has_unknown_feed() const { return has_unknown_feed_; }
+  /// The cycle of the block goes to its hole below R, and then rises.
+  bool positions_below_r() const { return positions_below_r_; }
   const std::optional<LocalCall>& local_call() const { return local_call_; }
   const PlaneFrame& frame() const { return memory_.frame; }
   /// Column in the line as written.
@@ -141,6 +143,7 @@ class BlockReading {
   std::vector<AppliedRule> applied_;
   std::vector<ReadingNote> notes_;
   bool has_unknown_dwell_ = false, has_unknown_feed_ = false;
+  bool positions_below_r_ = false;
   std::optional<LocalCall> local_call_;
   std::optional<CornerToNext> corner_;
   std::optional<BlockWords> next_words_;  // of the block behind the corner

@@ -50,6 +50,7 @@ void ReadingStep::cycles() {
   cycle_without_hole(code);
   if (!words.has_axis()) return;
   retract_mode();
+  approach_from_below();
   tapping(strict);
   leave_at_feed(strict);
 }
@@ -196,6 +197,26 @@ void ReadingStep::retract_mode() {
   const int column = words.column('R');
   memory.has_retract_mode = true;
   if (choose(WordDifference::retract_level, column) == 1) words.add('G', 98.0, column);
+}
+
+// The order of rising to R and going to the hole decides what is on the way.
+void ReadingStep::approach_from_below() {
+  constexpr double kSamePlace = 1e-9;
+  const KeptCycle& kept = memory.cycle;
+  if (state.is_height_unknown || !kept.values[kR]) return;
+  const int n = normal_axis();
+  const Eigen::Vector3d at =
+      memory.frame.from_work(state.programmed().head<3>().eval()) / state.unit;
+  if (at[n] >= kept.r_level - kSamePlace) return;
+  bool moves = false;
+  for (int i = 0; i < 3; ++i) {
+    const char letter = "XYZ"[i];
+    if (i == n || !words.has(letter)) continue;
+    moves |= std::abs(words[letter] - (is_incremental() ? 0.0 : at[i])) > kSamePlace;
+  }
+  if (!moves) return;
+  const int column = words.all().front().column;
+  if (choose(WordDifference::cycle_from_below, column) == 1) reading_.positions_below_r_ = true;
 }
 
 // Cycles that leave the hole at feed do so up to R, and go on to the initial level of G98 at

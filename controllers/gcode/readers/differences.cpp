@@ -198,21 +198,34 @@ constexpr auto kDifferences = std::to_array<WordDifferenceEntry>({
      "",
      "LinuxCNC 2.9, interp_convert.cc; grbl 1.1, gcode.c; Haas 96-8000, June 1999, G10 (example "
      "G10 L2 P1 G91 X6.0); Fanuc B-63944EN, G10 L2, from memory"},
+    {cycle_from_below,
+     "a canned cycle from below R",
+     {{{"rises to R, then goes to the hole", "LinuxCNC, Mach", kLinuxCnc | kMach},
+       {"goes to the hole at its level, then rises to R", "Fanuc, Haas", kFanuc | kHaas}}},
+     "",
+     "LinuxCNC 2.9, canned cycles, preliminary motion; zanotowane.pl/117/8692, G81 (operation 1: "
+     "X and Y, operation 2: R, as Fanuc); Haas and Mach from memory"},
 });
 
-// Codes of LinuxCNC, by ten times their numbers, and readers whose control lacks them.
+// Codes of LinuxCNC and of five axes (of Fanuc), by ten times their numbers, and readers whose
+// control lacks them.
 struct ForeignCodes {
   char letter;
   int from, to;
   std::uint8_t without;
 };
 // LinuxCNC 2.9, G codes and M codes; grbl 1.1, gcode.c (all that it has); CNC Conversion, G and M
-// codes used by Mach3 (no G87); Fanuc, Haas and other codes of Mach from memory
+// codes used by Mach3 (no G87, no five axes); Haas has G234 and G254 in place of G43.4 and G68.2;
+// Fanuc, Haas and other codes of Mach from memory
 constexpr auto kForeign = std::to_array<ForeignCodes>({
     {'G', 410, 429, kGrbl},
     {'G', 430, 430, kGrbl},
+    {'G', 434, 435, kHaas | kMach | kGrbl},
+    {'G', 531, 531, kHaas | kMach | kGrbl},
     {'G', 591, 593, kFanuc | kHaas | kGrbl},
     {'G', 640, 640, kGrbl},
+    {'G', 682, 682, kHaas | kMach | kGrbl},
+    {'G', 690, 690, kGrbl},
     {'G', 730, 730, kGrbl},
     {'G', 810, 890, kGrbl},
     {'G', 870, 870, kMach},

@@ -42,6 +42,7 @@ enum class WordDifference : std::uint8_t {
   return_block,
   system_zero,
   incremental_input,
+  cycle_from_below,
   count
 };
 

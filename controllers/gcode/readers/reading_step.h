@@ -111,6 +111,7 @@ class ReadingStep {
   void cycle_without_hole(int code);
   void fine_boring();
   void retract_mode();
+  void approach_from_below();
   void tapping(int code);
   void leave_at_feed(int code);
   char normal_letter() const;

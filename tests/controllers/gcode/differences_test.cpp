@@ -139,6 +139,11 @@ const std::vector<Example>& examples() {
        "G10 L2 P1 X2.\nG91 G10 L2 P1 X5.\nG90 G0 X1.\nM2\n",
        "p.nc:2:5",
        {"G10 L2 P1 X5\nG0 X1\nM2\n", "G10 L2 P1 X7\nG0 X1\nM2\n"}},
+      {cycle_from_below,
+       "G0 Z-5.\nG99 G81 X10. Y5. Z-7. R2. F100.\nM2\n",
+       "p.nc:2:1",
+       {"G0 Z-5\nG99 G81 X10 Y5 Z-7 R2 F100\nM2\n",
+        "G0 Z-5\nX10 Y5\nG99 G81 X10 Y5 Z-7 R2 F100\nM2\n"}},
   };
   return all;
 }

@@ -132,6 +132,12 @@ inline std::vector<DifferenceExample> difference_examples() {
       {incremental_input, 1, Reader::fanuc,
        "G20\nG10 L2 P2 Y1. A10.\nG91 G10 L2 P2 Y1. A5.\nG90 G55 G0 Y0.\nA0.\nM2\n",
        "R 0 50.8 0 | R 0 50.8 0 a15 b0 c0", fanuc},
+      {cycle_from_below, 0, Reader::mach, "G0 Z-5.\nG99 G81 X1. Z-7. R2. F100.\nM2\n",
+       "R 0 0 -5 | R 0 0 2 | R 1 0 2 | F 1 0 -7 f100 | R 1 0 2", "from memory"},
+      {cycle_from_below, 1, Reader::fanuc, "G0 Z-5.\nG91 G99 G81 X1. Z-9. R7. F100. K2\nM2\n",
+       "R 0 0 -5 | R 1 0 -5 | R 1 0 2 | F 1 0 -7 f100 | R 1 0 2 | R 2 0 2 | F 2 0 -7 | "
+       "R 2 0 2",
+       "zanotowane.pl/117/8692, G81 (operation 1: X and Y, operation 2: R)"},
   };
 }
 
