@@ -141,9 +141,10 @@ struct Preparation {
         known(read_work_knowledge(request, described.machine)),
         options(walk_options(request, described.machine, known.setup)) {
     const model::NcSettings& nc = described.machine.nc;
-    known.depends_on_place =
-        !request.servo_file.empty() || depends_on_place(correction, nc.lower, nc.upper);
     correction.leave(request.left);
+    if (request.servo_file.empty()) {
+      known.place_matters = axes_that_matter(correction, nc.lower, nc.upper);
+    }
     take_start(request);
     if (!request.servo_file.empty()) follow_model(request);
   }
@@ -211,7 +212,7 @@ VerificationReport verify(const CompensateRequest& request, Preparation& prepare
   out.is_start_known = options.is_start_known;
   const bool is_linuxcnc = request.dialect == Dialect::linuxcnc;
   std::array<bool, controllers::kWorkSystems> is_known{};
-  is_known.fill(!known.depends_on_place);
+  is_known.fill(!known.depends_on_place());
   for (const int system : known.work_systems) is_known[static_cast<std::size_t>(system - 1)] = true;
   out.control = control_setup(known.setup, is_known, options.is_start_known);
   out.without = request.without;
@@ -313,7 +314,7 @@ void write_blocks(const CompensateRequest& request, WorkKnowledge& known,
   while (const auto block = interpreter.next_block()) {
     throw_if_interrupted();
     lines.at(block->line);
-    if (known.depends_on_place) highest.look(*block);
+    if (known.depends_on_place()) highest.look(*block);
     refuse_unknown_system(*block, request, known);
     if (block->text.starts_with(kHeader)) {
       warnings.push_back({{request.program_file, block->line},

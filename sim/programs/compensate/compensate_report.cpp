@@ -22,7 +22,7 @@ std::vector<std::string> assumptions(const CompensateRequest& request, const Wor
     if (!is_there && system != 1) continue;
     out.push_back(fmt::format(
         "{} is at {}{}", kWorkSystems[static_cast<std::size_t>(system - 1)],
-        words_text(place.offset, layout),
+        words_text(place.offset, layout, known.given[static_cast<std::size_t>(system - 1)]),
         place.rotation == 0.0 ? "" : fmt::format(", rotated by {:g} deg", place.rotation / deg)));
   }
   for (const auto& [number, length] : summary.tools) {

@@ -15,6 +15,7 @@
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/program_corrector.h"
+#include "sim/programs/named_axes.h"
 
 namespace servomill::sim::programs {
 
@@ -127,6 +128,7 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request,
                                   const model::MachineSettings& machine) {
   const JointLayout& layout = machine.chain.layout;
   WorkKnowledge known;
+  known.layout = layout;
   known.setup = program_setup(request.inputs, request.program_file);
   choose_reader(request.inputs, machine.nc, known.setup);
   known.setup.machine = preparation::tool_centre_point(machine);
@@ -134,6 +136,7 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request,
     for (int system = 1; system <= controllers::kWorkSystems; ++system) {
       known.work_systems.insert(system);
     }
+    for (AxisFlags& axes : known.given) axes.fill(true);
   }
   const GivenWorkOffsets given = work_offsets(request.work_offsets, &layout);
   for (std::size_t k = 0; k < given.size(); ++k) {
@@ -141,39 +144,83 @@ WorkKnowledge read_work_knowledge(const CompensateRequest& request,
     known.setup.work_offset[k] = given[k]->words;
     known.setup.work_rotation[k] = given[k]->rotation;
     known.work_systems.insert(static_cast<int>(k) + 1);
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      known.given[k][i] = known.given[k][i] || given[k]->given[i];
+    }
   }
   for (const std::string& text : request.tool_lengths) add_tool_length(text, known.setup.tools);
   return known;
 }
 
-void refuse_unknown_system(const controllers::ExecutedBlock& block,
-                           const CompensateRequest& request, WorkKnowledge& knowledge) {
-  std::set<int>& known = knowledge.work_systems;
-  if (block.request == nullptr) return;
-  const auto& words = *block.request;
-  const int system = block.state->work_system;
-  if (words.code(controllers::Group::g_non_modal) == 100 && words.has('P')) {  // G10 says it
-    const int P = static_cast<int>(std::lround(words['P']));
-    known.insert(P == 0 ? system : P);
-  }
-  const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
-                                 [](const Move& move) { return is_motion(move.kind); });
-  if (known.contains(system) || !knowledge.depends_on_place || !moves) return;
-  if (is_place_of_machine(block)) return;
-  const auto& chosen = words.of(controllers::Group::g_work_system);
-  const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
-  throw InputError(
-      {request.program_file, block.line, chosen.column},
-      fmt::format(
-          "the work offset {0} is unknown, so the errors are unknown; set it with --work-offset "
-          "{0}:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)",
-          name));
+bool WorkKnowledge::depends_on_place() const {
+  return std::any_of(place_matters.begin(), place_matters.end(),
+                     [](bool matters) { return matters; });
 }
 
-std::string words_text(const AxisWords& words, const JointLayout& layout) {
+std::vector<Axis> WorkKnowledge::missing(int system) const {
+  std::vector<Axis> out;
+  for (const Axis axis : kAllAxes) {
+    const auto i = static_cast<std::size_t>(index_of(axis));
+    const bool is_known = given[static_cast<std::size_t>(system - 1)][i];
+    if (layout.joint_of(axis) && place_matters[i] && !is_known) out.push_back(axis);
+  }
+  return out;
+}
+
+namespace {
+
+void learn_G10(const controllers::ExecutedBlock& block, WorkKnowledge& known) {
+  const auto& words = *block.request;
+  if (words.code(controllers::Group::g_non_modal) != 100 || !words.has('P')) return;
+  const int P = static_cast<int>(std::lround(words['P']));
+  const int system = P == 0 ? block.state->work_system : P;
+  if (system < 1 || system > controllers::kWorkSystems) return;
+  known.work_systems.insert(system);
+  for (const Axis axis : kAllAxes) {
+    const auto i = static_cast<std::size_t>(index_of(axis));
+    if (names_axis(block, axis)) known.given[static_cast<std::size_t>(system - 1)][i] = true;
+  }
+}
+
+// "the work offset G54 is unknown on Y, Z, so ..."
+std::string unknown_system(const WorkKnowledge& known, int system) {
+  const auto name = kWorkSystems[static_cast<std::size_t>(system - 1)];
+  const AxisFlags& given = known.given[static_cast<std::size_t>(system - 1)];
+  const bool is_given_at_all = std::find(given.begin(), given.end(), true) != given.end();
+  std::vector<char> letters;
+  for (const Axis axis : known.missing(system)) letters.push_back(letter(axis));
+  std::string words;
+  for (const Axis axis : kAllAxes) {
+    const bool is_missing =
+        std::find(letters.begin(), letters.end(), letter(axis)) != letters.end();
+    if (!known.layout.joint_of(axis) || (is_given_at_all && !is_missing)) continue;
+    words += fmt::format("{}{}=...", words.empty() ? "" : ",", letter(axis));
+  }
+  return fmt::format(
+      "the work offset {0} is unknown{1}, so the errors are unknown; set it with --work-offset "
+      "{0}:{2} or --parameter-file (0 is allowed, but not assumed)",
+      name, is_given_at_all ? fmt::format(" on {}", fmt::join(letters, ", ")) : "", words);
+}
+
+}  // namespace
+
+void refuse_unknown_system(const controllers::ExecutedBlock& block,
+                           const CompensateRequest& request, WorkKnowledge& knowledge) {
+  if (block.request == nullptr) return;
+  learn_G10(block, knowledge);
+  const int system = block.state->work_system;
+  const bool moves = std::any_of(block.moves.begin(), block.moves.end(),
+                                 [](const Move& move) { return is_motion(move.kind); });
+  if (!moves || knowledge.missing(system).empty() || is_place_of_machine(block)) return;
+  const auto& chosen = block.request->of(controllers::Group::g_work_system);
+  throw InputError({request.program_file, block.line, chosen.column},
+                   unknown_system(knowledge, system));
+}
+
+std::string words_text(const AxisWords& words, const JointLayout& layout, const AxisFlags& shown) {
   std::string out;
   for (const Axis axis : kAllAxes) {
-    if (!layout.joint_of(axis)) continue;
+    if (!layout.joint_of(axis) || !shown[static_cast<std::size_t>(index_of(axis))]) continue;
     out += fmt::format("{}{}{:g}", out.empty() ? "" : " ", letter(axis),
                        words[index_of(axis)] / (is_linear(axis) ? mm : deg));
   }
@@ -200,25 +247,34 @@ WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system) {
 }
 
 // Irregular places: no period of an error fits all of them.
-bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper) {
+AxisFlags axes_that_matter(const Correction& correction, const Joints& lower, const Joints& upper) {
   constexpr int kPlaces = 64;
   constexpr double kSame = 1e-9, kReach = 0.5;  // m, rad; m, rad about zero where nothing is given
   const JointLayout& layout = correction.layout();
-  std::optional<AxisWords> first;
+  const auto place = [&](int n, int j) {
+    const double a = std::isfinite(lower[j]) ? lower[j] : -kReach;
+    const double b = std::isfinite(upper[j]) ? upper[j] : kReach;
+    return a + std::fmod((n + 1) * std::sqrt(2.0 + 3.0 * j), 1.0) * (b - a);
+  };
+  AxisFlags out{};
   for (int n = 0; n < kPlaces; ++n) {
     Joints Q = Joints::Zero();
     for (int j = 0; j < kJoints; ++j) {
-      if (!layout.has(j)) continue;
-      const double a = std::isfinite(lower[j]) ? lower[j] : -kReach;
-      const double b = std::isfinite(upper[j]) ? upper[j] : kReach;
-      const double share = std::fmod((n + 1) * std::sqrt(2.0 + 3.0 * j), 1.0);
-      Q[j] = a + share * (b - a);
+      if (layout.has(j)) Q[j] = place(n, j);
     }
     const AxisWords d = correction.at(layout.words(Q));
-    if (!first) first = d;
-    if ((d - *first).cwiseAbs().maxCoeff() > kSame) return true;
+    for (const Axis axis : kAllAxes) {
+      const auto j = layout.joint_of(axis);
+      if (!j) continue;
+      Joints moved = Q;
+      moved[*j] = place(n + 1, *j);
+      const AxisWords other = correction.at(layout.words(moved));
+      if ((other - d).cwiseAbs().maxCoeff() > kSame) {
+        out[static_cast<std::size_t>(index_of(axis))] = true;
+      }
+    }
   }
-  return false;
+  return out;
 }
 
 }  // namespace servomill::sim::programs

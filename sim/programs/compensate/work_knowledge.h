@@ -12,6 +12,7 @@
 #include "controllers/gcode/program_setup.h"
 #include "sim/model/machine.h"
 #include "sim/programs/compensate/correction.h"
+#include "sim/programs/compensate/program_corrector.h"
 
 namespace servomill::sim::programs {
 
@@ -44,15 +45,22 @@ void add_tool_length(const std::string& text, controllers::ToolTable& tools);
 /// State of the control before the program, and the work systems of known place.
 struct WorkKnowledge {
   controllers::ProgramSetup setup;
-  std::set<int> work_systems;    // 1 ... 9
-  bool depends_on_place = true;  // the errors are not the same everywhere
+  JointLayout layout;
+  std::set<int> work_systems;  // 1 ... 9, of which a place is known on some axis
+  std::array<AxisFlags, kWorkSystems.size()> given{};  // axes of each
+  /// Axes along which the errors are not the same everywhere.
+  AxisFlags place_matters = {true, true, true, true, true, true};
+
+  bool depends_on_place() const;
+  /// Axes of the machine on which the place of a work system is needed, and unknown.
+  std::vector<Axis> missing(int system) const;
 };
 
 WorkKnowledge read_work_knowledge(const CompensateRequest& request,
                                   const model::MachineSettings& machine);
 
 /// Moves in a work system of unknown place would be corrected for another place. G10 makes a system
-/// known.
+/// known on the axes that it names.
 /// @throws InputError
 void refuse_unknown_system(const controllers::ExecutedBlock& block,
                            const CompensateRequest& request, WorkKnowledge& knowledge);
@@ -65,9 +73,11 @@ struct WorkSystemPlace {
 WorkSystemPlace place_of(const controllers::ProgramSetup& setup, int system);
 
 /// "X1 Y2", mm and deg, of the axes that the machine has.
-std::string words_text(const AxisWords& words, const JointLayout& layout);
+/// @param shown  the others are left out
+std::string words_text(const AxisWords& words, const JointLayout& layout,
+                       const AxisFlags& shown = {true, true, true, true, true, true});
 
-/// True if the correction differs between places of the travel.
-bool depends_on_place(const Correction& correction, const Joints& lower, const Joints& upper);
+/// Axes along which the correction differs between places of the travel.
+AxisFlags axes_that_matter(const Correction& correction, const Joints& lower, const Joints& upper);
 
 }  // namespace servomill::sim::programs

@@ -250,6 +250,11 @@ TEST(Compensate, RefusesWorkSystemsThatNobodySaidThePlaceOf) {
       refusal(trial),
       "part.ngc:4:1: error: the work offset G55 is unknown, so the errors are unknown; set it with "
       "--work-offset G55:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)");
+  trial.request.work_offsets = {"X=0,Y=0,Z=0", "G55:X=200"};
+  EXPECT_EQ(
+      refusal(trial),
+      "part.ngc:4:1: error: the work offset G55 is unknown on Y, so the errors are unknown; set it "
+      "with --work-offset G55:Y=... or --parameter-file (0 is allowed, but not assumed)");
   trial.request.work_offsets = {"X=200,Y=200", "G55:X=200,Y=300,R=10"};
   EXPECT_EQ(refusal(trial), "taken");
 }
@@ -273,7 +278,7 @@ TEST(Compensate, AddsWorkOffsetsOfOneSystemUpAndRefusesContradictions) {
   };
   const std::string whole = corrected({"X=200,Y=250,Z=-100"});
   EXPECT_EQ(corrected({"Y=250,Z=-100", "X=200"}), whole);
-  EXPECT_NE(corrected({"X=200"}), whole);
+  EXPECT_NE(corrected({"X=200,Y=0,Z=0"}), whole);
   Trial trial(program);
   trial.request.work_offsets = {"X=200,Y=250,Z=-100", "X=3"};
   try {
