@@ -28,6 +28,7 @@ struct Estimate {
   bool of_nc = false;                // LoopKind::nc: the NC has it, too, and knows it changes
   std::size_t record = kAllRecords;  // number of the only record that it is for
 
+  bool is_at_bound() const { return start == lower || start == upper; }
   bool is_for(std::size_t number) const { return record == kAllRecords || record == number; }
 };
 

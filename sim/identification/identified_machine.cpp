@@ -22,6 +22,12 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
                      "describes the machine itself; name a machine file (machine = \"FILE\") so "
                      "that the identified values can override it");
   }
+  const std::vector<std::string> reasons = faults(result);
+  if (!reasons.empty()) {
+    std::vector<Fault> not_written;
+    for (const std::string& one : reasons) not_written.push_back({{path}, "not written: " + one});
+    throw InputError(std::move(not_written));
+  }
   input::IdentifiedFile out;
   out.based_on = input::machine_seen_from(path, experiment.machine_path);
   out.comments.push_back(fmt::format("Identified from {}:", experiment.name));
@@ -42,6 +48,11 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
                                            one.unit));
         continue;
       }
+      if (one.is_at_bound()) {
+        out.held.push_back({key, one.unit.empty() ? std::string(input::kPlainNumber) : one.unit,
+                            one.start, "at its bound"});
+        continue;
+      }
       if (!result.uncertainty.identifiable[k]) {
         out.identified.unidentifiable.push_back(key);
         continue;
@@ -52,6 +63,9 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
                                                       : one.unit);
       out.identified.values.push_back(one.start);
     }
+  }
+  if (keys.empty()) {
+    throw InputError({path}, "not written: the recordings identify no value of the machine");
   }
   const auto count = static_cast<Eigen::Index>(keys.size());
   out.identified.covariance.resize(count, count);

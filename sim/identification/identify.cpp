@@ -192,10 +192,15 @@ Identification identify(const Experiment& experiment, unsigned threads,
   const Prediction prediction(experiment.document, experiment.estimates, records, threads);
   const Mask mask = prediction.all_samples();
   out.fit = fit(prediction, prediction.start(), mask);
+  out.estimates = experiment.estimates;
+  for (std::size_t k = 0; k < out.estimates.size(); ++k) {
+    out.estimates[k].start = out.fit.values[k];
+    // a value at its bound is held there: nothing is known about it, nor varied with the others
+    if (out.estimates[k].is_at_bound())
+      out.fit.jacobian.col(static_cast<Eigen::Index>(k)).setZero();
+  }
   out.uncertainty = uncertainty_of(out.fit.jacobian, out.fit.residual, mask);
   add_intervals(prediction, mask, intervals, out);
-  out.estimates = experiment.estimates;
-  for (std::size_t k = 0; k < out.estimates.size(); ++k) out.estimates[k].start = out.fit.values[k];
   out.implausible = implausible(experiment, out.estimates, records.front()->joint);
   out.estimation = results(prediction, out.fit, mask);
   for (std::size_t r = 0; r < out.estimation.size(); ++r) {

@@ -1,9 +1,13 @@
 #include "sim/identification/prediction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <limits>
 #include <memory>
+
+#include "plant/vocabulary/units.h"
 
 namespace servomill::sim::identification {
 
@@ -60,8 +64,16 @@ bool Prediction::has_own() const {
 }
 
 void Prediction::refuse(const Values& values) const {
-  for (const AxisRecord* record : records_) {
-    model_of(document_, estimates_, std::span(values).first(estimates_.size()), record->number);
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const ModelOfValues model = model_of(
+        document_, estimates_, std::span(values).first(estimates_.size()), records_[r]->number);
+    const AxisModel axis = axis_model(model, values, r);
+    if (!identification::simulate(records_[r]->record, {&axis, 1}, 1).front().diverges) continue;
+    throw InputError({records_[r]->record.name},
+                     fmt::format("the motion that is simulated with the starting values diverges: "
+                                 "the loop (period_ms = {:g}, gains, signs) or a starting value is "
+                                 "not that of the recording",
+                                 records_[r]->record.period / ms));
   }
   throw InputError({records_.front()->record.name},
                    "cannot be simulated with these values: the friction is too stiff for the exact "
@@ -90,7 +102,7 @@ std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
     std::vector<Simulated> simulated =
         identification::simulate(records_[r]->record, axes, threads_);
     for (std::size_t m = 0; m < possible.size(); ++m) {
-      if (simulated[m].resolved) {
+      if (simulated[m].resolved && !simulated[m].diverges) {
         out[possible[m]]->of_record.push_back(std::move(simulated[m]));
       } else {
         out[possible[m]].reset();

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "plant/vocabulary/units.h"
+#include "sim/config/key_log.h"
 #include "sim/identification/experiment.h"
 #include "sim/identification/parameter_space.h"
 #include "sim/identification/read_records.h"
@@ -69,6 +70,22 @@ model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
   return number.value_or(model::WrittenNumber{});
 }
 
+// Unit of a number without one: that of its key, or SI; empty for a ratio.
+std::string unit_of_bare_number(const config::Document& document, const std::string& key) {
+  const auto log = std::make_shared<config::KeyLog>();
+  config::Document logged = document;
+  logged.record_keys(log);
+  model_of(logged, {}, {});
+  const std::string whole = document_key(key);
+  const std::size_t dot = whole.rfind('.');
+  for (const config::KeyUse& use : log->uses()) {
+    const bool is_it = use.type == config::KeyType::number && use.key == whole.substr(dot + 1) &&
+                       use.table == config::without_items(whole.substr(0, dot));
+    if (is_it && !use.unit.empty()) return use.unit;
+  }
+  return {};
+}
+
 // Estimates of which each recording has a value of its own become one for each.
 std::vector<Estimate> with_own(const std::vector<Estimate>& estimates,
                                const std::vector<std::size_t>& own,
@@ -118,6 +135,9 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
     one.unit = start.unit;
     one.lower = read_bound(table, "min", one.unit, one.lower);
     one.upper = read_bound(table, "max", one.unit, one.upper);
+    if (one.unit.empty() && !one.keys.empty() && root.faults() == 0) {
+      one.unit = unit_of_bare_number(document, one.keys.front());
+    }
     if (table.boolean_or("own", false)) own.push_back(estimates.size());
     if (!(one.lower <= one.start && one.start <= one.upper)) {
       table.fault(fmt::format("start {:g} is outside min and max", one.start));

@@ -6,6 +6,18 @@
 
 namespace servomill::sim::identification {
 
+PossiblePositions possible_positions(const Record& record) {
+  constexpr double kShare = 100.0, kFloor = 0.1;  // m, rad
+  double low = record.feedback.front(), high = low;
+  for (const auto* list : {&record.command, &record.feedback}) {
+    for (const double x : *list) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+  }
+  return {0.5 * (low + high), kShare * (high - low) + kFloor};
+}
+
 StartOfMotion start_of_motion(const Record& record) {
   constexpr std::size_t kSamples = 12;  // short beside any acceleration, long beside the quantum
   const std::size_t n = std::min(kSamples, record.size());

@@ -1,6 +1,7 @@
 /// One recording of one axis as identification uses it: uniform samples in SI.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -31,6 +32,14 @@ struct Record {
   std::size_t size() const { return feedback.size(); }
   double time(std::size_t sample) const { return start + period * static_cast<double>(sample); }
 };
+
+/// Positions that a simulation of the record may take: 100 times the range of its command and
+/// feedback, and 100 mm (0.1 rad). One beyond them diverges.
+struct PossiblePositions {
+  double centre = 0.0, limit = 0.0;
+  bool contain(double position) const { return std::abs(position - centre) <= limit; }
+};
+PossiblePositions possible_positions(const Record& record);
 
 /// Position and speed of the first sample, from a parabola through the first ones (m, m/s or rad).
 struct StartOfMotion {

@@ -38,7 +38,7 @@ std::string parameters(const Identification& result) {
     const double half = 2.0 * result.uncertainty.standard(k);
     if (!result.uncertainty.identifiable[k]) {
       table.add({names_of(one) + own_record(result, one), fmt::format("{:.5g}", one.start),
-                 "unidentifiable", one.unit, "-", "-"});
+                 one.is_at_bound() ? "at its bound" : "unidentifiable", one.unit, "-", "-"});
       continue;
     }
     table.add({names_of(one) + own_record(result, one), with_uncertainty(one.start, half),
@@ -134,6 +134,15 @@ double unexplained(const RecordResult& one) {
   return sum > 0.0 ? one.feedback_rms / std::sqrt(sum) : 0.0;
 }
 
+// Of the position about its mean.
+double rms_of_motion(const Record& record) {
+  double mean = 0.0, sum = 0.0;
+  const auto n = static_cast<double>(record.size());
+  for (const double x : record.feedback) mean += x / n;
+  for (const double x : record.feedback) sum += (x - mean) * (x - mean) / n;
+  return std::sqrt(sum);
+}
+
 // A recorded disturbance that makes the prediction worse has the wrong sign or is none.
 std::string disturbance_warning(const RecordResult& one) {
   constexpr double kClearly = 0.9;
@@ -183,7 +192,7 @@ std::vector<std::string> warnings(const Identification& result) {
   }
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     const Estimate& one = result.estimates[k];
-    if (one.start == one.lower || one.start == one.upper) {
+    if (one.is_at_bound()) {
       out.push_back(
           fmt::format("{} has ended at its bound {:g} {}", one.keys.front(), one.start, one.unit));
     }
@@ -213,6 +222,33 @@ std::vector<std::string> warnings(const Identification& result) {
     }
   }
   return out;
+}
+
+std::vector<std::string> faults(const Identification& result) {
+  std::vector<std::string> out;
+  if (!result.fit.converged) {
+    out.push_back(
+        fmt::format("the fit has not converged{}{}; start from the values that are "
+                    "printed, or estimate fewer",
+                    result.fit.message.empty() ? "" : ": ", result.fit.message));
+  }
+  for (const RecordResult& one : result.estimation) {
+    const double motion = rms_of_motion(one.record->record);
+    if (one.feedback_rms < motion || one.feedback_rms == 0.0) continue;
+    out.push_back(
+        fmt::format("{}: the simulation is {:.3g} um rms off the recording, whose motion "
+                    "is {:.3g} um rms itself; the loop is not that of the recording",
+                    one.record->record.name, one.feedback_rms / um, motion / um));
+  }
+  if (!result.uncertainty.covariance.allFinite()) {
+    out.emplace_back("the covariance of the values is not finite");
+  }
+  return out;
+}
+
+bool has_value_at_bound(const Identification& result) {
+  return std::any_of(result.estimates.begin(), result.estimates.end(),
+                     [](const Estimate& one) { return one.is_at_bound(); });
 }
 
 std::string report(const Experiment& experiment, const Identification& result) {

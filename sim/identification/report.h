@@ -18,6 +18,13 @@ std::string report_json(const Identification& result);
 /// combinations can be identified.
 std::vector<std::string> unidentifiable_sentences(const Identification& result);
 
+/// Sentences on why the values are none of a machine: a fit that did not converge, a simulation
+/// that explains nothing of the motion, a covariance that is not finite. Empty: they may be used.
+std::vector<std::string> faults(const Identification& result);
+
+/// A value is where its bound is, not where the recordings have it.
+bool has_value_at_bound(const Identification& result);
+
 /// Sentences on what should make a user doubt: a loop that is not the recording's, values at their
 /// bounds, a fit that did not converge.
 std::vector<std::string> warnings(const Identification& result);

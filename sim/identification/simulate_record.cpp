@@ -75,8 +75,13 @@ class EightModels {
 
   void run(std::span<Simulated> out) {
     start(out);
+    const PossiblePositions possible = possible_positions(record_);
     for (std::size_t k = 0; k < record_.size(); ++k) {
       look(k, out);
+      if (std::none_of(out.begin(), out.end(),
+                       [&](const Simulated& one) { return possible.contain(one.feedback[k]); })) {
+        break;
+      }
       close_loop(k);
       for (std::size_t l = 0; l < models_.size(); ++l) out[l].force[k] = loop_.force()[l];
       move(k);
@@ -179,6 +184,7 @@ std::vector<Simulated> simulate(const Record& record, std::span<const AxisModel>
                                 unsigned threads) {
   std::vector<Simulated> out(models.size());
   const std::size_t blocks = blocks_of(models.size());
+  const PossiblePositions possible = possible_positions(record);
   system::for_each_index(blocks, system::thread_count(threads), [&](std::size_t block) {
     const std::size_t first = block * kLaneWidth;
     const std::size_t count = std::min(kLaneWidth, models.size() - first);
@@ -188,6 +194,10 @@ std::vector<Simulated> simulate(const Record& record, std::span<const AxisModel>
       simulate_nc(record, some, into);
     } else {
       EightModels(record, some).run(into);
+    }
+    for (Simulated& one : into) {
+      one.diverges = !std::all_of(one.feedback.begin(), one.feedback.end(),
+                                  [&](double x) { return possible.contain(x); });
     }
   });
   return out;

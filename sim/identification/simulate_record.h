@@ -29,6 +29,7 @@ struct Simulated {
   std::vector<double> scale;     // m or rad: of the slide
   std::vector<double> force;     // N or N m, computed by the loop
   bool resolved = true;          // false: friction too stiff for the exact step, not to be trusted
+  bool diverges = false;         // it leaves the possible positions: not to be trusted either
 };
 
 /// Simulates models under one recording's command and disturbance, eight at a time, on the exact

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "plant/vocabulary/input_error.h"
+
 namespace servomill::sim::identification {
 namespace {
 
@@ -37,6 +39,12 @@ Record synthesize(const Record& motion, const AxisModel& model, const NoiseSetti
   AxisModel quantising = model;
   quantising.step = noise.feedback_step;
   std::vector<Simulated> simulated = simulate(driven, {&quantising, 1}, 1);
+  if (!simulated.front().resolved || simulated.front().diverges) {
+    throw InputError({motion.name},
+                     simulated.front().diverges
+                         ? "the motion that is simulated diverges: the loop is unstable"
+                         : "cannot be simulated: the friction is too stiff for the exact step");
+  }
   Record out = motion;
   out.feedback = std::move(simulated.front().feedback);
   out.force = std::move(simulated.front().force);

@@ -12,6 +12,7 @@
 namespace servomill::sim::input {
 namespace {
 
+constexpr double kMinKv = 8.0;  // 1/s; 0.5 m/min/mm. Smaller numbers are meant in m/min/mm
 constexpr double kAny = std::numeric_limits<double>::infinity();
 
 // A value as its key has it, and the range outside which it is not that of a machine tool. 0 stands
@@ -33,7 +34,7 @@ void add_common(const model::MachineSettings& machine, std::size_t j, Rows& rows
   const controllers::CurrentLoopParams& current = machine.nc.functions[j].current_loop;
   const double bandwidth = drive.has_winding() ? current.Kp / drive.L : 0.0;
   rows.insert(rows.end(),
-              {{"Kv", cascade.Kv, 1.0, 1e4, "1/s", "5 m/min/mm"},
+              {{"Kv", cascade.Kv, kMinKv, 1e4, "1/s", "5 m/min/mm"},
                {"velocity_bandwidth", cascade.Kp / cascade.J, 0.5, 1e5, "rad/s", "200 rad/s"},
                {"torque_max", cascade.tau_max, 1e-3, 1e5, "Nm", "30 Nm"},
                {"i_max_A", drive.i_max, 1e-2, 1e4, "A", "50 A"},

@@ -25,18 +25,23 @@ std::string two_digits(double value) {
   return fmt::format("{}", std::strtod(fmt::format("{:.2g}", value).c_str(), nullptr));
 }
 
+// "moving_mass = "95 kg"  # +- 1 kg (k = 2)"
+std::string key_line(const std::string& key, double value, const std::string& unit,
+                     const std::string& comment) {
+  const std::string number = fmt::format("{}", value);
+  return fmt::format("{} = {}  # {}\n", config::quoted_key(key.substr(key.rfind('.') + 1)),
+                     unit == kPlainNumber ? number : config::quoted_text(with_unit(number, unit)),
+                     comment);
+}
+
 std::string value_line(const IdentifiedFile& file, std::size_t k) {
   const IdentifiedValues& identified = file.identified;
-  const std::string& key = identified.keys[k];
   const std::string& unit = identified.units[k];
   const auto i = static_cast<Eigen::Index>(k);
   const double half =
       file.half_widths.empty() ? 2.0 * std::sqrt(identified.covariance(i, i)) : file.half_widths[k];
-  const std::string number = fmt::format("{}", identified.values[k]);
-  return fmt::format("{} = {}  # +- {} (k = 2)\n",
-                     config::quoted_key(key.substr(key.rfind('.') + 1)),
-                     unit == kPlainNumber ? number : config::quoted_text(with_unit(number, unit)),
-                     with_unit(two_digits(half), unit));
+  return key_line(identified.keys[k], identified.values[k], unit,
+                  fmt::format("+- {} (k = 2)", with_unit(two_digits(half), unit)));
 }
 
 // "axis.X" of "axis.X.moving_mass"; empty: a key of the root.
@@ -92,10 +97,15 @@ std::string identified_text(const IdentifiedFile& file) {
   out += fmt::format("based_on = {}  # machine that was started from\n",
                      config::quoted_text(file.based_on));
   const std::vector<std::string>& keys = file.identified.keys;
-  for (const std::string& table : tables_of(keys)) {
+  std::vector<std::string> all = keys;
+  for (const HeldValue& one : file.held) all.push_back(one.key);
+  for (const std::string& table : tables_of(all)) {
     if (!table.empty()) out += fmt::format("\n[{}]\n", table);
     for (std::size_t k = 0; k < keys.size(); ++k) {
       if (table_of(keys[k]) == table) out += value_line(file, k);
+    }
+    for (const HeldValue& one : file.held) {
+      if (table_of(one.key) == table) out += key_line(one.key, one.value, one.unit, one.why);
     }
   }
   return out + "\n[identified]\n" + table_lines(file.identified);

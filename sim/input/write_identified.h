@@ -8,6 +8,13 @@
 
 namespace servomill::sim::input {
 
+/// A value that the file sets without knowing its uncertainty.
+struct HeldValue {
+  std::string key, unit;
+  double value = 0.0;
+  std::string why;  // "at its bound"
+};
+
 struct IdentifiedFile {
   std::vector<std::string> comments;  // lines at the top, without "# "
   std::string based_on;               // machine that was started from, relative to the file
@@ -15,6 +22,7 @@ struct IdentifiedFile {
   /// Expanded uncertainties (k = 2), one a key in its unit, for the comments; empty: twice the
   /// standard deviations.
   std::vector<double> half_widths;
+  std::vector<HeldValue> held = {};  // beside the identified ones
 };
 
 /// The text of the file. Numbers have as many digits as they need to be read again to the same

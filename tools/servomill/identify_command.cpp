@@ -86,13 +86,17 @@ sim::identification::IntervalSettings intervals_of(
 }  // namespace
 
 int identify_command(const Arguments& arguments) {
-  Options options("identify", "EXPERIMENT.toml [-o identified.toml] [--signals OUT.h5]",
-                  "Finds parameters of drives from recordings of real axes: simulates the "
-                  "recorded\ncontrol with the modelled drives, varies the parameters of the "
-                  "experiment until\nthe simulated feedback fits the recorded one best, and "
-                  "reports the uncertainty of\neach value, the parameters that the recordings do "
-                  "not determine, and the\nprediction error for recordings excluded from the fit.",
-                  "EXPERIMENT.toml");
+  Options options(
+      "identify", "EXPERIMENT.toml [-o identified.toml] [--signals OUT.h5]",
+      "Finds parameters of drives from recordings of real axes: simulates the "
+      "recorded\ncontrol with the modelled drives, varies the parameters of the "
+      "experiment until\nthe simulated feedback fits the recorded one best, and "
+      "reports the uncertainty of\neach value, the parameters that the recordings do "
+      "not determine, and the\nprediction error for recordings excluded from the fit.\n\n"
+      "Exit status 1: a value has ended at its bound, the fit has not converged or its "
+      "simulation\nexplains nothing of the motion. But for values at their bound, -o is "
+      "then refused (2).",
+      "EXPERIMENT.toml");
   add_identify_options(options);
   if (!options.parse(arguments)) return kDone;
   const std::string out = output_of(options, "output", ".toml");
@@ -122,17 +126,19 @@ int identify_command(const Arguments& arguments) {
   } else if (prints) {
     fmt::print("{}", sim::identification::report(experiment, result));
   }
+  if (!signals.empty()) {
+    sim::identification::store_identification(experiment, result, signals, options.has("force"));
+    if (prints) fmt::print("written to {}\n", signals);
+  }
   if (!out.empty()) {
     sim::input::write_identified_file(
         out, sim::identification::identified_machine(experiment, result, out),
         options.has("force"));
     if (prints) fmt::print("written to {}\n", out);
   }
-  if (!signals.empty()) {
-    sim::identification::store_identification(experiment, result, signals, options.has("force"));
-    if (prints) fmt::print("written to {}\n", signals);
-  }
-  return kDone;
+  const bool is_known = sim::identification::faults(result).empty() &&
+                        !sim::identification::has_value_at_bound(result);
+  return is_known ? kDone : kMachineStopped;
 }
 
 }  // namespace servomill::tools

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <limits>
 
 #include "sim/identification/identified_machine.h"
 #include "sim/identification/report.h"
@@ -203,6 +205,93 @@ min = "92 kg"
   const auto said = warnings(result.found);
   EXPECT_NE(std::find(said.begin(), said.end(), "axis.X.moving_mass has ended at its bound 92 kg"),
             said.end());
+}
+
+// The mass is held there; what the others are known to is for that mass.
+TEST(Identify, AValueAtItsBoundIsWrittenWithoutAnUncertainty) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(1.0), truth()));
+  const Identified result(files, R"(
+[[estimate]]
+key = "axis.X.moving_mass"
+min = "92 kg"
+[[estimate]]
+key = "axis.X.slide_viscous_friction"
+)");
+  EXPECT_TRUE(has_value_at_bound(result.found));
+  EXPECT_TRUE(faults(result.found).empty());
+  EXPECT_FALSE(result.found.uncertainty.identifiable[0]);
+  EXPECT_NE(report(result.experiment, result.found).find("at its bound"), std::string::npos);
+  const std::string path = files.path("out.toml");
+  const auto file = identified_machine(result.experiment, result.found, path);
+  EXPECT_EQ(file.identified.keys, std::vector<std::string>{"axis.X.slide_viscous_friction"});
+  EXPECT_NE(identified_text(file).find("moving_mass = \"92 kg\"  # at its bound\n"),
+            std::string::npos)
+      << identified_text(file);
+  input::write_identified_file(path, file, false);
+}
+
+TEST(Identify, NothingIsWrittenOfAFitThatIsNone) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(1.0), truth()));
+  Identified result(files, kFour);
+  EXPECT_EQ(faults(result.found), std::vector<std::string>{});
+  Identification& found = result.found;
+  found.fit.converged = false;
+  found.fit.message = "Maximum number of iterations reached.";
+  found.estimation[0].feedback_rms = 100.0;
+  found.uncertainty.covariance(0, 0) = std::numeric_limits<double>::infinity();
+  const std::string messages =
+      fault_messages([&] { identified_machine(result.experiment, found, files.path("out.toml")); });
+  EXPECT_EQ(messages.find("not written: the fit has not converged: Maximum number of iterations "
+                          "reached.; start from the values that are printed, or estimate fewer\n"
+                          "not written: recording.csv: the simulation is 1e+08 um rms off the "
+                          "recording, whose motion is "),
+            0u)
+      << messages;
+  EXPECT_TRUE(
+      messages.ends_with(" um rms itself; the loop is not that of the recording\n"
+                         "not written: the covariance of the values is not finite\n"))
+      << messages;
+}
+
+// 160 1/s with 10 ms: 1.6 of a step at once, and a velocity loop of 8557 N s/m / 95 kg 0.9 more.
+TEST(Identify, ALoopWithWhichTheMotionDivergesIsRefused) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(1.0), truth()));
+  std::ifstream file(files.write(kFour));
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string period = "period_ms = 1.0";
+  ASSERT_NE(text.find(period), std::string::npos);
+  text.replace(text.find(period), period.size(), "period_ms = 10");
+  std::ofstream(files.path("slow.toml")) << text;
+  const Experiment slow = read_experiment(files.path("slow.toml"));
+  EXPECT_EQ(fault_messages([&] { identify(slow, 2); }),
+            "the motion that is simulated with the starting values diverges: the loop (period_ms = "
+            "10, gains, signs) or a starting value is not that of the recording\n");
+}
+
+TEST(Identify, ANumberWithoutAUnitHasThatOfItsKey) {
+  const AxisExperiment files;
+  files.write_recording(recorded(ramps(0.5), truth()));
+  const Experiment experiment = read_experiment(files.write(R"(
+[[estimate]]
+key = "axis.X.slide_viscous_friction"
+start = 100
+min = 10
+[[estimate]]
+key = "axis.X.velocity_reset_time_ms"
+start = 20
+[[estimate]]
+key = "loop.dead_time_ms"
+start = 0.1
+[[estimate]]
+key = "loop.velocity_feed_forward"
+start = 0.5
+)"));
+  std::vector<std::string> units;
+  for (const Estimate& one : experiment.estimates) units.push_back(one.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"N s/m", "ms", "ms", ""}));
 }
 
 TEST(Identify, AMachineInTheExperimentCannotBeLaidOver) {
