@@ -162,7 +162,7 @@ void Interpreter::Machine::check_cycle() const {
     fail(chosen.column, fmt::format("{} under G93; a cycle needs G94 or G95", name));
   }
   if (state_.feed_linear == 0.0) {
-    fail(chosen.column, fmt::format("{} with zero feed; no F is active", name));
+    fail(chosen.column, zero_feed(name));
   }
   if (state_.tool_control == ToolControl::tool_axis) {
     fail(chosen.column, fmt::format("{} under G43.5; use G43.4 or G68.2", name));
@@ -327,6 +327,11 @@ AxisWords Interpreter::Machine::confused_tap(const AxisWords& end) {
                        warnings_.back().message == message;
   if (!is_said) warn(request().motion.column, message);
   return out;
+}
+
+// From below R to the hole, and then up.
+bool Interpreter::Machine::positions_below_r() const {
+  return setup_.reader != Reader::linuxcnc && reading_.positions_below_r();
 }
 
 void Interpreter::Machine::canned_cycle(int motion_before) {

@@ -274,7 +274,10 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
 void Interpreter::Machine::enter_call(const std::string& name, const OWord& o,
                                       const LinePlace& return_to) {
   if (flow_.calls.size() == kMaxCalls) {
-    fail(o.column, fmt::format("subroutine calls nested deeper than {}", kMaxCalls));
+    const bool is_recursive = std::any_of(flow_.calls.begin(), flow_.calls.end(),
+                                          [&](const Call& call) { return call.name == name; });
+    fail(o.column, fmt::format("subroutine calls nested deeper than {}{}", kMaxCalls,
+                               is_recursive ? fmt::format(": O<{}> calls itself", name) : ""));
   }
   count_jump();
   Call call;

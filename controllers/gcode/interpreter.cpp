@@ -174,6 +174,11 @@ void Interpreter::Machine::feed() {
   if (!request().has('F')) return;
   const double F = request()['F'];
   if (F < 0.0) fail_at('F', fmt::format("F{}; must be >= 0", F));
+  if (F == 0.0) {
+    noted_.insert("F0");
+  } else {
+    noted_.erase("F0");
+  }
   set_feed(has_unknown_feed() ? kUnknownValue : F);
 }
 

@@ -70,13 +70,7 @@ class Interpreter::Machine {
   }
 
   std::optional<ExecutedBlock> next_block();
-  std::vector<Move> rest() {
-    out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
-    given_ = 0;
-    while (!ended_ && read_block()) {
-    }
-    return std::exchange(out_, {});
-  }
+  std::vector<Move> rest();
 
   const std::vector<Fault>& warnings() const { return warnings_; }
   int unread_behind() const { return unread_behind_; }
@@ -126,6 +120,7 @@ class Interpreter::Machine {
   CornerToNext corner_to_next();
   void read_pending_line();
   void look_for_missing_points();
+  bool is_counted_by_K() const;
   void note_other_arithmetic();
   int original_column(int column) const;
   void execute();
@@ -195,10 +190,7 @@ class Interpreter::Machine {
   int integer(char letter, double tolerance = kIntegerTol) const;
   bool has_unknown_dwell() const { return is_rewritten_ && reading_.has_unknown_dwell(); }
   bool has_unknown_feed() const;
-  /// A canned cycle from below R goes to the hole at its level before it rises.
-  bool positions_below_r() const {
-    return setup_.reader != Reader::linuxcnc && reading_.positions_below_r();
-  }
+  bool positions_below_r() const;
 
   // ---- steps of a block, in the order of execution
   // Due if the block has the letter or a code of the group: low bits are letters, then groups.
@@ -351,6 +343,7 @@ class Interpreter::Machine {
   Eigen::Vector2d polar_end(const Eigen::Vector2d& begin) const;
   /// Feed of a move: m/s or rad/s; under G95 a revolution.
   double move_feed(double length, double angle) const;
+  std::string zero_feed(const std::string& code) const;
   void require_feed(const Request::Chosen& chosen) const;
 
   // ---- output

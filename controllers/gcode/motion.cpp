@@ -100,6 +100,11 @@ AxisWords Interpreter::Machine::machine_end() const {
   return end;
 }
 
+std::string Interpreter::Machine::zero_feed(const std::string& code) const {
+  return fmt::format("{} with zero feed; {}", code,
+                     noted_.contains("F0") ? "F0 is active, F must be > 0" : "no F is active");
+}
+
 void Interpreter::Machine::require_feed(const Request::Chosen& chosen) const {
   const auto name = [&] { return code_name('G', chosen.code->tenths); };
   if (state_.feed_mode == FeedMode::inverse_time) {
@@ -107,7 +112,7 @@ void Interpreter::Machine::require_feed(const Request::Chosen& chosen) const {
       fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name()));
     }
   } else if (state_.feed_linear == 0.0) {
-    fail(chosen.column, fmt::format("{} with zero feed; no F is active", name()));
+    fail(chosen.column, zero_feed(name()));
   } else if (state_.feed_mode == FeedMode::units_per_revolution && state_.spindle_speed == 0.0) {
     fail(chosen.column,
          fmt::format("{} under G95 with zero spindle speed; no S is active", name()));

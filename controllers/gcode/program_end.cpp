@@ -18,6 +18,7 @@ constexpr std::string_view kBlocksBehind =
     "or choose with --reader fanuc, haas or linuxcnc";
 constexpr std::string_view kUnread = "the program ends here: lines after this '%' are not read";
 constexpr std::string_view kBlankAtEnd = " \t\r%\x1a";  // 1a: the end of files of CP/M
+constexpr std::string_view kEmpty = "the program is empty: it has no block";
 constexpr std::string_view kNoEnd = "the program ends without M2, M30 or a closing '%'";
 
 // Anything but blanks and comments. A comment ends at the first ')', or with the line: where some
@@ -107,7 +108,7 @@ bool Interpreter::Machine::has_more_words() {
 
 void Interpreter::Machine::fail_at_end() {
   ended_ = true;
-  std::string message(kNoEnd);
+  std::string message(texts_[0].percent.saw_nothing() ? kEmpty : kNoEnd);
   if (flow_.skips_to_sub) {
     message = fmt::format(
         "no subroutine O<{0}> up to here, which line {1} calls{2}", *flow_.skip_to, flow_.skip_from,

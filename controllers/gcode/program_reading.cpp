@@ -217,15 +217,27 @@ bool Interpreter::Machine::tolerates(ReaderRule rule, int column, const std::str
   return true;
 }
 
-// "; in O<hole>, called in part.ngc:12" for every call that is under way.
+// "; in O<hole>, called in part.ngc:12" for every call that is under way; equal ones in a row once.
 std::string Interpreter::Machine::call_stack() const {
-  std::string text;
+  std::string text, last;
+  int repeated = 1;
+  const auto end_of_last = [&] {
+    if (!last.empty()) text += last + (repeated > 1 ? fmt::format(" ({} times)", repeated) : "");
+  };
   for (auto call = flow_.calls.rbegin(); call != flow_.calls.rend(); ++call) {
     const std::string& from = texts_[call->return_to.text].lines.file();
-    text += fmt::format("{} O<{}>, called in {}:{}", text.empty() ? "; in" : ", in", call->name,
-                        from, call->line);
+    std::string one =
+        fmt::format("{} O<{}>, called in {}:{}", ", in", call->name, from, call->line);
+    if (one == last) {
+      ++repeated;
+      continue;
+    }
+    end_of_last();
+    last = std::move(one);
+    repeated = 1;
   }
-  return text;
+  end_of_last();
+  return text.empty() ? text : ";" + text.substr(1);
 }
 
 void Interpreter::Machine::execute() {
@@ -273,6 +285,14 @@ void Interpreter::Machine::run_block() {
     if (setup_.is_trial) throw Undetermined();
     throw;
   }
+}
+
+std::vector<Move> Interpreter::Machine::rest() {
+  out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(given_));
+  given_ = 0;
+  while (!ended_ && read_block()) {
+  }
+  return std::exchange(out_, {});
 }
 
 std::optional<ExecutedBlock> Interpreter::Machine::next_block() {

@@ -1,8 +1,11 @@
 // Looks at a line that was read, and at those behind it.
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
+#include "controllers/gcode/canned_cycles.h"
 #include "controllers/gcode/interpreter_machine.h"
+#include "controllers/gcode/modal_groups.h"
 
 namespace servomill::controllers {
 
@@ -35,6 +38,19 @@ CornerToNext Interpreter::Machine::corner_to_next() {
   return out;
 }
 
+// K of a canned cycle counts, but for that of back boring.
+bool Interpreter::Machine::is_counted_by_K() const {
+  constexpr int kBackBoring = 870;
+  int motion = state_.motion;
+  for (const Word& word : block_.words) {
+    if (word.letter != 'G' || !word.value.is_constant()) continue;
+    const int tenths = static_cast<int>(std::lround(10.0 * word.value.number));
+    const Code* code = find_code('G', tenths);
+    if (code != nullptr && code->group == Group::g_motion) motion = tenths;
+  }
+  return is_canned_cycle(motion) && motion != kBackBoring;
+}
+
 // X10: 10 mm, or 10 increments.
 void Interpreter::Machine::look_for_missing_points() {
   constexpr std::string_view kLengths = "XYZIJKR";
@@ -43,6 +59,7 @@ void Interpreter::Machine::look_for_missing_points() {
     if (piece.kind != PieceKind::word) continue;
     const Word& word = block_.words[nth++];
     if (kLengths.find(word.letter) == std::string_view::npos) continue;
+    if (word.letter == 'K' && is_counted_by_K()) continue;
     if (!word.value.is_constant() || word.value.number == 0.0) continue;
     const auto begin = static_cast<std::size_t>(piece.begin);
     const std::string_view written =

@@ -60,7 +60,7 @@ void Reader::check_type(const Value*& value, std::string_view key, Value::Type t
   const std::string name = joined_key(path_, key);
   std::string rule = fmt::format("must be {}", type_name(type));
   if (type == Value::Type::list && value->type == Value::Type::table) {
-    rule += fmt::format("; write [[{}]] for each table", name);
+    rule += fmt::format("; write [[{}]] for each table", without_items(name));
   }
   note(*value, name, rule);
   value = nullptr;

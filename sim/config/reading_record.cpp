@@ -24,6 +24,13 @@ std::string shown(const Value& value) {
 // @param known  the names that the table may have
 std::string nearest_of(std::string_view word, const Value& table,
                        const std::vector<std::string>& known) {
+  // "length" for "length_mm"
+  const std::string with_unit = std::string(word) + "_";
+  for (const std::string& name : known) {
+    if (name.starts_with(with_unit) && table.find(name) == nullptr) {
+      return fmt::format("; did you mean '{}'?", name);
+    }
+  }
   std::vector<std::string_view> absent, given;
   for (const std::string& name : known) {
     (table.find(name) == nullptr ? absent : given).emplace_back(name);

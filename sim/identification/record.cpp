@@ -6,7 +6,9 @@
 
 namespace servomill::sim::identification {
 
-PossiblePositions possible_positions(const Record& record) {
+PossiblePositions possible_positions(const Record& record, bool has_loop) {
+  constexpr double kAnywhere = 1e6;  // m, rad
+  if (!has_loop) return {0.0, kAnywhere};
   constexpr double kShare = 100.0, kFloor = 0.1;  // m, rad
   double low = record.feedback.front(), high = low;
   for (const auto* list : {&record.command, &record.feedback}) {

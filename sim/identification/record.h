@@ -34,12 +34,13 @@ struct Record {
 };
 
 /// Positions that a simulation of the record may take: 100 times the range of its command and
-/// feedback, and 100 mm (0.1 rad). One beyond them diverges.
+/// feedback, and 100 mm (0.1 rad). One beyond them diverges. Without a loop nothing holds the axis:
+/// then 1000 km.
 struct PossiblePositions {
   double centre = 0.0, limit = 0.0;
   bool contain(double position) const { return std::abs(position - centre) <= limit; }
 };
-PossiblePositions possible_positions(const Record& record);
+PossiblePositions possible_positions(const Record& record, bool has_loop);
 
 /// Position and speed of the first sample, from a parabola through the first ones (m, m/s or rad).
 struct StartOfMotion {

@@ -134,7 +134,7 @@ double unexplained(const RecordResult& one) {
   return sum > 0.0 ? one.feedback_rms / std::sqrt(sum) : 0.0;
 }
 
-// Of the position about its mean.
+// Root mean square of the recorded position about its mean.
 double rms_of_motion(const Record& record) {
   double mean = 0.0, sum = 0.0;
   const auto n = static_cast<double>(record.size());

@@ -75,7 +75,7 @@ class EightModels {
 
   void run(std::span<Simulated> out) {
     start(out);
-    const PossiblePositions possible = possible_positions(record_);
+    const PossiblePositions possible = possible_positions(record_, !is_open());
     for (std::size_t k = 0; k < record_.size(); ++k) {
       look(k, out);
       if (std::none_of(out.begin(), out.end(),
@@ -184,7 +184,8 @@ std::vector<Simulated> simulate(const Record& record, std::span<const AxisModel>
                                 unsigned threads) {
   std::vector<Simulated> out(models.size());
   const std::size_t blocks = blocks_of(models.size());
-  const PossiblePositions possible = possible_positions(record);
+  const bool has_loop = !models.empty() && models.front().loop.kind != LoopKind::open;
+  const PossiblePositions possible = possible_positions(record, has_loop);
   system::for_each_index(blocks, system::thread_count(threads), [&](std::size_t block) {
     const std::size_t first = block * kLaneWidth;
     const std::size_t count = std::min(kLaneWidth, models.size() - first);

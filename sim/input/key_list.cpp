@@ -6,6 +6,7 @@
 #include <array>
 #include <regex>
 
+#include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/identified_values.h"
 #include "sim/input/input_files.h"
@@ -234,7 +235,24 @@ std::vector<KeyEntry> list_keys() {
   return out;
 }
 
-std::vector<KeyEntry> keys_of(std::string_view section) {
+namespace {
+
+// The keys of every axis are those of X: "machine.axis.Y.friction" as "machine.axis.X.friction".
+std::string with_listed_axis(std::string section) {
+  constexpr std::string_view kAxis = "axis.";
+  for (std::size_t at = section.find(kAxis); at != section.npos; at = section.find(kAxis, at + 1)) {
+    const std::size_t letter = at + kAxis.size();
+    const bool is_alone =
+        letter + 1 == section.size() || (letter + 1 < section.size() && section[letter + 1] == '.');
+    if (is_alone && axis_of(section[letter])) section[letter] = 'X';
+  }
+  return section;
+}
+
+}  // namespace
+
+std::vector<KeyEntry> keys_of(std::string_view of_section) {
+  const std::string section = with_listed_axis(std::string(of_section));
   std::vector<KeyEntry> out;
   std::vector<std::string> names;
   for (KeyEntry& one : list_keys()) {

@@ -1,5 +1,7 @@
 #include "sim/input/machine_document.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "sim/input/based_on.h"
@@ -45,7 +47,14 @@ MachineDocument with_base(const config::Document& own, InputFiles& files, int ba
 }  // namespace
 
 MachineDocument machine_document(const std::string& path, InputFiles& files, const Place& at) {
-  return with_base(*files.document(path, *files.text(path, at, "machine")), files, kMaxBases);
+  const auto own = files.document(path, *files.text(path, at, "machine"));
+  const config::Value* machine = own->root().find("machine");
+  if (own->root().find("structure") == nullptr && own->root().find("case") != nullptr) {
+    const bool is_named = machine != nullptr && machine->type == config::Value::Type::text;
+    throw InputError({path}, fmt::format("is a scenario; a machine file is needed{}",
+                                         is_named ? ", such as its '" + machine->text + "'" : ""));
+  }
+  return with_base(*own, files, kMaxBases);
 }
 
 MachineDocument machine_document_of_text(const std::string& text, const std::string& path,

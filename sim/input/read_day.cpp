@@ -14,6 +14,7 @@
 namespace servomill::sim::input {
 namespace {
 
+constexpr double kLongestTool = 100.0;            // m: farther places are slips, and overflow
 constexpr double kLongestPhase = 30.0 * 86400.0;  // s
 constexpr int kCycleLimit = 1000000;
 
@@ -62,7 +63,8 @@ class DayReader {
     if (place.name.find('/') != std::string::npos) table.fault("name", "must not have a /");
     if (place_of(place.name)) table.fault("name", "appears twice");
     place.Q = read_pose(table, scenario_.machine);
-    place.p_ST.z() = -table.real("tool_length_mm", config::kLength, {config::at_least(0.0)});
+    place.p_ST.z() = -table.real("tool_length_mm", config::kLength,
+                                 {config::at_least(0.0), config::at_most(kLongestTool)});
     out_.places.push_back(std::move(place));
   }
 

@@ -21,6 +21,8 @@
 namespace servomill::sim::input {
 namespace {
 
+constexpr double kLongestTool = 100.0;  // m: farther places are slips, and overflow
+
 // A program becomes a text of the result file, which is UTF-8 without NUL.
 void refuse_unwritable(const std::string& file, std::string_view text) {
   int line = 1, column = 1;
@@ -111,8 +113,8 @@ void read_tool(config::Reader& table, model::ProgramSpec& program) {
   tool.number =
       static_cast<int>(table.integer("number", {config::at_least(1), config::at_most(99999)}));
   tool.pocket = tool.number;
-  tool.offset[index_of(Axis::Z)] =
-      table.real("length_mm", config::kLength, {config::at_least(0.0)});
+  tool.offset[index_of(Axis::Z)] = table.real(
+      "length_mm", config::kLength, {config::at_least(0.0), config::at_most(kLongestTool)});
   tool.diameter = table.real_or("diameter_mm", 0.0, config::kLength, {config::at_least(0.0)});
   const bool teeth_are_given = table.has("teeth");
   const auto cutter = read_cutter(table, tool.diameter);

@@ -84,10 +84,25 @@ class QuantityReader {
     spec.reference = table.text_or("reference", "");
     if (table.has("tolerance")) spec.tolerance = read_tolerance(table);
     if (table.has("basis")) spec.basis = kBases[table.choice("basis", kBases)];
+    refuse_keys_of_others(table, info);
     add(table, info, spec);
   }
 
  private:
+  // No slips: keys that other quantities take.
+  static void refuse_keys_of_others(config::Reader& table, const evaluation::QuantityEntry& info) {
+    const std::pair<std::string_view, bool> keys[] = {
+        {"axis", info.needs_axis()},
+        {"statistic", info.has_statistic},
+        {"baseline", info.needs_baseline || info.probes > 0}};
+    const std::vector<std::string> given = table.keys();
+    for (const auto& [key, is_taken] : keys) {
+      if (is_taken || std::find(given.begin(), given.end(), key) == given.end()) continue;
+      table.raw(key);
+      table.fault(key, fmt::format("does not apply to {}", info.name));
+    }
+  }
+
   void read_axis(config::Reader& table, const evaluation::QuantityEntry& info,
                  model::QuantitySpec& spec) const {
     spec.axis = info.axes[table.choice("axis", letters_of(info.axes))];

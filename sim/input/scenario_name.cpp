@@ -17,6 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSuffix = ".toml";
+constexpr const char* kNoFolder =
+    "is no file, and there is no folder of scenarios in which names are looked up: neither "
+    "scenarios here nor installed ones";
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;
@@ -87,8 +90,9 @@ std::string scenario_file(const std::string& word, const std::vector<std::string
     names.insert(names.end(), here.begin(), here.end());
   }
   const std::string nearest = nearest_of(names, plain);
-  if (nearest.empty()) return word;
-  throw InputError({word}, "is no file and no scenario" + nearest);
+  if (!nearest.empty()) throw InputError({word}, "is no file and no scenario" + nearest);
+  if (folders.empty() && fs::path(word).extension().empty()) throw InputError({word}, kNoFolder);
+  return word;
 }
 
 std::string machine_file(const std::string& word, const std::vector<std::string>& folders) {
@@ -108,8 +112,9 @@ std::string machine_file(const std::string& word, const std::vector<std::string>
   }
   std::sort(names.begin(), names.end());
   const std::string nearest = nearest_of(names, fs::path(plain).filename().string());
-  if (nearest.empty()) return word;
-  throw InputError({word}, "is no file and no machine" + nearest);
+  if (!nearest.empty()) throw InputError({word}, "is no file and no machine" + nearest);
+  if (folders.empty() && fs::path(word).extension().empty()) throw InputError({word}, kNoFolder);
+  return word;
 }
 
 }  // namespace servomill::sim::input

@@ -7,6 +7,7 @@
 
 #include "controllers/gcode/readers/plane_frame.h"
 #include "controllers/path/path_limits.h"
+#include "plant/vocabulary/units.h"
 #include "sim/preparation/case_program.h"
 #include "sim/programs/known_positions.h"
 #include "sim/programs/named_axes.h"
@@ -114,6 +115,11 @@ class MoveCollector {
   MoveList moves_;
 };
 
+bool takes_tolerance_of_machine(const Move& move, const ProgramRequest& request) {
+  return !request.tolerance && move.path_mode == PathMode::continuous &&
+         !(move.path_tolerance > 0.0);
+}
+
 // By which the path may leave the move.
 double tolerance_of(const Move& move, const model::NcSettings& nc, const ProgramRequest& request) {
   if (request.tolerance) return *request.tolerance;
@@ -138,10 +144,17 @@ ProgrammedPath programmed_path(const ProgramRequest& request, const AxisWords& s
                      {},
                      setup.machine,
                      std::move(warnings)};
+  bool is_said = false;
   for (const Move& move : moves) {
-    if (is_motion(move.kind)) {
-      out.tolerance.push_back(tolerance_of(move, program.machine.nc, request));
-    }
+    if (!is_motion(move.kind)) continue;
+    out.tolerance.push_back(tolerance_of(move, program.machine.nc, request));
+    if (is_said || !takes_tolerance_of_machine(move, request)) continue;
+    is_said = true;
+    out.warnings.push_back(
+        {{request.placement.program_file, move.line},
+         fmt::format("no G64 P is in force: compared with nc.path_tolerance_um = {:g} of the "
+                     "machine file; --tolerance gives another one",
+                     program.machine.nc.path_tolerance / um)});
   }
   if (out.path.size() == 0) {
     throw InputError({request.placement.program_file}, "moves nothing: there is no path to follow");

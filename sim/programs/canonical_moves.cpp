@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <span>
 
 #include "controllers/gcode/canon_json.h"
@@ -134,8 +136,37 @@ void choose_reader(const ProgramInputs& inputs, const model::NcSettings& nc,
       chosen("--decimal-point", *inputs.decimal_point, controllers::kDecimalPoints));
 }
 
+namespace {
+
+// Bytes below the blank that no text has, and of UTF-8 none: the begin of the file is enough.
+bool is_binary(const std::string& path) {
+  constexpr std::size_t kExamined = 4096;
+  std::array<char, kExamined> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  const std::string_view bytes(begin.data(), static_cast<std::size_t>(file.gcount()));
+  const auto is_odd = [](char c) {  // tapes have NUL and DEL, files of CP/M end with 1a
+    return c > 0 && c < ' ' && std::string_view("\t\n\r\f\x1a").find(c) == std::string_view::npos;
+  };
+  const auto odd = std::count_if(bytes.begin(), bytes.end(), is_odd);
+  constexpr auto kRare = 50;  // one in so many
+  return odd > static_cast<std::ptrdiff_t>(bytes.size() / kRare);
+}
+
+void refuse_no_program(const std::string& path) {
+  if (path.ends_with(".toml")) {
+    throw InputError({path}, "is a file of TOML (scenario, machine, ...); a program is needed");
+  }
+  std::error_code ignored;  // a pipe is read once
+  if (std::filesystem::is_regular_file(path, ignored) && is_binary(path))
+    throw InputError({path}, "is a binary file; a program is a text");
+}
+
+}  // namespace
+
 controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
                                         const std::string& program_file) {
+  refuse_no_program(program_file);
   controllers::ProgramSetup setup;
   model::NcSettings nc;
   if (!inputs.tool_table.empty()) {

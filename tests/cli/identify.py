@@ -87,6 +87,10 @@ class Way(unittest.TestCase):
             self.assertIn("exists", done.stderr)
         self.run_in_folder("identify", "record.toml", "--make-up", "recording.csv", status=2)
 
+    def test_faults_of_inputs_come_before_those_of_outputs(self):
+        done = self.run_in_folder("identify", "identify.toml", "--recording", "nothing.csv", "-o", "again.toml", status=2)
+        self.assertIn("nothing.csv: error: cannot be read", done.stderr)
+
     def test_signals_hold_the_recording_the_simulation_and_the_parameters(self):
         self.assertEqual(nexus_rules.faults(self.path("signals.h5")), [])
         with h5py.File(self.path("signals.h5")) as file:

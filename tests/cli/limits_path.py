@@ -95,6 +95,19 @@ class Path(in_folder.InFolder):
         shown = next(row for row in self.limits(program, places, "--top", "9").stdout.splitlines() if row.split()[:1] == ["3"])
         self.assertEqual(len(re.findall(r"\d mm", shown)), 2)  # tolerance and corner
 
+    def test_a_tolerance_of_the_machine_file_is_said(self):
+        places = samples([(0, 0, 0), (10, 0, 0)])
+        message = "no G64 P is in force: compared with nc.path_tolerance_um = 10 of the machine file; --tolerance gives another one"
+        self.assertIn(f"part.ngc:2: {message}", self.path("G21 G90 G64\nG1 X10 F3000\nM2\n", places)["notes"])
+        for program, arguments in (("G21 G90 G64 P0.05\nG1 X10 F3000\nM2\n", ()), ("G21 G90 G61\nG1 X10 F3000\nM2\n", ()),
+                                   ("G21 G90 G64\nG1 X10 F3000\nM2\n", ("--tolerance", "35 um"))):
+            self.assertFalse([note for note in self.path(program, places, *arguments)["notes"] if message in note])
+
+    # the tool of G41 is not the programmed path
+    def test_compensation_for_an_unknown_diameter_is_refused(self):
+        done = self.limits("G21 G90 G64 P0.05\nG41 D1\nG1 X10 F3000\nM2\n", samples([(0, 0, 0), (10, 0, 0)]), status=2)
+        self.assertEqual(done.stderr, "part.ngc:3: error: the diameter of the tool of G41 or G42 is not given: --tools gives it\n")
+
     def test_both_sides_of_the_tolerance(self):
         shifted = samples([(0, 0, 0), (20, 0, 0)])
         shifted[1:, 1] += 0.02

@@ -190,6 +190,14 @@ class LinuxCnc(Machine):
         text = self.text("#INCLUDE limits.inc\n" + INI).stdout
         self.assertRegex(text, r'v_max = "7 mm/s" +# \[AXIS_Y\] MAX_VELOCITY, limits.inc:2\n')
 
+    # motion.c of LinuxCNC: servo_period_nsec = 1000000
+    def test_without_a_servo_period_it_is_that_of_motmod(self):
+        done = self.text(INI.replace("SERVO_PERIOD = 1000000", ""))
+        self.assertIn('j_max = "400000 mm/s^3"', self.text(INI).stdout)
+        self.assertIn('j_max = "400000 mm/s^3"', done.stdout)
+        self.assertNotIn("period of the setpoints", done.stdout)
+        self.assertIn("[EMCMOT] SERVO_PERIOD is missing: 1 ms is the default of motmod", done.stderr)
+
     def test_faults_have_their_lines(self):
         self.assertEqual(self.faults(INI.replace("MAX_VELOCITY = 60", "MAX_VELOCITY = fast").replace("SERVO_PERIOD = 1000000", "SERVO_PERIOD = 0")),
                          ["settings:4:1: error: [EMCMOT] SERVO_PERIOD = 0; must be > 0",

@@ -118,6 +118,14 @@ class Results(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "has the columns X, Y, Z, not 'A'"):
             servo.axis("true_linear", "A")
 
+    def test_opens_results_only(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text = os.path.join(folder, "text.h5")
+            with open(text, "w", encoding="utf-8") as file:
+                file.write("x")
+            with self.assertRaisesRegex(ValueError, f"^{text}: is no HDF5 file, so no result of a run or a sweep$"):
+                servomill.open(text)
+
     def test_refuses_to_overwrite(self):
         with self.assertRaisesRegex(servomill.InputError, "exists"):
             servomill.run(SCENARIO, output=self.path)

@@ -104,6 +104,8 @@ int calibrate_command(const Arguments& arguments) {
     if (!options.has("quiet")) fmt::print("written to {}\n", folder);
     return kDone;
   }
+  refuse_unwritable(options, out);
+  refuse_unwritable(options, table);
   const calibration::Calibration result =
       calibration::calibrate(std::move(readings), chain, settings);
   const bool json = options.has("json"), prints = !options.has("quiet") && !json;

@@ -99,8 +99,13 @@ void load_plugins(const Options& options);
 
 /// Value of an option that names an output, empty without it.
 /// @param suffix  that the name must have; empty: any
-/// @throws InputError if it has another one, exists without --force, or is an input
+/// @throws InputError if it has another one
 std::string output_of(const Options& options, const char* name, const char* suffix);
+
+/// Before the work, and after the inputs have been read: their faults come first.
+/// @param out  a name of output_of, or empty
+/// @throws InputError if it exists without --force, or is an input
+void refuse_unwritable(const Options& options, const std::string& out);
 
 /// Value of --threads. @throws InputError
 unsigned thread_count(const Options& options);
@@ -108,5 +113,9 @@ unsigned thread_count(const Options& options);
 /// "OUT.h5" for a scenario: its name in the current folder unless the user says otherwise.
 std::string output_name(const Options& options, const std::string& scenario_name,
                         std::string_view suffix);
+
+/// A result file may have any name, but not that of another format.
+/// @throws InputError
+void refuse_other_format(const std::string& out);
 
 }  // namespace servomill::tools

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 void refuse_outputs(const Options& options, const std::string& name) {
   const bool force = options.has("force"), to_stdout = name == "-";
   if (!to_stdout) sim::system::refuse_unwritable_text(name, force);
-  output_of(options, "point-uncertainty", ".csv");
+  refuse_unwritable(options, output_of(options, "point-uncertainty", ".csv"));
   if (!options.has("record")) return;
   const auto& record = options.get<std::string>("record");
   sim::run::writable_name(record, force);

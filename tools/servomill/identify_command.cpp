@@ -102,7 +102,6 @@ int identify_command(const Arguments& arguments) {
   const std::string out = output_of(options, "output", ".toml");
   const std::string signals = output_of(options, "signals", ".h5");
   const std::string made_up = output_of(options, "make-up", "");
-  if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
   const auto files = [&](const char* option) {
     return options.has(option) ? options.get<std::vector<std::string>>(option)
                                : std::vector<std::string>();
@@ -110,6 +109,8 @@ int identify_command(const Arguments& arguments) {
   ProgressLine line(options);
   sim::identification::Experiment experiment = sim::identification::read_experiment(
       options.word(), {files("recording"), files("validation")});
+  for (const std::string& one : {out, made_up}) refuse_unwritable(options, one);
+  if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
   if (options.has("compare-laws")) experiment.compares_laws = true;
   if (!made_up.empty()) {
     sim::identification::make_up(experiment, made_up, options.has("force"));

@@ -133,6 +133,7 @@ int identify_heat_command(const Arguments& arguments) {
   const HeatReadings readings = path.ends_with(".h5")
                                     ? readings_of_day(path, options)
                                     : sim::calibration::read_heat_readings(path, machine);
+  refuse_unwritable(options, output);
   const auto found =
       sim::calibration::regress(readings, machine.chain, errors_of(options, machine.chain.layout));
   line.end();

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -33,10 +34,9 @@ void print_file(const std::string& name, const std::string& file, JsonList* list
   }
 }
 
-void list_files(const std::string& folder, bool machines, JsonList* list) {
-  if (!fs::is_directory(folder)) {
-    throw InputError({folder}, "is not a folder; set the scenario folder with --folder");
-  }
+void list_files(const std::string& folder, bool machines, JsonList* list,
+                const std::string& why_no_folder) {
+  if (!fs::is_directory(folder)) throw InputError({folder}, why_no_folder);
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const bool is_machine = entry.path().parent_path().filename() == "machines";
@@ -53,9 +53,15 @@ void list_files_of(const Options& options, bool machines, JsonList* list) {
   const std::vector<std::string> folders = sim::input::scenario_folders();
   if (options.has("folder") || folders.empty()) {
     const bool has_folder = options.has("folder");
-    list_files(has_folder ? options.get<std::string>("folder") : "scenarios", machines, list);
+    if (has_folder) {
+      list_files(options.get<std::string>("folder"), machines, list, "is not a folder");
+    } else {
+      list_files("scenarios", machines, list,
+                 "is no folder here, and no scenarios are installed; name their folder with "
+                 "--folder");
+    }
   } else if (machines) {
-    list_files(folders.front(), machines, list);
+    list_files(folders.front(), machines, list, "is not a folder");
   } else {
     for (const std::string& name : sim::input::scenario_names(folders.front())) {
       print_file(name, fmt::format("{}/{}.toml", folders.front(), name), list);
@@ -129,7 +135,8 @@ int list_command(const Arguments& arguments) {
     constexpr std::string_view kWhat[] = {"strategies", "machines", "scenarios",
                                           "quantities", "rules",    "keys"};
     throw InputError({"servomill list"},
-                     fmt::format("cannot list '{}'{}", what, did_you_mean(what, kWhat)));
+                     fmt::format("cannot list '{}'; must be one of {}{}", what,
+                                 fmt::join(kWhat, ", "), did_you_mean(what, kWhat)));
   }
   return kDone;
 }

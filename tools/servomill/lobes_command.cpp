@@ -351,6 +351,7 @@ int lobes_command(const Arguments& arguments) {
   const std::string output = output_of(options, "output", ".csv");
   ProgressLine line(options);
   const sim::frequency::LobesRequest request = request_of(options);
+  refuse_unwritable(options, output);
   const auto points =
       sim::frequency::stability_lobes(request, sim::system::thread_count(thread_count(options)));
   line.end();

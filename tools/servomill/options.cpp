@@ -150,6 +150,13 @@ std::string output_name(const Options& options, const std::string& scenario_name
   return fmt::format("{}{}.h5", scenario_name, suffix);
 }
 
+void refuse_other_format(const std::string& out) {
+  for (const std::string_view other : {".csv", ".json", ".mat", ".toml", ".txt", ".xlsx"}) {
+    if (!out.ends_with(other)) continue;
+    throw InputError({"--output"}, fmt::format("'{}' would hold HDF5; must end with .h5", out));
+  }
+}
+
 std::string output_of(const Options& options, const char* name, const char* suffix) {
   if (!options.has(name)) return {};
   const auto out = options.get<std::string>(name);
@@ -157,8 +164,12 @@ std::string output_of(const Options& options, const char* name, const char* suff
     throw InputError({fmt::format("--{}", name)},
                      fmt::format("'{}' must end with {}", out, suffix));
   }
-  sim::system::output_target(out, sim::system::existing_of(options.has("force")));
   return out;
+}
+
+void refuse_unwritable(const Options& options, const std::string& out) {
+  if (out.empty()) return;
+  sim::system::output_target(out, sim::system::existing_of(options.has("force")));
 }
 
 }  // namespace servomill::tools

@@ -310,15 +310,12 @@ int response_command(const Arguments& arguments) {
                     "N <= M of numerator and denominator, M from 1 to {}",
                     fit, sim::responses::kMaxOrder));
   }
-  const bool force = options.has("force");
-  if (options.has("table")) {
-    sim::system::output_target(options.get<std::string>("table"), sim::system::existing_of(force));
-  }
   const std::string signals = output_of(options, "signals", ".h5");
-  if (!signals.empty()) sim::run::writable_name(signals, force);
   ProgressLine progress(options);
   const auto recording = sim::recordings::read_recording(
       file, options.has("time-unit") ? options.get<std::string>("time-unit") : "");
+  if (options.has("table")) refuse_unwritable(options, options.get<std::string>("table"));
+  if (!signals.empty()) sim::run::writable_name(signals, options.has("force"));
   const MeasuredResponse response = within(measured_response(recording, options), options);
   const bool prints = !options.has("json");
   if (prints) {  // whatever becomes of the fit

@@ -186,6 +186,7 @@ int run_command(const Arguments& arguments) {
       sim::input::read_scenario(options.word(), options.list("set"));
   const std::string path =
       sim::run::writable_name(output_name(options, scenario.name, ""), options.has("force"));
+  refuse_other_format(path);
   const auto& stop = stop_on_interrupt();
   std::optional<sim::run::RunStore> store;
   sim::run::RunControl control;

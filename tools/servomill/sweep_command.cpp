@@ -124,7 +124,9 @@ SweepFiles files_of(const Options& options, const sim::sweep::Sweep& sweep,
   const std::string out = output_name(options, sweep.base().name, "_sweep");
   const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
   const std::string shard = options.has("shard") ? options.get<std::string>("shard") : "";
-  return {sim::sweep::writable_table(out, selection, shard, options.has("force")), signals};
+  std::string table = sim::sweep::writable_table(out, selection, shard, options.has("force"));
+  refuse_other_format(table);
+  return {std::move(table), signals};
 }
 
 // Prints which points of a table are there before a sweep goes on.

@@ -156,6 +156,7 @@ int time_command(const Arguments& arguments) {
   if (top < 0) throw InputError({"--top"}, "must be >= 0");
   form.top = static_cast<std::size_t>(top);
   const std::string csv = output_of(options, "csv", ".csv");
+  refuse_unwritable(options, csv);
   ProgressLine line(options);
   const std::vector<CycleTimeReport> reports = reports_of(options);
   line.end();

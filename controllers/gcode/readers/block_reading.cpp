@@ -106,6 +106,7 @@ bool BlockReading::concerns(const Block& block, const ModalState& state) const {
       codes.add(word);
     } else {
       letters |= word_bit(word.letter);
+      if (word.letter == 'F' && word.value.is_constant() && word.value.number == 0.0) return true;
     }
   }
   const int motion = codes.motion >= 0 ? codes.motion : state.motion;

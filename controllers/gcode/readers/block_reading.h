@@ -57,6 +57,7 @@ struct KeptCycle {
 struct ReadingMemory {
   int pending_motion = -1;        // tenths of a motion code that LinuxCNC's state lacks; -1: none
   bool is_pending_known = false;  // why was said
+  bool has_zero_feed = false;     // F0 is in force
   int motion_before_cycle = -1;   // G0 ... G3, group 01, while a cycle is in force
   bool is_in_cycle = false;
   KeptCycle cycle;

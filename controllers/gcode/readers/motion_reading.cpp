@@ -124,6 +124,7 @@ void ReadingStep::exact_stop() {
 }
 
 void ReadingStep::feed() {
+  if (words.has('F')) memory.has_zero_feed = words['F'] == 0.0;
   const int motion = motion_in_block();
   const bool moves = words.has_axis() || words.has('I') || words.has('J') || words.has('K');
   const bool has_own_feed = motion == 330 || motion == 331;  // that of the thread
@@ -131,6 +132,7 @@ void ReadingStep::feed() {
   const bool is_other_mode = words.has_code('G', 930) || words.has_code('G', 950) ||
                              state.feed_mode != FeedMode::units_per_minute;
   if (!needs || words.has('F') || is_other_mode || state.feed_linear != 0.0) return;
+  if (memory.has_zero_feed) return;  // is refused where it runs
   const BlockWord* code = words.code('G', motion);
   const int column = code != nullptr ? code->column : words.all().front().column;
   if (!options.feed) {

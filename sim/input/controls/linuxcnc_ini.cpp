@@ -151,7 +151,11 @@ class LinuxCnc {
     const std::string key = "[EMCMOT] SERVO_PERIOD";
     const IniValue* value = find(key);
     if (value == nullptr) {
-      faults_.add({out_.file}, key + " is missing: ns");
+      constexpr double kDefault = 1e-3;  // s, of motmod
+      out_.acceleration_time = kDefault;
+      out_.acceleration_reason =
+          "LinuxCNC plans with constant acceleration, which changes within a servo period; "
+          "[EMCMOT] SERVO_PERIOD is missing: 1 ms is the default of motmod";
       return;
     }
     if (const auto period = faults_.positive(value->place, key, value->value)) {

@@ -23,7 +23,14 @@ COMMAND_LINE = [
     typed("no file, or too many", "servomill run", "servomill run scenario.toml machine.toml", "servomill check",
           "servomill compare", "servomill canon", "servomill sweep", "servomill list"),
     typed("instructions that there are not", "SERVOMILL_SIMD=avx servomill run scenario.toml", "SERVOMILL_SIMD=fast servomill list machines"),
-    typed("something that cannot be listed", "servomill list strategy", "servomill list machines --folder nowhere"),
+    typed("something that cannot be listed", "servomill list strategy", "servomill list foo", "servomill list machines --folder nowhere",
+          "servomill list machines", "servomill list keys machine.axis.Y.frction"),
+    typed("a name where there is no folder of scenarios", "servomill run experiment1", "servomill check part.ngc --machine hsm600u"),
+    typed("a result file of another format", "servomill run scenario.toml -o out.csv"),
+    typed("a scenario where a machine is wanted", "servomill check part.ngc --machine scenario.toml"),
+    line("a table in place of a list of tables", '[[case.strategy]]\ntype = "table"', '[case.strategy]\ntype = "table"'),
+    line("keys without their unit, and of other quantities", "[[case]]", '[[quantity]]\nname = "cycle_time"\naxis = "Y"\n[[program.tool]]\nnumber = 9\n'
+         'length = 50.0\n[[case]]'),
     typed("standard output is full", "servomill canon moves.ngc > /dev/full", "servomill list strategies > /dev/full",
           "servomill --help > /dev/full", write={"moves.ngc": "G1 X10 F100\nM2\n"}, about="a right program"),
 ]

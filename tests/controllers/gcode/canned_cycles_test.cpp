@@ -125,7 +125,8 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   EXPECT_EQ(fault("G81 R1"), "p.nc:3:1: error: G81 without an axis word");
   EXPECT_EQ(fault("G93 G81 X1 Z-1 R1 F1"),
             "p.nc:3:5: error: G81 under G93; a cycle needs G94 or G95");
-  EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"), "p.nc:4:1: error: G81 with zero feed; no F is active");
+  EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"),
+            "p.nc:4:1: error: G81 with zero feed; F0 is active, F must be > 0");
   EXPECT_EQ(fault("G17.1 G81 X1 Z-1 R1"),
             "p.nc:3:7: error: G81 in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or "
             "G19");

@@ -46,6 +46,7 @@ TEST(ImplausibleValues, AreToldOfEveryQuantityOfAMachine) {
            {"axis.X.scale={period=20}", "axis.X.scale.period = 20 m"},
            {"axis.X.motor_step=0.75", "axis.X.motor_step = 0.75 rad"},
            {"axis.X.Kv=0.08", "axis.X.Kv = 0.08 1/s"},
+           {"axis.X.Kv=4", "axis.X.Kv = 4 1/s"},  // meant in m/min/mm: 67 1/s
            {"axis.X.velocity_bandwidth=2e5", "axis.X.velocity_bandwidth = 200000 rad/s"},
            {"axis.X.following_error_limit=10", "axis.X.following_error_limit = 10 m"},
            {"axis.X.standstill_limit=50", "axis.X.standstill_limit = 50 m"},

@@ -86,6 +86,12 @@ TEST(KeyList, GivesASectionWithThoseBelowIt) {
   EXPECT_FALSE(sections.contains("machine.axis"));
 }
 
+TEST(KeyList, KeysOfEveryAxisAreThoseOfX) {
+  const auto size_of = [](const char* section) { return keys_of(section).size(); };
+  EXPECT_EQ(size_of("machine.axis.Y"), size_of("machine.axis.X"));
+  EXPECT_EQ(size_of("machine.axis.C.friction"), size_of("machine.axis.X.friction"));
+}
+
 TEST(KeyList, RefusesASectionThatThereIsNot) {
   try {
     keys_of("machine.nx");

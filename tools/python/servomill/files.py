@@ -185,6 +185,8 @@ def open(path: Union[str, os.PathLike]) -> Union[StoredRun, Sweep]:
     import h5py
 
     path = os.fspath(path)
+    if os.path.isfile(path) and not h5py.is_hdf5(path):
+        raise ValueError(f"{path}: is no HDF5 file, so no result of a run or a sweep")
     file = h5py.File(path, "r")
     kind = file.attrs.get("kind")
     if kind == "run":

@@ -181,7 +181,7 @@ TEST(Compensate, RotaryAxesAloneKeepTheirTime) {
   Trial trial("G21 G90\nT1 M6 G43 H1\nG0 X50 Y0 Z5 B0 C0\nG1 C90 F1800\nX60\nM2\n");
   trial.request.machine_file = SERVOMILL_SOURCE_DIR "/scenarios/machines/hsm600u.toml";
   trial.request.inputs.parameter_file.clear();
-  trial.request.work_offsets = {"X=0,Y=0,Z=0"};
+  trial.request.work_offsets = {"X=0,Y=0,Z=0,B=0,C=0"};
   trial.request.error_file =
       written("errors.toml", "[errors.of_test]\nEX0C = { constant_um = 20.0 }\n");
   const Compensated done = trial.run();
@@ -241,21 +241,18 @@ TEST(Compensate, RefusesToFeedFromNobodyKnowsWhere) {
 TEST(Compensate, RefusesWorkSystemsThatNobodySaidThePlaceOf) {
   Trial trial("G21 G90\nG53 G0 Z0\nG0 X0 Y0 Z0\nG55 G1 X1 F100\nM2\n");
   trial.request.inputs.parameter_file.clear();
-  EXPECT_EQ(
-      refusal(trial),
-      "part.ngc:3: error: the work offset G54 is unknown, so the errors are unknown; set it with "
-      "--work-offset G54:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)");
+  const auto message = [](const std::string& name, const std::string& where,
+                          const std::string& words) {
+    return ": error: the work offset " + name + " is unknown" + where +
+           ", so the errors are unknown; set it with --work-offset " + name + ":" + words +
+           " or --parameter-file (0 is allowed, but not assumed)";
+  };
+  EXPECT_EQ(refusal(trial), "part.ngc:3" + message("G54", "", "X=...,Y=...,Z=..."));
   trial.request.work_offsets = {"X=0,Y=0,Z=0"};
-  EXPECT_EQ(
-      refusal(trial),
-      "part.ngc:4:1: error: the work offset G55 is unknown, so the errors are unknown; set it with "
-      "--work-offset G55:X=...,Y=...,Z=... or --parameter-file (0 is allowed, but not assumed)");
+  EXPECT_EQ(refusal(trial), "part.ngc:4:1" + message("G55", "", "X=...,Y=...,Z=..."));
   trial.request.work_offsets = {"X=0,Y=0,Z=0", "G55:X=200"};
-  EXPECT_EQ(
-      refusal(trial),
-      "part.ngc:4:1: error: the work offset G55 is unknown on Y, so the errors are unknown; set it "
-      "with --work-offset G55:Y=... or --parameter-file (0 is allowed, but not assumed)");
-  trial.request.work_offsets = {"X=200,Y=200", "G55:X=200,Y=300,R=10"};
+  EXPECT_EQ(refusal(trial), "part.ngc:4:1" + message("G55", " on Y, Z", "Y=...,Z=..."));
+  trial.request.work_offsets = {"X=200,Y=200,Z=0", "G55:X=200,Y=300,Z=0,R=10"};
   EXPECT_EQ(refusal(trial), "taken");
 }
 
