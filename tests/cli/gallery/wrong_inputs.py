@@ -70,6 +70,7 @@ SCENARIO = [
               ("machine.toml", "lead_mm = 20.0", "lead_mm = 0.0")], "commands": CHECK},
     line("a program parameter without #", '"#101" = 1394.0', '"101" = 1394.0'),
     line("a program parameter that no program has", '"#101" = 1394.0', '"#101" = 1394.0, "#1e9" = 2'),
+    line("a tool as long as none is", "length_mm = 110.0", "length_mm = 1e300"),
     line("a tool twice", "length_mm = 110.0", "length_mm = 110.0\n[[program.tool]]\nnumber = 1\nlength_mm = 90.0"),
     line("an unknown strategy", 'type = "table"', 'type = "tabel"'),
     line("an unknown error model", 'model = "imposed"', 'model = "imposd"'),
