@@ -87,6 +87,17 @@ class Way(unittest.TestCase):
             self.assertIn("exists", done.stderr)
         self.run_in_folder("identify", "record.toml", "--make-up", "recording.csv", status=2)
 
+    def test_a_value_at_its_bound_is_written_as_such_with_exit_status_1(self):
+        with open(self.path("identify.toml"), encoding="utf-8") as file:
+            text = file.read().replace('key = "axis.Y.moving_mass"', 'key = "axis.Y.moving_mass"\nmax = "610 kg"')
+        self.write("bound.toml", text)
+        self.run_in_folder("identify", "bound.toml", "-o", "bound_identified.toml", status=1)
+        keys, _, _ = self.identified("bound_identified.toml")
+        self.assertNotIn("axis.Y.moving_mass", keys)
+        with open(self.path("bound_identified.toml"), encoding="utf-8") as file:
+            self.assertIn('moving_mass = "610 kg"  # at its bound\n', file.read())
+        self.run_in_folder("check", "bound_identified.toml")
+
     def test_faults_of_inputs_come_before_those_of_outputs(self):
         done = self.run_in_folder("identify", "identify.toml", "--recording", "nothing.csv", "-o", "again.toml", status=2)
         self.assertIn("nothing.csv: error: cannot be read", done.stderr)
