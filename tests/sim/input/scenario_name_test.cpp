@@ -97,7 +97,20 @@ TEST_F(ScenarioName, ThatIsWrongIsAnsweredByTheNearest) {
 
 TEST_F(ScenarioName, NearToNoneStaysAPath) {
   EXPECT_EQ(scenario_file("out/of/this/world.toml", {folder_.string()}), "out/of/this/world.toml");
-  EXPECT_EQ(scenario_file("paper/experimant1", {}), "paper/experimant1");
+  EXPECT_EQ(scenario_file("paper/experimant1.toml", {}), "paper/experimant1.toml");
+}
+
+TEST_F(ScenarioName, NeedsAFolderForANameThatIsNoFile) {
+  for (const auto find : {scenario_file, machine_file}) {
+    try {
+      find("paper/experimant1", {});
+      ADD_FAILURE() << "taken";
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(),
+                   "paper/experimant1: error: is no file, and there is no folder of scenarios in "
+                   "which names are looked up: neither scenarios here nor installed ones");
+    }
+  }
 }
 
 }  // namespace
