@@ -178,19 +178,30 @@ Joints lowered(const Joints& planned, const Joints& demands, const Joints& limit
 
 }  // namespace
 
-OffsetLimits::OffsetLimits(std::vector<PathDerivatives> path, double row_period,
+OffsetLimits::OffsetLimits(std::vector<PathRange> path, double row_period,
                            const controllers::JointLimits& limits)
     : limits_{limits.v, limits.a, limits.j}, h_(row_period), path_(std::move(path)) {}
 
-std::vector<PathDerivatives> derivatives_of(const controllers::Trajectory& path,
-                                            const strategies::PathTimes& times) {
-  std::vector<PathDerivatives> out;
+void PathRanges::add(const PathDerivatives& now) {
+  const auto widen = [&](PathRange& range) {
+    for (std::size_t order = 0; order < kOrders; ++order) {
+      range.low[order] = range.low[order].cwiseMin(now[order]);
+      range.high[order] = range.high[order].cwiseMax(now[order]);
+    }
+  };
+  if (!rows_.empty()) widen(rows_.back());
+  if (instants_++ % every_ == 0) rows_.push_back({now, now});
+}
+
+std::vector<PathRange> derivatives_of(const controllers::Trajectory& path,
+                                      const strategies::PathTimes& times) {
+  PathRanges out(times.every);
   controllers::Trajectory::Cursor cursor{};
-  for (std::size_t n = 0; n < times.rows(); ++n) {
-    const auto at = path.at(static_cast<double>(n) * times.row_period(), cursor);
-    out.push_back({at.dQ_ref, at.ddQ_ref, at.dddQ_ref});
+  for (std::size_t n = 0; n < times.s.size(); ++n) {
+    const auto at = path.at(static_cast<double>(n) * times.h, cursor);
+    out.add({at.dQ_ref, at.ddQ_ref, at.dddQ_ref});
   }
-  return out;
+  return out.rows();
 }
 
 controllers::JointLimits OffsetLimits::demands(const std::vector<Joints>& u) const {
@@ -201,28 +212,39 @@ controllers::JointLimits OffsetLimits::demands(const std::vector<Joints>& u) con
     x.insert(x.end(), kBand, u.back()[j]);
     for (std::size_t row = 0; row < x.size(); ++row) {
       const std::size_t n = std::min(row > kBand ? row - kBand : 0, path_.size() - 1);
-      const std::size_t next = std::min(n + 1, path_.size() - 1);
       for (std::size_t order = 0; order < kOrders; ++order) {
         if (!fits(order, row, x.size())) continue;
         const double own = difference(order, x, row) / std::pow(h_, order + 1);
-        for (const std::size_t at : {n, next}) {
-          most[order][j] = std::max(most[order][j], std::abs(path_[at][order][j] + own));
-        }
+        const Range path = of_path(order, n, j);
+        most[order][j] =
+            std::max({most[order][j], std::abs(path.low + own), std::abs(path.high + own)});
       }
     }
   }
   return {most[0], most[1], most[2]};
 }
 
+// Derivative of the path while a difference at a row acts: as the jerk of the offset from this row
+// to the next, as control point of its acceleration one row before, too, of its velocity one row
+// before and one behind.
+OffsetLimits::Range OffsetLimits::of_path(std::size_t order, std::size_t row, int joint) const {
+  const std::size_t first = order < 2 && row > 0 ? row - 1 : row;
+  const std::size_t last = std::min(order < 1 ? row + 1 : row, path_.size() - 1);
+  Range out{path_[row].low[order][joint], path_[row].high[order][joint]};
+  for (std::size_t n = first; n <= last; ++n) {
+    out.low = std::min(out.low, path_[n].low[order][joint]);
+    out.high = std::max(out.high, path_[n].high[order][joint]);
+  }
+  return out;
+}
+
 // Differences of the offset (m, rad) for which the path leaves room at a row. A path on its limit,
 // or beyond it by rounding, leaves none.
 OffsetLimits::Range OffsetLimits::left(std::size_t order, std::size_t row, int joint) const {
   const double scale = std::pow(h_, order + 1);
-  const double here = path_[row][order][joint];
-  const double next = path_[std::min(row + 1, path_.size() - 1)][order][joint];
+  const Range path = of_path(order, row, joint);
   const double limit = (1.0 - kMargin) * limits_[order][joint];
-  return {std::min(0.0, (-limit - std::min(here, next)) * scale),
-          std::max(0.0, (limit - std::max(here, next)) * scale)};
+  return {std::min(0.0, (-limit - path.low) * scale), std::max(0.0, (limit - path.high) * scale)};
 }
 
 // By how much an offset exceeds what is left, as a share of the limit.

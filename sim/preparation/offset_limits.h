@@ -11,22 +11,41 @@
 
 namespace servomill::sim::preparation {
 
-/// Velocity, acceleration and jerk of the joints (5 each; m, rad) in a row.
+/// Velocity, acceleration and jerk of the joints (5 each; m, rad) at an instant.
 using PathDerivatives = std::array<Joints, 3>;
 
-/// Derivatives of a path, row after row.
-std::vector<PathDerivatives> derivatives_of(const controllers::Trajectory& path,
-                                            const strategies::PathTimes& times);
+/// Their smallest and largest values from one row to the next: a jerk may change in between.
+struct PathRange {
+  PathDerivatives low, high;
+};
+
+/// Ranges of a path from its derivatives, instant after instant.
+class PathRanges {
+ public:
+  /// @param every  instants from row to row
+  explicit PathRanges(std::size_t every) : every_(every) {}
+  void add(const PathDerivatives& now);
+  const std::vector<PathRange>& rows() const { return rows_; }
+
+ private:
+  std::size_t every_, instants_ = 0;
+  std::vector<PathRange> rows_;
+};
+
+/// Ranges of the derivatives of a path, row after row.
+std::vector<PathRange> derivatives_of(const controllers::Trajectory& path,
+                                      const strategies::PathTimes& times);
 
 /// A planned path, and what it leaves of the limits to an offset. Derivatives of the path are its
-/// own; those of an offset are differences of its rows, which are its derivatives
+/// own, at every position period; those of an offset are differences of its rows: they are the
+/// jerk from a row to the next, and control points of acceleration and velocity
 /// (strategies/path_offset.h).
 class OffsetLimits {
  public:
   /// @param path  as the axes follow it, row after row
   /// @param row_period  s
   /// @param limits  of the axes; 0 of a joint that the machine lacks
-  OffsetLimits(std::vector<PathDerivatives> path, double row_period,
+  OffsetLimits(std::vector<PathRange> path, double row_period,
                const controllers::JointLimits& limits);
 
   /// Largest velocity, acceleration and jerk of path and offset together.
@@ -58,13 +77,14 @@ class OffsetLimits {
   };
   static constexpr std::size_t kOrders = 3;
 
+  Range of_path(std::size_t order, std::size_t row, int joint) const;
   Range left(std::size_t order, std::size_t row, int joint) const;
   double beyond(const std::vector<double>& u, std::size_t row, int joint) const;
   void bring_within(std::vector<double>& u, std::size_t from, std::size_t to, int joint) const;
 
   std::array<Joints, kOrders> limits_;  // v, a, j
   double h_;                            // s, between two rows
-  std::vector<PathDerivatives> path_;
+  std::vector<PathRange> path_;
 };
 
 /// Share of a limit by which rounding may exceed it.

@@ -147,24 +147,22 @@ void CaseTrials::find_wanted(double delay) {
 }
 
 // Derivatives of the path behind the nominal-position filter, which the axes follow.
-std::vector<PathDerivatives> CaseTrials::followed_path() const {
+std::vector<PathRange> CaseTrials::followed_path() const {
   const controllers::Trajectory& path = setting_.motion.trajectory;
   const model::NcSettings& nc = actual().nc;
   if (nc.filter.length == 0) return derivatives_of(path, *times_);
   engine::Setpoint setpoint(nc, path, {});
   setpoint.settle();
-  std::vector<PathDerivatives> out;
+  PathRanges out(times_->every);
   controllers::Trajectory::Cursor cursor{};
   Joints ddQ = Joints::Zero();
   for (std::size_t n = 0; n < times_->s.size(); ++n) {
     const engine::AxisSetpoint& now =
         setpoint.advance(path.at(static_cast<double>(n) * times_->h, cursor));
-    if (n % times_->every == 0) {
-      out.push_back({now.dQ_ff, now.ddQ_ff, (now.ddQ_ff - ddQ) / times_->h});
-    }
+    out.add({now.dQ_ff, now.ddQ_ff, (now.ddQ_ff - ddQ) / times_->h});
     ddQ = now.ddQ_ff;
   }
-  return out;
+  return out.rows();
 }
 
 Joints CaseTrials::mean_position() const {

@@ -70,7 +70,7 @@ class CaseTrials final : public strategies::TrialRuns {
   }
   void find_times();
   void find_wanted(double delay);
-  std::vector<PathDerivatives> followed_path() const;
+  std::vector<PathRange> followed_path() const;
   double between_rows_at(double f) const;
   Joints mean_position() const;
   std::vector<Joints> seen_by_scales(const records::Series& rows,
