@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/engine/axis_demands.h"
 #include "sim/records/series.h"
 #include "strategies/strategy.h"
 
@@ -39,8 +40,9 @@ struct CaseResult {
   HeatCourse known_heat;              // as a strategy computes it; empty: none does
   std::vector<std::size_t> left_out;  // rows of feed motion outside the windows, by section
   double off_path = 0.0;              // m, CuttingLoad::off_path()
-  double simulated_time = 0.0;        // s
-  double wall_time = 0.0;             // s, of all that ran in lockstep
+  AxisDemands demands;
+  double simulated_time = 0.0;  // s
+  double wall_time = 0.0;       // s, of all that ran in lockstep
 };
 
 }  // namespace servomill::sim::engine

@@ -18,6 +18,19 @@ std::optional<plant::InertialDeflection> structure_of(const model::MachineSettin
   return plant::InertialDeflection(machine.inertial_compliances, machine.nc.periods.base, steps);
 }
 
+Joints position_gains(const model::NcSettings& nc) {
+  Joints Kv;
+  for (int j = 0; j < kJoints; ++j) Kv[j] = nc.cascade[static_cast<std::size_t>(j)].Kv;
+  return Kv;
+}
+
+DemandMeter demand_meter(const CaseInputs& in) {
+  const model::NcSettings& nc = in.machine.nc;
+  const double period = nc.periods.seconds(nc.periods.position);
+  const bool from_readings = in.feedback != nullptr || !in.position_loop_terms.empty();
+  return DemandMeter(period, from_readings ? periods_of_readings(position_gains(nc), period) : 1);
+}
+
 }  // namespace
 
 CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::size_t run,
@@ -36,7 +49,9 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       travel_(in.machine_errors, Joints::Zero()),
       last_ticks_(in.machine.joints()),
       structure_(structure_of(in.machine, schedule)),
-      on_bed_(stands_on_bed(in.machine)) {
+      on_bed_(stands_on_bed(in.machine)),
+      demands_(demand_meter(in)),
+      by_loops_(position_gains(nc_), nc_.periods.seconds(nc_.periods.position)) {
   end_ =
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
@@ -59,12 +74,25 @@ bool CaseRun::command_axes(Tick n) {
   last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_),
                    axes_.current(run_));
   axes_.follow(set_, run_);
+  note_demands(t);
   if (cut_) apply_cutting_force(n);
   if (cut_ && !cut_->fault().empty()) return stop_with(cut_->fault(), t);
   if (heat_ && n > 0 && !heat(n)) return false;
   std::string_view failure = setpoint_.failure();
   if (failure.empty() && in_.feedback) failure = feedback_.failure(run_);
   return failure.empty() || stop_with(failure, t);
+}
+
+// Offset that the position loops are to follow without feed-forward; an axis moves against its
+// virtual displacement.
+Joints CaseRun::lagging_offset() const {
+  const Joints offset = set_.Q_cmd - set_.Q_ref - setpoint_.fed_forward();
+  return in_.feedback ? Joints(offset - axes_.virtual_displacement(run_)) : offset;
+}
+
+void CaseRun::note_demands(double t) {
+  const Joints& lagging = by_loops_.advance(lagging_offset(), added_velocity_);
+  demands_.add(t, set_.Q_ref, setpoint_.fed_forward() + lagging);
 }
 
 bool CaseRun::add_velocity(Tick n) {
@@ -80,6 +108,7 @@ bool CaseRun::add_velocity(Tick n) {
     sum += velocity;
   }
   axes_.add_velocity(sum, run_);
+  added_velocity_ = sum;
   return true;
 }
 
@@ -147,6 +176,7 @@ CaseResult CaseRun::finish(Tick n) {
   result_.simulated_time = nc_.periods.seconds(n);
   result_.servo = recorder_.take();
   result_.left_out = recorder_.left_out();
+  result_.demands = demands_.demands();
   if (heat_) std::move(*heat_).take_courses(result_);
   if (cut_) result_.off_path = cut_->off_path();
   if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
@@ -197,6 +227,8 @@ void CaseRun::initialise_at_rest() {
     rest = at_standstill(set_.Q_cmd, [&](const Joints& Q) { return feedback_.settle(run_, Q); });
   }
   axes_.settle(rest.Q, rest.d, run_);
+  by_loops_.start(lagging_offset());
+  demands_.start(set_.Q_ref, rest.Q - set_.Q_ref);
   for (const PositionLoopTerm& term : in_.position_loop_terms) term.part->settle(reading_at(0.0));
   if (in_.cutting != nullptr) cut_.emplace(in_).start(recorded_.at(0.0));
   if (structure_) structure_->start(axes_.Q_true(run_));

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "plant/structure/inertial_deflection.h"
+#include "sim/engine/axis_demands.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/feedback_lanes.h"
 #include "sim/engine/heat_run.h"
@@ -58,6 +59,8 @@ class CaseRun {
   CaseResult finish(Tick n);
 
  private:
+  Joints lagging_offset() const;
+  void note_demands(double t);
   void apply_cutting_force(Tick n);
   Eigen::Vector3d inertial_deflection() const;
   bool heat(Tick n);
@@ -81,6 +84,9 @@ class CaseRun {
   std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   Tick end_ = 0;
   AxisSetpoint set_;
+  DemandMeter demands_;
+  LoopDisplacement by_loops_;               // without feed-forward
+  Joints added_velocity_ = Joints::Zero();  // by strategies, in the position period before
   CaseResult result_;
 };
 

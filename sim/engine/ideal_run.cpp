@@ -14,7 +14,8 @@ IdealRun::IdealRun(CaseInputs& in)
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
                 in.keeping, in.teeth != nullptr, in.records_orientation, in.windows),
       travel_(in.machine_errors, Joints::Zero()),
-      motion_(periods_.seconds(periods_.position)) {
+      motion_(periods_.seconds(periods_.position)),
+      demands_(periods_.seconds(periods_.position)) {
   if (in.machine.heat) {
     heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors, in.known_heat);
     setpoint_.read_temperatures(heat_->reading());
@@ -31,10 +32,12 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
   recorder_.expect(static_cast<std::size_t>(end / periods_.seconds(in_.record_period) + 1.0));
   Tick n = 0;
   AxisSetpoint set = setpoint_.settle();
-  travel_ = {in_.machine_errors, Q_true_of(set)};
+  const Joints rest = Q_true_of(set);
+  demands_.start(set.Q_ref, rest - set.Q_ref);
+  travel_ = {in_.machine_errors, rest};
   if (in_.cutting != nullptr) cut_.emplace(in_).start(reference_at(0));
   if (structure_) {
-    motion_.start(Q_true_of(set));
+    motion_.start(rest);
     structure_->start(motion_.Q());
   }
   if (!in_.stops_with.empty()) {
@@ -57,17 +60,17 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     if (!goes_on(in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (cut_ && !cut(n, set, in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
-    const bool is_recorded = n % in_.record_period == 0;
-    if (!is_recorded && !travel_.matters() && !structure_) continue;
     const Joints Q_true = Q_true_of(set);
+    demands_.add(t, set.Q_ref, Q_true - set.Q_ref);
     travel_.go_to(Q_true);
     if (structure_ && n > 0) bend(Q_true);
-    if (is_recorded) record(n, set, Q_true);
+    if (n % in_.record_period == 0) record(n, set, Q_true);
   }
   result.simulated_time = periods_.seconds(n);
   result.servo = recorder_.take();
   result.left_out = recorder_.left_out();
   result.saturations = std::move(saturations_);
+  result.demands = demands_.demands();
   if (heat_) std::move(*heat_).take_courses(result);
   if (cut_) result.off_path = cut_->off_path();
   return result;

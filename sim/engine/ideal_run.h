@@ -9,6 +9,7 @@
 
 #include "controllers/path/trajectory.h"
 #include "plant/structure/inertial_deflection.h"
+#include "sim/engine/axis_demands.h"
 #include "sim/engine/case_parts.h"
 #include "sim/engine/heat_run.h"
 #include "sim/engine/recorder.h"
@@ -44,6 +45,7 @@ class IdealRun {
   TravelDirections travel_;
   std::optional<CutAlongPath> cut_;
   SampledMotion motion_;
+  DemandMeter demands_;
   std::optional<plant::InertialDeflection> structure_;
   std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   std::vector<strategies::Saturation> saturations_;

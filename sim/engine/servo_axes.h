@@ -134,6 +134,10 @@ class ServoAxes {
   void get_readings(JointLanes& Q_meas, std::size_t first = 0) const;
   /// Positions as the position loops read them last.
   Joints Q_fb(std::size_t run = 0) const { return joints_of(&ServoState::Q_fb, run); }
+  /// Virtual displacements that act on the readings (5; m, rad).
+  Joints virtual_displacement(std::size_t run = 0) const {
+    return gathered(servo_inputs_, &ServoInputs::virtual_displacement, run);
+  }
   Joints Q_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::x, run); }
   Joints dQ_true(std::size_t run = 0) const { return drives_of(&plant::DriveBlock::v, run); }
   /// Accelerations by all forces on the slides at this instant (5; m/s^2, rad/s^2).

@@ -27,6 +27,8 @@ class Setpoint {
   const AxisSetpoint& settle();
   /// Time by which the filter delays the reference (s).
   double delay() const { return delay_; }
+  /// Offsets of strategies in the setpoint that are fed forward (5; m, rad).
+  const Joints& fed_forward() const { return fed_forward_; }
 
   /// Setpoint for what the trajectory asks for, one position period after the call before.
   /// @param t, Q_fb  s, and what the position loops read last: for strategies that look

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
+#include "sim/evaluation/axis_demand.h"
 #include "sim/model/tolerance.h"
 #include "sim/records/series.h"
 
@@ -45,6 +46,7 @@ struct CaseData {
   std::vector<std::size_t> left_out = {};
   std::shared_ptr<const SpindleMotion> spindle = {};  // as the program turns it
   std::optional<DayFigures> day = {};                 // none: no day, or one without parts
+  std::vector<AxisDemand> demands = {};               // of the axes
 };
 
 /// One line of the printed comparison.

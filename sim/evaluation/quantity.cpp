@@ -5,6 +5,7 @@
 
 #include "sim/evaluation/circular_quantities.h"
 #include "sim/evaluation/day_quantities.h"
+#include "sim/evaluation/demand_quantities.h"
 #include "sim/evaluation/path_quantities.h"
 #include "sim/evaluation/probe_quantities.h"
 #include "sim/evaluation/r_test_quantities.h"
@@ -18,7 +19,7 @@ std::span<const QuantityEntry> quantities() {
     std::vector<QuantityEntry> all;
     for (const auto family :
          {path_quantities(), uncertainty_quantities(), circular_quantities(), r_test_quantities(),
-          probe_quantities(), spindle_quantities(), day_quantities()}) {
+          probe_quantities(), spindle_quantities(), day_quantities(), demand_quantities()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

@@ -98,10 +98,7 @@ class Lessons {
     refuse_beyond_travel(*lesson.offset);
     const controllers::JointLimits demands = runs.limits().demands(lesson.offset->offset);
     if (keeps(demands, one_.prepare.limits())) return false;
-    if (setup_.limit != strategies::OffsetLimit::slow || is_last) {
-      one_.warnings.push_back(beyond_limits(demands));
-      return false;
-    }
+    if (setup_.limit != strategies::OffsetLimit::slow || is_last) return false;
     limits = lowered(limits, demands, one_.prepare.limits());
     return true;
   }
@@ -175,26 +172,6 @@ class Lessons {
 
   std::string note(const std::string& text) const {
     return fmt::format("case {}: strategy {}: {}", one_.spec.name, spec_.entry->name, text);
-  }
-
-  std::string beyond_limits(const controllers::JointLimits& demands) const {
-    const controllers::JointLimits limits = one_.prepare.limits();
-    std::vector<std::string> beyond;
-    const auto look = [&](const Joints& asked, const Joints& limit, const char* what,
-                          const char* per) {
-      for (const int j : machine().joints()) {
-        const double excess = asked[j] / limit[j] - 1.0;
-        if (excess <= kLimitRounding) continue;
-        beyond.push_back(fmt::format("{} of {} by {:.2g} % of {:g} {}{}", what,
-                                     machine().chain.layout.letter_of(j), 100.0 * excess, limit[j],
-                                     j < kLinearJoints ? "m" : "rad", per));
-      }
-    };
-    look(demands.v, limits.v, "velocity", "/s");
-    look(demands.a, limits.a, "acceleration", "/s2");
-    look(demands.j, limits.j, "jerk", "/s3");
-    return "warning: " +
-           note(fmt::format("path and offset together exceed limits: {}", fmt::join(beyond, ", ")));
   }
 
   std::string other_duration(const PlannedMotion& unhindered) const {

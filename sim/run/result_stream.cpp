@@ -110,6 +110,7 @@ void write_result(const engine::CaseResult& result, ProcessPipe& to) {
   write(to, result.left_out.size());
   for (const std::size_t rows : result.left_out) write(to, rows);
   write(to, result.off_path);
+  write(to, result.demands);
   write(to, result.simulated_time);
 }
 
@@ -132,6 +133,7 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   result.left_out.resize(from.read<std::size_t>());
   for (std::size_t& rows : result.left_out) rows = from.read<std::size_t>();
   result.off_path = from.read<double>();
+  result.demands = from.read<engine::AxisDemands>();
   result.simulated_time = from.read<double>();
   return result;
 }

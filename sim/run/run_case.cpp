@@ -9,6 +9,7 @@
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 #include "sim/run/day_course.h"
+#include "sim/run/demanded_motion.h"
 #include "sim/run/machine_tests.h"
 
 namespace servomill::sim::run {
@@ -44,7 +45,8 @@ evaluation::CaseData CaseOutput::data() const {
           uncertain,
           result.left_out,
           spindle,
-          day && !day->cycles.empty() ? std::optional(figures_of(*day)) : std::nullopt};
+          day && !day->cycles.empty() ? std::optional(figures_of(*day)) : std::nullopt,
+          demands};
 }
 
 CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResult result) {
@@ -56,6 +58,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.duration = p.motion.trajectory.duration();
   out.blocks = p.motion.blocks;
   out.sections = prepared.sections();
+  out.demands = demands_of(p, out.result.demands);
   out.touches = p.program.touches;
   out.spindle = std::make_shared<const evaluation::SpindleMotion>(
       evaluation::spindle_motion(p.program.moves, p.scenario.machine_of(p.spec).nc));
@@ -81,6 +84,7 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   for (std::string& note : notes_of_run(p, out.result)) {
     out.notes.push_back(std::move(note));
   }
+  if (auto note = note_of_demands(p, out.demands)) out.notes.push_back(std::move(*note));
   return out;
 }
 

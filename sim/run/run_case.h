@@ -47,6 +47,7 @@ struct CaseOutput {
   std::shared_ptr<const evaluation::SpindleMotion> spindle;
   std::vector<preparation::Touch> touches;  // of the program's probing moves
   std::vector<LearntRuns> learnt;
+  std::vector<evaluation::AxisDemand> demands;           // of all its axes
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   std::shared_ptr<const DayCourse> day;                  // likewise; or none
   evaluation::CaseData data() const;

@@ -16,6 +16,7 @@
 #include "sim/run/day_course.h"
 #include "sim/run/store_chain.h"
 #include "sim/run/store_day.h"
+#include "sim/run/store_demands.h"
 #include "sim/run/store_errors.h"
 #include "sim/run/store_probes.h"
 #include "sim/run/store_sections.h"
@@ -264,6 +265,7 @@ void RunStore::add(const CaseOutput& one) {
     records::make_nexus_group(learnt, "NXcollection", one.learnt.front().strategy);
     for (const LearntRuns& runs : one.learnt) write_learnt(learnt, runs);
   }
+  if (!one.demands.empty()) write_demands(group.group("demands"), one.demands);
   if (one.day) write_day(group.group("day"), *one.day);
   group.attribute("outcome", one.result.outcome.reason);
   group.attribute("duration_s", one.duration);
@@ -323,6 +325,7 @@ StoredRun read_run(const std::string& path) {
                          probes.empty() ? nullptr : &probes, signal_delay_of(scenario, name),
                          scenario.uncertain, left_out_of(file, group)});
     if (day && !day->cycles.empty()) run.cases.back().day = figures_of(*day);
+    run.cases.back().demands = read_demands(file, group + "/demands");
   }
   return run;
 }

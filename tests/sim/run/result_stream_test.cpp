@@ -79,6 +79,7 @@ TEST(ResultStream, KeepsEveryBit) {
         result->servo = some_series(rows, there);
         result->last_ticks = some_series(3, in_memory);
         result->saturations = {{.joint = 1, .of_rate = true, .limit = 0.1, .first = 0.2}, {}};
+        result->demands.motion[2][4] = {123.0, 0.7};
         result->simulated_time = 1.26;
         const engine::CaseResult got = sent(result, here);
         EXPECT_FALSE(got.outcome.finished);
@@ -86,6 +87,8 @@ TEST(ResultStream, KeepsEveryBit) {
         EXPECT_EQ(got.outcome.reason, result->outcome.reason);
         EXPECT_EQ(got.outcome.axis, 'Y');
         EXPECT_EQ(got.outcome.time, 1.25);
+        EXPECT_EQ(got.demands.motion[2][4].size, 123.0);
+        EXPECT_EQ(got.demands.motion[2][4].time, 0.7);
         EXPECT_EQ(got.simulated_time, 1.26);
         ASSERT_EQ(got.saturations.size(), 2U);
         EXPECT_EQ(got.saturations[0].joint, 1);
