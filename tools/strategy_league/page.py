@@ -15,7 +15,7 @@ SLOWER = 1.02  # factor of the cycle time that a shop would accept
 OFFERS = ("nothing", "tables", "feedback hardware", "open NC")
 COLUMNS = (("tip_rms", "tip rms, um"), ("tip_99", "tip 99 %, um"), ("tip_max", "tip largest, um"), ("axis_rms", "axis rms, urad"),
            ("contour_max", "contour error, um"), ("cycle_time", "cycle time, s"), ("jerk_rms", "jerk rms, m/s3"),
-           ("current_rms", "current rms, A"), ("blocks", "blocks"))
+           ("current_rms", "current rms, A"), ("limits", "of limits, %"), ("blocks", "blocks"))
 MARKERS = {"nothing": "o", "tables": "s", "feedback hardware": "^", "open NC": "D"}
 COLOURS = {"nothing": "#0072b2", "tables": "#e69f00", "feedback hardware": "#009e73", "open NC": "#cc79a7"}
 
@@ -109,8 +109,7 @@ def rows_of(table, job, knowledge):
             yield [one.name, needs, "refused: " + found["refused"]] + [""] * (len(COLUMNS) - 1)
             continue
         name = one.name + (" *" if one in front else "")
-        yield [name, needs, *(cell(found.get(key)) for key, _ in COLUMNS[:-1]),
-               cell(found["blocks"]) + ("" if found.get("keeps_limits", True) else " (exceeds limits)")]
+        yield [name, needs, *(cell(found.get(key)) for key, _ in COLUMNS)]
 
 
 def headings():
@@ -144,7 +143,7 @@ SPREAD = ("Draws of the knowledge: residual errors, drives, structure and heat k
           "identified\", the same for every strategy. 99 % of the tip.")
 NOTES = (
     "Every strategy runs the same program on the same machine with the same knowledge. Judged are all rows of feed motion in the named sections, at equal arc length. "
-    "A star marks strategies that no other one beats in both the 99 % of the tip and the cycle time.",
+    "Of limits is the largest velocity, acceleration or jerk that path and offset together ask an axis for. A star marks strategies that no other one beats in both the 99 % of the tip and the cycle time.",
     "What is chosen below is the smallest 99 % of the tip among the strategies that need no more than the NC offers and measure nothing beside. "
     "Programs (nothing), tables, feedback hardware and an open NC are offered in this order, each with those before.")
 

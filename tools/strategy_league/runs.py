@@ -103,7 +103,6 @@ class Runner:
         found = {"key": key, "job": job.name, "knowledge": knowledge, "strategy": strategy.name, "cutoff_Hz": cutoff}
         if done.returncode == 0:
             found |= measured(result, job.program["sections"])
-            found["keeps_limits"] = "exceed limits" not in done.stderr
         elif done.returncode != 2:
             raise SystemError(f"{scenario}: servomill ended with {done.returncode}: {done.stderr.strip()[-300:]}")
         else:
@@ -138,11 +137,16 @@ def measured(path, sections):
                 "axis_rms": float(np.sqrt(np.mean(across**2)) * 1e6), "contour_max": float(contour.max()),
                 "jerk_rms": float(np.sqrt(np.mean(jerk[rows]**2))),
                 "current_rms": float(np.sqrt(np.mean(np.sum(current**2, axis=1)))),
-                "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"])}
+                "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"]), "limits": demanded(case["demands"])}
+
+
+def demanded(kinds):
+    """Largest velocity, acceleration or jerk that path and offset together ask an axis for, % of its limit."""
+    return max(100.0 * float(np.max(of[what][:] / of[f"{what}_limit"][:])) for of in kinds.values() for what in ("velocity", "acceleration", "jerk"))
 
 
 def measured_of_day(case):
     """Figures of the parts of a day; the largest of each for the 99 %."""
     rms, largest = (case["day/cycles"][name][:] for name in ("rms", "largest"))
     return {"tip_rms": float(np.sqrt(np.mean(rms**2))), "tip_99": float(np.percentile(largest, 99)), "tip_max": float(largest.max()),
-            "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"])}
+            "cycle_time": float(case.attrs["duration_s"]), "blocks": float(case.attrs["blocks"]), "limits": demanded(case["demands"])}
