@@ -126,13 +126,18 @@ TEST(FiveAxes, ReportWhatASingularDirectionLeaves) {
   EXPECT_LT(left.axis, without.axis);
   // reported at the identified worst place
   const CaseOutput out = run_named_case(scenario, "feedback");
-  ASSERT_EQ(out.notes.size(), 1U);
-  EXPECT_NE(out.notes.front().find("small.ngc:5: warning: case feedback: strategy feedback cannot "
-                                   "correct "),
-            std::string::npos)
+  // C rotates fast there, beyond its acceleration
+  ASSERT_EQ(out.notes.size(), 2U);
+  EXPECT_NE(out.notes.front().find("path and offset together exceed limits: "), std::string::npos)
       << out.notes.front();
-  testing::Test::RecordProperty("note", out.notes.front());
-  EXPECT_TRUE(run_named_case(five_axes(), "feedback").notes.empty());
+  EXPECT_NE(out.notes.back().find("small.ngc:5: warning: case feedback: strategy feedback cannot "
+                                  "correct "),
+            std::string::npos)
+      << out.notes.back();
+  testing::Test::RecordProperty("note", out.notes.back());
+  for (const std::string& note : run_named_case(five_axes(), "feedback").notes) {
+    EXPECT_EQ(note.find("cannot correct"), std::string::npos) << note;
+  }
 }
 
 // A rotary axis that corrects the tool axis lags like the others do, by 1/Kv and what the hardware

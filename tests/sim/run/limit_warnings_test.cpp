@@ -112,17 +112,19 @@ TEST(EndOfATable, IsToldWhereTheProgramGoesOn) {
                                    one_case("both", table + "from_mm = -15.0\nto_mm = 155.0\n"));
   EXPECT_EQ(note_of(run_named_case(scenario, "wide")), "none");
   const CaseOutput one = run_named_case(scenario, "short");
-  ASSERT_EQ(one.notes.size(), 1U);  // points every 10 mm: the last one at 60
-  EXPECT_TRUE(one.notes[0].ends_with(
+  // points every 10 mm: the last one at 60. At its end the offset changes at once
+  ASSERT_EQ(one.notes.size(), 2U);
+  EXPECT_NE(one.notes[0].find("case short: path and offset together exceed limits: "),
+            std::string::npos);
+  EXPECT_TRUE(one.notes[1].ends_with(
       "small.ngc:7: warning: case short: strategy table: the table over X ends at 60.0000 mm, the "
       "program continues to 150.0000 mm; beyond the end the last value is used"))
-      << one.notes[0];
-  EXPECT_TRUE(
-      note_of(run_named_case(scenario, "both"))
-          .ends_with(
-              "small.ngc:5: warning: case both: strategy table: the table over X ends at -15.0000 "
-              "mm, the program continues to -20.0000 mm; beyond the end the last value is used"))
-      << note_of(run_named_case(scenario, "both"));
+      << one.notes[1];
+  const CaseOutput both = run_named_case(scenario, "both");
+  EXPECT_TRUE(both.notes.back().ends_with(
+      "small.ngc:5: warning: case both: strategy table: the table over X ends at -15.0000 "
+      "mm, the program continues to -20.0000 mm; beyond the end the last value is used"))
+      << both.notes.back();
 }
 
 // EYX = 1 um/mm: 7 mm away Y is wrong by 7 um everywhere.
