@@ -35,6 +35,8 @@ struct Entry {
   bool corrects_heat = false;     ///< true: errors by temperature, of a machine with heat
   bool imposes = true;            ///< false: its `action` can only be to compensate
   bool runs_program = false;      ///< true: it has the program run before it acts
+  /// Parameters of these runs that recordings of actual ones stand for; empty: it reads none.
+  std::span<const std::string_view> recorded_instead = {};
   /// True if the thermal network of the known machine is computed for it
   /// (TemperatureReading::bodies); nullptr: it never is.
   bool (*computes_heat)(const Parameters&) = nullptr;

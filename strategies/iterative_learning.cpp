@@ -157,9 +157,10 @@ Lesson learn(const LearningPlan& plan, const JointLayout& layout, TrialRuns& run
       PathOffset{times, std::vector<Joints>(times->rows(), Joints::Zero())});
   Lesson out{u, {}};
   double best = 0.0;
-  Stage stage(plan.takes_best ? "trial runs at most" : "trial runs", plan.setup.runs,
+  const int count = runs.recorded() > 0 ? runs.recorded() : plan.setup.runs;
+  Stage stage(plan.takes_best ? "trial runs at most" : "trial runs", count,
               plan.takes_best ? Steps::unlike : Steps::alike);
-  for (int k = 0; k < plan.setup.runs; ++k) {
+  for (int k = 0; k < count; ++k) {
     TrialRun run = runs.run(u);
     stage.advance();
     if (!run.stopped.empty()) {

@@ -10,6 +10,7 @@ namespace servomill::strategies {
 namespace {
 
 constexpr std::array<std::string_view, 2> kSeen = {"tip", "scales"};
+constexpr std::array<std::string_view, 3> kRecordedInstead = {"updates", "sees", "noise_um"};
 
 const std::array<ParameterSpec, 10>& specs() {
   static const std::array<ParameterSpec, 10> kSpecs = {{
@@ -78,6 +79,7 @@ Entry learning_entry() {
   entry.corrects_following = true;
   entry.reads_errors = false;
   entry.runs_program = true;
+  entry.recorded_instead = kRecordedInstead;
   return entry;
 }
 

@@ -53,9 +53,12 @@ class TrialRuns {
   /// machine as the strategy knows it, and of that on which the program runs.
   virtual std::complex<double> known_response(int joint, double f) const = 0;
   virtual std::complex<double> response(int joint, double f) const = 0;
+  /// Number of runs that were recorded, which are all there are; 0: as many as are asked for.
+  virtual int recorded() const { return 0; }
   /// The offset as the limits of the axes admit it.
   virtual std::vector<Joints> admissible(std::vector<Joints> offset) const = 0;
-  /// Runs the program with an offset. Each run has noise of its own.
+  /// Runs the program with an offset. Each run has noise of its own. Recorded runs come in their
+  /// order, whatever the offset.
   virtual TrialRun run(const std::shared_ptr<const PathOffset>& offset) = 0;
 };
 

@@ -227,7 +227,7 @@ points_mm = [[0, 0, 0, 0, 0, 1]]
 name = "nominal"
 work_offset = { C_deg = 0.0 }
 machine_errors = ""
-strategy = [{ type = "learning", machine = { nc = { Kv = 60.0 } } }]
+strategy = [{ type = "learning", machine = { nc = { Kv = 60.0 } }, recording = [{ file = "run.csv", measured = { X = "a" }, reference = { X = "r" } }, { file = "run.h5", case = "one" }] }]
 [[case]]
 name = "other"
 wear = 1.5

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/known_name.h"
+#include "sim/input/read_recorded_runs.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim::input {
@@ -145,6 +146,7 @@ const config::Value* read_strategy(config::Reader& table, std::span<const std::s
     }
     read_parameter(table, parameter, strategy.parameters);
   }
+  if (!strategy.entry->recorded_instead.empty()) read_recorded_runs(table, strategy);
   if (strategy.entry->uses_feedback_hardware && spec.needs_feedback_hardware()) {
     table.fault("type",
                 "a case has only one feedback hardware: this is the second strategy that uses it");

@@ -61,6 +61,15 @@ struct ProgramSpec {
   const std::string& text() const { return *shared_text; }
 };
 
+/// Recording of an actual run, as a strategy learns from it. Channels by the letters of axes.
+struct RecordedRunSpec {
+  std::string file;
+  Place place;
+  std::map<char, std::string> measured;   // positions as the scales read them
+  std::map<char, std::string> reference;  // positions as the NC interpolated them, without offset
+  std::string case_name;                  // of a result file, in place of channels
+};
+
 struct StrategySpec {
   const strategies::Entry* entry = nullptr;
   Parameters parameters;
@@ -68,7 +77,8 @@ struct StrategySpec {
   std::string model;  // name of the identified error model
   // that a strategy which runs the program knows; nullptr: that of the case
   std::shared_ptr<const MachineSettings> machine;
-  Place place;                                           // for what the strategy itself refuses
+  std::vector<RecordedRunSpec> recordings;  // in the order of the runs; empty: it makes its own
+  Place place;                              // for what the strategy itself refuses
   std::map<std::string, Place, std::less<>> key_places;  // of the parameters that are given
 };
 

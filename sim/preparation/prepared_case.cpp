@@ -68,7 +68,7 @@ struct PreparedCase::Parts {
   double distance_of_plan = 0.0;                         // m, of nominal points from the part
   std::vector<std::string> warnings = {};                // margins, limits of strategies
   std::string stops_with = {};  // why a plug-in could not rewrite the program
-  std::vector<std::vector<servomill::strategies::TrialFigures>> trials = {};  // of each strategy
+  std::vector<servomill::strategies::Lesson> lessons = {};  // of each strategy
 
   const model::MachineSettings& machine() const { return scenario.machine_of(spec); }
   SharedMoves apply_strategies(const CasePreparation& prepare);
@@ -152,10 +152,10 @@ LearningCase PreparedCase::Parts::learning(const CasePreparation& prepare) {
 
 // Strategies that learn do so from runs with those before and behind them, one after the other.
 void PreparedCase::Parts::teach(const CasePreparation& prepare) {
-  LearningCase lessons = learning(prepare);
-  trials.resize(strategies.size());
+  LearningCase taught = learning(prepare);
+  lessons.resize(strategies.size());
   for (std::size_t k = 0; k < strategies.size(); ++k) {
-    if (learns(k)) trials[k] = preparation::teach(lessons, k);
+    if (learns(k)) lessons[k] = preparation::teach(taught, k);
   }
 }
 
@@ -201,9 +201,9 @@ PreparedCase::PreparedCase(const model::Scenario& scenario, const model::CaseSpe
 TrialRunsToCome PreparedCase::trial_runs() const {
   const Parts& p = *parts_;
   TrialRunsToCome out;
-  if (!p.trials.empty()) return out;  // they have taken place
+  if (!p.lessons.empty()) return out;  // they have taken place
   for (std::size_t k = 0; k < p.strategies.size(); ++k) {
-    if (!p.learns(k)) continue;
+    if (!p.learns(k) || !p.spec.strategies[k].recordings.empty()) continue;
     const servomill::strategies::TrialSetup setup = p.strategies[k]->learning()->trials();
     out.number += setup.runs;
     out.motion += setup.runs * duration() / setup.feed;
@@ -319,7 +319,7 @@ PreparedParts PreparedCase::parts() const {
   const Parts& p = *parts_;
   return {p.scenario,        p.spec,          *p.program,      *p.motion,          p.strategies,
           p.rewritten.get(), p.cutting.get(), p.imposed.get(), p.distance_of_plan, p.warnings,
-          p.trials};
+          p.lessons};
 }
 
 const std::string& PreparedCase::stops_with() const { return parts_->stops_with; }

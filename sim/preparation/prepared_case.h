@@ -37,8 +37,8 @@ struct PreparedParts {
   const plant::VolumetricModel* imposed;  // nullptr: no errors are imposed
   double distance_of_plan;                // m, of nominal points from the part
   std::span<const std::string> warnings;  // of margins that strategies leave
-  // of each strategy the runs that it has learnt from
-  std::span<const std::vector<strategies::TrialFigures>> trials;
+  // of each strategy the runs that it has learnt from, and its offset
+  std::span<const strategies::Lesson> lessons;
 };
 
 /// Runs of the program of a case from which its strategies have yet to learn.

@@ -36,6 +36,12 @@ class Lessons {
         planned_(one.motion) {}
 
   void refuse() const {
+    if (!spec_.recordings.empty()) {
+      if (setup_.limit == strategies::OffsetLimit::slow) {
+        throw InputError({}, "limits = \"slow\" plans another path than the one that was recorded");
+      }
+      recordings();
+    }
     if (setup_.as_program) {
       refuse_rewritten_probing(spec_, *one_.program, one_.spec.name);
       refuse_tip_moves(spec_, *untaught_, *one_.program, one_.scenario.program.file,
@@ -45,19 +51,19 @@ class Lessons {
     check_known_machine();
   }
 
-  std::vector<strategies::TrialFigures> take() {
+  strategies::Lesson take() {
     const SharedMotion unhindered = one_.motion;
     controllers::JointLimits limits = one_.prepare.limits();
-    std::vector<strategies::TrialFigures> trials;
+    strategies::Lesson lesson;
     if (setup_.feed != 1.0) plan(limits);
-    for (int plans = 1; learn(trials, limits, plans == kPlans); ++plans) plan(limits);
+    for (int plans = 1; learn(lesson, limits, plans == kPlans); ++plans) plan(limits);
     if (setup_.feed != 1.0) {
       const bool lowers = setup_.limit == strategies::OffsetLimit::slow;
       one_.motion =
           lowers ? one_.prepare.motion(planned_->moves, *one_.program, limits) : unhindered;
     }
     if (one_.motion != unhindered) one_.warnings.push_back(other_duration(*unhindered));
-    return trials;
+    return lesson;
   }
 
  private:
@@ -72,8 +78,7 @@ class Lessons {
   // Learns on the path as it is planned.
   // @param limits  with which; takes those with which to plan it anew
   // @return true if it is to be planned anew
-  bool learn(std::vector<strategies::TrialFigures>& trials, controllers::JointLimits& limits,
-             bool is_last) {
+  bool learn(strategies::Lesson& lesson, controllers::JointLimits& limits, bool is_last) {
     const model::MachineSettings& known = spec_.machine ? *spec_.machine : machine();
     const SharedModel errors =
         setup_.on_actual ? one_.machine_errors : one_.prepare.model(spec_.model, known.chain);
@@ -90,10 +95,10 @@ class Lessons {
                                  act_with(offset);
                                  return one_.inputs(runs_on, *errors, components);
                                }};
-    CaseTrials runs(setting);
-    strategies::Lesson lesson = learner_.learn(runs);
+    CaseTrials runs(setting, recordings());
+    note_unrecorded(runs);
+    lesson = learner_.learn(runs);
     act_with(lesson.offset);
-    trials = std::move(lesson.trials);
     if (setup_.as_program) return false;  // its plan keeps the limits
     refuse_beyond_travel(*lesson.offset);
     const controllers::JointLimits demands = runs.limits().demands(lesson.offset->offset);
@@ -101,6 +106,27 @@ class Lessons {
     if (setup_.limit != strategies::OffsetLimit::slow || is_last) return false;
     limits = lowered(limits, demands, one_.prepare.limits());
     return true;
+  }
+
+  bool is_recorded() const { return !spec_.recordings.empty(); }
+
+  std::vector<RecordedRun> recordings() const {
+    std::vector<RecordedRun> out;
+    for (const model::RecordedRunSpec& one : spec_.recordings) {
+      out.push_back(read_recorded_run(one, machine().chain.layout));
+    }
+    return out;
+  }
+
+  void note_unrecorded(const CaseTrials& runs) const {
+    if (!is_recorded()) return;
+    for (const int j : machine().joints()) {
+      const auto& joints = runs.joints();
+      if (std::find(joints.begin(), joints.end(), j) != joints.end()) continue;
+      if (j >= kLinearJoints && !setup_.turns) continue;
+      one_.warnings.push_back(note(fmt::format("axis {} is not recorded and gets no offset",
+                                               machine().chain.layout.letter_of(j))));
+    }
   }
 
   // The plan of the original program, where another strategy has rewritten it; else nullptr.
@@ -122,7 +148,7 @@ class Lessons {
                                  ? &other < &spec_  // later ones have not learnt yet
                                  : other.entry->reads_errors || other.entry->corrects_inertia ||
                                        !other.entry->corrects_following;
-      if (setup_.sees_tip || !displaces) continue;
+      if ((setup_.sees_tip && !is_recorded()) || !displaces) continue;
       throw InputError({}, fmt::format("sees = \"scales\" would take back what {} displaces; use "
                                        "\"tip\", or one of the two",
                                        other.entry->name));
@@ -213,7 +239,7 @@ void refuse_lessons(LearningCase& one, std::size_t number) {
   with_place(one, number, [&] { Lessons(one, number).refuse(); });
 }
 
-std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number) {
+strategies::Lesson teach(LearningCase& one, std::size_t number) {
   return with_place(one, number, [&] { return Lessons(one, number).take(); });
 }
 

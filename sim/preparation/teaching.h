@@ -42,8 +42,8 @@ void refuse_lessons(LearningCase& one, std::size_t number);
 
 /// The strategy of that number learns, and then acts with its offset.
 /// @pre    refuse_lessons() did not throw
-/// @return its runs
+/// @return its runs, and the offset
 /// @throws InputError
-std::vector<strategies::TrialFigures> teach(LearningCase& one, std::size_t number);
+strategies::Lesson teach(LearningCase& one, std::size_t number);
 
 }  // namespace servomill::sim::preparation

@@ -8,79 +8,27 @@
 #include <numbers>
 #include <utility>
 
-#include "plant/kinematics/chain.h"
-#include "plant/sensing/noise.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
-#include "strategies/pose_compensation.h"
 
 namespace servomill::sim::preparation {
 namespace {
 
-constexpr double kMaxRows = 1e6;              // some 0.5 GB
-constexpr std::uint32_t kNoiseStream = 1000;  // beyond those of the encoders
-
-// Columns of a recorded signal of all axes, joint by joint.
-class JointColumns {
- public:
-  JointColumns(const records::Series& rows, const JointLayout& layout, const std::string& name)
-      : rows_(rows) {
-    for (int j = 0; j < kJoints; ++j) {
-      if (!layout.has(j)) continue;
-      columns_[static_cast<std::size_t>(j)] =
-          rows.column(name + (j < kLinearJoints ? "_linear" : "_rotary"), layout.letter_of(j));
-    }
-  }
-  Joints at(std::size_t row) const {
-    Joints out = Joints::Zero();
-    for (int j = 0; j < kJoints; ++j) {
-      const auto& column = columns_[static_cast<std::size_t>(j)];
-      if (column) out[j] = rows_.at(row, *column) * (j < kLinearJoints ? mm : deg);
-    }
-    return out;
-  }
-
- private:
-  const records::Series& rows_;
-  std::array<std::optional<std::size_t>, kJoints> columns_;
-};
-
-// Three columns of a recorded signal.
-class VectorColumns {
- public:
-  VectorColumns(const records::Series& rows, const char* name, const char* labels) : rows_(rows) {
-    for (std::size_t k = 0; k < 3; ++k) columns_[k] = *rows.column(name, labels[k]);
-  }
-  Eigen::Vector3d at(std::size_t row) const {
-    return {rows_.at(row, columns_[0]), rows_.at(row, columns_[1]), rows_.at(row, columns_[2])};
-  }
-
- private:
-  const records::Series& rows_;
-  std::array<std::size_t, 3> columns_{};
-};
-
-// Value between two rows.
-template <class At>
-auto between_rows(double row, const At& at) {
-  const auto n = static_cast<std::size_t>(row);
-  const double f = row - static_cast<double>(n);
-  auto value = at(n);
-  if (f > 0.0) value += f * (at(n + 1) - value);
-  return value;
-}
+constexpr double kMaxRows = 1e6;  // some 0.5 GB
 
 }  // namespace
 
-CaseTrials::CaseTrials(const TrialSetting& setting) : setting_(setting) {
+CaseTrials::CaseTrials(const TrialSetting& setting, std::vector<RecordedRun> recordings)
+    : setting_(setting), recordings_(std::move(recordings)) {
   for (const int j : actual().joints()) {
     if (j < kLinearJoints || setting.setup.turns) joints_.push_back(j);
   }
   find_times();
+  if (!recordings_.empty()) take_recorded_joints();
   const model::NcSettings& nc = actual().nc;
   find_wanted(engine::Setpoint(nc, setting.motion.trajectory, {}).delay());
   limits_.emplace(followed_path(), times_->row_period(),
@@ -88,9 +36,10 @@ CaseTrials::CaseTrials(const TrialSetting& setting) : setting_(setting) {
   if (setting.spec.servo == model::ServoModel::ideal) return;
   const Tick reading_delay = setting.scenario.reading_delay_of(setting.spec);
   std::optional<Joints> tip_at;
-  if (setting.setup.sees_tip) tip_at = mean_position();
+  if (sees_tip()) tip_at = mean_position();
   known_ = {setting.known, joints_, reading_delay, tip_at};
-  running_ = &machine() == &setting.known
+  // of the machine that was recorded nothing else is known
+  running_ = &machine() == &setting.known || !recordings_.empty()
                  ? known_
                  : OffsetResponses(machine(), joints_, reading_delay, tip_at);
 }
@@ -214,6 +163,7 @@ std::vector<Joints> CaseTrials::admissible(std::vector<Joints> offset) const {
 
 strategies::TrialRun CaseTrials::run(const std::shared_ptr<const strategies::PathOffset>& offset) {
   ++runs_;
+  if (!recordings_.empty()) return recorded_run(recordings_[static_cast<std::size_t>(runs_ - 1)]);
   model::MachineSettings machine = this->machine();
   for (std::size_t j = 0; j < kJoints; ++j) {
     machine.scale[j] = machine.scale[j].in_run(static_cast<std::uint64_t>(runs_));
@@ -266,57 +216,6 @@ std::vector<double> CaseTrials::places_of(const controllers::Trajectory& run,
     out[n] = between ? r - (after - wanted) / (after - before) : r;
   }
   return out;
-}
-
-std::vector<Joints> CaseTrials::seen_by_scales(const records::Series& rows,
-                                               const std::vector<double>& places) const {
-  const JointColumns measured(rows, actual().chain.layout, "meas");
-  std::vector<Joints> out;
-  for (std::size_t n = 0; n < wanted_.size(); ++n) {
-    out.push_back(between_rows(places[n], [&](std::size_t row) { return measured.at(row); }) -
-                  wanted_[n].Q);
-  }
-  return out;
-}
-
-std::vector<Joints> CaseTrials::seen_at_tip(const records::Series& rows,
-                                            const std::vector<double>& places) const {
-  const VectorColumns tip(rows, "tool_position_true", "XYZ"), axis(rows, "tool_axis_true", "IJK");
-  std::vector<Joints> out;
-  for (std::size_t n = 0; n < wanted_.size(); ++n) {
-    const Eigen::Vector3d p = between_rows(places[n], [&](std::size_t row) { return tip.at(row); });
-    const Eigen::Vector3d k =
-        between_rows(places[n], [&](std::size_t row) { return axis.at(row); });
-    out.push_back(in_joints(wanted_[n], {p * mm, k.normalized()}));
-  }
-  return out;
-}
-
-// Displacement of the joints that would put the ideal machine where the tool was seen.
-Joints CaseTrials::in_joints(const Wanted& wanted, const ToolPose& seen) const {
-  const plant::MachineChain& chain = actual().chain;
-  const ToolPose ideal = plant::forward(chain, wanted.Q, wanted.p_ST);
-  const Eigen::Vector3d off = seen.p_WT - ideal.p_WT;
-  if (setting_.setup.turns) {
-    return strategies::displacement_for(chain, wanted.Q, wanted.p_ST, setting_.setup.sigma_0, off,
-                                        seen.k_W - ideal.k_W);
-  }
-  Joints out = Joints::Zero();
-  out.head<kLinearJoints>() = plant::least_squares(plant::linear_jacobian(chain, wanted.Q), off).x;
-  return out;
-}
-
-void CaseTrials::add_noise(std::vector<Joints>& deviation) const {
-  if (setting_.setup.noise == 0.0) return;
-  const std::uint64_t seed = actual().scale[0].in_run(static_cast<std::uint64_t>(runs_)).seed();
-  for (std::size_t n = 0; n < deviation.size(); ++n) {
-    for (const int j : joints_) {
-      if (j >= kLinearJoints) continue;
-      deviation[n][j] += setting_.setup.noise *
-                         plant::white_noise({seed, kNoiseStream + static_cast<std::uint32_t>(j)}, 0,
-                                            static_cast<Tick>(n))[0];
-    }
-  }
 }
 
 }  // namespace servomill::sim::preparation

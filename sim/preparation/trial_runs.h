@@ -14,6 +14,7 @@
 #include "sim/preparation/offset_limits.h"
 #include "sim/preparation/offset_response.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/preparation/recorded_run.h"
 #include "strategies/trial_runs.h"
 
 namespace servomill::sim::engine {
@@ -45,12 +46,14 @@ struct TrialSetting {
 class CaseTrials final : public strategies::TrialRuns {
  public:
   /// @param setting  must outlive this
-  explicit CaseTrials(const TrialSetting& setting);
+  /// @param recordings  that take the place of runs; empty: none
+  explicit CaseTrials(const TrialSetting& setting, std::vector<RecordedRun> recordings = {});
   ~CaseTrials() override;
 
   std::shared_ptr<const strategies::PathTimes> times() const override { return times_; }
   const std::vector<bool>& in_feed() const override { return in_feed_; }
   const std::vector<int>& joints() const override { return joints_; }
+  int recorded() const override { return static_cast<int>(recordings_.size()); }
   std::complex<double> known_response(int joint, double f) const override;
   std::complex<double> response(int joint, double f) const override;
   std::vector<Joints> admissible(std::vector<Joints> offset) const override;
@@ -68,7 +71,11 @@ class CaseTrials final : public strategies::TrialRuns {
   const model::MachineSettings& machine() const {
     return setting_.setup.on_actual ? actual() : setting_.known;
   }
+  bool sees_tip() const { return setting_.setup.sees_tip && recordings_.empty(); }
   void find_times();
+  void take_recorded_joints();
+  PlannedInstants planned_instants() const;
+  strategies::TrialRun recorded_run(const RecordedRun& run) const;
   void find_wanted(double delay);
   std::vector<PathRange> followed_path() const;
   double between_rows_at(double f) const;
@@ -82,6 +89,7 @@ class CaseTrials final : public strategies::TrialRuns {
   void add_noise(std::vector<Joints>& deviation) const;
 
   const TrialSetting& setting_;
+  std::vector<RecordedRun> recordings_;
   Tick row_period_ = 1;
   std::shared_ptr<strategies::PathTimes> times_;
   std::vector<Wanted> wanted_;  // row by row

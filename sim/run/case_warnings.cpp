@@ -105,7 +105,7 @@ std::string note_of(const preparation::PreparedParts& one, const strategies::Sat
 
 // Deviations in the runs that a strategy has learnt from.
 std::string note_of_trials(const preparation::PreparedParts& one, std::size_t number) {
-  const std::vector<strategies::TrialFigures>& trials = one.trials[number];
+  const std::vector<strategies::TrialFigures>& trials = one.lessons[number].trials;
   std::vector<std::string> rms;
   for (const strategies::TrialFigures& run : trials)
     rms.push_back(fmt::format("{:.3g}", run.rms / um));
@@ -200,8 +200,8 @@ std::vector<std::string> notes_of_run(const preparation::PreparedParts& one,
   std::vector<std::string> out;
   for (const Fault& warning : one.program.warnings) out.push_back(note_of(warning));
   out.insert(out.end(), one.warnings.begin(), one.warnings.end());
-  for (std::size_t k = 0; k < one.trials.size(); ++k) {
-    if (!one.trials[k].empty()) out.push_back(note_of_trials(one, k));
+  for (std::size_t k = 0; k < one.lessons.size(); ++k) {
+    if (!one.lessons[k].trials.empty()) out.push_back(note_of_trials(one, k));
   }
   if (const auto shifted = shifted_program(one)) out.push_back(note_of(*shifted));
   if (one.cutting != nullptr) {

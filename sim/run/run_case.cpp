@@ -66,9 +66,9 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
   out.frame = model::work_frame(out.chain, p.scenario.program.work_offset + p.spec.work_offset);
   out.uncertain = p.scenario.uncertain;
   out.signal_delay = p.scenario.signal_delay_of(p.spec);
-  for (std::size_t k = 0; k < p.trials.size(); ++k) {
-    if (p.trials[k].empty()) continue;
-    out.learnt.push_back({std::string(p.spec.strategies[k].entry->name), p.trials[k]});
+  for (std::size_t k = 0; k < p.lessons.size(); ++k) {
+    if (p.lessons[k].trials.empty()) continue;
+    out.learnt.push_back({std::string(p.spec.strategies[k].entry->name), p.lessons[k]});
   }
   if (!p.scenario.probes.empty() && out.result.outcome.finished) probe(p, out);
   if (out.result.outcome.finished) {

@@ -24,10 +24,10 @@ namespace servomill::sim::run {
 struct TestResult;  // sim/run/machine_tests.h
 struct DayCourse;   // sim/run/day_course.h
 
-/// Runs of the program that a strategy has learnt from before the case ran.
+/// Runs of the program that a strategy has learnt from before the case ran, and its offset.
 struct LearntRuns {
   std::string strategy;
-  std::vector<strategies::TrialFigures> figures;  // run after run
+  strategies::Lesson lesson;
 };
 
 struct CaseOutput {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 #include <optional>
 #include <system_error>
 
@@ -18,6 +17,7 @@
 #include "sim/run/store_day.h"
 #include "sim/run/store_demands.h"
 #include "sim/run/store_errors.h"
+#include "sim/run/store_learnt.h"
 #include "sim/run/store_probes.h"
 #include "sim/run/store_sections.h"
 #include "sim/run/store_series.h"
@@ -39,22 +39,6 @@ void write_row(records::Hdf5Group& group, const evaluation::ComparisonRow& row) 
   group.attribute("reference", row.reference);
   group.attribute("basis", row.basis);
   if (!row.note.empty()) group.attribute("note", row.note);
-}
-
-// Deviations in the runs that a strategy has learnt from.
-void write_learnt(records::Hdf5Group& all, const LearntRuns& learnt) {
-  std::vector<double> rms, largest;
-  for (const strategies::TrialFigures& run : learnt.figures) {
-    rms.push_back(run.rms / um);
-    largest.push_back(run.largest / um);
-  }
-  records::Hdf5Group group = all.group(learnt.strategy);
-  std::vector<double> numbers(rms.size());
-  std::iota(numbers.begin(), numbers.end(), 1.0);
-  group.counts("run", numbers, {"1", "number of the run, counted from 1"});
-  group.list("rms", rms, {"um", "deviation from the interpolated path in feed motion, rms"}, "run");
-  group.list("largest", largest, {"um", "the same, largest"}, "run");
-  records::make_nexus_data(group, {"rms", {"run"}, {"largest"}});
 }
 
 // Recorded signals in a file, read when they are asked for.
@@ -263,7 +247,7 @@ void RunStore::add(const CaseOutput& one) {
   if (!one.learnt.empty()) {
     records::Hdf5Group learnt = group.group("learnt");
     records::make_nexus_group(learnt, "NXcollection", one.learnt.front().strategy);
-    for (const LearntRuns& runs : one.learnt) write_learnt(learnt, runs);
+    for (const LearntRuns& runs : one.learnt) write_learnt(learnt, runs, one.chain.layout);
   }
   if (!one.demands.empty()) write_demands(group.group("demands"), one.demands);
   if (one.day) write_day(group.group("day"), *one.day);

@@ -26,7 +26,7 @@ TEST(UntaughtCases, HaveTheirTrialRunsBeforeThem) {
   EXPECT_EQ(cases[1].trial_runs().number, 2);
   EXPECT_EQ(cases[2].trial_runs().number, 3);
   EXPECT_DOUBLE_EQ(cases[2].trial_runs().motion, 3.0 * cases[2].duration());
-  EXPECT_TRUE(cases[1].parts().trials.empty());
+  EXPECT_TRUE(cases[1].parts().lessons.empty());
 }
 
 TEST(TaughtCases, HaveMadeTheirTrialRuns) {
@@ -34,8 +34,8 @@ TEST(TaughtCases, HaveMadeTheirTrialRuns) {
   std::vector<PreparedCase> cases = prepare_untaught(scenario);
   teach(scenario, cases);
   EXPECT_EQ(cases[1].trial_runs().number, 0);
-  ASSERT_EQ(cases[1].parts().trials.size(), 1u);
-  EXPECT_FALSE(cases[1].parts().trials[0].empty());
+  ASSERT_EQ(cases[1].parts().lessons.size(), 1u);
+  EXPECT_FALSE(cases[1].parts().lessons[0].trials.empty());
 }
 
 // The estimate before them is longer by as many runs as there are.

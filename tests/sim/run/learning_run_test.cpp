@@ -167,8 +167,8 @@ Noise noise_of(const Filter& filter) {
     rows += 3.0;
   }
   out.moves = std::sqrt(out.moves / rows);
-  out.seen = noisy.learnt[0].figures.back().rms / um;
-  of_silent = silent.learnt[0].figures.back().rms / um;
+  out.seen = noisy.learnt[0].lesson.trials.back().rms / um;
+  of_silent = silent.learnt[0].lesson.trials.back().rms / um;
   EXPECT_LT(of_silent, 0.1 * kNoise);
   const model::CaseSpec& spec = *scenario.find_case("noisy");
   const preparation::OffsetResponses P(scenario.machine_of(spec), {0, 1, 2},

@@ -1,0 +1,64 @@
+#include "sim/input/read_recorded_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "sim/input/scenario_document.h"
+
+namespace servomill::sim::input {
+namespace {
+
+constexpr std::string_view kLetters = "XYZABC";
+
+// { X = "s actual X", Y = "s actual Y" }
+std::map<char, std::string> read_channels(config::Reader& run, const char* key) {
+  std::map<char, std::string> out;
+  config::Reader table = run.table(key);
+  for (const std::string& name : table.keys()) {
+    if (name.size() != 1 || kLetters.find(name[0]) == std::string_view::npos) continue;  // unread
+    out.emplace(name[0], table.text(name));
+  }
+  return out;
+}
+
+model::RecordedRunSpec read_run(config::Reader& run) {
+  model::RecordedRunSpec out;
+  const std::size_t before = run.faults();
+  const std::string file = run.text("file");
+  out.place = run.place("file");
+  if (run.faults() == before && file.empty()) run.fault("file", "must name a recording");
+  out.file = beside(out.place, file);
+  if (run.has("case")) {
+    out.case_name = run.text("case");
+    return out;
+  }
+  out.measured = read_channels(run, "measured");
+  out.reference = read_channels(run, "reference");
+  const auto same_axis = [](const auto& a, const auto& b) { return a.first == b.first; };
+  if (run.faults() == before &&
+      (out.measured.empty() ||
+       !std::equal(out.measured.begin(), out.measured.end(), out.reference.begin(),
+                   out.reference.end(), same_axis))) {
+    run.fault("reference", "must name a channel for the axes of 'measured', at least one");
+  }
+  return out;
+}
+
+}  // namespace
+
+void read_recorded_runs(config::Reader& table, model::StrategySpec& strategy) {
+  for (config::Reader& run : table.tables_or_none("recording")) {
+    strategy.recordings.push_back(read_run(run));
+  }
+  if (strategy.recordings.empty()) return;
+  for (const std::string_view key : strategy.entry->recorded_instead) {
+    if (!strategy.key_places.contains(key)) continue;
+    table.fault(key, "is not used with [[case.strategy.recording]]: the recordings are the runs");
+  }
+}
+
+}  // namespace servomill::sim::input

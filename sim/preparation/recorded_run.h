@@ -1,0 +1,49 @@
+/// Recording of an actual run of a program, against the path as it is planned.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "plant/vocabulary/axes.h"
+#include "sim/model/scenario.h"
+
+namespace servomill::sim::preparation {
+
+/// Readings and setpoints of one run, sample by sample (5; m, rad; 0 of joints without).
+struct RecordedRun {
+  std::string file;
+  std::vector<double> t;  // s, ascending
+  std::vector<Joints> measured, reference;
+  std::vector<int> joints;  // that are recorded, in rising order
+};
+
+/// @throws InputError: no such channel, no unit of length or angle, another base than the others,
+///         a sample that is missing, an axis that the machine lacks
+RecordedRun read_recorded_run(const model::RecordedRunSpec& spec, const JointLayout& layout);
+
+/// A path as it is planned, position period after position period.
+struct PlannedInstants {
+  double h = 0.0;            // s
+  std::vector<Joints> Q;     // (5; m, rad), as the NC interpolates and filters it
+  std::vector<bool> feeds;   // in feed motion
+  std::vector<int> lines;    // of the program
+  std::size_t end = 0;       // instant at which the motion ends; it stands behind
+  std::string program = {};  // its file
+};
+
+/// Finds the planned instant of each sample by the position of its reference: the nearest around
+/// the instant that its time would give after the sample before, never before that one; farther
+/// ahead where none is near, as after a dwell of another length.
+/// @throws InputError if it is not a recording of this path, at this feed, from its start to its
+///         end
+std::vector<double> instants_of(const RecordedRun& run, const PlannedInstants& path,
+                                const JointLayout& layout);
+
+/// Readings minus reference at the instants 0, every, 2 every, ..., linear between samples; behind
+/// the last sample that of it.
+/// @param instants  of the samples
+std::vector<Joints> deviations_at(const RecordedRun& run, const std::vector<double>& instants,
+                                  std::size_t every, std::size_t rows);
+
+}  // namespace servomill::sim::preparation
