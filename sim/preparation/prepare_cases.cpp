@@ -55,7 +55,7 @@ std::vector<PreparedCase> prepare_untaught(const model::Scenario& scenario,
 
 void teach(const model::Scenario& scenario, std::vector<PreparedCase>& cases,
            PreparationCache* cache) {
-  const auto learns = [](const PreparedCase& one) { return one.trial_runs().number > 0; };
+  const auto learns = [](const PreparedCase& one) { return one.has_to_learn(); };
   const auto learning = std::count_if(cases.begin(), cases.end(), learns);
   if (learning == 0) return;
   Stage lessons("cases that learn", static_cast<double>(learning), Steps::unlike);

@@ -211,6 +211,15 @@ TrialRunsToCome PreparedCase::trial_runs() const {
   return out;
 }
 
+bool PreparedCase::has_to_learn() const {
+  const Parts& p = *parts_;
+  if (!p.lessons.empty()) return false;
+  for (std::size_t k = 0; k < p.strategies.size(); ++k) {
+    if (p.learns(k)) return true;
+  }
+  return false;
+}
+
 void PreparedCase::teach(PreparationCache* cache) {
   PreparationCache own;
   parts_->teach({parts_->scenario, parts_->spec, cache != nullptr ? *cache : own});

@@ -61,6 +61,8 @@ class PreparedCase {
 
   const model::CaseSpec& spec() const;
   TrialRunsToCome trial_runs() const;
+  /// True until teach() was called, if a strategy learns: from runs or from recordings of them.
+  bool has_to_learn() const;
   /// Has the strategies learn from runs of its program, which may take long.
   /// @param cache  as that of the constructor
   /// @throws InputError

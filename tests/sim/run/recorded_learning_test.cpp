@@ -148,6 +148,20 @@ TEST_F(RecordedLearning, GivesTheOffsetThatTheSameRunGivesWhenItIsSimulated) {
               0.01 * um);
 }
 
+// Recordings need no trial runs, and are learnt from where cases are run as a user runs them.
+TEST_F(RecordedLearning, TakesPlaceInARunOfTheScenario) {
+  kept(kPlain, "plain", "run_1.h5");
+  const model::Scenario scenario = small_scenario(
+      kProgram, kLagging + kEveryPeriod + kPlain +
+                    learning("one", "limits = \"ignore\"\n" + recording("run_1.h5", "plain")));
+  const RunOutput all = run_scenario(scenario, {});
+  ASSERT_EQ(all.cases.size(), 2U);
+  ASSERT_EQ(all.cases[1].learnt.size(), 1U);
+  EXPECT_EQ(all.cases[1].learnt[0].lesson.trials.size(), 1U);
+  EXPECT_GT(largest(all.cases[1].learnt[0]), 20 * um);
+  EXPECT_EQ(check_scenario(scenario).trial_runs, 0);
+}
+
 // The second run is made with the offset that the first has taught.
 TEST_F(RecordedLearning, GoesOnFromRunToRun) {
   const std::string from = "limits = \"ignore\"\n";
