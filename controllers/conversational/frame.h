@@ -5,9 +5,11 @@
 #include <array>
 #include <string>
 
-#include "controllers/conversational/gcode_lines.h"
+#include "controllers/translation/gcode_lines.h"
 
 namespace servomill::controllers::conversational {
+
+using translation::Point;
 
 /// work = shift + rotation * mirror * scale * program; rotary axes are shifted and mirrored only.
 struct Frame {

@@ -27,15 +27,29 @@
 #include <utility>
 #include <vector>
 
-#include "controllers/conversational/contour_path.h"
 #include "controllers/conversational/frame.h"
-#include "controllers/conversational/gcode_lines.h"
 #include "controllers/conversational/program_file.h"
 #include "controllers/conversational/q_parameters.h"
 #include "controllers/conversational/words.h"
 #include "controllers/gcode/program_setup.h"
+#include "controllers/translation/contour_path.h"
+#include "controllers/translation/gcode_lines.h"
 
 namespace servomill::controllers::conversational {
+
+using translation::arc_of_radius;
+using translation::ContourPath;
+using translation::Element;
+using translation::Feed;
+using translation::GcodeLine;
+using translation::GcodeLines;
+using translation::Motion;
+using translation::plane_axes;
+using translation::Run;
+using translation::sweep_between;
+using translation::tangential_arc;
+using translation::Values;
+using translation::word;
 
 /// Words of a positioning block.
 struct Positioning {
@@ -273,7 +287,7 @@ class Translator {
 
   ProgramSetup setup_;
   GcodeLines lines_;
-  ContourPath path_{lines_};
+  ContourPath path_{lines_, {"RL and RR", "R0", "FMAX", "F", "RND R", "CHF "}};
   QParameters parameters_;
   std::vector<Fault> warnings_;
   std::set<std::string> warned_;

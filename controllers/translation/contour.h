@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 
 using Point = Eigen::Vector2d;
 
@@ -59,4 +59,4 @@ double position_on(const Element& element, const Point& point, double near);
 Element cut_at_begin(Element element, const Point& begin);
 Element cut_at_end(Element element, const Point& end);
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation

@@ -1,7 +1,7 @@
 /// Path of the tool along a contour: RND and CHF between elements, radius compensation, approach
 /// and departure. An element is held back until the next one is known. All lengths in mm.
 ///
-/// Radius compensation, RL and RR:
+/// Radius compensation, RL and RR (G41 and G42):
 /// (1) The block that switches it on moves in a straight line to the point one tool radius to the
 ///     side of the start of the next element, perpendicular to it (M); the block that switches it
 ///     off starts one tool radius to the side of the end of the last element.
@@ -16,12 +16,13 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "controllers/conversational/gcode_lines.h"
+#include "controllers/translation/gcode_lines.h"
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 
 /// Approach (APPR) or departure (DEP): a line along the tangent (LT) or the normal (LN), an arc
 /// (CT), or a line and an arc (LCT).
@@ -40,9 +41,19 @@ struct Run {
   Place place;
 };
 
+/// Names in the language of the program, for messages.
+struct ContourWords {
+  std::string_view compensation;  // "RL and RR"
+  std::string_view cancel;        // "R0"
+  std::string_view rapid;         // "FMAX"
+  std::string_view feed;          // "F": what to write instead
+  std::string_view rounding;      // "RND R", before a number
+  std::string_view chamfer;       // "CHF ", likewise
+};
+
 class ContourPath {
  public:
-  explicit ContourPath(GcodeLines& lines) : lines_(lines) {}
+  ContourPath(GcodeLines& lines, const ContourWords& words) : lines_(lines), words_(words) {}
 
   void add(Motion motion);
   /// Adds a line of G-code after the motions added so far.
@@ -83,6 +94,7 @@ class ContourPath {
   void move_on(const Run& run, const Element& arc, const Feed& feed);
 
   GcodeLines& lines_;
+  ContourWords words_;
   std::optional<Motion> held_;      // written once no RND or CHF can follow
   std::vector<Entry> behind_held_;  // entries after `held_` without motion in the plane
   std::optional<Corner> corner_;
@@ -95,4 +107,4 @@ class ContourPath {
   std::vector<Entry> waiting_;     // entries after `entry_`, `approach_` or `last_`
 };
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation

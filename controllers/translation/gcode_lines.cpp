@@ -1,4 +1,4 @@
-#include "controllers/conversational/gcode_lines.h"
+#include "controllers/translation/gcode_lines.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -72,4 +72,4 @@ void GcodeLines::put(const Motion& motion) {
   if (motion.feed.kind == Feed::Kind::time) put("G94", motion.place);
 }
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation

@@ -1,5 +1,5 @@
-/// Lines of G-code translated from conversational blocks. They are written in LinuxCNC's language,
-/// so that every reader of G-code accepts them. Numbers are in mm, degrees and mm/min.
+/// Lines of G-code translated from blocks in another language. They are written in LinuxCNC's
+/// language, so that every reader of G-code accepts them. Numbers are in mm, degrees and mm/min.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 #include <string>
 #include <string_view>
 
-#include "controllers/conversational/contour.h"
 #include "controllers/gcode/program_text.h"
+#include "controllers/translation/contour.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 
 /// Positions of axes in mm and degrees; nullopt: unknown, or not named.
 using Values = std::array<std::optional<double>, kAxisWords>;
@@ -28,11 +28,11 @@ struct Feed {
 struct Motion {
   Values words;                    // end, in the coordinates in which G-code moves
   bool is_incremental = false;     // `words` are distances
-  bool is_machine = false;         // machine coordinates (M91)
+  bool is_machine = false;         // machine coordinates (M91, SUPA)
   int normal = 2;                  // of the plane of contours: 0 YZ, 1 ZX, 2 XY
   std::optional<Element> element;  // in that plane, where both ends are known and differ
   Feed feed;
-  int side = 0;         // of the tool: 1 left of the path (RL), -1 right (RR), 0 on it
+  int side = 0;         // of the tool: 1 left of the path (RL, G41), -1 right (RR, G42), 0 on it
   double radius = 0.0;  // of the tool, mm
   Place place;
 };
@@ -68,4 +68,4 @@ class GcodeLines {
 /// "X10.5": nine decimals, a picometre.
 std::string word(char letter, double value);
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation

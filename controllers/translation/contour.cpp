@@ -1,10 +1,10 @@
-#include "controllers/conversational/contour.h"
+#include "controllers/translation/contour.h"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 namespace {
 
 using std::numbers::pi;
@@ -167,4 +167,4 @@ Element cut_at_end(Element element, const Point& end) {
   return element;
 }
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation

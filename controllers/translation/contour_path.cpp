@@ -1,4 +1,4 @@
-#include "controllers/conversational/contour_path.h"
+#include "controllers/translation/contour_path.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace servomill::controllers::conversational {
+namespace servomill::controllers::translation {
 namespace {
 
 constexpr double kTangential =
@@ -100,7 +100,8 @@ Motion ContourPath::cut_corner(Motion& next) {
   if (corner.is_rounding) {
     const auto to_a = parallel(a, sign * corner.size), to_b = parallel(b, sign * corner.size);
     const auto centre = to_a && to_b ? meeting_point(*to_a, *to_b, a.end) : std::nullopt;
-    if (!centre) fail(corner.place, fmt::format("RND R{:g} does not fit here", corner.size));
+    if (!centre)
+      fail(corner.place, fmt::format("{}{:g} does not fit here", words_.rounding, corner.size));
     between = {foot(a, *centre), foot(b, *centre), true, *centre, 0.0};
     between.sweep = sweep_between(*centre, between.begin, between.end, sign);
   } else {
@@ -110,8 +111,9 @@ Motion ContourPath::cut_corner(Motion& next) {
   }
   if (position_on(a, between.begin, 1.0) < -kPositionTol ||
       position_on(b, between.end, 0.0) > 1.0 + kPositionTol) {
-    fail(corner.place, fmt::format("{}{:g} is longer than the elements at the corner",
-                                   corner.is_rounding ? "RND R" : "CHF ", corner.size));
+    fail(corner.place,
+         fmt::format("{}{:g} is longer than the elements at the corner",
+                     corner.is_rounding ? words_.rounding : words_.chamfer, corner.size));
   }
   a = cut_at_end(a, between.begin);
   b = cut_at_begin(b, between.end);
@@ -166,18 +168,23 @@ void ContourPath::compensate(Motion motion) {
   if (side_ == 0 && !approach_) return begin_compensation(std::move(motion));
   const int side = approach_ ? approach_->side : side_;
   if (motion.side != side) {
-    fail(motion.place, "RL and RR: the other side is active; program a block with R0 in between");
+    fail(motion.place,
+         fmt::format("{}: the other side is active; program a block with {} in between",
+                     words_.compensation, words_.cancel));
   }
   if (!motion.element) {
-    fail(motion.place,
-         "with RL and RR every element must start at a known position and have non-zero length");
+    fail(
+        motion.place,
+        fmt::format("with {} every element must start at a known position and have non-zero length",
+                    words_.compensation));
   }
   join(std::move(motion));
 }
 
 void ContourPath::begin_compensation(Motion motion) {
   if (motion.element && motion.element->is_arc) {
-    fail(motion.place, "RL and RR cannot start on a circle; program a straight line first");
+    fail(motion.place, fmt::format("{} cannot start on a circle; program a straight line first",
+                                   words_.compensation));
   }
   side_ = motion.side;
   entry_ = std::move(motion);
@@ -249,7 +256,8 @@ void ContourPath::round_outside(const Motion& next, const Element& to) {
   corner.element = line(beside_->end, to.begin);
   if (!is_inside) {
     if (corner.feed.kind == Feed::Kind::rapid) {
-      fail(next.place, "FMAX after an outside corner with RL and RR; program F");
+      fail(next.place, fmt::format("{} after an outside corner with {}; program {}", words_.rapid,
+                                   words_.compensation, words_.feed));
     }
     corner.element->is_arc = true;
     corner.element->centre = centre;
@@ -280,7 +288,8 @@ void ContourPath::finish_compensation() {
   if (entry_) {
     const auto beside =
         entry_->element ? parallel(*entry_->element, entry_->side * entry_->radius) : std::nullopt;
-    if (!beside) fail(entry_->place, "RL and RR: no contour element follows");
+    if (!beside)
+      fail(entry_->place, fmt::format("{}: no contour element follows", words_.compensation));
     enter_at(beside->end);
   }
   if (last_) put_last();
@@ -370,4 +379,4 @@ Point ContourPath::depart(const Run& run) {
   return run.target;
 }
 
-}  // namespace servomill::controllers::conversational
+}  // namespace servomill::controllers::translation
