@@ -321,7 +321,8 @@ void Translator::round_or_chamfer(const HeidenhainBlock& block, bool is_rounding
   if (feed && feed->kind != Feed::Kind::per_minute)
     fail(fmt::format("{}: F must be in mm/min", name));
   begin_functions(p);
-  path_.corner(is_rounding, written, feed, place_);
+  using Kind = ContourPath::CornerKind;
+  path_.corner(is_rounding ? Kind::rounding : Kind::chamfer, written, feed, place_);
   last_element_.reset();
   end_functions(p);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "controllers/conversational/translator.h"
+#include "controllers/translation/plane_angles.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers::conversational {
@@ -18,16 +19,6 @@ Eigen::Matrix3d rotation_of(const std::array<double, 3>& angles) {
   };
   return about(2, Eigen::Vector3d::UnitZ()) * about(1, Eigen::Vector3d::UnitY()) *
          about(0, Eigen::Vector3d::UnitX());
-}
-
-// Angles about Z, the new X, the new Z.
-std::array<double, 3> euler_angles(const Eigen::Matrix3d& R) {
-  const double second = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
-  constexpr double kSingular = 1e-12;
-  if (std::abs(std::sin(second)) < kSingular) {
-    return {std::atan2(R(1, 0), R(0, 0)) / deg, R(2, 2) > 0.0 ? 0.0 : 180.0, 0.0};
-  }
-  return {std::atan2(R(0, 2), -R(1, 2)) / deg, second / deg, std::atan2(R(2, 0), R(2, 1)) / deg};
 }
 
 }  // namespace
@@ -191,7 +182,7 @@ void Translator::tilt(const std::array<double, 3>& angles, const std::string& be
   plane_turn_ = turn_of_plane(R, seq);
   is_tool_in_plane_ = behaviour != "STAY" || (R.isIdentity(1e-12) && rotary_axes_are_at_zero());
   if (behaviour != "STAY" && !plane_turn_.empty()) lines_.put(plane_turn_, place_);
-  const std::array<double, 3> euler = euler_angles(R);
+  const std::array<double, 3> euler = translation::euler_angles(R);
   plane_line_ = "G68.2";
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("XYZ"[i], frame_.shift[i]);
   for (std::size_t i = 0; i < 3; ++i) plane_line_ += " " + word("IJK"[i], euler[i]);

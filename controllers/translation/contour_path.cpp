@@ -78,15 +78,16 @@ void ContourPath::note(GcodeLine note) {
   }
 }
 
-void ContourPath::corner(bool is_rounding, double size, const std::optional<Feed>& feed,
+void ContourPath::corner(CornerKind kind, double size, const std::optional<Feed>& feed,
                          const Place& place) {
   if (!held_ || corner_) fail(place, "a contour element in the plane must precede RND and CHF");
-  corner_ = Corner{is_rounding, size, feed, place};
+  corner_ = Corner{kind, size, feed, place};
 }
 
 // Shortens the two elements and returns what comes between them.
 Motion ContourPath::cut_corner(Motion& next) {
-  const Corner corner = *std::exchange(corner_, std::nullopt);
+  Corner corner = *std::exchange(corner_, std::nullopt);
+  const bool is_rounding = corner.kind == CornerKind::rounding;
   Motion& before = *held_;
   Element &a = *before.element, &b = *next.element;
   const auto n = static_cast<std::size_t>(before.normal);
@@ -97,7 +98,7 @@ Motion ContourPath::cut_corner(Motion& next) {
   if (std::abs(turn) < kPositionTol) fail(corner.place, "RND and CHF: there is no corner here");
   const double sign = turn > 0.0 ? 1.0 : -1.0;
   Element between;
-  if (corner.is_rounding) {
+  if (is_rounding) {
     const auto to_a = parallel(a, sign * corner.size), to_b = parallel(b, sign * corner.size);
     const auto centre = to_a && to_b ? meeting_point(*to_a, *to_b, a.end) : std::nullopt;
     if (!centre)
@@ -106,14 +107,14 @@ Motion ContourPath::cut_corner(Motion& next) {
     between.sweep = sweep_between(*centre, between.begin, between.end, sign);
   } else {
     if (a.is_arc || b.is_arc) fail(corner.place, "CHF: both elements must be straight lines");
+    if (corner.kind == CornerKind::chamfer_width) corner.size /= 2.0 * std::cos(turn / 2.0);
     between = line(a.end - corner.size * direction_at_end(a),
                    b.begin + corner.size * direction_at_begin(b));
   }
   if (position_on(a, between.begin, 1.0) < -kPositionTol ||
       position_on(b, between.end, 0.0) > 1.0 + kPositionTol) {
-    fail(corner.place,
-         fmt::format("{}{:g} is longer than the elements at the corner",
-                     corner.is_rounding ? words_.rounding : words_.chamfer, corner.size));
+    fail(corner.place, fmt::format("{}{:g} is longer than the elements at the corner",
+                                   is_rounding ? words_.rounding : words_.chamfer, corner.size));
   }
   a = cut_at_end(a, between.begin);
   b = cut_at_begin(b, between.end);
@@ -268,6 +269,10 @@ void ContourPath::round_outside(const Motion& next, const Element& to) {
 
 void ContourPath::put_last() {
   Motion motion = *last_;
+  if (motion.is_feed_of_contour && beside_->is_arc && motion.feed.kind == Feed::Kind::per_minute) {
+    const double radius = (motion.element->begin - motion.element->centre).norm();
+    motion.feed.value *= (beside_->begin - beside_->centre).norm() / radius;
+  }
   motion.element = *beside_;
   set_end(motion, beside_->end);
   lines_.put(motion);

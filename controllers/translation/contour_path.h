@@ -58,9 +58,12 @@ class ContourPath {
   void add(Motion motion);
   /// Adds a line of G-code after the motions added so far.
   void note(GcodeLine note);
-  /// Adds RND (radius) or CHF (length on each side) between the last element and the next.
+  /// An arc; a line that cuts the same length from each side; a line of a length of its own.
+  enum class CornerKind { rounding, chamfer, chamfer_width };
+  /// Adds a corner between the last element and the next.
+  /// @param size  radius of the arc; length on each side; length of the line
   /// @throws InputError if nothing precedes it
-  void corner(bool is_rounding, double size, const std::optional<Feed>& feed, const Place& place);
+  void corner(CornerKind kind, double size, const std::optional<Feed>& feed, const Place& place);
   void approach(const Run& run);
   /// @return its end point, in the plane
   Point depart(const Run& run);
@@ -71,7 +74,7 @@ class ContourPath {
 
  private:
   struct Corner {
-    bool is_rounding = true;
+    CornerKind kind = CornerKind::rounding;
     double size = 0.0;
     std::optional<Feed> feed;
     Place place;

@@ -34,6 +34,7 @@ struct Motion {
   Feed feed;
   int side = 0;         // of the tool: 1 left of the path (RL, G41), -1 right (RR, G42), 0 on it
   double radius = 0.0;  // of the tool, mm
+  bool is_feed_of_contour = false;  // `feed` is that of the programmed arc, not of the tool centre
   Place place;
 };
 
