@@ -5,16 +5,17 @@
 #include <cmath>
 #include <utility>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/parser.h"
+#include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::controllers {
 
 std::set<std::string> called_subroutines(ProgramText text) {
-  if (conversational::is_conversational(text, Reader::any)) {
-    return conversational::called_programs(std::move(text));
+  const translation::Language language = translation::language_of(text, Reader::any);
+  if (language != translation::Language::gcode) {
+    return translation::called_programs(std::move(text), language);
   }
   if (macro::is_macro_program(text, Reader::any)) return macro::called_programs(std::move(text));
   std::set<std::string> names;

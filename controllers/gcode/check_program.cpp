@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/line_reader.h"
 #include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/other_language.h"
 #include "controllers/gcode/program_text.h"
 #include "controllers/gcode/request.h"
+#include "controllers/translation/translated_program.h"
 
 namespace servomill::controllers {
 namespace {
@@ -65,9 +65,9 @@ std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
 std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
                                  std::vector<Fault>* warnings) {
   std::vector<Fault> faults;
-  const bool is_gcode = !conversational::is_conversational(text, setup.reader) &&
-                        !macro::is_macro_program(text, setup.reader) &&
-                        refused_program(text, setup.reader != Reader::any).empty();
+  const bool is_gcode =
+      translation::language_of(text, setup.reader) == translation::Language::gcode &&
+      !macro::is_macro_program(text, setup.reader) && refused_program(text).empty();
   if (is_gcode) faults = syntax_faults(text, setup);
   const std::string file = text.file();
   try {

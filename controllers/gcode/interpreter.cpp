@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/interpreter_machine.h"
 #include "controllers/gcode/macro/macro_program.h"
 #include "controllers/gcode/message_text.h"
 #include "controllers/gcode/other_language.h"
+#include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/units.h"
 
@@ -308,11 +308,9 @@ void Interpreter::Machine::output() {
 // ------------------------------------------------------------------------------------- public API
 
 Interpreter::Interpreter(ProgramText text, ProgramSetup setup) {
-  if (conversational::is_conversational(text, setup.reader)) {
-    text = conversational::as_gcode(std::move(text), setup);
-  }
+  translation::translate(text, setup);
   if (setup.reader != Reader::linuxcnc) {
-    const std::string refusal = refused_program(text, setup.reader != Reader::any);
+    const std::string refusal = refused_program(text);
     if (!refusal.empty()) throw InputError({text.file(), 1, 1}, refusal);
   }
   if (!macro::is_macro_program(text, setup.reader)) {

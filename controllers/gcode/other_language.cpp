@@ -198,39 +198,6 @@ bool is_report_request(std::string_view line) {
 
 namespace {
 
-bool is_named_by_siemens(const std::string& file, std::string_view first) {
-  constexpr std::size_t kEnding = 4;
-  const auto capitals = [](std::string_view text) {
-    std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(), upper);
-    return out;
-  };
-  const std::string ending =
-      capitals(std::string_view(file).substr(file.size() - std::min(kEnding, file.size())));
-  return ending == ".MPF" || ending == ".SPF" || capitals(first.substr(0, kEnding)) == "%_N_";
-}
-
-std::string siemens_refusal(ProgramText& text) {
-  std::string word;
-  int line_number = 0;
-  for (std::string_view line; word.empty() && text.next(line);) {
-    word = siemens_word(line);
-    if (word.empty() && contains_word(line.substr(0, line.find(';')), "SUPA")) word = "SUPA";
-    line_number = text.number();
-  }
-  text.rewind();
-  if (word.empty()) {
-    return "the name is that of a Siemens program, and only G-code is supported: post-process for "
-           "Fanuc or LinuxCNC, or, since none of its lines begins with a word of Siemens, choose "
-           "the control with --reader";
-  }
-  return fmt::format(
-      "this is a Siemens program (line {} has '{}'), and only G-code is supported: post-process "
-      "for "
-      "Fanuc or LinuxCNC",
-      line_number, word);
-}
-
 // "%PART G71 *": programs of Heidenhain in DIN/ISO begin so, from memory.
 bool is_din_iso(std::string_view first) {
   std::size_t end = first.find_last_not_of(" \t\r*");
@@ -241,18 +208,15 @@ bool is_din_iso(std::string_view first) {
 
 }  // namespace
 
-std::string refused_program(ProgramText& text, bool is_control_chosen) {
+std::string refused_program(ProgramText& text) {
   if (text.is_generated()) return {};
   std::string_view line;
   const std::string first(text.next(line) ? line : std::string_view());
   text.rewind();
-  if (is_din_iso(first)) {
-    return "this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), whose I, J and K "
-           "are positions; only conversational is read: convert it on the control or its "
-           "programming station, or post-process for Fanuc or LinuxCNC";
-  }
-  if (is_control_chosen || !is_named_by_siemens(text.file(), first)) return {};
-  return siemens_refusal(text);
+  if (!is_din_iso(first)) return {};
+  return "this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), whose I, J and K "
+         "are positions; only conversational is read: convert it on the control or its "
+         "programming station, or post-process for Fanuc or LinuxCNC";
 }
 
 namespace {
@@ -304,7 +268,7 @@ std::string other_language(std::string_view line, int column) {
         assigned_name(line));
   }
   if (const std::string word = siemens_word(line); !word.empty()) {
-    return fmt::format("'{}' is a Siemens word; only G-code is supported", word);
+    return fmt::format("'{}' is a Siemens word; use --reader siemens", word);
   }
   for (const std::string_view word : {"GOTO", "IF", "WHILE", "END", "THEN"}) {
     const std::size_t first = line.find_first_not_of("/N0123456789 \t");
@@ -315,7 +279,9 @@ std::string other_language(std::string_view line, int column) {
   }
   if (const std::string_view name = called_name(line); !name.empty()) {
     return fmt::format(
-        "'{}(...)' is a word of Siemens or of the machine builder; only G-code is supported", name);
+        "'{}(...)' is a word of Siemens or of the machine builder; for a program of Siemens use "
+        "--reader siemens",
+        name);
   }
   if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;
   if (std::string text = text_refusal(line); !text.empty()) return text;

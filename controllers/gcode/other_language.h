@@ -13,13 +13,9 @@ namespace servomill::controllers {
 /// @param column  of the character that is no G-code, from 1; 0: unknown
 std::string other_language(std::string_view line, int column);
 
-/// Returns the sentence that refuses a whole program in another language: DIN/ISO of Heidenhain
-/// (%PART G71), or one written for a SINUMERIK: a main program (*.mpf), a subprogram (*.spf), or a
-/// text that begins with its name in the memory of the control, %_N_SHAFT_MPF; else empty. Source:
-/// page 43 of the manual that dialects/siemens_reader.h cites; the endings of files and the first
-/// line of DIN/ISO are from memory.
-/// @param is_control_chosen  by the user, who may so read what is only called as Siemens's are
-std::string refused_program(ProgramText& text, bool is_control_chosen);
+/// Returns the sentence that refuses a whole program in DIN/ISO of Heidenhain (%PART G71), else
+/// empty. The first line of DIN/ISO is from memory.
+std::string refused_program(ProgramText& text);
 
 /// Column of the words behind a ';' that follows a block, "G0 X1.; Y2.", from 1; 0 if there are
 /// none, or if what stands there is a text.

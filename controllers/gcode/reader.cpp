@@ -251,7 +251,8 @@ std::optional<Reader> reader_named(std::string_view name) {
 std::span<const ReaderRuleEntry> reader_rules() { return kRules; }
 
 bool has_rule(Reader reader, ReaderRule rule) {
-  if (reader == Reader::linuxcnc || reader == Reader::heidenhain) return false;
+  if (reader == Reader::linuxcnc || reader == Reader::heidenhain || reader == Reader::siemens)
+    return false;
   return reader == Reader::any || (entry(rule).readers & bit(reader)) != 0;
 }
 

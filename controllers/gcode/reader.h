@@ -13,10 +13,12 @@ namespace servomill::controllers {
 /// The control whose reading of a program counts. `linuxcnc` accepts exactly what LinuxCNC accepts;
 /// `any` accepts beyond that what a control in use accepts, if no two read it differently.
 /// `heidenhain` takes a program for conversational, which `any` does where it begins with BEGIN PGM
-/// or its file is called *.h (controllers/conversational).
-enum class Reader : std::uint8_t { any, linuxcnc, fanuc, haas, mach, grbl, heidenhain };
-inline constexpr std::array<std::string_view, 7> kReaders = {
-    "any", "linuxcnc", "fanuc", "haas", "mach", "grbl", "heidenhain"};
+/// or its file is called *.h (controllers/conversational), and `siemens` for one in the language of
+/// SINUMERIK, which `any` does for files *.mpf and *.spf and for words that only it has
+/// (controllers/siemens).
+enum class Reader : std::uint8_t { any, linuxcnc, fanuc, haas, mach, grbl, heidenhain, siemens };
+inline constexpr std::array<std::string_view, 8> kReaders = {
+    "any", "linuxcnc", "fanuc", "haas", "mach", "grbl", "heidenhain", "siemens"};
 
 /// The reader of that name, or nullopt.
 std::optional<Reader> reader_named(std::string_view name);

@@ -5,6 +5,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/differences.h"
+#include "controllers/siemens/siemens.h"
 #include "sim/config/document.h"
 #include "sim/evaluation/quantity.h"
 #include "strategies/registry.h"
@@ -56,6 +57,12 @@ std::string describe_reader_rules() {
   for (const auto& reading : controllers::conversational::readings()) {
     out += fmt::format(
         "conversational: {}: {}\n  controls: {}\n  --reader: any, heidenhain\n"
+        "  source: {}\n",
+        reading.found, reading.reading, reading.controls, reading.source);
+  }
+  for (const auto& reading : controllers::siemens::readings()) {
+    out += fmt::format(
+        "Siemens: {}: {}\n  controls: {}\n  --reader: any, siemens\n"
         "  source: {}\n",
         reading.found, reading.reading, reading.controls, reading.source);
   }

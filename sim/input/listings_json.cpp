@@ -6,6 +6,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/differences.h"
+#include "controllers/siemens/siemens.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/input/listings.h"
 #include "sim/system/json.h"
@@ -108,6 +109,11 @@ std::vector<std::string> reader_rules_json() {
   for (const auto& one : controllers::conversational::readings()) {
     out.push_back(rule_json(fmt::format("conversational: {}", one.found), one.reading, one.controls,
                             conversational, one.source));
+  }
+  const std::vector<std::string> siemens = {"any", "siemens"};
+  for (const auto& one : controllers::siemens::readings()) {
+    out.push_back(rule_json(fmt::format("Siemens: {}", one.found), one.reading, one.controls,
+                            siemens, one.source));
   }
   for (const controllers::WordDifferenceEntry& one : controllers::word_differences()) {
     for (const controllers::WordReading& reading : one.readings) {

@@ -12,6 +12,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/called_subroutines.h"
 #include "controllers/gcode/reader.h"
+#include "controllers/siemens/siemens.h"
 #include "sim/input/read_cutter.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/scenario_document.h"
@@ -92,6 +93,7 @@ void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
 // "#101", "#<name>" or "Q5"
 bool is_parameter_name(std::string_view key) {
   if (key.starts_with('Q')) return controllers::conversational::is_parameter_name(key);
+  if (controllers::siemens::is_parameter_name(key)) return true;
   if (key.starts_with("#<")) return key.size() > 3 && key.ends_with('>');
   return key.size() > 1 && key.size() < 8 && key[0] == '#' &&
          key.find_first_not_of("0123456789", 1) == std::string_view::npos;
@@ -102,7 +104,10 @@ std::map<std::string, double> read_parameters(config::Reader& table) {
   for (const std::string& key : table.keys()) {
     out[key] = table.real(key, config::kNumber);
     if (!is_parameter_name(key)) {
-      table.fault(key, "must be named #N or #<name>, or QN in a conversational program");
+      table.fault(
+          key,
+          "must be named #N or #<name>, QN in a conversational program, or RN or $NAME in one of "
+          "Siemens");
     }
   }
   return out;
@@ -155,7 +160,9 @@ model::ProgramSpec read_program(config::Reader& table, const model::MachineSetti
   const model::NcSettings& nc = machine.nc;
   program.reader = static_cast<controllers::Reader>(table.choice_or(
       "reader", static_cast<std::size_t>(nc.program_reader), controllers::kReaders));
-  if (!tests.empty() && program.reader == controllers::Reader::heidenhain) {
+  const bool is_of_other_language = program.reader == controllers::Reader::heidenhain ||
+                                    program.reader == controllers::Reader::siemens;
+  if (!tests.empty() && is_of_other_language) {
     if (table.has("reader")) table.fault("reader", "must read G-code, which [[test]] makes");
     program.reader = controllers::Reader::any;
   }

@@ -1,6 +1,7 @@
 #include "sim/input/subroutine_files.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <utility>
@@ -12,12 +13,36 @@ bool is_number(const std::string& name) {
   return !name.empty() && name.find_first_not_of("0123456789") == name.npos;
 }
 
+std::string with_case(std::string text, int (*to)(int)) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [to](char c) { return static_cast<char>(to(static_cast<unsigned char>(c))); });
+  return text;
+}
+
+bool is_of_siemens(const std::string& extension) {
+  const std::string capitals = with_case(extension, std::toupper);
+  return capitals == ".MPF" || capitals == ".SPF";
+}
+
+// Names of programs are in capitals or not, subprograms come before main programs.
+std::vector<std::string> siemens_names(const std::string& name) {
+  std::vector<std::string> names;
+  for (const char* const extension : {".SPF", ".spf", ".MPF", ".mpf"}) {
+    for (const std::string& one :
+         {name, with_case(name, std::toupper), with_case(name, std::tolower)}) {
+      names.push_back(one + extension);
+    }
+  }
+  return names;
+}
+
 // LinuxCNC calls *.ngc, conversational programs call their like. Of controls with O numbers the
 // file of O15 is called O0015.nc, or as its number.
 std::vector<std::string> file_names(const std::string& program_file, const std::string& name) {
   const std::string extension = std::filesystem::path(program_file).extension().string();
   if (extension == ".h") return {name + ".h", name + ".H"};
   if (extension == ".H") return {name + ".H", name + ".h"};
+  if (is_of_siemens(extension)) return siemens_names(name);
   std::vector<std::string> names = {name + ".ngc"};
   if (!is_number(name)) return names;
   constexpr std::size_t kDigits = 4, kDigitsOfHaas = 5;

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/path/feed_reduction.h"
 #include "controllers/path/travel.h"
+#include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/evaluation/nominal_part.h"
 #include "sim/preparation/added_gains.h"
@@ -238,7 +238,7 @@ SharedStrategy CasePreparation::make(const model::StrategySpec& spec,
 
 // A rewritten program is G-code for LinuxCNC, whatever it was before.
 controllers::ProgramSetup CasePreparation::setup_of_rewritten() const {
-  controllers::ProgramSetup setup = controllers::conversational::gcode_setup(
+  controllers::ProgramSetup setup = controllers::translation::gcode_setup(
       program_text(scenario_.program), program_setup(scenario_, spec_));
   setup.reader = controllers::Reader::linuxcnc;
   return setup;

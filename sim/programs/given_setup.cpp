@@ -1,6 +1,5 @@
 #include "sim/programs/given_setup.h"
 
-#include "controllers/conversational/conversational.h"
 #include "sim/programs/compensate/work_knowledge.h"
 
 namespace servomill::sim::programs {
@@ -10,12 +9,13 @@ GivenSetup given_setup(const std::string& program_file, const ProgramInputs& inp
                        const std::vector<std::string>& tool_lengths, const JointLayout* layout) {
   GivenSetup out;
   controllers::ProgramText program = controllers::ProgramText::of_file(program_file);
-  out.is_conversational =
-      controllers::conversational::is_conversational(program, controllers::Reader::any);
   out.given.has_machine = layout != nullptr;
   out.setup = program_setup(inputs, program_file);
+  out.language = controllers::translation::language_of(program, out.setup.reader);
   if (!inputs.parameter_file.empty()) {
-    out.given.has_stored_places = !out.is_conversational;  // M140 MB MAX is read as G28
+    // M140 MB MAX is read as G28
+    out.given.has_stored_places =
+        out.language != controllers::translation::Language::conversational;
     for (AxisFlags& axes : out.given.work_offset) axes.fill(true);
   }
   const GivenWorkOffsets offsets = programs::work_offsets(work_offsets, layout);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controllers/gcode/program_setup.h"
+#include "controllers/translation/translated_program.h"
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/known_positions.h"
 
@@ -17,7 +18,7 @@ inline constexpr double kSomeHeight = 1.23456789;
 struct GivenSetup {
   controllers::ProgramSetup setup;
   GivenPlaces given;
-  bool is_conversational = false;
+  controllers::translation::Language language = controllers::translation::Language::gcode;
 };
 
 /// @param inputs        of the program, with its machine if there is one

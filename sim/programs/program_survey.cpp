@@ -28,6 +28,7 @@ using controllers::ExecutedBlock;
 using controllers::Group;
 using controllers::ProgramSetup;
 using controllers::ProgramText;
+using controllers::translation::Language;
 
 struct SurveyInputs : GivenSetup {
   std::optional<model::MachineSettings> machine;
@@ -56,7 +57,7 @@ class Surveyor {
       : inputs_(inputs),
         out_(out),
         positions_(inputs.given, inputs.setup.start),
-        is_conversational_(inputs.is_conversational) {
+        language_(inputs.language) {
     if (!inputs.machine) return;
     duration_ = std::make_unique<ProgramDuration>(*inputs.machine);
     travel_.emplace(*inputs.machine);
@@ -137,17 +138,19 @@ class Surveyor {
     if (block.request == nullptr) return;
     const auto& words = *block.request;
     const int units = words.code(Group::g_units);
-    if (units >= 0) {
+    if (units >= 0 && language_ != Language::siemens) {
       const std::string of_conversation = units == 200 ? "BEGIN PGM INCH" : "BEGIN PGM MM";
       note_first(out_.units,
-                 is_conversational_ ? of_conversation : controllers::code_name('G', units),
+                 language_ == Language::conversational ? of_conversation
+                                                       : controllers::code_name('G', units),
                  block.line);
     }
     const int code = words.code(Group::g_non_modal);
     if (code == 100 || code == 520 || code == 920) {
-      note_first(out_.shifts, controllers::code_name('G', code), block.line);
+      const bool is_zero = language_ == Language::siemens && code == 100;
+      note_first(out_.shifts, is_zero ? "G500" : controllers::code_name('G', code), block.line);
     }
-    const bool is_retract = is_conversational_ && code == 280;  // M140 MB MAX
+    const bool is_retract = language_ == Language::conversational && code == 280;  // M140 MB MAX
     if (is_retract && out_.unknown_retract == 0) out_.unknown_retract = block.line;
     if (words.code(Group::g_work_system) < 0) return;
     work_system_lines_.try_emplace(block.state->work_system, block.line);
@@ -195,7 +198,7 @@ class Surveyor {
   std::optional<TravelCheck> travel_;
   std::map<int, int> work_system_lines_;  // by MoveKnowledge::work_system; 0: at the start
   int additional_system_ = 0;
-  bool is_conversational_;
+  Language language_;
   bool is_begin_hidden_ = false;  // of the next move: that of a tool of unknown radius
 };
 
@@ -241,14 +244,17 @@ ReaderVerdict verdict(std::size_t reader, const ProgramSetup& setup, const std::
 }  // namespace
 
 std::string system_name(const ProgramSurvey& survey, int system) {
-  return survey.is_conversational ? fmt::format("preset {}", system) : work_system_name(system);
+  if (survey.language == Language::conversational) return fmt::format("preset {}", system);
+  constexpr int kLastNamed = 4;  // G54 ... G57, then G505 ... G509
+  const bool is_numbered = survey.language == Language::siemens && system > kLastNamed;
+  return is_numbered ? fmt::format("G50{}", system) : work_system_name(system);
 }
 
 ProgramSurvey survey_program(const SurveyRequest& request) {
   SurveyInputs inputs = read_inputs(request);
   ProgramSurvey out;
   out.file = request.program_file;
-  out.is_conversational = inputs.is_conversational;
+  out.language = inputs.language;
   out.has_tool_table = !inputs.setup.tools.empty();
   inputs.setup.start[index_of(Axis::Z)] = kSomeHeight;
   inputs.setup.tools.take_any_number();
@@ -269,8 +275,10 @@ ProgramSurvey survey_program(const SurveyRequest& request) {
   for (std::size_t k = 0; k < controllers::kReaders.size(); ++k) {
     const auto reader = static_cast<Reader>(k);
     stage.reach(static_cast<double>(k));
-    if (reader == Reader::any || (reader == Reader::heidenhain && !inputs.is_conversational))
-      continue;
+    const bool is_of_other =
+        (reader == Reader::heidenhain && inputs.language != Language::conversational) ||
+        (reader == Reader::siemens && inputs.language != Language::siemens);
+    if (reader == Reader::any || is_of_other) continue;
     out.readers.push_back(verdict(k, setup, out.file));
   }
   return out;

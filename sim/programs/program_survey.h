@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/program_extent.h"
@@ -57,7 +58,7 @@ struct CycleTime {
 
 struct ProgramSurvey {
   std::string file;
-  bool is_conversational = false;      // words are those of Heidenhain
+  controllers::translation::Language language = controllers::translation::Language::gcode;
   std::vector<FirstUse> units;         // G20, G21; empty: no word names one
   std::vector<FirstUse> work_systems;  // that motion uses: G54 ...
   std::vector<FirstUse> shifts;        // G10, G52, G92

@@ -14,6 +14,8 @@
 namespace servomill::sim::programs {
 namespace {
 
+using controllers::translation::Language;
+
 constexpr std::size_t kLabel = 15;  // columns
 
 std::string_view unit_name(Axis axis) { return is_linear(axis) ? "mm" : "deg"; }
@@ -64,6 +66,9 @@ std::string unit_sentence(const FirstUse& use) {
 }
 
 void add_units(const ProgramSurvey& survey, Text& text) {
+  if (survey.language == Language::siemens) {
+    return text.add("units", "those of its G70, G71, G700 and G710");
+  }
   if (survey.units.empty()) {
     text.add("units", "no G20 or G21: unit of the control; taken as mm");
   }
@@ -89,7 +94,8 @@ std::string tool_text(const SurveyedTool& tool, const ProgramSurvey& survey) {
                                           : "unknown: no tool table given");
   }
   std::vector<std::string> uses;
-  if (tool.is_loaded) uses.emplace_back(survey.is_conversational ? "TOOL CALL" : "M6");
+  if (tool.is_loaded)
+    uses.emplace_back(survey.language == Language::conversational ? "TOOL CALL" : "M6");
   if (tool.uses_length) uses.emplace_back("length");
   if (tool.uses_diameter) uses.emplace_back("diameter");
   const std::string needs = uses.empty() ? "" : fmt::format("; used: {}", fmt::join(uses, ", "));
@@ -107,7 +113,7 @@ void add_tools(const ProgramSurvey& survey, Text& text) {
 void add_work_extent(const ProgramSurvey& survey, Text& text) {
   const ProgramExtent& extent = survey.extent;
   for (const auto& [system, ranges] : extent.work()) {
-    const std::string label = survey.is_conversational
+    const std::string label = survey.language == Language::conversational
                                   ? system_name(survey, system)
                                   : fmt::format("extent {}", system_name(survey, system));
     for (const Axis axis : kAllAxes) {
@@ -220,8 +226,11 @@ std::string tools_needed(const ProgramSurvey& survey) {
   return fmt::format(" (with {} in its tool table)", fmt::join(names, ", "));
 }
 
-std::string_view heidenhain_name() {
-  return controllers::kReaders[static_cast<std::size_t>(controllers::Reader::heidenhain)];
+// The reader of programs in another language than G-code; nullopt: G-code.
+std::optional<controllers::Reader> reader_of(Language language) {
+  if (language == Language::conversational) return controllers::Reader::heidenhain;
+  if (language == Language::siemens) return controllers::Reader::siemens;
+  return std::nullopt;
 }
 
 void add_readers(const ProgramSurvey& survey, Text& text) {
@@ -234,14 +243,16 @@ void add_readers(const ProgramSurvey& survey, Text& text) {
                           : fmt::format("{}{}", fmt::join(names, ", "), tools_needed(survey)));
   for (const ReaderVerdict& one : survey.readers) {
     if (!one.stop) continue;
-    const bool is_of_other_language = survey.is_conversational && one.reader != heidenhain_name();
-    if (is_of_other_language) continue;
+    const auto own = reader_of(survey.language);
+    if (own && one.reader != controllers::kReaders[static_cast<std::size_t>(*own)]) continue;
     text.add("not read by",
              fmt::format("{}: {}: {}", one.reader, to_string(one.stop->place), one.stop->message));
   }
-  if (survey.is_conversational) {
-    text.add("not read by", "controls for G-code: this is Heidenhain conversational");
-  }
+  if (survey.language == Language::gcode) return;
+  text.add("not read by",
+           fmt::format("controls for G-code: this is {}", survey.language == Language::siemens
+                                                              ? "a Siemens program"
+                                                              : "Heidenhain conversational"));
 }
 
 }  // namespace

@@ -13,17 +13,18 @@ void add_program_options(Options& options) {
   };
   options.add()("tools", text("TABLE"), "tool table in LinuxCNC's format, mm");
   options.add()("parameter", texts("#N=NUMBER"),
-                "sets a parameter before the program runs, such as '#101=1394', or Q5=20 in a "
-                "conversational program");
+                "sets a parameter before the program runs, such as '#101=1394', Q5=20 in a "
+                "conversational program, or R5=20 and machine data in one of Siemens");
   options.add()("parameter-file", text("FILE"),
                 "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
   options.add()("subs", texts("FOLDER"),
                 "folders of subroutine files, NAME.ngc for O<NAME> CALL, M98 and G65, NAME.H for "
-                "CALL PGM; the folder of the program is searched first");
+                "CALL PGM, NAME.SPF of Siemens; the folder of the program is searched first");
   options.add()("reader", text("NAME"),
                 "control whose rules the program follows: any (default: LinuxCNC plus what other "
                 "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
-                "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h)");
+                "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h), siemens (any "
+                "takes it from a file *.mpf or *.spf or from words that only it has)");
   options.add()("decimal-point", text("NAME"),
                 "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments "
                 "(X1000 = 1 mm); required with readers fanuc and haas");

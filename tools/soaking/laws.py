@@ -17,7 +17,7 @@ PATIENCE = 300  # s of the wall, of one command on a busy machine
 SANITIZER = re.compile(r"ERROR: \w+Sanitizer|runtime error:|SUMMARY: \w+Sanitizer")
 FAULT = re.compile(r"^[^\n]+: error: ", re.MULTILINE)
 AGREE = 20e-9  # m, between the integrators; whole runs agree to 3 nm
-READERS = ("any", "linuxcnc", "fanuc", "haas", "mach", "grbl", "heidenhain")
+READERS = ("any", "linuxcnc", "fanuc", "haas", "mach", "grbl", "heidenhain", "siemens")
 
 
 class Found(Exception):

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/conversational/conversational.h"
 #include "controllers/gcode/parameters.h"
+#include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
@@ -117,7 +117,7 @@ class Verifier {
   // Positions count from the start, so that two starts show what depends on it.
   void run_linuxcnc(controllers::ProgramSetup setup) {
     // what is written needs no tolerance, but for tools that the user's table holds
-    controllers::ProgramSetup strict = controllers::conversational::gcode_setup(text(), setup);
+    controllers::ProgramSetup strict = controllers::translation::gcode_setup(text(), setup);
     if (!setup.tools.empty()) strict.reader = controllers::Reader::linuxcnc;
     const AxisWords given = setup.start;
     AxisWords other = given;

@@ -41,28 +41,6 @@ std::string fault_in(const std::string& file, const std::string& text, Reader re
   return {};
 }
 
-TEST(OtherLanguage, SiemensProgramsAreRefusedByName) {
-  const std::string refusal =
-      ":1:1: error: the name is that of a Siemens program, and only G-code is supported: "
-      "post-process for Fanuc or LinuxCNC, or, since none of its lines begins with a word of "
-      "Siemens, choose the control with --reader";
-  for (const std::string file : {"SHAFT.MPF", "shaft.mpf", "hole.spf"}) {
-    EXPECT_EQ(fault_in(file, "G0 X1\nM2\n", Reader::any), file + refusal);
-  }
-  EXPECT_EQ(fault_in("p.nc", "%_N_SHAFT_MPF\n;$PATH=/_N_MPF_DIR\nG0 X1\nM2\n", Reader::any),
-            "p.nc" + refusal);
-  EXPECT_EQ(fault_in("shaft.mpf", "G0 X1.\nM2\n", Reader::fanuc), "");
-  EXPECT_EQ(fault_in("mpf", "G0 X1\nM2\n", Reader::any), "");
-}
-
-TEST(OtherLanguage, TheFirstWordOfSiemensIsNamed) {
-  const auto refusal = [](const std::string& text) { return fault_in("a.mpf", text, Reader::any); };
-  const std::string before = "a.mpf:1:1: error: this is a Siemens program (line 2 has '",
-                    behind = "'), and only G-code is supported: post-process for Fanuc or LinuxCNC";
-  EXPECT_EQ(refusal("N1 G0 X1\nN2 G2 X4. CR=2.\nMSG(\"END\")\nM30\n"), before + "CR=" + behind);
-  EXPECT_EQ(refusal("; SUPA=1\nG0 SUPA Z0\nM30\n"), before + "SUPA" + behind);
-}
-
 // I and J are positions there, so the lines must not be taken for G-code.
 TEST(OtherLanguage, DinIsoOfHeidenhainIsRefusedByItsFirstLine) {
   const std::string refusal =
@@ -112,7 +90,7 @@ TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
   EXPECT_EQ(other_language("12 CYCL DEF 200 DRILLING", 1),
             "'CYCL DEF' is Heidenhain conversational; use --reader heidenhain");
   EXPECT_EQ(other_language("N20 T=\"MILL10\" M6", 6),
-            "'T=' is a Siemens word; only G-code is supported");
+            "'T=' is a Siemens word; use --reader siemens");
   EXPECT_EQ(other_language("%x0=posx", 1),
             "'%x0=' is a variable of the sender cncjs, which substitutes it while streaming; write "
             "its value");
@@ -137,7 +115,7 @@ TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
   EXPECT_EQ(refusal("G1 X1 F1\nTOOL CALL 1 Z S1\n"),
             "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; use --reader heidenhain");
   EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
-            "p.nc:1:6: error: 'CYCLE' is a Siemens word; only G-code is supported");
+            "p.nc:1:6: error: 'CYCLE' is a Siemens word; use --reader siemens");
   EXPECT_EQ(
       refusal("G1 X1 F100 E0.5\nM2\n"),
       "p.nc:1:12: error: an E word feeds the extruder of a printer, sets the generator of wire "

@@ -120,14 +120,14 @@ TEST(RuleExamples, WordsOfG15G51AndG68ThatTwoControlsHaveAreRefused) {
 }
 
 TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
-  const std::string siemens = "is a Siemens word; only G-code is supported";
-  EXPECT_EQ(read("N10 T=\"MILL\"\nM2\n", Reader::any, {}).moves,
+  const std::string siemens = "is a Siemens word; use --reader siemens";
+  EXPECT_EQ(read("N10 T=\"MILL\"\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:1:6: error: 'T=' " + siemens);
   EXPECT_EQ(read("G3 X1. Y2. CR=4. F100.\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:1:13: error: 'CR=' " + siemens);
   EXPECT_EQ(read("GROUP_BEGIN(0,\"TOP\")\nM2\n", Reader::any, {}).moves,
             "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens or of the machine builder; "
-            "only G-code is supported");
+            "for a program of Siemens use --reader siemens");
   EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::grbl, {}).moves,
             "p.nc:1:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not "
             "supported; program the arc");

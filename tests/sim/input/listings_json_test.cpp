@@ -17,6 +17,7 @@ TEST(ListingsJson, HaveAnObjectForEveryEntry) {
   EXPECT_EQ(quantities_json().size(), evaluation::quantities().size());
   EXPECT_EQ(reader_rules_json().size(), controllers::reader_rules().size() +
                                             controllers::conversational::readings().size() +
+                                            controllers::siemens::readings().size() +
                                             2 * controllers::word_differences().size());
 }
 

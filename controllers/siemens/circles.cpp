@@ -1,0 +1,309 @@
+// Arcs: G2 and G3 with I J K, CR, AR or polar; CIP, CT; threads and tapping.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controllers/siemens/codes.h"
+#include "controllers/siemens/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::siemens {
+namespace {
+
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
+constexpr double kSamePoint = 1e-6;   // mm
+constexpr double kRadiusFits = 0.01;  // mm, CIRCLE_ERROR_CONST of MD21000 as delivered
+
+Point turned(const Point& v, double angle) {
+  return {std::cos(angle) * v.x() - std::sin(angle) * v.y(),
+          std::sin(angle) * v.x() + std::cos(angle) * v.y()};
+}
+
+}  // namespace
+
+double Translator::coordinate(const Number& number, double now) const {
+  return number.value * unit() + (is_increment(number) ? now : 0.0);
+}
+
+// AP and RP about the pole; one that is left out keeps its value. [F] "Travel commands with polar
+// coordinates"
+std::optional<Point> Translator::polar_point(const Block& block, int normal) {
+  if (!pole_) fail("AP and RP without a pole: program G111 before, in the same frame");
+  const auto now = program_point(normal);
+  const Point ray = now ? Point(*now - *pole_) : Point(Point::Zero());
+  const auto value = [&](const std::optional<Number>& number, std::optional<double>& last,
+                         double factor, double present, const char* name) {
+    if (!number) {
+      if (!last) fail(fmt::format("{} is missing, and none was programmed before", name));
+      return *last;
+    }
+    const bool is_by = number->measure == Measure::incremental;
+    if (is_by && !last && !now)
+      fail(number->place, fmt::format("{}=IC from an unknown position", name));
+    return number->value * factor + (is_by ? last.value_or(present) : 0.0);
+  };
+  polar_radius_ = value(block.RP, polar_radius_, unit(), ray.norm(), "RP");
+  polar_angle_ = value(block.AP, polar_angle_, 1.0, std::atan2(ray.y(), ray.x()) / deg, "AP");
+  return *pole_ + *polar_radius_ * turned(Point(1.0, 0.0), *polar_angle_ * deg);
+}
+
+std::optional<Point> Translator::end_in_plane(const Block& block, const Point& start) {
+  if (block.is_polar()) return polar_point(block, modes_.normal);
+  const auto axes = plane_axes(modes_.normal);
+  Point end = start;
+  bool is_named = false;
+  for (int i = 0; i < 2; ++i) {
+    const auto& number = block.axes[axes[static_cast<std::size_t>(i)]];
+    if (!number) continue;
+    is_named = true;
+    require_same_offset(axes[static_cast<std::size_t>(i)], *number);
+    end[i] = coordinate(*number, start[i]);
+  }
+  return is_named ? std::optional(end) : std::nullopt;
+}
+
+// I, J and K count from the start, with AC from the origin. [F] "Circular interpolation with center
+// point"
+std::optional<Point> Translator::programmed_centre(const Block& block, const Point& start) const {
+  if (!block.has_centre()) {
+    return block.is_polar() ? pole_ : std::nullopt;
+  }
+  const auto axes = plane_axes(modes_.normal);
+  if (const auto& off = block.centre[static_cast<std::size_t>(modes_.normal)]) {
+    fail(off->place,
+         fmt::format("{} is not in the plane of G{}", "IJK"[modes_.normal], 19 - modes_.normal));
+  }
+  Point centre = start;
+  for (int i = 0; i < 2; ++i) {
+    const auto& number = block.centre[axes[static_cast<std::size_t>(i)]];
+    if (!number) continue;
+    const bool is_absolute = number->measure == Measure::absolute;
+    centre[i] = number->value * unit() + (is_absolute ? 0.0 : start[i]);
+  }
+  return centre;
+}
+
+void Translator::arc(const Block& block) {
+  const double sign = modes_.motion == MotionCode::clockwise ? -1.0 : 1.0;
+  const auto start = program_point(modes_.normal);
+  if (!start) fail("an arc from a position that is unknown here; program both axes of the plane");
+  const auto end = end_in_plane(block, *start);
+  const auto centre = programmed_centre(block, *start);
+  Element element;
+  if (centre) {
+    element = about_centre(block, *start, *centre, sign);
+    if (end) {
+      element.end = *end;
+      const bool is_closed = (*end - *start).norm() < kSamePoint;
+      element.sweep =
+          is_closed ? sign * kFullTurn : translation::sweep_between(*centre, *start, *end, sign);
+    }
+  } else {
+    if (!end) fail("an arc without its end and without its centre");
+    element = through_end(block, *start, *end, sign);
+  }
+  if (block.TURN) {
+    constexpr double kMaxTurns = 999.0;
+    const double turns = block.TURN->value;
+    if (turns < 0.0 || turns > kMaxTurns || turns != std::floor(turns)) {
+      fail(block.TURN->place, "TURN must be an integer from 0 to 999");
+    }
+    element.sweep += sign * turns * kFullTurn;
+  }
+  add_arc(block, element, modes_.normal);
+}
+
+// Centre alone: a full circle, or the angle AR.
+Element Translator::about_centre(const Block& block, const Point& start, const Point& centre,
+                                 double sign) {
+  const double radius = (start - centre).norm();
+  if (radius < kSamePoint) fail("the centre of the arc is its start");
+  Element out{start, start, true, centre, sign * kFullTurn};
+  const auto end = end_in_plane(block, start);
+  if (end && std::abs((*end - centre).norm() - radius) > kRadiusFits) {
+    fail(fmt::format("the arc starts {:.4f} mm from its centre and ends {:.4f} mm from it", radius,
+                     (*end - centre).norm()));
+  }
+  if (block.AR && end) fail("AR with the end and the centre of the arc");
+  if (block.AR) {
+    if (!(block.AR->value > 0.0)) fail(block.AR->place, "AR must be > 0");
+    out.sweep = sign * block.AR->value * deg;
+    out.end = centre + turned(start - centre, out.sweep);
+  }
+  return out;
+}
+
+// CR > 0: up to a semicircle, CR < 0: more. AR: the angle of the arc. [F] "Circular interpolation
+// with radius and end point", "with opening angle"
+Element Translator::through_end(const Block& block, const Point& start, const Point& end,
+                                double sign) {
+  const double chord = (end - start).norm();
+  if (chord < kSamePoint) fail("an arc with CR or AR that ends where it starts");
+  double radius = 0.0;
+  bool is_large = false;
+  if (block.CR) {
+    radius = std::abs(block.CR->value) * unit();
+    is_large = block.CR->value < 0.0;
+    if (radius < chord / 2.0 && radius > chord / 2.0 - kRadiusFits) radius = chord / 2.0;
+  } else if (block.AR) {
+    const double angle = block.AR->value * deg;
+    if (!(angle > 0.0) || angle >= kFullTurn) fail(block.AR->place, "AR must be between 0 and 360");
+    radius = chord / (2.0 * std::abs(std::sin(angle / 2.0)));
+    is_large = angle > std::numbers::pi;
+  } else {
+    fail("an arc needs I, J, K, CR or AR");
+  }
+  const auto element = translation::arc_of_radius(start, end, radius, sign, is_large);
+  if (!element) {
+    fail(fmt::format("CR={:g} is less than half the distance of {:.4f} mm to the end", radius,
+                     chord));
+  }
+  return *element;
+}
+
+// Start, point and end in a plane of two axes; the direction follows from them. [F] "Circular
+// interpolation via intermediate point"
+void Translator::arc_through_point(const Block& block) {
+  if (block.has_centre() || block.CR || block.AR || block.TURN) {
+    fail("CIP with I, J, K, CR, AR or TURN; the point is I1=, J1=, K1=");
+  }
+  Eigen::Vector3d start, end, by;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto now = program_position(i);
+    if (!now) fail(fmt::format("CIP: the position of {} is unknown here", "XYZ"[i]));
+    start[i] = *now;
+    if (block.axes[k]) require_same_offset(k, *block.axes[k]);
+    end[i] = block.axes[k] ? coordinate(*block.axes[k], *now) : *now;
+    by[i] = block.through[k] ? coordinate(*block.through[k], *now) : *now;
+  }
+  int normal = -1;
+  for (const int i : {modes_.normal, 2, 0, 1}) {
+    const bool is_level =
+        std::abs(end[i] - start[i]) < kSamePoint && std::abs(by[i] - start[i]) < kSamePoint;
+    if (normal < 0 && is_level) normal = i;
+  }
+  if (normal < 0) fail("CIP in a plane that is none of G17, G18 and G19 is not supported");
+  const auto axes = plane_axes(normal);
+  const auto in_plane = [&](const Eigen::Vector3d& p) {
+    return Point(p[static_cast<Eigen::Index>(axes[0])], p[static_cast<Eigen::Index>(axes[1])]);
+  };
+  const Point a = in_plane(start), b = in_plane(by), c = in_plane(end);
+  const Point u = b - a, v = c - a;
+  const double cross = u.x() * v.y() - u.y() * v.x();
+  if (std::abs(cross) < kSamePoint * v.norm() || v.norm() < kSamePoint) {
+    fail("CIP: the point lies on the line from the start to the end");
+  }
+  const Point centre = a + Point(v.y() * u.squaredNorm() - u.y() * v.squaredNorm(),
+                                 u.x() * v.squaredNorm() - v.x() * u.squaredNorm()) /
+                               (2.0 * cross);
+  const double sign = cross > 0.0 ? 1.0 : -1.0;
+  add_arc(block, {a, c, true, centre, translation::sweep_between(centre, a, c, sign)}, normal);
+}
+
+void Translator::tangential_arc(const Block& block) {
+  const auto start = program_point(modes_.normal);
+  if (!start || !last_element_ || last_normal_ != modes_.normal) {
+    fail("CT: no line or arc in the plane precedes it");
+  }
+  const auto end = end_in_plane(block, *start);
+  if (!end) fail("CT without its end");
+  const Point along = translation::direction_at_end(*last_element_);
+  const auto element = translation::tangential_arc(*start, along, *end);
+  if (!element) {
+    const bool is_ahead = along.dot(*end - *start) > 0.0;
+    if (!is_ahead) fail("CT: the end lies straight behind the path");
+    return move_straight(block);
+  }
+  add_arc(block, *element, modes_.normal);
+}
+
+// From the program's plane to that of the work system, with the depth of a helix.
+void Translator::add_arc(const Block& block, Element element, int normal) {
+  if (block.axes[3] || block.axes[4] || block.axes[5]) {
+    fail("an arc with a rotary axis is not supported; post-process to lines");
+  }
+  const Frame& frame = modes_.frame;
+  if (!frame.keeps_plane(normal)) {
+    fail(
+        "an arc in a plane that ROT has turned in space is not supported; post-process to lines, "
+        "or use CYCLE800");
+  }
+  if (!frame.is_alike_in_plane(normal)) fail("an arc while SCALE differs in the axes of its plane");
+  const auto axes = plane_axes(normal);
+  Block depth = block;
+  depth.axes[axes[0]].reset();
+  depth.axes[axes[1]].reset();
+  depth.AP.reset();
+  depth.RP.reset();
+  Motion motion = motion_of(depth);
+  Element work = element;
+  work.begin = work_point(normal, element.begin);
+  work.end = work_point(normal, element.end);
+  work.centre = work_point(normal, element.centre);
+  if (frame.is_mirrored(normal)) work.sweep = -element.sweep;
+  if (motion.is_incremental) fail("a helix whose depth counts from an unknown position");
+  motion.words[axes[0]] = work.end.x();
+  motion.words[axes[1]] = work.end.y();
+  motion.element = work;
+  if (motion.feed.kind == Feed::Kind::rapid) motion.feed = modal_feed();
+  const int plane = std::exchange(modes_.normal, normal);
+  add(std::move(motion));
+  modes_.normal = plane;
+  last_element_ = element;
+  last_normal_ = normal;
+  programmed_[axes[0]] = element.end.x();
+  programmed_[axes[1]] = element.end.y();
+}
+
+// -------------------------------------------------------------------------------------- threads
+
+// G33 cuts with the spindle that runs; G331 and G332 turn it, to the right for K > 0 and back. The
+// axes follow the spindle, as a feed of the pitch per revolution. [F] "Thread cutting", "Tapping
+// without compensating chuck"
+void Translator::thread(const Block& block) {
+  require_no_compensation("G33, G331 and G332");
+  if (!speed_ || *speed_ <= 0.0) fail("G33, G331 and G332: no S is active");
+  const bool is_cut = block.has("G33");
+  if (!is_cut && !block.has("G331") && !block.has("G332")) {
+    fail("a thread without G33, G331 or G332 in its block; program one, or G0 or G1");
+  }
+  Block end = block;
+  std::optional<Number> pitch;
+  for (auto& one : end.centre) {
+    if (one && pitch) fail(one->place, "two pitches in one block");
+    if (one) pitch = std::exchange(one, std::nullopt);
+  }
+  if (!pitch || pitch->value == 0.0) fail("G33, G331 and G332 need the pitch as I, J or K");
+  const bool is_right = pitch->value > 0.0;
+  if (!is_cut) {
+    const bool is_forward = block.has("G331") == is_right;
+    spindle_ = is_forward ? 1 : -1;
+    note(is_forward ? "M3" : "M4");
+  } else if (spindle_ == 0) {
+    fail("G33: M3 or M4 must be active");
+  }
+  Motion motion;
+  motion.place = place_;
+  motion.words = ends(end, motion.is_incremental);
+  motion.feed = {Feed::Kind::per_minute, std::abs(pitch->value) * unit() * *speed_};
+  add(std::move(motion));
+  last_element_.reset();
+  if (block.has("G332")) {
+    spindle_ = 0;
+    note("M5");
+  }
+}
+
+// G63 acts in its block only; F must fit the pitch, override is without effect. [F] "Tapping with
+// compensating chuck"
+void Translator::tap_with_chuck(const Block& block) {
+  const MotionCode before = std::exchange(modes_.motion, MotionCode::line);
+  move_straight(block);
+  modes_.motion = before;
+}
+
+}  // namespace servomill::controllers::siemens

@@ -1,0 +1,161 @@
+// Frames of the program, poles, transformations; G4, G63 and what else takes the words of a block.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "controllers/siemens/codes.h"
+#include "controllers/siemens/translator.h"
+#include "plant/vocabulary/units.h"
+
+namespace servomill::controllers::siemens {
+
+void Translator::require_no_compensation(std::string_view what) const {
+  if (modes_.side == 0 && !path_.is_compensating()) return;
+  fail(fmt::format("{} with G41 or G42 active; program G40 and a move in the plane first", what));
+}
+
+void Translator::forget_linear_positions() {
+  for (std::size_t i = 0; i < 3; ++i) work_[i].reset();
+  pole_.reset();
+  polar_radius_.reset();
+  polar_angle_.reset();
+  last_element_.reset();
+}
+
+// Returns true if the words of the block belong to a function that moves nothing.
+bool Translator::act(const Block& block) {
+  const Code* code = codes_[static_cast<std::size_t>(Group::action)];
+  if (code == nullptr) return false;
+  if (code->name == "G63") return false;
+  if (code->name == "G4") {
+    dwell(block);
+  } else if (code->name == "G25" || code->name == "G26") {
+    warn_once("G25", "G25 and G26: limits of the working area and of the speed are ignored");
+  } else if (code->name.starts_with("G11")) {
+    pole(block, *code);
+  } else {
+    set_frame(block, *code);
+  }
+  return true;
+}
+
+// TRANS, ROT, SCALE and MIRROR replace the whole programmable frame, ATRANS, AROT, ASCALE and
+// AMIRROR add to it in its own coordinates; without words they delete it. [F] "Frame instructions"
+void Translator::set_frame(const Block& block, const Code& code) {
+  require_no_compensation(code.name);
+  const bool is_additive = code.name.front() == 'A';
+  const std::string name = is_additive ? code.name.substr(1) : code.name;
+  const bool has_words = block.has_axes() || block.RPL;
+  if (is_additive && !has_words) fail(code.place, fmt::format("{} without an axis", code.name));
+  Frame frame = is_additive ? modes_.frame : Frame{};
+  if (name == "ROT") {
+    rotate_frame(block, frame);
+    return use_frame(frame);
+  }
+  Eigen::Vector3d values = name == "SCALE" ? Eigen::Vector3d::Ones() : Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < block.axes.size(); ++i) {
+    if (!block.axes[i]) continue;
+    const double value = block.axes[i]->value;
+    const auto k = static_cast<Eigen::Index>(i);
+    if (i >= 3) {
+      if (name == "TRANS") frame.translate_rotary(i, value);
+      if (name == "MIRROR") frame.mirror_rotary(i);
+      if (name == "SCALE") fail(block.axes[i]->place, "SCALE of a rotary axis is not supported");
+    } else if (name == "TRANS") {
+      values[k] = value * unit();
+    } else if (name == "SCALE") {
+      if (!(value > 0.0)) fail(block.axes[i]->place, "SCALE: the factor must be > 0");
+      values[k] = value;
+    } else {
+      frame.mirror(static_cast<int>(i));
+    }
+  }
+  if (name == "TRANS") frame.translate(values);
+  if (name == "SCALE") frame.scale(values);
+  use_frame(frame);
+}
+
+// RPL turns about the axis across the plane; angles of X, Y, Z turn about Z first, then about the
+// new Y and the new X (MD10600 = 1, RPY, as delivered). [F] "Programmable rotation"
+void Translator::rotate_frame(const Block& block, Frame& frame) {
+  if (block.RPL) {
+    if (block.has_axes()) fail("ROT with RPL and an axis");
+    return frame.rotate(modes_.normal, block.RPL->value);
+  }
+  int angles = 0;
+  for (const int axis : {2, 1, 0}) {
+    const auto& angle = block.axes[static_cast<std::size_t>(axis)];
+    if (!angle) continue;
+    frame.rotate(axis, angle->value);
+    ++angles;
+  }
+  if (angles > 1 && setting("$MN_FRAME_ANGLE_INPUT_MODE", 1.0) != 1.0) {
+    fail("ROT with several angles as Euler angles (MD10600 = 2) is not supported");
+  }
+  if (angles > 1) {
+    warn_once("ROT", "ROT with several angles: about Z, the new Y, the new X (MD10600 = 1)");
+  }
+  if (block.axes[3] || block.axes[4] || block.axes[5]) fail("ROT takes angles of X, Y and Z");
+}
+
+void Translator::use_frame(const Frame& frame) {
+  if (frame == modes_.frame) return;
+  modes_.frame = frame;
+  pole_.reset();
+  last_element_.reset();
+}
+
+// G110: from the position programmed last, G111: from the origin of the workpiece, G112: from the
+// last pole. [F] "Defining the pole"
+void Translator::pole(const Block& block, const Code& code) {
+  const auto axes = plane_axes(modes_.normal);
+  Point from = Point::Zero();
+  if (code.name == "G110") {
+    const auto now = program_point(modes_.normal);
+    if (!now) fail(code.place, "G110: the position in the plane is unknown here");
+    from = *now;
+  }
+  if (code.name == "G112") {
+    if (!pole_) fail(code.place, "G112: no pole is set");
+    from = *pole_;
+  }
+  if (block.is_polar()) {
+    if (!block.AP || !block.RP) fail(code.place, fmt::format("{} needs AP and RP", code.name));
+    const double angle = block.AP->value * deg;
+    from += block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));
+  } else {
+    for (int i = 0; i < 2; ++i) {
+      const auto& value = block.axes[axes[static_cast<std::size_t>(i)]];
+      if (value) from[i] += value->value * unit();
+    }
+  }
+  pole_ = from;
+}
+
+// TRAORI: positions are those of the tip whatever the rotary axes do.
+void Translator::transform(const Code& code) {
+  const bool is_on = code.name == "TRAORI";
+  if (is_on == is_tcp_) return;
+  require_no_compensation(code.name);
+  if (!plane_line_.empty()) fail(code.place, "TRAORI in a plane of CYCLE800; end it first");
+  if (!modes_.frame.is_plain()) {
+    fail(code.place,
+         fmt::format("{} with TRANS, ROT, SCALE or MIRROR active: whether the frame stays depends "
+                     "on the machine (MD10602); program TRANS before it",
+                     code.name));
+  }
+  if (is_on && !has_tool_ && tool_ == 0) {
+    fail(code.place, "TRAORI before the first tool: the length of the tool is unknown");
+  }
+  warn_once("TRAORI", "TRAORI and TRAFOOF: the work offset stays in force (MD10602 may delete it)");
+  is_tcp_ = is_on;
+  path_.flush();
+  put_length();
+  const bool is_at_zero = std::all_of(work_.begin() + 3, work_.end(), [](const auto& one) {
+    return one.has_value() && *one == 0.0;
+  });
+  if (!is_at_zero) forget_linear_positions();
+}
+
+}  // namespace servomill::controllers::siemens

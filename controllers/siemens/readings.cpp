@@ -1,0 +1,58 @@
+// Readings that depend on the control or its settings.
+#include <array>
+
+#include "controllers/siemens/siemens.h"
+
+namespace servomill::controllers::siemens {
+namespace {
+
+constexpr auto kReadings = std::to_array<Reading>({
+    {"a program without M30", "ends with its last block", "840D sl", "from memory"},
+    {"G17, G90, G71, a work offset that no block sets", "in force at the start, as delivered",
+     "by machine: MD20150 and the preset work offset",
+     "840D sl, Fundamentals, \"G commands\" (default settings)"},
+    {"T in a program without M6", "changes the tool", "machines with MD22550 = 0",
+     "840D sl, Fundamentals, \"Tool change\""},
+    {"M6 without D", "selects D1",
+     "machines with MD20270 = 1 (--parameter $MC_CUTTING_EDGE_DEFAULT)",
+     "840D sl, Fundamentals, \"Tool offsets\"; the default from memory"},
+    {"SUPA, G53 and G153 with a tool length in force", "the length stays in force",
+     "machines with MD10760 = 0 (--parameter $MN_G53_TOOLCORR)",
+     "840D sl, Fundamentals, \"Deselection of frames\"; the default from memory"},
+    {"G18 and G19 with a tool length", "the length stays along Z; holes along Y or X are refused",
+     "machines with SD42940 = 17 (--parameter $SC_TOOL_LENGTH_CONST)", "from memory"},
+    {"F with G70", "refused, unless the basic unit of the machine is given",
+     "by machine: MD10240 (--parameter $MN_SCALING_SYSTEM_IS_METRIC)",
+     "840D sl, Fundamentals, \"Inch or metric dimensions\""},
+    {"ROT with several angles", "about Z, the new Y, the new X", "machines with MD10600 = 1",
+     "840D sl, Fundamentals, \"Programmable rotation\""},
+    {"an increment behind a new frame, work offset or tool length", "refused",
+     "by machine: SD42440, SD42442", "840D sl, K2 (6FC5397-0BP10-0BA0) p. 1-7"},
+    {"TRAORI and TRAFOOF", "the work offset stays in force", "by machine: MD10602", "from memory"},
+    {"CYCLE800 with _FR", "the retraction before the rotary axes turn is left out",
+     "by swivel data set", "from memory"},
+    {"CYCLE800 with _DIR", "the nearest position of the rotary axes", "by swivel data set",
+     "from memory"},
+    {"G500", "a work offset of zero; the basic frame is taken as zero", "by set-up",
+     "840D sl, Fundamentals, \"Settable work offset\""},
+    {"F of a block with linear and rotary axes", "the feed of the linear axes",
+     "by machine: FGROUP, MD22420", "840D sl, Fundamentals, \"Feedrate\""},
+    {"T=\"NAME\" without a tool table", "a tool of unknown length, numbered from 30001",
+     "every control has its own tool management", "none needed"},
+    {"a tool without a tool table", "a tool of unknown length: machine Z is the tip position",
+     "every control has its own tool management", "none needed"},
+    {"D2, D3, ... without a tool table", "a cutting edge of unknown length, as D1",
+     "every control has its own tool offsets", "none needed"},
+    {"G641, G642 and G645", "continuous path as G64; the tolerance comes from CYCLE832",
+     "by machine: MD33100", "840D sl, Fundamentals, \"Continuous-path mode\""},
+    {"G9", "no exact stop at the end of its block", "none", "none needed"},
+    {"RTLIOF", "rapid moves in straight lines", "machines that run RTLION", "from memory"},
+    {"M functions of the machine builder, gear stages", "without effect on motion", "by machine",
+     "from memory"},
+});
+
+}  // namespace
+
+std::span<const Reading> readings() { return kReadings; }
+
+}  // namespace servomill::controllers::siemens

@@ -1,0 +1,296 @@
+/// Translates a Siemens program, block by block, to lines of G-code.
+///
+/// Units: values stay in mm and degrees (inches are converted on reading). Positions are given in
+/// the work coordinate system, in which the lines move.
+///
+/// Rules that hold throughout, with their sources ([F] is 840D sl, Fundamentals, 6FC5398-1BP40; [J]
+/// Job Planning, 6FC5398-2BP40; [C] Cycles, 6FC5398-3BP40; M from memory):
+///  (1) A word acts in the whole block, wherever it stands. [F] "Block rules"
+///  (2) G functions of one group cancel each other and stay in force, but for G4, G9, G53, G63,
+///      G110 ... G112, G153, SUPA. [F] "G commands"
+///  (3) M3, M4, M7 and M8 act before the motion of their block, M5 and M9 behind it, M0, M1, M2,
+///      M17 and M30 last. M (MD22254: by the machine)
+///  (4) A change of the frame or of the length moves nothing; axes that a block does not name stay.
+///      [F] "Frames"
+///  (5) A parameter, position or mode that has not been set is unknown; a block that depends on it
+///      is refused.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controllers/gcode/program_setup.h"
+#include "controllers/siemens/block.h"
+#include "controllers/siemens/frame.h"
+#include "controllers/siemens/program_file.h"
+#include "controllers/siemens/variables.h"
+#include "controllers/translation/contour_path.h"
+#include "controllers/translation/gcode_lines.h"
+
+namespace servomill::controllers::siemens {
+
+using translation::ContourPath;
+using translation::Element;
+using translation::Feed;
+using translation::GcodeLine;
+using translation::GcodeLines;
+using translation::Motion;
+using translation::plane_axes;
+using translation::Values;
+using translation::word;
+
+enum class MotionCode {
+  rapid,
+  line,
+  clockwise,
+  counterclockwise,
+  through_point,
+  tangential,
+  thread
+};
+
+/// Modal functions, which a subprogram with SAVE restores.
+struct Modes {
+  MotionCode motion = MotionCode::line;
+  int normal = 2;               // of the working plane: 0 G19, 1 G18, 2 G17
+  bool is_incremental = false;  // G91
+  bool is_inch = false;         // G70, G700
+  bool is_feed_inch = false;    // G700
+  int feed_code = 94;
+  int side = 0;                 // G41: 1, G42: -1
+  bool is_contour_feed = true;  // CFC
+  int offset = 0;               // 0: the one in force at the start; 1 is G54; -1: G500
+  Frame frame;
+  bool operator==(const Modes&) const = default;
+};
+
+class Translator {
+ public:
+  Translator(std::string text, std::string file, const ProgramSetup& setup);
+
+  /// The next line; nullopt after the end of the program.
+  /// @throws InputError at a block with an error, after the lines of all blocks before it
+  std::optional<GcodeLine> next();
+  /// Blocks read since the last call that other controls may interpret differently.
+  std::vector<Fault> take_warnings() { return std::exchange(warnings_, {}); }
+
+ private:
+  using Words = std::vector<const Code*>;
+
+  // translator.cpp: blocks
+  void run_block();
+  void begin_program();
+  void execute(const Line& line);
+  void execute_block(const Block& block);
+  void sort_codes(const Block& block);
+  const Code* code(std::size_t group) const { return codes_[group]; }
+  void end_program(int m);
+  [[noreturn]] void fail(std::string message) const {
+    throw InputError(place_, std::move(message));
+  }
+  [[noreturn]] static void fail(const Place& place, std::string message) {
+    throw InputError(place, std::move(message));
+  }
+  void warn_once(const std::string& key, std::string message);
+  void note(std::string text) { path_.note({std::move(text), place_}); }
+  double setting(const std::string& name, double as_delivered) const;
+  double unit() const { return modes_.is_inch ? 25.4 : 1.0; }  // mm
+
+  // settings.cpp: modal functions, spindle, M functions
+  void set_modes(const Block& block);
+  void set_plane(const Code& code);
+  void set_units(const Code& code);
+  void set_side(const Block& block, const Code& code);
+  void set_offset(const Code& code);
+  void put_offset(int offset);
+  void set_path(const Block& block, const Code& code);
+  void set_feed(const Block& block);
+  void warn_of_start(const Block& block);
+  void begin_functions(const Block& block);
+  void end_functions(const Block& block);
+  void set_speed(const Block& block);
+  void dwell(const Block& block);
+  void dwell_for(double seconds);
+
+  // frames.cpp
+  bool act(const Block& block);
+  void set_frame(const Block& block, const Code& code);
+  void rotate_frame(const Block& block, Frame& frame);
+  void pole(const Block& block, const Code& code);
+  void use_frame(const Frame& frame);
+  void transform(const Code& code);
+  void forget_linear_positions();
+  void require_no_compensation(std::string_view what) const;
+
+  // tools.cpp
+  void tools(const Block& block);
+  int tool_number(const Block& block);
+  int named_tool(const std::string& name, const Place& place);
+  void change_tool(int number);
+  void set_edge(int edge, const Place& place);
+  void check_length_axis(bool is_hole);
+  void put_length();
+  double tool_length() const;
+  double tool_radius();
+  bool survey_knows_no_radius();
+
+  // motion.cpp
+  bool moves(const Block& block) const;
+  void move(const Block& block);
+  void move_straight(const Block& block);
+  void move_to_machine(const Block& block);
+  void thread(const Block& block);
+  void tap_with_chuck(const Block& block);
+  Motion motion_of(const Block& block);
+  Motion straight_motion(const Block& block);
+  void add(Motion motion);
+  void corner(const Block& block);
+  Feed feed_of_block(const Block& block);
+  Feed modal_feed();
+  Values ends(const Block& block, bool& is_incremental);
+  void linear_ends(const Block& block, Values& end, bool& is_incremental);
+  double rotary_end(std::size_t axis, const Number& number);
+  bool is_increment(const Number& number) const;
+  void require_same_offset(std::size_t axis, const Number& number) const;
+  std::optional<double> program_position(int axis) const;
+  std::optional<Point> program_point(int normal) const;
+  Point work_point(int normal, const Point& program) const;
+  void store_end(const Motion& motion);
+
+  // circles.cpp
+  void arc(const Block& block);
+  void add_arc(const Block& block, Element element, int normal);
+  std::optional<Point> end_in_plane(const Block& block, const Point& start);
+  std::optional<Point> programmed_centre(const Block& block, const Point& start) const;
+  Element about_centre(const Block& block, const Point& start, const Point& centre, double sign);
+  Element through_end(const Block& block, const Point& start, const Point& end, double sign);
+  void arc_through_point(const Block& block);
+  void tangential_arc(const Block& block);
+  std::optional<Point> polar_point(const Block& block, int normal);
+  double coordinate(const Number& number, double now) const;
+
+  // flow.cpp: structures, jumps, repetitions
+  bool flow(Scanner& scanner, const std::string& word, const Line& line);
+  void branch(Scanner& scanner, const Line& line);
+  void loop(Scanner& scanner, const std::string& word, const Line& line);
+  void count_loop(Scanner& scanner, const Line& line);
+  void end_count_loop(const Line& line);
+  void jump(Scanner& scanner, const std::string& word);
+  void repeat(Scanner& scanner, const std::string& word, const Line& line);
+  bool end_repetition();
+  void go_behind(const Line& line);
+  void go_to(const BlockMark& mark);
+  void count_jump();
+  double condition(Scanner& scanner);
+
+  // calls.cpp: subprograms, variables
+  void define(Scanner& scanner);
+  void begin_procedure(Scanner& scanner);
+  void define_parameters(Scanner& scanner);
+  void call_by_text(Scanner& scanner);
+  void call(const Call& call, long repeats);
+  void call_subprogram(const Call& call, long repeats);
+  ProgramFile* find_program(const std::string& name);
+  void enter(ProgramFile* program, const Call& call, long repeats);
+  void leave_subprogram();
+  void restore(const Modes& modes);
+  void execute_calls(const Block& block);
+  void call_modal();
+
+  // cycles.cpp
+  bool run_cycle(const Call& call);
+  bool refuse_cycle(const Call& call);
+  void smoothing(const Call& call);
+  void pattern(const Call& call);
+  std::vector<Point> points_of(const Call& call) const;
+
+  // swivel.cpp: CYCLE800
+  Eigen::Matrix3d swivel_of(const Call& call) const;
+  bool are_rotary_axes_at_zero() const;
+  void swivel(const Call& call);
+  void end_swivel();
+  void put_beside_plane(Motion motion);
+
+  // drilling.cpp
+  struct Hole;
+  double value_of(const Call& call, std::size_t at, std::optional<double> otherwise,
+                  std::string_view name) const;
+  Hole hole_of(const Call& call) const;
+  void cycle_move(const Feed& feed, double height);
+  void cycle_move(const Feed& feed, const std::array<std::optional<double>, 3>& to);
+  void cycle_dwell(double time);
+  Feed cycle_feed(double per_minute) const;
+  bool run_drilling_cycle(const Call& call);
+  std::vector<double> strokes_of(const Call& call, const Hole& hole) const;
+  double pitch_of(const Call& call, std::size_t at_MPIT, std::size_t at_unit) const;
+  void turn_spindle(int direction);
+  void drill_82(const Call& call);
+  void drill_83(const Call& call);
+  void tap_84(const Call& call);
+  void tap_840(const Call& call);
+  void ream_85(const Call& call);
+  void bore_86(const Call& call);
+  void bore_88(const Call& call);
+  void bore_89(const Call& call);
+
+  std::vector<std::unique_ptr<ProgramFile>> files_;
+  ProgramFile* program_ = nullptr;
+  struct Return {
+    ProgramFile* program = nullptr;
+    BlockMark mark;              // where it goes on
+    long left = 0;               // runs that follow this one
+    bool is_modal = false;       // called behind a motion
+    bool is_repetition = false;  // of a part of the program, from `begin` up to `end`
+    BlockMark begin;
+    std::size_t end = 0;
+    Call call;                                             // of a subprogram
+    std::optional<Modes> saved;                            // SAVE
+    std::vector<std::pair<Reference, Reference>> outputs;  // parameters VAR: ours, the caller's
+  };
+  std::vector<Return> returns_;
+  long jumps_ = 0, blocks_ = 0;  // blocks: since the first jump
+  std::optional<Call> modal_call_;
+  bool is_in_modal_call_ = false;
+
+  ProgramSetup setup_;
+  GcodeLines lines_;
+  ContourPath path_;
+  Variables variables_;
+  std::vector<Fault> warnings_;
+  std::set<std::string> warned_;
+  std::optional<InputError> error_;  // thrown once the lines before it have been returned
+  Place place_;                      // of the block
+  bool has_begun_ = false, has_ended_ = false;
+
+  std::array<const Code*, 16> codes_{};  // of the block, by group
+  Modes modes_;
+  std::array<bool, 16> is_programmed_{};  // groups, since the start
+  bool has_moved_ = false;
+  Values work_;                                        // position programmed last
+  std::array<std::optional<double>, 3> programmed_{};  // X Y Z as programmed last, in their frame
+  std::array<double, kAxisWords> turns_{};             // full turns of modulo axes, degrees
+  std::optional<Point> pole_;                          // in program coordinates
+  std::optional<double> polar_radius_, polar_angle_;
+  std::optional<Element> last_element_;  // in program coordinates
+  int last_normal_ = 2;
+  std::optional<Feed> feed_;
+  std::optional<double> speed_;
+  int spindle_ = 0;
+  int tool_ = 0, next_tool_ = -1;
+  int edge_ = 0;
+  bool has_tool_ = false, is_edge_programmed_ = false;
+  std::map<std::string, int> tool_names_;
+  bool is_tcp_ = false;
+  std::string plane_line_;      // G68.2 of CYCLE800; empty: none
+  bool has_swivelled_ = false;  // rotary axes stand elsewhere than the program says
+  bool is_beside_ = false;      // still offset: G40 was in a block without an axis of the plane
+};
+
+}  // namespace servomill::controllers::siemens

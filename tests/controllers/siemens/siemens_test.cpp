@@ -1,0 +1,122 @@
+// Siemens programs against moves worked out by hand.
+#include <gtest/gtest.h>
+
+#include "controllers/gcode/called_subroutines.h"
+#include "controllers/siemens/siemens.h"
+#include "siemens_examples.h"
+
+namespace servomill::controllers::siemens::siemens_test {
+namespace {
+
+void expect_all(const std::vector<Example>& examples) {
+  for (const Example& example : examples) {
+    SCOPED_TRACE(example.name);
+    try {
+      EXPECT_EQ(framed_moves(example.program), example.moves);
+    } catch (const InputError& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+}
+
+TEST(Siemens, Lines) { expect_all(line_examples()); }
+TEST(Siemens, Arcs) { expect_all(arc_examples()); }
+TEST(Siemens, Contours) { expect_all(contour_examples()); }
+TEST(Siemens, Frames) { expect_all(frame_examples()); }
+TEST(Siemens, VariablesAndFlow) { expect_all(flow_examples()); }
+TEST(Siemens, Cycles) { expect_all(cycle_examples()); }
+
+const char* const kArchive =
+    "%_N_PLATE_MPF\n;$PATH=/_N_WKS_DIR/_N_PLATE_WPD\nG17 G71 G90 G54\nT1 M6 D1\nG0 X0 Y0 Z0 F100\n"
+    "R1=4\nHOLE(2,,R1)\nG1 X=R1\nL10 P2\nG1 Y=0\nM30\n"
+    "%_N_HOLE_SPF\nPROC HOLE(REAL A, INT B=3, VAR REAL C) SAVE\nG91 G1 X=A Y=B\nC=C+5\nM17\n"
+    "%_N_L10_SPF\nG1 Z=IC(-1)\nRET\n";
+
+// [J] "Subprogram technique": SAVE brings G90 back, VAR gives its value back, P2 runs it twice
+TEST(Siemens, SubprogramsInTheSameFile) {
+  EXPECT_EQ(all_moves(kArchive),
+            "4 tool 1\n5 rapid 0 0 0\n14 feed 2 3 0 F100\n8 feed 9 3 0 F100\n"
+            "18 feed 9 3 -1 F100\n18 feed 9 3 -2 F100\n10 feed 9 0 -2 F100\n11 end\n");
+}
+
+TEST(Siemens, SubprogramsInFilesOfTheirOwn) {
+  ProgramSetup setup = example_setup();
+  setup.subroutine_file = [](const std::string& name) -> std::optional<ProgramText> {
+    if (name == "POCKET") return ProgramText::of_text("G1 X=IC(1)\nM17\n", "POCKET.SPF");
+    if (name == "CYCLE81") return ProgramText::of_text("G1 Y=IC(1)\nM17\n", "CYCLE81.SPF");
+    return std::nullopt;
+  };
+  const std::string program = with_frame(
+      "F100\nPOCKET\npocket P2\nCALL \"POCKET\"\nMCALL POCKET\nX20\n"
+      "MCALL\nCYCLE81\n");
+  EXPECT_EQ(all_moves(program, setup),
+            "2 tool 1\n2 spindle 0 S1000\n3 rapid 0 0 0\n1 feed 1 0 0 F100\n1 feed 2 0 0 F100\n"
+            "1 feed 3 0 0 F100\n1 feed 4 0 0 F100\n9 feed 20 0 0 F100\n1 feed 21 0 0 F100\n"
+            "1 feed 21 1 0 F100\n12 end\n");
+  EXPECT_EQ(called_subroutines(ProgramText::of_text(program, "t.mpf")),
+            (std::set<std::string>{"CYCLE81", "POCKET"}));
+}
+
+TEST(Siemens, SettingsOfTheMachineChoose) {
+  ProgramSetup setup = example_setup();
+  const std::string inch = "G17 G90 G54 G70\nT1 M6\nG0 X0 Y0 Z0\nG1 X1 F10\nM30\n";
+  const std::string before = "2 tool 1\n3 rapid 0 0 0\n", behind = "5 end\n";
+  setup.parameters["$MN_SCALING_SYSTEM_IS_METRIC"] = 1.0;
+  EXPECT_EQ(all_moves(inch, setup), before + "4 feed 25.4 0 0 F10\n" + behind);
+  setup.parameters["$MN_SCALING_SYSTEM_IS_METRIC"] = 0.0;
+  EXPECT_EQ(all_moves(inch, setup), before + "4 feed 25.4 0 0 F254\n" + behind);
+  // machine Z of 50 is tip Z of -50 with a tool of 100 mm, or the tip itself
+  const std::string supa = "SUPA G0 Z50\nX1\n";
+  setup = example_setup();
+  EXPECT_EQ(framed_moves(supa, setup), "1 rapid 0 0 50\n2 rapid 1 0 50\n");
+  setup.parameters["$MN_G53_TOOLCORR"] = 1.0;
+  EXPECT_EQ(framed_moves(supa, setup), "1 rapid 0 0 -50\n2 rapid 1 0 -50\n");
+  setup.parameters["R7"] = 3.0;
+  EXPECT_EQ(framed_moves("G0 X=R7\n", setup), "1 rapid 3 0 0\n");
+}
+
+TEST(Siemens, ReadingsAreWarnedOf) {
+  EXPECT_EQ(
+      warnings_of("T1\nG0 X1\nM84\nRTLIOF\nG9\n"),
+      "t.mpf:1:1: T changes the tool at once: the program has no M6 (MD22550 = 0)\n"
+      "t.mpf:2:1: a move before any function of the groups of G17, G90, G71, G54: taken as in "
+      "force at the start\n"
+      "t.mpf:3:1: M84: a function of the machine builder; ignored: no effect on motion\n"
+      "t.mpf:4:1: RTLIOF: rapid moves are taken as straight lines, as with RTLION\n"
+      "t.mpf:5:1: G9: the exact stop at the end of single blocks is ignored; use G60\n"
+      "t.mpf:5: the program ends without M30: read as if it followed\n");
+}
+
+TEST(Siemens, IsRecognisedByItsNameAndItsWords) {
+  const auto is_one = [](const std::string& file, const std::string& text, Reader reader) {
+    ProgramText program = ProgramText::of_text(text, file);
+    return is_siemens(program, reader);
+  };
+  for (const char* const file : {"SHAFT.MPF", "shaft.mpf", "hole.SPF"}) {
+    EXPECT_TRUE(is_one(file, "G0 X1\nM30\n", Reader::any)) << file;
+    EXPECT_FALSE(is_one(file, "G0 X1\nM30\n", Reader::fanuc)) << file;
+  }
+  EXPECT_TRUE(is_one("p.nc", "%_N_SHAFT_MPF\nG0 X1\n", Reader::any));
+  EXPECT_TRUE(is_one("p.nc", "G0 X1\nN20 MCALL CYCLE81(5,0,2,-3)\n", Reader::any));
+  EXPECT_TRUE(is_one("p.nc", "G0 X1\n", Reader::siemens));
+  EXPECT_FALSE(is_one("p.nc", "G0 X1\n(MSG, DONE)\nM30\n", Reader::any));
+  EXPECT_FALSE(is_one("mpf", "G0 X1\n", Reader::any));
+}
+
+TEST(Siemens, BlocksWithASlashAreLeftOutOnRequest) {
+  ProgramSetup setup = example_setup();
+  setup.block_delete = true;
+  EXPECT_EQ(framed_moves("/G0 X1\n/3 N5 G0 X2\nG0 X3\n", setup), "3 rapid 3 0 0\n");
+}
+
+TEST(Siemens, EndlessProgramsAreStopped) {
+  ProgramSetup setup = example_setup();
+  setup.most_jumps = 10;
+  const char* const message =
+      ": error: 10 jumps: the program looks endless; raise --max-jumps if intended";
+  EXPECT_EQ(fault_of("AGAIN: R1=1\nGOTOB AGAIN\n", setup), std::string("t.mpf:5:1") + message);
+  EXPECT_EQ(fault_of("LOOP\nENDLOOP\n", setup), std::string("t.mpf:5:1") + message);
+}
+
+}  // namespace
+}  // namespace servomill::controllers::siemens::siemens_test

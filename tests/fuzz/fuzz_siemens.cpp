@@ -1,0 +1,9 @@
+// Siemens programs, read and run.
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/translated.h"
+
+namespace servomill::fuzz {
+
+void run(std::string_view text) { run_translated(text, "p.mpf", controllers::Reader::siemens); }
+
+}  // namespace servomill::fuzz
