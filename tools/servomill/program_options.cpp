@@ -20,11 +20,12 @@ void add_program_options(Options& options) {
   options.add()("subs", texts("FOLDER"),
                 "folders of subroutine files, NAME.ngc for O<NAME> CALL, M98 and G65, NAME.H for "
                 "CALL PGM, NAME.SPF of Siemens; the folder of the program is searched first");
-  options.add()("reader", text("NAME"),
-                "control whose rules the program follows: any (default: LinuxCNC plus what other "
-                "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
-                "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h), siemens (any "
-                "takes it from a file *.mpf or *.spf or from words that only it has)");
+  options.add()(
+      "reader", text("NAME"),
+      "control whose rules the program follows: any (default: LinuxCNC plus what other "
+      "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
+      "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h), siemens (any "
+      "takes it from a file *.mpf or *.spf or from words that only it has)");
   options.add()("decimal-point", text("NAME"),
                 "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments "
                 "(X1000 = 1 mm); required with readers fanuc and haas");
