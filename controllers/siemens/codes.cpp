@@ -68,6 +68,11 @@ constexpr auto kCodes = std::to_array<Entry>({
     {"G93", Group::feed},
     {"G94", Group::feed},
     {"G95", Group::feed},
+    {"COMPON", Group::compressor},
+    {"COMPCURV", Group::compressor},
+    {"COMPCAD", Group::compressor},
+    {"COMPSURF", Group::compressor},
+    {"COMPOF", Group::compressor},
     {"CFC", Group::contour_feed},
     {"CFTCP", Group::contour_feed},
     {"TRAORI", Group::transformation},
@@ -77,17 +82,17 @@ constexpr auto kCodes = std::to_array<Entry>({
 
 // Jerk, dynamics, feed-forward, exact-stop criteria, displays, preprocessing, monitoring.
 constexpr auto kWithoutEffect = std::to_array<std::string_view>(
-    {"G601",    "G602",    "G603",      "G97",      "G971",      "G972",       "BRISK",
-     "SOFT",    "DRIVE",   "BRISKA",    "SOFTA",    "DRIVEA",    "FFWON",      "FFWOF",
-     "COMPOF",  "DYNNORM", "DYNPOS",    "DYNROUGH", "DYNFINISH", "DYNSEMIFIN", "DYNPREC",
-     "DIAMOF",  "STOPRE",  "STARTFIFO", "STOPFIFO", "NORM",      "FNORM",      "CDON",
-     "CDOF",    "CDOF2",   "CUT2D",     "CUT2DF",   "SETMS",     "RTLION",     "FIFOCTRL",
-     "SBLON",   "SBLOF",   "DISPLON",   "DISPLOF",  "WALIMON",   "WALIMOF",    "PAROTOF",
-     "TOROTOF", "ORIAXES", "ORIMKS",    "ORIWKS",   "SPCOF",     "SPCON",      "FENDNORM",
-     "G290"});
+    {"G601",    "G602",      "G603",     "G97",       "G971",       "G972",     "BRISK",
+     "SOFT",    "DRIVE",     "BRISKA",   "SOFTA",     "DRIVEA",     "FFWON",    "FFWOF",
+     "DYNNORM", "DYNPOS",    "DYNROUGH", "DYNFINISH", "DYNSEMIFIN", "DYNPREC",  "DIAMOF",
+     "STOPRE",  "STARTFIFO", "STOPFIFO", "NORM",      "FNORM",      "CDON",     "CDOF",
+     "CDOF2",   "CUT2D",     "CUT2DF",   "SETMS",     "RTLION",     "FIFOCTRL", "SBLON",
+     "SBLOF",   "DISPLON",   "DISPLOF",  "WALIMON",   "WALIMOF",    "PAROTOF",  "TOROTOF",
+     "ORIAXES", "ORIMKS",    "ORIWKS",   "SPCOF",     "SPCON",      "FENDNORM", "G290"});
 
 // Words that do not belong to one of the lists above, and their meaning.
 constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"GOTOS", "runs the program from its begin again, without end; remove the block"},
     {"G5", "oblique plunge-cut grinding is not supported"},
     {"G7", "oblique plunge-cut grinding is not supported"},
     {"G34", "threads of increasing pitch are not supported"},
@@ -149,18 +154,6 @@ constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_
     {"BSPLINE", "splines are not supported; post-process to lines"},
     {"CSPLINE", "splines are not supported; post-process to lines"},
     {"POLY", "polynomials are not supported; post-process to lines"},
-    {"COMPON",
-     "compressors replace lines by splines within a tolerance, which is not supported; "
-     "remove it, or use G642"},
-    {"COMPCURV",
-     "compressors replace lines by splines within a tolerance, which is not "
-     "supported; remove it, or use G642"},
-    {"COMPCAD",
-     "compressors replace lines by splines within a tolerance, which is not supported; "
-     "remove it, or use G642"},
-    {"COMPSURF",
-     "compressors replace lines by splines within a tolerance, which is not "
-     "supported; remove it, or use G642"},
     {"DIAMON", "diameters are of turning, which is not supported"},
     {"DIAM90", "diameters are of turning, which is not supported"},
     {"KONT", "approach around the contour is not supported; use NORM"},
@@ -213,9 +206,6 @@ constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_
     {"ASUP", "interrupts are not supported"},
     {"SETINT", "interrupts are not supported"},
     {"FXS", "travel to fixed stop is not supported"},
-    {"CASE", "CASE is not supported; use IF"},
-    {"PCALL", "PCALL is not supported; use CALL"},
-    {"EXTCALL", "EXTCALL is not supported; use CALL"},
 });
 
 constexpr auto kTextOnly = std::to_array<std::string_view>(

@@ -27,9 +27,10 @@ enum class Group {
   contour_feed,    // CFC CFTCP
   transformation,  // TRAORI TRAFOOF
   rapid,           // RTLIOF
+  compressor,      // COMPON COMPCURV COMPCAD COMPSURF COMPOF
   without_effect,  // on the path
 };
-inline constexpr std::size_t kGroups = 16;
+inline constexpr std::size_t kGroups = 17;
 
 std::optional<Group> group_of(std::string_view code);
 

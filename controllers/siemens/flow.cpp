@@ -48,7 +48,7 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
                         word == "ENDLOOP" || word == "REPEAT" || word == "REPEATB" ||
                         word == "UNTIL" || word == "ENDLABEL" || is_jump(word) || word == "DEF" ||
                         word == "PROC" || word == "EXTERN" || word == "RET" || word == "CALL" ||
-                        word == "REDEF";
+                        word == "EXTCALL" || word == "CASE" || word == "REDEF";
   if (!is_taken) return false;
   scanner.take_word(word);
   if (word == "IF" || word == "ELSE" || word == "ENDIF") {
@@ -66,7 +66,9 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
     define(scanner);
   } else if (word == "PROC") {
     begin_procedure(scanner);
-  } else if (word == "CALL") {
+  } else if (word == "CASE") {
+    choose(scanner);
+  } else if (word == "CALL" || word == "EXTCALL") {
     call_by_text(scanner);
   } else if (word == "RET") {
     if (!scanner.at_end()) fail("RET with values is not supported");
@@ -170,6 +172,20 @@ void Translator::jump(Scanner& scanner, const std::string& word) {
                                        : "in the program"));
   }
   go_to(label->mark);
+}
+
+// CASE R1 OF 1 GOTOF ONE 2 GOTOF TWO DEFAULT GOTOF OTHERS
+void Translator::choose(Scanner& scanner) {
+  const double value = evaluate_number(scanner, variables_);
+  if (!scanner.take_word("OF")) scanner.fail("CASE without OF");
+  while (!scanner.at_end()) {
+    const bool is_chosen =
+        scanner.take_word("DEFAULT") || evaluate_number(scanner, variables_) == value;
+    const std::string word = scanner.read_name();
+    if (!is_jump(word)) scanner.fail("CASE: expected GOTOF, GOTOB or GOTO behind a value");
+    if (is_chosen) return jump(scanner, word);
+    if (scanner.read_name().empty()) scanner.fail(fmt::format("{} without a label", word));
+  }
 }
 
 // REPEAT LABEL P=n: from the label up to here; REPEAT LABEL LABEL P=n: between labels, the second

@@ -302,7 +302,8 @@ std::set<std::string> ProgramFile::called_names() {
     Scanner scanner(line->text, file_, line->number, line->column);
     std::string name = scanner.peek_name();
     if (scanner.take_word("MCALL")) name = scanner.peek_name();
-    if (scanner.take_word("CALL")) {
+    if (scanner.take_word("CALL") || scanner.take_word("EXTCALL")) {
+      scanner.take('(');
       scanner.skip_blanks();
       const std::size_t close = scanner.rest().find('"', 1);
       if (scanner.now() == '"' && close != line->text.npos) {

@@ -54,6 +54,10 @@ void Translator::set_modes(const Block& block) {
   if (codes_[at(Group::rapid)] != nullptr) {
     warn_once("RTLIOF", "RTLIOF: rapid moves are taken as straight lines, as with RTLION");
   }
+  if (const Code* code = codes_[at(Group::compressor)]; code && code->name != "COMPOF") {
+    warn_once("compressor",
+              code->name + ": lines stay lines; the tolerance of CYCLE832 blends them");
+  }
   if (const Code* code = codes_[at(Group::transformation)]) transform(*code);
   if (const Code* code = codes_[at(Group::cutter)]) set_side(block, *code);
   if (const Code* code = codes_[at(Group::motion)]) {
@@ -68,6 +72,7 @@ void Translator::set_units(const Code& code) {
   if (is_feed_inch != modes_.is_feed_inch || is_inch != modes_.is_inch) feed_.reset();
   modes_.is_inch = is_inch;
   modes_.is_feed_inch = is_feed_inch;
+  modes_.is_full_units = code.name.size() > 3;
 }
 
 void Translator::set_plane(const Code& code) {
@@ -144,8 +149,9 @@ void Translator::set_feed(const Block& block) {
     return;
   }
   double unit_of_feed = modes_.is_feed_inch ? 25.4 : 1.0;
+  const auto is_metric = variables_.given("$MN_SCALING_SYSTEM_IS_METRIC");
+  if (!modes_.is_full_units && is_metric == 0.0) unit_of_feed = 25.4;
   if (modes_.is_inch && !modes_.is_feed_inch) {
-    const auto is_metric = variables_.given("$MN_SCALING_SYSTEM_IS_METRIC");
     const std::string why =
         "F with G70: in the basic unit of the machine (MD10240), which is not in the program; "
         "pass --parameter '$MN_SCALING_SYSTEM_IS_METRIC=1' for mm/min, '=0' for inch/min, or "
@@ -156,7 +162,6 @@ void Translator::set_feed(const Block& block) {
       feed_ = Feed{Feed::Kind::unknown};
       return;
     }
-    unit_of_feed = *is_metric != 0.0 ? 1.0 : 25.4;
   }
   if (modes_.feed_code == 95) {
     if (!speed_ && !block.S) fail(block.F->place, "F with G95: no S is active");

@@ -8,8 +8,6 @@
 
 namespace servomill::controllers::siemens {
 
-static_assert(std::tuple_size_v<std::array<int, kGroups>> == 16);
-
 Translator::Translator(std::string text, std::string file, const ProgramSetup& setup)
     : setup_(setup),
       path_(lines_, {"G41 and G42", "G40", "G0", "G1", "RND=", "CHR="}),

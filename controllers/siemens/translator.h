@@ -28,6 +28,7 @@
 
 #include "controllers/gcode/program_setup.h"
 #include "controllers/siemens/block.h"
+#include "controllers/siemens/codes.h"
 #include "controllers/siemens/frame.h"
 #include "controllers/siemens/program_file.h"
 #include "controllers/siemens/variables.h"
@@ -63,6 +64,7 @@ struct Modes {
   bool is_incremental = false;  // G91
   bool is_inch = false;         // G70, G700
   bool is_feed_inch = false;    // G700
+  bool is_full_units = false;   // G700, G710: of F, too
   int feed_code = 94;
   int side = 0;                 // G41: 1, G42: -1
   bool is_contour_feed = true;  // CFC
@@ -82,15 +84,12 @@ class Translator {
   std::vector<Fault> take_warnings() { return std::exchange(warnings_, {}); }
 
  private:
-  using Words = std::vector<const Code*>;
-
   // translator.cpp: blocks
   void run_block();
   void begin_program();
   void execute(const Line& line);
   void execute_block(const Block& block);
   void sort_codes(const Block& block);
-  const Code* code(std::size_t group) const { return codes_[group]; }
   void end_program(int m);
   [[noreturn]] void fail(std::string message) const {
     throw InputError(place_, std::move(message));
@@ -183,6 +182,7 @@ class Translator {
   void count_loop(Scanner& scanner, const Line& line);
   void end_count_loop(const Line& line);
   void jump(Scanner& scanner, const std::string& word);
+  void choose(Scanner& scanner);
   void repeat(Scanner& scanner, const std::string& word, const Line& line);
   bool end_repetition();
   void go_behind(const Line& line);
@@ -269,9 +269,9 @@ class Translator {
   Place place_;                      // of the block
   bool has_begun_ = false, has_ended_ = false;
 
-  std::array<const Code*, 16> codes_{};  // of the block, by group
+  std::array<const Code*, kGroups> codes_{};  // of the block, by group
   Modes modes_;
-  std::array<bool, 16> is_programmed_{};  // groups, since the start
+  std::array<bool, kGroups> is_programmed_{};  // groups, since the start
   bool has_moved_ = false;
   Values work_;                                        // position programmed last
   std::array<std::optional<double>, 3> programmed_{};  // X Y Z as programmed last, in their frame

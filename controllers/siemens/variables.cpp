@@ -27,6 +27,19 @@ constexpr auto kTypes = std::to_array<std::pair<std::string_view, Type>>({
     {"AXIS", Type::axis},
 });
 
+// Names of the kinds of machining of CYCLE832: [C] "High Speed Settings"; values from memory.
+constexpr auto kConstants = std::to_array<std::pair<std::string_view, double>>({
+    {"_OFF", 0.0},
+    {"_FINISH", 1.0},
+    {"_SEMIFIN", 2.0},
+    {"_ROUGH", 3.0},
+    {"_PRECISION", 4.0},
+    {"_ORI_FINISH", 11.0},
+    {"_ORI_SEMIFIN", 12.0},
+    {"_ORI_ROUGH", 13.0},
+    {"_ORI_PRECISION", 14.0},
+});
+
 // INT takes the nearest integer of a REAL: Job Planning, "Type conversion".
 Value converted(Type type, const Value& value, const Reference& reference) {
   const bool wants_text = type == Type::text || type == Type::axis;
@@ -130,6 +143,9 @@ Value Variables::get(const Reference& reference) const {
   }
   const std::string name = to_string(reference);
   if (const auto value = given(name)) return {*value};
+  for (const auto& [constant, value] : kConstants) {
+    if (constant == name) return {value};
+  }
   if (name.starts_with('$')) {
     refuse(reference.place,
            fmt::format("{0} is a variable of the control, whose value is not in the "

@@ -32,6 +32,10 @@ std::vector<Example> flow_examples() {
        "GOTO LAST\nX8\nLAST: Y2\nGOTOC NOWHERE\nY3\n",
        "3 feed 1 0 0 F100\n3 feed 2 0 0 F100\n3 feed 3 0 0 F100\n7 feed 3 1 0 F100\n"
        "10 feed 3 2 0 F100\n12 feed 3 3 0 F100\n"},
+      {"CASE",
+       "R1=2\nAGAIN: CASE R1 OF 1 GOTOF ONE 2 GOTOF TWO DEFAULT GOTOF LAST\nONE: G1 X1 F100\n"
+       "GOTOF LAST\nTWO: G1 X2 F100\nR1=1\nGOTOB AGAIN\nLAST: Y1\n",
+       "5 feed 2 0 0 F100\n3 feed 1 0 0 F100\n8 feed 1 1 0 F100\n"},
       // [J] "Repeat program section": once, and twice more
       {"repetition of a part", "PART: G1 X=IC(1) F100\nY=IC(1)\nREPEAT PART P=2\nX0\n",
        "1 feed 1 0 0 F100\n2 feed 1 1 0 F100\n1 feed 2 1 0 F100\n2 feed 2 2 0 F100\n"

@@ -47,7 +47,7 @@ TEST(Siemens, SubprogramsInFilesOfTheirOwn) {
     return std::nullopt;
   };
   const std::string program = with_frame(
-      "F100\nPOCKET\npocket P2\nCALL \"POCKET\"\nMCALL POCKET\nX20\n"
+      "F100\nPOCKET\npocket P2\nEXTCALL(\"POCKET.SPF\")\nMCALL POCKET\nX20\n"
       "MCALL\nCYCLE81\n");
   EXPECT_EQ(all_moves(program, setup),
             "2 tool 1\n2 spindle 0 S1000\n3 rapid 0 0 0\n1 feed 1 0 0 F100\n1 feed 2 0 0 F100\n"
@@ -65,6 +65,9 @@ TEST(Siemens, SettingsOfTheMachineChoose) {
   EXPECT_EQ(all_moves(inch, setup), before + "4 feed 25.4 0 0 F10\n" + behind);
   setup.parameters["$MN_SCALING_SYSTEM_IS_METRIC"] = 0.0;
   EXPECT_EQ(all_moves(inch, setup), before + "4 feed 25.4 0 0 F254\n" + behind);
+  // G71 says nothing of F, G710 does
+  EXPECT_EQ(framed_moves("G1 X10 F10\nG710 X0 F10\n", setup),
+            "1 feed 10 0 0 F254\n2 feed 0 0 0 F10\n");
   // machine Z of 50 is tip Z of -50 with a tool of 100 mm, or the tip itself
   const std::string supa = "SUPA G0 Z50\nX1\n";
   setup = example_setup();

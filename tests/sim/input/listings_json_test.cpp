@@ -5,6 +5,7 @@
 #include "controllers/conversational/conversational.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/gcode/readers/differences.h"
+#include "controllers/siemens/siemens.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/input/listings.h"
 #include "strategies/registry.h"
