@@ -291,6 +291,10 @@ Reference Evaluator::reference() {
     out.name = "R";
     return out;
   }
+  if (out.name.starts_with('$')) {  // its indices may be axes and names: $P_UIFR[1,X,TR]
+    out.name += scanner_.read_brackets();
+    return out;
+  }
   if (++depth_ > kMaxNested) fail("the expression is nested too deep");
   if (scanner_.take('[')) {
     do {

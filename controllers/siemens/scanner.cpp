@@ -162,6 +162,24 @@ std::string Scanner::read_text() {
   return text;
 }
 
+std::string Scanner::read_brackets() {
+  if (now() != '[') return {};
+  const std::size_t begin = at_;
+  int depth = 0;
+  std::string text;
+  for (; at_ < line_.size(); ++at_) {
+    const char c = line_[at_];
+    if (!is_blank(c)) text += upper(c);
+    if (c == '[') ++depth;
+    if (c == ']' && --depth == 0) {
+      ++at_;
+      return text;
+    }
+  }
+  at_ = begin;
+  fail("the bracket is not closed");
+}
+
 std::string_view Scanner::read_to_parenthesis() {
   const std::size_t begin = at_;
   bool is_quoted = false;

@@ -54,6 +54,8 @@ class Scanner {
   bool is_at_number();
   /// Text in double quotes.
   std::string read_text();
+  /// "[1,X,TR]" if it comes next, in capitals and without blanks; else empty.
+  std::string read_brackets();
   /// Text up to the parenthesis that closes one that was taken before, which is taken, too.
   std::string_view read_to_parenthesis();
 

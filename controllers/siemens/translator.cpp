@@ -81,9 +81,12 @@ void Translator::execute(const Line& line) {
       scanner.go_to(begin);
     }
   }
-  if (flow(scanner, word, line)) return;
-  const std::string why = is_code(word) ? "" : refusal_of(word);
-  if (!why.empty()) scanner.fail(fmt::format("{}: {}", word, why));
+  const bool is_address = word.size() < 2 || is_digit(word[1]);  // most blocks begin so
+  if (!is_address) {
+    if (flow(scanner, word, line)) return;
+    const std::string why = is_code(word) ? "" : refusal_of(word);
+    if (!why.empty()) scanner.fail(fmt::format("{}: {}", word, why));
+  }
   execute_block(read_block(scanner, variables_));
 }
 

@@ -22,9 +22,9 @@ const Refusal kRefusals[] = {
     {"G1 X=DEPTH F1\n",
      "t.mpf:4:6: error: DEPTH is not defined: DEF is missing before it, or it is a variable of the "
      "machine, whose value is not in the program"},
-    {"G1 X=$AA_IM[X] F1\n",
-     "t.mpf:4:13: error: X is not defined: DEF is missing before it, or it "
-     "is a variable of the machine, whose value is not in the program"},
+    {"R1=$P_UIFR[1, X,TR]\n",
+     "t.mpf:4:4: error: $P_UIFR[1,X,TR] is a variable of the control, whose value is not in the "
+     "program; pass --parameter '$P_UIFR[1,X,TR]=NUMBER'"},
     {"G1 X=$P_TOOLR F1\n",
      "t.mpf:4:6: error: $P_TOOLR is a variable of the control, whose value is not in the program; "
      "pass --parameter '$P_TOOLR=NUMBER'"},

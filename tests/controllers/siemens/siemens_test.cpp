@@ -75,6 +75,8 @@ TEST(Siemens, SettingsOfTheMachineChoose) {
   setup.parameters["$MN_G53_TOOLCORR"] = 1.0;
   EXPECT_EQ(framed_moves(supa, setup), "1 rapid 0 0 -50\n2 rapid 1 0 -50\n");
   setup.parameters["R7"] = 3.0;
+  setup.parameters["$P_UIFR[1,X,TR]"] = 4.0;
+  EXPECT_EQ(framed_moves("G0 X=$p_uifr[1, x, tr]\n", setup), "1 rapid 4 0 0\n");
   EXPECT_EQ(framed_moves("G0 X=R7\n", setup), "1 rapid 3 0 0\n");
 }
 
@@ -104,6 +106,17 @@ TEST(Siemens, IsRecognisedByItsNameAndItsWords) {
   EXPECT_TRUE(is_one("p.nc", "G0 X1\n", Reader::siemens));
   EXPECT_FALSE(is_one("p.nc", "G0 X1\n(MSG, DONE)\nM30\n", Reader::any));
   EXPECT_FALSE(is_one("mpf", "G0 X1\n", Reader::any));
+}
+
+// The moves of a pocket are the control's: positions behind it are unknown until they are named.
+TEST(Siemens, ASurveyGoesOnBehindCyclesOfTheControl) {
+  ProgramSetup setup = example_setup();
+  setup.accepts_unknown_positions = true;
+  const std::string program = with_frame("POCKET3(5,0,2,-10,50,30,5)\nG0 X1 Y2 Z3\nX=IC(1)\n");
+  EXPECT_EQ(
+      warnings_of(program, setup),
+      "t.mpf:4:1: POCKET3: the path is internal to the control; have the CAM system output the "
+      "moves; extent and cycle time are without its moves\n");
 }
 
 TEST(Siemens, BlocksWithASlashAreLeftOutOnRequest) {
