@@ -4,7 +4,9 @@
 /// the work coordinate system, in which the lines move.
 ///
 /// Rules that hold throughout, with their sources ([F] is 840D sl, Fundamentals, 6FC5398-1BP40; [J]
-/// Job Planning, 6FC5398-2BP40; [C] Cycles, 6FC5398-3BP40; M from memory):
+/// Job Planning, 6FC5398-2BP40; [C] Cycles, 6FC5398-3BP40: their sections are named from memory;
+/// M: no section is known). The verification reader (dialects/siemens_reader.h), which cites pages
+/// that were seen, makes the same motions of its worked examples (two_siemens_readers_test).
 ///  (1) A word acts in the whole block, wherever it stands. [F] "Block rules"
 ///  (2) G functions of one group cancel each other and stay in force, but for G4, G9, G53, G63,
 ///      G110 ... G112, G153, SUPA. [F] "G commands"
