@@ -18,8 +18,28 @@ const std::string kProgram =
     "G1 X50\n"
     "M30\n";
 
-CompensateRequest request_for(Dialect dialect) {
-  Trial trial(kProgram, "plate.ngc");
+// The same moves with a frame, a variable, a loop and a cycle.
+const std::string kSiemens =
+    "DEF INT HOLE\n"
+    "G17 G710 G90 G94 G54\n"
+    "T1 M6\n"
+    "D1 S1000 M3\n"
+    "G0 X10 Y10\n"
+    "G0 Z5\n"
+    "TRANS X10\n"
+    "G1 Z-1 F200\n"
+    "G1 X40 RND=2\n"
+    "Y20\n"
+    "G0 Z5\n"
+    "FOR HOLE=1 TO 3\n"
+    "G0 X=HOLE*10\n"
+    "CYCLE81(5,0,2,-3)\n"
+    "ENDFOR\n"
+    "M30\n";
+
+CompensateRequest request_for(Dialect dialect, const std::string& program = kProgram,
+                              const std::string& file = "plate.ngc") {
+  Trial trial(program, file);
   CompensateRequest request = trial.request;
   request.error_file = written("none.toml", "[errors.none]\nEXX = { constant_um = 0.0 }\n");
   request.inputs.parameter_file.clear();
@@ -45,6 +65,16 @@ std::string refusal(Dialect dialect, const std::string& from, const std::string&
     return what.substr(what.find("plate.ngc"));
   }
   return "taken";
+}
+
+TEST(Verification, TakesWhatIsWrittenFromAProgramOfSiemens) {
+  for (const Dialect dialect :
+       {Dialect::linuxcnc, Dialect::heidenhain, Dialect::fanuc, Dialect::siemens}) {
+    const CompensateRequest request = request_for(dialect, kSiemens, "plate.mpf");
+    const VerificationReport report = verify_compensated(request, compensate(request).program);
+    EXPECT_GT(report.blocks, 15U);
+    EXPECT_LT(report.largest, 1e-6);  // m; arcs end on the grid of the control
+  }
 }
 
 TEST(Verification, TakesWhatIsWritten) {
