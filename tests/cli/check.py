@@ -296,13 +296,6 @@ name = "cycle_time"
         said = self.json("%PART G71 *\nN10 G90\nN20 G0 X1\n", status=2)
         self.assertEqual(said["first_fault_line"], 1)
 
-    def test_programs_of_siemens_are_read_as_such(self):
-        program = "%_N_PART_MPF\nG17 G71 G90 G505\nG0 X1 Y2\nMSG(\"END\")\nM30\n"
-        self.assertEqual(self.lines(program, "units"), ["those of its G70, G71, G700 and G710"])
-        self.assertEqual(self.lines(program, "work offsets"), ["G505 (line 2)"])
-        self.assertEqual(self.lines(program, "read by"), ["siemens"])
-        self.assertEqual(self.lines(program, "not read by"), ["controls for G-code: this is a Siemens program"])
-
     def test_quiet_says_nothing_of_a_right_program(self):
         done = self.check("G21 G0 X1.\nM2\n", "--quiet")
         self.assertEqual((done.stdout, done.stderr), ("", ""))
