@@ -25,7 +25,7 @@ ACTUAL = {"EC0Y": 18, "EA0Z": -12, "EB0Z": 25, "EB0A": -31, "EC0A": 22, "EA0C": 
 
 def rows_of(path):
     with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
 def positions(rows):
@@ -83,6 +83,38 @@ class Measuring(unittest.TestCase):
     def test_touches_are_not_overwritten(self):
         said = self.run_servomill("run", TRUNNION / "touches.toml", "--touches", "touches", "-o", "u.h5", "-q", status=2)
         self.assertIn("touches/touches.csv", said)
+
+    def test_a_planned_program_gives_the_rows_that_its_readings_ask_for(self):
+        self.run_servomill("plan-calibration", "--machine", TRUNNION / "machine.toml", "--instruments", "probe", "--hours", "0.7", "--controls", "linuxcnc", "-o", "plan")
+        plan = self.path("plan/readings.toml").read_text(encoding="utf-8")
+        length = re.search(r"stylus (\d+) mm", plan)[1]
+        spheres = sorted(set(re.findall(rf'"(sphere \d+) at (.*) of the table, stylus {length} mm', plan)))
+        text = f"""title = "planned"
+machine = "{TRUNNION / "machine.toml"}"
+machine_errors = "actual"
+[program]
+file = "plan/measure_{length}.ngc"
+start = {{ Z_mm = 370.0 }}
+[[program.tool]]
+number = 1
+length_mm = {length}.0
+[touch_probe]
+stylus_diameter_mm = 6
+[record]
+period_ms = 100
+[[case]]
+name = "touches"
+servo = "ideal"
+"""
+        for _, centre in spheres:
+            text += f"[[touch_probe.sphere]]\ncentre_mm = [{centre}]\ndiameter_mm = 25\n"
+        self.path("planned.toml").write_text(text, encoding="utf-8")
+        self.run_servomill("run", "planned.toml", "--touches", "taken", "-o", "planned.h5", "-q")
+        asked, taken = rows_of(self.path(f"plan/touches_{length}.csv")), rows_of(self.path("taken/touches.csv"))
+        self.assertGreater(len(taken), 50)
+        self.assertEqual([row["sphere"] for row in taken], [row["sphere"] for row in asked])
+        for axis in ("A_deg", "C_deg"):
+            np.testing.assert_allclose([float(row[axis]) for row in taken], [float(row[axis]) for row in asked], atol=1e-3)
 
 
 if __name__ == "__main__":

@@ -36,7 +36,8 @@ std::vector<std::string> header(const MeasuringMoves& moves, const ProbingSettin
 
 double unit_of(int axis) { return axis < kLinearJoints ? mm : deg; }
 
-// LinuxCNC, with a log of the touches: X Y Z as #5061 to #5063.
+// LinuxCNC, with a log of the touches: X Y Z as #5061 to #5063. The message before the first touch
+// of a sphere names the touches of a simulated run, too.
 class LinuxCncText {
  public:
   explicit LinuxCncText(const model::MachineSettings& machine)
@@ -63,6 +64,10 @@ class LinuxCncText {
   void put(const std::string& line) { text_ += line + "\n"; }
 
   void put_step(const MeasuringStep& step) {
+    if (step.is_probe && step.sphere != sphere_) {
+      sphere_ = step.sphere;
+      put(fmt::format("(MSG,{})", plain(sphere_, false)));
+    }
     std::string line = step.is_probe ? "G38.2" : "G0";
     for (int axis = 0; axis < kAxisWords; ++axis) {
       const auto& to = step.to[std::size_t(axis)];
@@ -73,7 +78,7 @@ class LinuxCncText {
     if (step.is_probe) put(fmt::format("(LOG,#5061 #5062 #5063 {})", plain(step.sphere, false)));
   }
 
-  std::string retract_, text_;
+  std::string retract_, text_, sphere_;
 };
 
 DialectSettings settings_of(const model::MachineSettings& machine, Dialect dialect) {
