@@ -5,7 +5,7 @@
     tools/standard_figures.py axis.json [-o FOLDER] [--force]
 
 ISO 230-2: deviations over the targets, means of both directions with their 2 s, the ranges A, E, M beside them. ISO 230-4 and -7: polar
-diagrams. ISO 230-6: parameters of the diagonals. One PNG a test, named after it. Exit status: 0 written, 2 a file cannot be read or written.
+diagrams. ISO 230-6: parameters of the diagonals. ISO 10791-6: readings of each sensor over the angle, with their range. One PNG a test, named after it. Exit status: 0 written, 2 a file cannot be read or written.
 """
 import argparse
 import json
@@ -191,7 +191,34 @@ def diagonals(report):
     return figure
 
 
-DRAWN = {"ISO 230-2": positioning, "ISO 230-4": polar, "ISO 230-6": diagonals, "ISO 230-7": polar}
+def sensors(report):
+    """Readings of each sensor over the angle of the rotary axis, both directions, and their range."""
+    curves = [(table["name"].removeprefix("curve "), table["columns"]) for table in report["tables"] if table["name"].startswith("curve ")]
+    names = [column["name"] for column in curves[0][1][1:]]
+    figure, grid = plt.subplots(len(names), 1, figsize=(7.6, 1.2 + 2.2 * len(names)), sharex=True, squeeze=False)
+    found = parameters_of(report)
+    for k, (name, axes) in enumerate(zip(names, grid.flat), 1):
+        every = np.concatenate([numbers(columns[k]["values"]) for _, columns in curves])
+        scale, unit = unit_of(every, False)
+        for (direction, columns), colour, dash in zip(curves, (UP, DOWN), ("-", style.DASH)):
+            place = numbers(columns[0]["values"])
+            place = np.degrees(place) if columns[0]["unit"] == "rad" else place
+            order = np.argsort(place, kind="stable")
+            axes.plot(place[order], numbers(columns[k]["values"])[order] / scale, color=colour, linestyle=dash, linewidth=1.2, marker=".", markersize=4,
+                      label=direction)
+        axes.set_ylabel(f"{name}, {unit}")
+        axes.set_title(f"range {number(found[name]['value'], scale, unit)}", fontsize=9, loc="right")
+        axes.grid(True, linewidth=0.4)
+    first = curves[0][1][0]
+    grid.flat[-1].set_xlabel("angle, deg" if first["unit"] == "rad" else "reading")
+    if len(curves) > 1:
+        grid.flat[0].legend(ncols=2, fontsize=8, frameon=False)
+    figure.suptitle(f"{report['standard']}, {os.path.basename(report['name'])}", fontsize=10)
+    figure.tight_layout()
+    return figure
+
+
+DRAWN = {"ISO 10791-6": sensors, "ISO 230-2": positioning, "ISO 230-4": polar, "ISO 230-6": diagonals, "ISO 230-7": polar}
 
 
 def read_reports(path):

@@ -282,6 +282,7 @@ void evaluate_ball(const MachineTest& test, const evaluation::CaseData& one, con
       turn.angles.push_back(k == 0 ? test.begin + angle : test.end - angle);
     }
     turn.values = read[k];
+    result.paths.back().angles = turn.angles;
   }
   out.report = standards::ball_report(result);
   out.sensors = readings_of("direction", names, std::move(turns));

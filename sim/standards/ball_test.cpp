@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "plant/vocabulary/units.h"
 #include "sim/readings/columns.h"
@@ -30,7 +31,7 @@ BallTest::Path& path_of(BallTest& test, int direction) {
   for (BallTest::Path& path : test.paths) {
     if (path.direction == direction) return path;
   }
-  BallTest::Path path{direction, {}};
+  BallTest::Path path{direction, {}, {}};
   path.values.resize(test.sensors.size());
   return test.paths.emplace_back(std::move(path));
 }
@@ -53,6 +54,31 @@ double reading_of(const readings::Table& table, const readings::Row& row,
                      table.text(row, column), readings::kLargestDeviation / mm)});
   }
   return value.value_or(0.0);
+}
+
+// The column of angles, if there is one.
+const readings::Column* angle_of(const readings::Table& table) {
+  for (const std::string_view name : {"angle", "A", "B", "C"}) {
+    const readings::Column* column = table.find(name);
+    if (column != nullptr && column->unit.quantity == config::kAngle) return column;
+  }
+  return nullptr;
+}
+
+// Readings of one path in their order.
+ReportTable curve_of(const BallTest& test, const BallTest::Path& path) {
+  ReportTable out{fmt::format("curve {}", direction_name(path.direction)), true, {}, {}};
+  if (path.angles.size() == path.values[0].size()) {
+    out.columns.push_back({"angle", Dimension::angle, true, path.angles});
+  } else {
+    std::vector<double> numbers(path.values[0].size());
+    std::iota(numbers.begin(), numbers.end(), 1.0);
+    out.columns.push_back({"reading", Dimension::count, false, std::move(numbers)});
+  }
+  for (std::size_t k = 0; k < test.sensors.size(); ++k) {
+    out.columns.push_back({test.sensors[k], Dimension::length, false, path.values[k]});
+  }
+  return out;
 }
 
 // The sensors of a table, and their names.
@@ -80,6 +106,19 @@ std::vector<const readings::Column*> sensors_of(const readings::Table& table, Ba
   return columns;
 }
 
+// The rotary joint that moves; none where several do, or none.
+std::optional<int> turning_joint(const readings::Group& group) {
+  std::optional<int> out;
+  for (int j = kLinearJoints; j < kJoints; ++j) {
+    const bool moves = std::any_of(group.rows.begin(), group.rows.end(), [&](const auto& row) {
+      return row.Q[j] != group.rows.front().Q[j];
+    });
+    if (moves && out) return std::nullopt;
+    if (moves) out = j;
+  }
+  return out;
+}
+
 }  // namespace
 
 BallTest read_ball(const std::string& path) {
@@ -87,6 +126,7 @@ BallTest read_ball(const std::string& path) {
   BallTest out{path, {}, {}};
   const std::vector<const readings::Column*> columns = sensors_of(table, out);
   const readings::Column* direction = table.find("direction");
+  const readings::Column* angle = angle_of(table);
   std::vector<Fault> faults;
   for (const readings::Row& row : table.rows) {
     const int sense = direction == nullptr ? 0 : direction_of(table.text(row, *direction));
@@ -100,6 +140,8 @@ BallTest read_ball(const std::string& path) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       mine.values[k].push_back(reading_of(table, row, *columns[k], faults));
     }
+    if (angle == nullptr) continue;
+    if (const auto value = table.number(row, *angle, faults)) mine.angles.push_back(*value);
   }
   if (!faults.empty()) throw InputError(std::move(faults));
   return out;
@@ -107,6 +149,7 @@ BallTest read_ball(const std::string& path) {
 
 BallTest ball_of(const readings::Group& group) {
   BallTest out{group.name, {"dx", "dy", "dz"}, {}};
+  const auto turning = turning_joint(group);
   for (const readings::Reading& one : group.rows) {
     const auto moved = std::find_if(one.direction.begin(), one.direction.end(),
                                     [](int direction) { return direction != 0; });
@@ -114,6 +157,7 @@ BallTest ball_of(const readings::Group& group) {
     for (std::size_t k = 0; k < 3; ++k) {
       mine.values[k].push_back(one.deviation[static_cast<Eigen::Index>(k)]);
     }
+    if (turning) mine.angles.push_back(one.Q[*turning]);
   }
   return out;
 }
@@ -141,6 +185,7 @@ Report ball_report(const BallTest& test) {
                                       test.paths.size() > 1 ? ", both directions" : ""),
                           range(both)});
   }
+  for (const BallTest::Path& path : test.paths) out.tables.push_back(curve_of(test, path));
   if (test.paths.size() < 2) {
     out.remarks.emplace_back(
         "one direction: ISO 10791-6 requires both; give them in a column direction");

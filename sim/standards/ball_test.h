@@ -19,19 +19,20 @@ struct BallTest {
   struct Path {
     int direction = 0;                        // 1, -1; 0: not known
     std::vector<std::vector<double>> values;  // m; of each sensor
+    std::vector<double> angles = {};          // rad, of the rotary axis at each; none: not known
   };
   std::vector<Path> paths;
 };
 
-/// Reads a table: `direction` (forward, backward; ccw, cw), an angle or position that is not
-/// evaluated, and sensors: `radial_um`, `tangential_um`, `axial_um`, `bar_um`, or `dx_um`, `dy_um`,
-/// `dz_um`. @throws InputError with all faults
+/// Reads a table: `direction` (forward, backward; ccw, cw), an angle (`angle_deg`, `A_deg`, `B_deg`
+/// or `C_deg`), over which figures are drawn, and sensors: `radial_um`, `tangential_um`,
+/// `axial_um`, `bar_um`, or `dx_um`, `dy_um`, `dz_um`. @throws InputError with all faults
 BallTest read_ball(const std::string& path);
 
 /// A group of kind r_test.
 BallTest ball_of(const readings::Group& group);
 
-/// Range of each sensor: of each direction and of both together.
+/// Range of each sensor: of each direction and of both together; a table of each path.
 Report ball_report(const BallTest& test);
 
 }  // namespace servomill::sim::standards

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Figures of tests, from reports with more and with less in them."""
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -50,6 +51,18 @@ def diagonal():
             "tables": [{"name": "diagonal", "rows": ["d1.csv", "d2.csv", "d3.csv"], "columns": columns}]}
 
 
+def ball(angle=None):
+    """Two sensors in both directions, over the angle or in their order."""
+    tables = []
+    for k, direction in enumerate(("forward", "backward")):
+        place = [math.pi * n / 6 for n in range(13)] if angle else [float(n) for n in range(1, 14)]
+        columns = [{"name": "angle" if angle else "reading", "unit": "rad" if angle else "1", "values": place}]
+        columns += [{"name": sensor, "unit": "m", "values": [1e-6 * (k + math.sin(n + j)) for n in range(13)]} for j, sensor in enumerate(("radial", "axial"))]
+        tables.append({"name": f"curve {direction}", "columns": columns, "rows": []})
+    parameters = [{"parameter": sensor, "value": 2.9e-6, "unit": "m", "U": None} for sensor in ("radial", "axial")]
+    return {"standard": "ISO 10791-6", "name": "BK1.csv", "parameters": parameters, "tables": tables}
+
+
 class Figures(unittest.TestCase):
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
@@ -64,13 +77,13 @@ class Figures(unittest.TestCase):
         return done
 
     def test_each_standard_has_its_figure(self):
-        ball = {"standard": "ISO 10791-6", "name": "BK1.csv", "parameters": [], "tables": []}
+        other = {"standard": "ISO 1", "name": "other.csv", "parameters": [], "tables": []}
         done = self.draw(positioning(), positioning(both=False, U=None), positioning(unit="rad"), circle(), circle("ISO 230-7", ("radial_x", "axial")),
-                         diagonal(), ball)
+                         diagonal(), ball(), ball("deg"), other)
         names = sorted(path.name for path in (self.folder / "out").iterdir())
-        self.assertEqual(names, ["3-diagonals-iso230-6.png", "axis-iso230-2-2.png", "axis-iso230-2-3.png", "axis-iso230-2.png",
+        self.assertEqual(names, ["3-diagonals-iso230-6.png", "BK1-iso10791-6-2.png", "BK1-iso10791-6.png", "axis-iso230-2-2.png", "axis-iso230-2-3.png", "axis-iso230-2.png",
                                  "circle-XY-iso230-4.png", "circle-XY-iso230-7.png"])
-        self.assertIn("ISO 10791-6 has no figure", done.stderr)
+        self.assertIn("ISO 1 has no figure", done.stderr)
         for path in (self.folder / "out").iterdir():
             self.assertEqual(path.read_bytes()[:4], b"\x89PNG")
 

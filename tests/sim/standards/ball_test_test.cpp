@@ -32,6 +32,22 @@ TEST(BallTest, RangesOfTheSensorsByDirectionAndOfBoth) {
   EXPECT_TRUE(report.remarks.empty());
 }
 
+TEST(BallTest, TablesOfItsPathsAreThoseOfTheFile) {
+  const ReadingFile over_angle("direction,C_deg,dx_um\nccw,0,1\nccw,90,4\ncw,90,5\ncw,0,2\n");
+  const Report report = ball_report(read_ball(over_angle.path()));
+  ASSERT_EQ(report.tables.size(), 2u);
+  EXPECT_EQ(report.tables[1].name, "curve backward");
+  ASSERT_EQ(report.tables[1].columns.size(), 2u);
+  EXPECT_EQ(report.tables[1].columns[0].name, "angle");
+  EXPECT_NEAR(report.tables[1].columns[0].values[0], 90.0 * deg, 1e-12);
+  EXPECT_NEAR(report.tables[1].columns[1].values[0], 5.0 * um, kRounding);
+  const ReadingFile in_order("dx_um\n3\n4\n");
+  const ReportTable table = ball_report(read_ball(in_order.path())).tables.at(0);
+  EXPECT_EQ(table.name, "curve all");
+  EXPECT_EQ(table.columns[0].name, "reading");
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.0, 2.0}));
+}
+
 TEST(BallTest, WrongFiles) {
   EXPECT_EQ(message_of("C_deg,radial\n0,1\n", read_ball),
             "readings.csv: error: column radial must name its unit, such as radial_um");
