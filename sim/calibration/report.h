@@ -24,6 +24,10 @@ std::string function_table(const Calibration& calibration);
 /// "0.52 um", "1.3 urad": a value (m, rad) of the readings of a group.
 std::string in_unit(double value, const readings::Group& group);
 
+/// Refuses a calibration whose readings contradict each other: tables and programs would follow it.
+/// @throws InputError that names the groups
+void refuse_contradictions(const Calibration& calibration);
+
 /// Sentences on readings that contradict each other or stand out, with file and line.
 std::vector<std::string> warnings(const Calibration& calibration);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/report.h"
 
@@ -92,10 +93,10 @@ void add_copied_rows(const readings::Group& group, std::vector<std::string>& out
     copied = found->second;
   }
   if (copies == 0) return;
-  out.push_back(
-      fmt::format("{}: equals line {} in every number{}; it counts: remove what was copied",
-                  readings::place_of(group, *first), copied->line,
-                  copies == 1 ? "" : fmt::format(", and {} more rows an earlier one", copies - 1)));
+  out.push_back(fmt::format(
+      "{}: equals line {} in every number{}; it counts: remove what was copied",
+      readings::place_of(group, *first), copied->line,
+      copies == 1 ? "" : fmt::format("; so do {} more rows with earlier ones", copies - 1)));
 }
 
 // Radii and lengths that come out far from what is stated, and set-ups far from what is known.
@@ -220,6 +221,18 @@ void add_reading_warnings(const Calibration& calibration, std::vector<std::strin
 }
 
 }  // namespace
+
+void refuse_contradictions(const Calibration& calibration) {
+  if (calibration.suspects.empty()) return;
+  std::vector<std::string> sentences;
+  for (const Suspect& suspect : calibration.suspects) {
+    sentences.push_back(suspect_sentence(calibration, suspect));
+  }
+  throw InputError({calibration.readings.path},
+                   fmt::format("readings contradict each other, no machine is written: {}; mend or "
+                               "remove them, or use --accept-contradictions",
+                               fmt::join(sentences, "; ")));
+}
 
 std::vector<std::string> warnings(const Calibration& calibration) {
   std::vector<std::string> out;

@@ -28,7 +28,7 @@ constexpr KeyHelp kMachine[] = {
     {"machine.identified", "covariance",
      "covariance of the values in products of their units, one list per row"},
     {"machine.identified", "unidentifiable",
-     "keys that the recordings do not determine; they keep their start value"},
+     "keys that the readings do not determine: start values, errors unknown"},
     {"machine", "errors", "error models of the machine, as [errors.NAME] of a scenario"},
     {"machine", "structural_mode",
      "modes of the tip under forces of the cut, in addition to structural_stiffness"},

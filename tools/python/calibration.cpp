@@ -29,7 +29,7 @@ struct CalibrateRequest {
   std::string readings, machine;  // of the machine empty: the one that the readings name
   std::string output;             // empty: not written
   std::string model;
-  bool force = false;
+  bool force = false, accept_contradictions = false;
 };
 
 struct Calibrated {
@@ -52,6 +52,7 @@ Calibrated calibrated(const CalibrateRequest& request) {
       {}};
   out.suggestions = calibration::suggestions(out.result, description.machine);
   if (!request.output.empty()) {
+    if (!request.accept_contradictions) calibration::refuse_contradictions(out.result);
     calibration::write_identified_errors(request.output, out.result, file, request.model,
                                          request.force);
   }
@@ -98,8 +99,8 @@ py::dict locations_of(const calibration::Calibration& result) {
 
 py::dict calibrate(const std::string& readings, const std::string& machine,
                    const std::string& output, const std::string& model, bool force,
-                   const py::object& progress) {
-  const CalibrateRequest request{readings, machine, output, model, force};
+                   bool accept_contradictions, const py::object& progress) {
+  const CalibrateRequest request{readings, machine, output, model, force, accept_contradictions};
   const auto found =
       computed(progress, [&] { return std::make_shared<Calibrated>(calibrated(request)); });
   py::dict out;
@@ -116,7 +117,8 @@ py::dict calibrate(const std::string& readings, const std::string& machine,
 
 void bind_calibration(py::module_& module) {
   module.def("calibrate", &calibrate, py::arg("readings"), py::arg("machine"), py::arg("output"),
-             py::arg("model"), py::arg("force"), py::arg("progress") = py::none());
+             py::arg("model"), py::arg("force"), py::arg("accept_contradictions"),
+             py::arg("progress") = py::none());
 }
 
 }  // namespace servomill::python

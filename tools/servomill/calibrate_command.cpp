@@ -63,14 +63,6 @@ void print_suggestions(const std::vector<std::string>& suggestions) {
   for (const std::string& suggestion : suggestions) fmt::print("  {}\n", suggestion);
 }
 
-// A machine file that tables and programs would follow.
-void refuse_contradictions(const calibration::Calibration& result, const Options& options) {
-  if (result.suspects.empty() || options.has("accept-contradictions")) return;
-  throw InputError({result.readings.path},
-                   "readings contradict each other (warnings above): no machine is written; mend "
-                   "or remove them, or use --accept-contradictions");
-}
-
 }  // namespace
 
 int calibrate_command(const Arguments& arguments) {
@@ -126,7 +118,7 @@ int calibrate_command(const Arguments& arguments) {
     if (prints) fmt::print("written to {}\n", table);
   }
   if (!out.empty()) {
-    refuse_contradictions(result, options);
+    if (!options.has("accept-contradictions")) calibration::refuse_contradictions(result);
     calibration::write_identified_errors(out, result, machine_file,
                                          options.get<std::string>("model"), options.has("force"));
     if (prints) fmt::print("written to {}\n", out);

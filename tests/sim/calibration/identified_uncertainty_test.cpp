@@ -95,7 +95,7 @@ TEST_F(IdentifiedUncertainty, OfShortWavesIsThatOfTheReportBetweenTheKnots) {
     const double wanted = wave * wave * interpolation_variance(table->basis, s);
     const Matrix3d grown = found_at(Q) - without[k];
     const double ratio = std::sqrt(grown(1, 1) / wanted);
-    EXPECT_GT(ratio, 0.95) << s;  // four periods in place of all
+    EXPECT_GT(ratio, 0.92) << s;  // four periods in place of all
     EXPECT_LT(ratio, 1.15) << s;
     EXPECT_LT(std::abs(grown(2, 2)), 1e-3 * wave * wave) << s;
   }

@@ -284,13 +284,14 @@ class Calibration(NamedTuple):
 
 
 def calibrate(readings: Path, *, machine: Optional[Path] = None, output: Optional[Path] = None, model: str = "identified",
-              force: bool = False, progress: Progress = None) -> Calibration:
+              force: bool = False, accept_contradictions: bool = False, progress: Progress = None) -> Calibration:
     """Finds the geometric errors of a machine from readings of lasers, ball bars, R-tests and touch probes.
 
     machine: the measured machine; default: the one that the readings name. output: machine file with the errors as
-    [errors.MODEL], their uncertainty and covariance (.toml).
+    [errors.MODEL], their uncertainty and covariance (.toml); refused where readings contradict each other, unless
+    accept_contradictions is true.
     """
-    done = _core.calibrate(_path(readings), _path(machine), _path(output), model, force, progress)
+    done = _core.calibrate(_path(readings), _path(machine), _path(output), model, force, accept_contradictions, progress)
     done["functions"] = {name: Function(*one) for name, one in done["functions"].items()}
     done["locations"] = {name: Location(*one) for name, one in done["locations"].items()}
     return Calibration(**done)
