@@ -6,21 +6,9 @@
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
+#include "sim/engine/case_result.h"
 
 namespace servomill::sim::engine {
-
-/// Largest size of a signal, and when.
-struct Peak {
-  double size = 0.0;
-  double time = 0.0;  // s
-};
-
-/// Largest values in a run, joint by joint (SI; lengths in m, angles in rad).
-struct AxisDemands {
-  static constexpr std::size_t kOrders = 3;               // velocity, acceleration, jerk
-  std::array<Peak, kJoints> offset;                       // of all strategies together
-  std::array<std::array<Peak, kJoints>, kOrders> motion;  // of path and offset together
-};
 
 /// Finds the demands of a run, one position period after the other. Between two of them neither a
 /// table nor a virtual encoder has a derivative. So velocity, acceleration and jerk are means: n

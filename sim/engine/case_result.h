@@ -1,12 +1,13 @@
 /// Result of one case: how it ended, and its recording.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "sim/engine/axis_demands.h"
+#include "plant/vocabulary/axes.h"
 #include "sim/records/series.h"
 #include "strategies/strategy.h"
 
@@ -29,6 +30,19 @@ struct HeatCourse {
   double step = 0.0;  // s; 0: a machine without heat
   std::size_t bodies = 0;
   std::vector<double> power;  // W, of each body, step after step
+};
+
+/// Largest size of a signal, and when.
+struct Peak {
+  double size = 0.0;
+  double time = 0.0;  // s
+};
+
+/// Largest values in a run, joint by joint (SI; lengths in m, angles in rad).
+struct AxisDemands {
+  static constexpr std::size_t kOrders = 3;               // velocity, acceleration, jerk
+  std::array<Peak, kJoints> offset;                       // of all strategies together
+  std::array<std::array<Peak, kJoints>, kOrders> motion;  // of path and offset together
 };
 
 struct CaseResult {

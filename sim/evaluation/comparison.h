@@ -1,6 +1,7 @@
 /// Comparison of cases along the programmed path: what a scenario asks of its recorded signals.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,7 +10,6 @@
 #include <vector>
 
 #include "plant/kinematics/chain.h"
-#include "sim/evaluation/axis_demand.h"
 #include "sim/model/tolerance.h"
 #include "sim/records/series.h"
 
@@ -27,6 +27,23 @@ struct SpindleMotion;
 struct DayFigures {
   double rms = 0.0, largest = 0.0;  // m, displacement of the tip along the path of every cycle
   double measuring = 0.0;           // s, spent on datums in between
+};
+
+/// Largest value of a run, until it stopped.
+struct DemandedValue {
+  double size = 0.0;   // SI; lengths in m, angles in rad
+  double limit = 0.0;  // of the axis
+  double time = 0.0;   // s
+  int line = 0;        // of the program
+  double share() const { return size / limit; }
+};
+
+/// Motion that one axis of a case was asked for, and the limits of the machine.
+struct AxisDemand {
+  char axis = '-';
+  bool is_linear = true;
+  double offset = 0.0;  // m, rad; largest that all strategies together add to the path
+  std::array<DemandedValue, 3> motion;  // velocity, acceleration, jerk of path and offset together
 };
 
 /// Data of one case that ran.

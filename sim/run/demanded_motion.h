@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/engine/axis_demands.h"
-#include "sim/evaluation/axis_demand.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/preparation/prepared_case.h"
 
 namespace servomill::sim::run {

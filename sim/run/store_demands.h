@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/axis_demand.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 

@@ -38,6 +38,8 @@ def listed_name(section, key):
         return next((name for pattern, name in ERROR if re.match(pattern, key)), key)
     if section.endswith(("work_offset", "program.start", "test.at", "test.from", "test.to", "day.place.at")):
         return re.sub("^[XYZ]_mm$", "X_mm", re.sub("^[ABC]_deg$", "C_deg", key))
+    if section.endswith(("recording.measured", "recording.reference")):
+        return re.sub("^[XYZABC]$", "X", key)
     return key
 
 

@@ -266,6 +266,7 @@ TEST(ReaderRules, AreRefusedByLinuxCncAndByReadersWithoutThem) {
     SCOPED_TRACE(one.tolerant);
     for (std::size_t k = 0; k < kReaders.size(); ++k) {
       const auto reader = static_cast<Reader>(k);
+      if (reader == Reader::siemens) continue;  // another language
       if (one.reader != Reader::any && reader == Reader::any) continue;
       const bool has_other_words =
           one.rule == ReaderRule::scaling || one.rule == ReaderRule::rotation;
