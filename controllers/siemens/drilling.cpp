@@ -87,6 +87,40 @@ Feed Translator::cycle_feed(double per_minute) const {
   return {Feed::Kind::per_minute, per_minute * (modes_.is_feed_inch ? 25.4 : 1.0)};
 }
 
+// Parameters that turn the drilling axis or measure the depth from elsewhere. [C], from memory
+void Translator::refuse_other_geometry(const Call& call) const {
+  struct Places {
+    std::string_view name;
+    std::size_t GMODE, DMODE, AXN;  // 0: the cycle has none
+  };
+  constexpr auto kPlaces = std::to_array<Places>({{"CYCLE81", 6, 7, 0},
+                                                  {"CYCLE82", 6, 7, 0},
+                                                  {"CYCLE83", 17, 18, 12},
+                                                  {"CYCLE84", 21, 22, 12},
+                                                  {"CYCLE840", 17, 18, 11},
+                                                  {"CYCLE85", 8, 9, 0},
+                                                  {"CYCLE86", 11, 12, 0},
+                                                  {"CYCLE87", 6, 7, 0},
+                                                  {"CYCLE88", 7, 8, 0},
+                                                  {"CYCLE89", 6, 7, 0}});
+  const auto* at = std::find_if(kPlaces.begin(), kPlaces.end(),
+                                [&](const Places& one) { return one.name == call.name; });
+  value_of(call, 0, {}, "RTP");
+  if (value_of(call, at->GMODE, 0.0, "_GMODE") != 0.0) {
+    fail(call.place, fmt::format("{}: a depth from the shank or by a diameter (_GMODE) is not "
+                                 "supported; give the depth of the tip",
+                                 call.name));
+  }
+  const double plane = std::fmod(value_of(call, at->DMODE, 0.0, "_DMODE"), 10.0);
+  const double axis = at->AXN == 0 ? 0.0 : value_of(call, at->AXN, 0.0, "_AXN");
+  if ((plane == 0.0 || plane == 3.0 - modes_.normal) &&
+      (axis == 0.0 || axis == modes_.normal + 1.0))
+    return;
+  fail(call.place, fmt::format("{}: drilling along another axis than that of the active plane "
+                               "(_DMODE, _AXN) is not supported; program G17, G18 or G19",
+                               call.name));
+}
+
 bool Translator::run_drilling_cycle(const Call& call) {
   using Run = void (Translator::*)(const Call&);
   constexpr auto kCycles = std::to_array<std::pair<std::string_view, Run>>({
@@ -107,19 +141,14 @@ bool Translator::run_drilling_cycle(const Call& call) {
   require_no_compensation(call.name);
   if (is_tcp_) fail(call.place, fmt::format("{} with TRAORI; end it with TRAFOOF", call.name));
   check_length_axis(true);
+  refuse_other_geometry(call);
   (this->*found->second)(call);
   return true;
 }
 
-// In at F, dwell, out at rapid. _GMODE 1 measures the depth from the shank or by the diameter;
-// 2 in the tens of _AMODE is a dwell in revolutions.
+// In at F, dwell, out at rapid. 2 in the tens of _AMODE is a dwell in revolutions.
 void Translator::drill_82(const Call& call) {
   const Hole hole = hole_of(call);
-  if (std::fmod(value_of(call, 6, 0.0, "_GMODE"), 10.0) != 0.0) {
-    fail(call.place, fmt::format("{}: a depth from the shank or by a diameter (_GMODE) is not "
-                                 "supported; give the depth of the tip",
-                                 call.name));
-  }
   const double DTB = value_of(call, 5, 0.0, "DTB");
   const bool is_turns = std::fmod(value_of(call, 8, 0.0, "_AMODE") / 10.0, 10.0) >= 2.0;
   cycle_move({}, hole.clearance);
@@ -177,7 +206,6 @@ void Translator::drill_83(const Call& call) {
   const double total = std::abs(hole.surface - hole.bottom);
   const double DIS1 = std::abs(value_of(call, 16, 0.0, "_DIS1")) * unit();
   const double above = DIS1 > 0.0 ? DIS1 : total <= 30.0 ? 0.6 : std::min(total / 50.0, 7.0);
-  if (value_of(call, 12, 0.0, "_AXN") > 3.0) fail(call.place, "CYCLE83: _AXN must be 0 to 3");
   cycle_move({}, hole.clearance);
   double done = 0.0;
   for (std::size_t i = 0; i < strokes.size(); ++i) {

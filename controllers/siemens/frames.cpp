@@ -29,6 +29,7 @@ bool Translator::act(const Block& block) {
   if (code == nullptr) return false;
   if (code->name == "G63") return false;
   if (code->name == "G4") {
+    if (moves(block)) fail(code->place, "G4 stands in a block of its own; the block moves an axis");
     dwell(block);
   } else if (code->name == "G25" || code->name == "G26") {
     warn_once("G25", "G25 and G26: limits of the working area and of the speed are ignored");
@@ -121,6 +122,10 @@ void Translator::pole(const Block& block, const Code& code) {
     from = *pole_;
   }
   if (block.is_polar()) {
+    if (block.has_axes()) {
+      fail(code.place,
+           fmt::format("{} with AP and RP beside axis words; use one of both", code.name));
+    }
     if (!block.AP || !block.RP) fail(code.place, fmt::format("{} needs AP and RP", code.name));
     const double angle = block.AP->value * deg;
     from += block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));

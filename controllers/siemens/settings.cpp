@@ -80,6 +80,9 @@ void Translator::set_plane(const Code& code) {
   if (normal == modes_.normal) return;
   require_no_compensation(code.name);
   modes_.normal = normal;
+  pole_.reset();
+  polar_angle_.reset();
+  polar_radius_.reset();
   last_element_.reset();
 }
 

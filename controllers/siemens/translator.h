@@ -230,6 +230,7 @@ class Translator {
   void cycle_dwell(double time);
   Feed cycle_feed(double per_minute) const;
   bool run_drilling_cycle(const Call& call);
+  void refuse_other_geometry(const Call& call) const;
   std::vector<double> strokes_of(const Call& call, const Hole& hole) const;
   double pitch_of(const Call& call, std::size_t at_MPIT, std::size_t at_unit) const;
   void turn_spindle(int direction);

@@ -119,6 +119,19 @@ const Refusal kRefusals[] = {
      "t.mpf:4:1: error: WHENEVER: synchronised actions are not supported; remove the block if it "
      "causes no motion"},
     {"MCALL CYCLE84(5,0,2,-10,,,3)\nX5\n", "t.mpf:4:7: error: CYCLE84 without MPIT and PIT"},
+    {"CYCLE82(5,0,2,-10,,0,10,1,12)\n",
+     "t.mpf:4:1: error: CYCLE82: a depth from the shank or by a diameter (_GMODE) is not "
+     "supported; "
+     "give the depth of the tip"},
+    {"CYCLE82(5,0,2,-10,,0,0,2,12)\n",
+     "t.mpf:4:1: error: CYCLE82: drilling along another axis than that of the active plane "
+     "(_DMODE, _AXN) is not supported; program G17, G18 or G19"},
+    {"F100\nCYCLE83(5,0,2,-10,,,5,0,0,0,1,1,1)\n",
+     "t.mpf:5:1: error: CYCLE83: drilling along another axis than that of the active plane "
+     "(_DMODE, _AXN) is not supported; program G17, G18 or G19"},
+    {"G1 X9 G4 F1\n", "t.mpf:4:7: error: G4 stands in a block of its own; the block moves an axis"},
+    {"G1 X60 G110 AP=0 RP=1\n",
+     "t.mpf:4:8: error: G110 with AP and RP beside axis words; use one of both"},
 };
 
 TEST(SiemensRefusals, FullMessages) {
