@@ -10,7 +10,7 @@
 ///  (1) A word acts in the whole block, wherever it stands. [F] "Block rules"
 ///  (2) G functions of one group cancel each other and stay in force, but for G4, G9, G53, G63,
 ///      G110 ... G112, G153, SUPA. [F] "G commands"
-///  (3) M3, M4, M7 and M8 act before the motion of their block, M5 and M9 behind it, M0, M1, M2,
+///  (3) M3, M4, M7 and M8 act before the motion of their block, M5 and M9 after it, M0, M1, M2,
 ///      M17 and M30 last. M (MD22254: by the machine)
 ///  (4) A change of the frame or of the length moves nothing; axes that a block does not name stay.
 ///      [F] "Frames"

@@ -45,7 +45,7 @@ sim::model::Scenario scenario() {
 }
 
 // Displacement of Y by friction (um) from 0.1 s before its reversal at the top of the second turn
-// to 0.3 s behind it.
+// to 0.3 s after it.
 std::vector<double> glitch(const sim::model::Scenario& scenario, const std::string& name) {
   const sim::records::Series with = sim::run_named_case(scenario, name).result.servo,
                              without = sim::run_named_case(scenario, name + "_free").result.servo;

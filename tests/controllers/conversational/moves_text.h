@@ -26,7 +26,7 @@ ProgramSetup example_setup();
 std::string with_frame(const std::string& lines);
 inline constexpr int kFrameLines = 3;
 
-/// Moves as text; those of the frame and the end are left out, lines counted behind it.
+/// Moves as text without those of the header and the end; lines are counted after the header.
 std::string framed_moves(const std::string& lines, const ProgramSetup& setup = example_setup());
 /// All moves of a program.
 std::string all_moves(const std::string& program, const ProgramSetup& setup = example_setup());

@@ -1,4 +1,4 @@
-// Drilling cycles: [C] "Drilling". The tool stands at X0 Y0 Z0 with S1000.
+// Drilling cycles: [C] "Drilling". The tool is at X0 Y0 Z0, the spindle speed is S1000.
 #include "siemens_examples.h"
 
 namespace servomill::controllers::siemens {

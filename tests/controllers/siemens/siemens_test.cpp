@@ -108,7 +108,7 @@ TEST(Siemens, IsRecognisedByItsNameAndItsWords) {
   EXPECT_FALSE(is_one("mpf", "G0 X1\n", Reader::any));
 }
 
-// The moves of a pocket are the control's: positions behind it are unknown until they are named.
+// The control generates the moves of a pocket: positions after it are unknown until programmed.
 TEST(Siemens, ASurveyGoesOnBehindCyclesOfTheControl) {
   ProgramSetup setup = example_setup();
   setup.accepts_unknown_positions = true;

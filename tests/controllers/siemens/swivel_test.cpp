@@ -54,7 +54,7 @@ TEST(Swivel, OneAngle) {
               R.col(2));
 }
 
-// _MODE 27 is Z, Y, X, each about the axis as the ones before have left it; _X1 ... shift behind it
+// _MODE 27: rotation about Z, Y and X, each about the rotated axis; _X1 ... shift after it
 TEST(Swivel, SeveralAnglesAndAShiftBehindThem) {
   const Eigen::Matrix3d R = about(2, 20.0) * about(1, 15.0) * about(0, -10.0);
   expect_pose(end_of("CYCLE800(0,\"TC\",0,27,0,0,0,20,15,-10,1,2,3,-1)\nG0 X0 Y0 Z1\n"),
