@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controllers/conversational/translator.h"
+#include "controllers/translation/translated_source.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::controllers::conversational {
@@ -120,26 +121,7 @@ void add_tools(const std::string& text, const std::string& file, ToolTable& tool
   for (const HeidenhainBlock& block : program.tool_definitions()) add_tool(block, unit, tools);
 }
 
-class Source final : public LineSource {
- public:
-  Source(std::string text, const std::string& file, const ProgramSetup& setup)
-      : translator_(std::move(text), file, setup) {}
-
-  bool next(std::string& line, Place& place) override {
-    auto made = translator_.next();
-    if (!made) return false;
-    line = std::move(made->text);
-    place = std::move(made->place);
-    unknowns_ = std::move(made->unknowns);
-    return true;
-  }
-  LineUnknowns unknowns() const override { return unknowns_; }
-  std::vector<Fault> take_warnings() override { return translator_.take_warnings(); }
-
- private:
-  Translator translator_;
-  LineUnknowns unknowns_;
-};
+using Source = translation::TranslatedSource<Translator>;
 
 }  // namespace
 

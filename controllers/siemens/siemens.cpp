@@ -8,6 +8,7 @@
 #include "controllers/siemens/program_file.h"
 #include "controllers/siemens/scanner.h"
 #include "controllers/siemens/translator.h"
+#include "controllers/translation/translated_source.h"
 
 namespace servomill::controllers::siemens {
 namespace {
@@ -54,26 +55,7 @@ bool is_written_by_siemens(ProgramText& text) {
   return found;
 }
 
-class Source final : public LineSource {
- public:
-  Source(std::string text, const std::string& file, const ProgramSetup& setup)
-      : translator_(std::move(text), file, setup) {}
-
-  bool next(std::string& line, Place& place) override {
-    auto made = translator_.next();
-    if (!made) return false;
-    line = std::move(made->text);
-    place = std::move(made->place);
-    unknowns_ = std::move(made->unknowns);
-    return true;
-  }
-  LineUnknowns unknowns() const override { return unknowns_; }
-  std::vector<Fault> take_warnings() override { return translator_.take_warnings(); }
-
- private:
-  Translator translator_;
-  LineUnknowns unknowns_;
-};
+using Source = translation::TranslatedSource<Translator>;
 
 }  // namespace
 
