@@ -83,6 +83,10 @@ void Translator::cycle_dwell(double time) {
 }
 
 Feed Translator::cycle_feed(double per_minute) const {
+  if (modes_.feed_code != 94) {
+    fail(fmt::format("a feed of the cycle with G{} is not supported; program G94 before the cycle",
+                     modes_.feed_code));
+  }
   if (!(per_minute > 0.0)) fail(fmt::format("a feed of {:g} in a cycle; must be > 0", per_minute));
   return {Feed::Kind::per_minute, per_minute * (modes_.is_feed_inch ? 25.4 : 1.0)};
 }

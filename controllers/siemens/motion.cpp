@@ -382,6 +382,10 @@ void Translator::corner(const Block& block) {
   if (!size) return;
   if (!(size->value > 0.0)) fail(size->place, "RND, CHF and CHR must be > 0");
   std::optional<Feed> feed = feed_;
+  if (block.FRC && modes_.feed_code != 94) {
+    fail(block.FRC->place,
+         fmt::format("FRC with G{} is not supported; use it with G94", modes_.feed_code));
+  }
   if (block.FRC) {
     feed = Feed{Feed::Kind::per_minute, block.FRC->value * (modes_.is_feed_inch ? 25.4 : 1.0)};
   }

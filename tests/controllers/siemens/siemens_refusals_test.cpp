@@ -129,6 +129,11 @@ const Refusal kRefusals[] = {
     {"F100\nCYCLE83(5,0,2,-10,,,5,0,0,0,1,1,1)\n",
      "t.mpf:5:1: error: CYCLE83: drilling along another axis than that of the active plane "
      "(_DMODE, _AXN) is not supported; program G17, G18 or G19"},
+    {"S1000 G95 F0.1\nCYCLE85(5,0,2,-10,,0,0.2,0.4)\n",
+     "t.mpf:5:1: error: a feed of the cycle with G95 is not supported; program G94 before the "
+     "cycle"},
+    {"S1000 G95 F0.1\nG1 X10 RND=1 FRC=0.05\nY10\n",
+     "t.mpf:5:14: error: FRC with G95 is not supported; use it with G94"},
     {"G1 X9 G4 F1\n", "t.mpf:4:7: error: G4 stands in a block of its own; the block moves an axis"},
     {"G1 X60 G110 AP=0 RP=1\n",
      "t.mpf:4:8: error: G110 with AP and RP beside axis words; use one of both"},
