@@ -206,7 +206,9 @@ void Translator::tcp_control(bool is_on) {
   if (is_on && plane_) fail("M128 in a tilted plane");
   if (is_on && delta_length_ != 0.0) fail("M128 with DL in TOOL CALL; enter it in the tool table");
   if (is_on && !has_tool_call_)
-    fail("M128 before the first TOOL CALL: the length of the tool is unknown");
+    fail(
+        "M128 before the first TOOL CALL: the length of the tool is unknown; call the tool in the "
+        "spindle before");
   is_tcp_ = is_on;
   path_.flush();
   lines_.put(fmt::format("{} H{}", is_on ? "G43.4" : "G43", tool_), place_);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,6 +61,28 @@ std::vector<Fault> syntax_faults(ProgramText& text, const ProgramSetup& setup) {
   return faults;
 }
 
+// Adds the first fault met on running the program. Where that is an M code of the machine's
+// builder, which options can leave out, the program runs again without it, so that one answer names
+// them all.
+void run_to_faults(const ProgramText& text, ProgramSetup setup, std::vector<Fault>& faults,
+                   std::vector<Fault>* warnings) {
+  constexpr int kMaxRuns = 20;
+  for (int run = 0; run < kMaxRuns; ++run) {
+    std::optional<int> refused;
+    setup.refuses_code = [&](int code) { refused = code; };
+    try {
+      Interpreter interpreter(text.again(), setup);
+      while (interpreter.next() != nullptr) {
+      }
+      if (warnings != nullptr && run == 0) *warnings = interpreter.warnings();
+      return;
+    } catch (const InputError& error) {
+      append(faults, error);
+    }
+    if (!refused || !setup.ignored_codes.insert(*refused).second) return;
+  }
+}
+
 }  // namespace
 
 std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
@@ -70,14 +93,7 @@ std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
       !macro::is_macro_program(text, setup.reader) && refused_program(text).empty();
   if (is_gcode) faults = syntax_faults(text, setup);
   const std::string file = text.file();
-  try {
-    Interpreter interpreter(std::move(text), std::move(setup));
-    while (interpreter.next() != nullptr) {
-    }
-    if (warnings != nullptr) *warnings = interpreter.warnings();
-  } catch (const InputError& error) {
-    append(faults, error);
-  }
+  run_to_faults(text, setup, faults, warnings);
   std::stable_sort(faults.begin(), faults.end(), [&](const Fault& a, const Fault& b) {
     if (a.place.file != b.place.file) return a.place.file == file;
     return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);

@@ -92,6 +92,7 @@ ReadingOptions Interpreter::Machine::reading_options() {
   out.accepts_unknown_positions = setup_.accepts_unknown_positions;
   out.accepts_unknown_feeds = setup_.accepts_unknown_feeds;
   out.ignored_codes = setup_.ignored_codes;
+  out.refuses_code = setup_.refuses_code;
   out.is_trial = setup_.is_trial;
   out.radius_of = [this](int D) {
     const ToolEntry* tool = setup_.tools.find(D);

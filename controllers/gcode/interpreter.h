@@ -126,7 +126,8 @@ class Interpreter {
 /// coordinates, helices included; a move of rotary axes only has none.
 std::vector<Move> interpret(std::string text, std::string file, ProgramSetup setup);
 
-/// Every fault of syntax in the program (up to its end), and the first fault met on running it.
+/// Every fault of syntax in the program (up to its end), and the first fault met on running it;
+/// behind an M code of the machine's builder the next as well.
 /// @param warnings  receives what the interpreter reports, or nullptr
 std::vector<Fault> check_program(ProgramText text, ProgramSetup setup,
                                  std::vector<Fault>* warnings = nullptr);

@@ -47,6 +47,8 @@ struct ProgramSetup {
   /// Numbers of M codes of the machine's builder that have no effect on motion, as the user says;
   /// not for the reader linuxcnc.
   std::set<int> ignored_codes;
+  /// Called with the number of an M code of the machine's builder before it is refused.
+  std::function<void(int)> refuses_code = {};
   /// Lengths of tools may be unknown: machine coordinates of such moves are not to be used.
   bool accepts_unknown_lengths = false;
   /// Dwells may be unknown (NaN), where controls read P in different units.

@@ -157,11 +157,12 @@ void add(system::MemoKey& key, const plant::ErrorModel& errors) {
 void add(system::MemoKey& key, const controllers::ProgramSetup& setup) {
   const auto& [stored, parameters, work_offset, work_rotation, work_system, tools, tool, reader,
                takes_five_axis_codes, decimal_point, feed, additional_offsets, ignored_codes,
-               accepts_unknown_lengths, accepts_unknown_dwells, accepts_unknown_positions,
-               accepts_unknown_feeds, is_trial, start, block_delete, subroutine_file, most_jumps,
-               machine, probed, trials] = setup;
-  static_cast<void>(trials);  // what it holds follows from the program and the setup
-  static_cast<void>(probed);  // whoever sets it adds what its answers depend on
+               refuses_code, accepts_unknown_lengths, accepts_unknown_dwells,
+               accepts_unknown_positions, accepts_unknown_feeds, is_trial, start, block_delete,
+               subroutine_file, most_jumps, machine, probed, trials] = setup;
+  static_cast<void>(refuses_code);  // of checks, which are not kept
+  static_cast<void>(trials);        // what it holds follows from the program and the setup
+  static_cast<void>(probed);        // whoever sets it adds what its answers depend on
   key.add(stored.size());
   for (const auto& [number, value] : stored) {
     key.add(number);

@@ -34,6 +34,7 @@ struct ReadingOptions {
   bool accepts_unknown_positions = false;
   bool accepts_unknown_feeds = false;
   std::set<int> ignored_codes = {};  // as of ProgramSetup
+  std::function<void(int)> refuses_code = {};
   bool is_trial = false;             // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.
   std::function<const PossibleReaders*()> possible_readers = {};

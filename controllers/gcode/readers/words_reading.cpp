@@ -277,6 +277,7 @@ void ReadingStep::refuse_function(const BlockWord& word) const {
   const std::string name = name_of(word);
   const bool has_none = options.reader == Reader::grbl;
   if (has_none) refuse(word.column, fmt::format("{} is not supported by grbl", name));
+  if (options.refuses_code) options.refuses_code(tenths_of(word.value) / 10);
   fail(word.column,
        fmt::format("unknown M code {0}: a function of the machine builder; some of them mirror or "
                    "move an axis. If {0} does not, pass --ignore-code {0}, or remove it",

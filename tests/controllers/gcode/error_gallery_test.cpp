@@ -207,5 +207,17 @@ TEST(CheckProgram, GivesEverySyntaxFaultAndTheFirstOther) {
   EXPECT_TRUE(check_program("G0 X1\nM2\n", "p.nc", {}).empty());
 }
 
+TEST(CheckProgram, NamesEveryFunctionOfTheMachinesBuilderAtOnce) {
+  ProgramSetup setup = usual_setup();
+  setup.reader = Reader::any;
+  const std::vector<Fault> faults = check_program(
+      "G21\nM201\nG0 X1.\nM202\nM201\nG1 Y2. F100.\nG2 X9. Y9. R0.5\nM84\nM2\n", "p.nc", setup);
+  std::vector<int> lines;
+  for (const Fault& fault : faults) lines.push_back(fault.place.line);
+  ASSERT_EQ(lines, (std::vector{2, 4, 7})) << "each code once, then the next fault of another kind";
+  EXPECT_TRUE(faults[1].message.starts_with("unknown M code M202: ")) << faults[1].message;
+  EXPECT_TRUE(faults[2].message.starts_with("G2: R")) << faults[2].message;
+}
+
 }  // namespace
 }  // namespace servomill::controllers::error_gallery_test
