@@ -56,7 +56,7 @@ struct Experiment {
   LoopSettings loop;
   std::vector<AxisRecord> records;
   std::vector<Estimate> estimates;
-  NoiseSettings noise;  // of recordings that are made up
+  NoiseSettings noise, rotary_noise;  // of made-up recordings of linear and of rotary axes
   bool compares_laws = false;
 };
 

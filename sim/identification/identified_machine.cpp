@@ -32,8 +32,8 @@ input::IdentifiedFile identified_machine(const Experiment& experiment, const Ide
   out.based_on = input::machine_seen_from(path, experiment.machine_path);
   out.comments.push_back(fmt::format("Identified from {}:", experiment.name));
   for (const RecordResult& one : result.estimation) {
-    out.comments.push_back(fmt::format("  {}: position rms {:.3g} um", one.record->record.name,
-                                       one.feedback_rms * 1e6));
+    out.comments.push_back(fmt::format("  {}: position rms {:.3g} {}", one.record->record.name,
+                                       one.feedback_rms * 1e6, one.record->record.micro()));
   }
   for (const std::string& sentence : unidentifiable_sentences(result))
     out.comments.push_back(sentence);

@@ -168,30 +168,31 @@ MotionFacts motion_facts(const Record& record) {
   return out;
 }
 
-std::string motion_facts_text(const MotionFacts& facts) {
+std::string motion_facts_text(const MotionFacts& facts, bool is_rotary) {
+  const char* micro = is_rotary ? "urad" : "um";
   std::string out;
   if (facts.lag) {
     const LagLaw& lag = *facts.lag;
     out += fmt::format(
         "{} ramps: lag time {:.4g} +- {:.2g} ms (k = 2), as of Kv = {:.4g} 1/s without "
-        "feed-forward; reversal +-{:.3g} +- {:.2g} um\n",
+        "feed-forward; reversal +-{:.3g} +- {:.2g} {}\n",
         facts.ramps.size(), lag.time / ms, 2.0 * lag.time_deviation / ms, 1.0 / lag.time,
-        lag.reversal / um, 2.0 * lag.reversal_deviation / um);
+        lag.reversal / um, 2.0 * lag.reversal_deviation / um, micro);
   }
   if (facts.sine) {
     out += fmt::format(
-        "circle or sine of {:.4g} Hz: amplitude {:.4g} mm, {:+.3g} um in the "
+        "circle or sine of {:.4g} Hz: amplitude {:.4g} {}, {:+.3g} {} in the "
         "feedback, lag time {:.4g} ms\n",
-        facts.sine->frequency, facts.sine->amplitude / mm,
-        (facts.sine->gain - 1.0) * facts.sine->amplitude / um, facts.sine->lag_time / ms);
+        facts.sine->frequency, facts.sine->amplitude / mm, is_rotary ? "mrad" : "mm",
+        (facts.sine->gain - 1.0) * facts.sine->amplitude / um, micro, facts.sine->lag_time / ms);
   }
   if (facts.reversals.empty()) return out;
   const auto greatest =
       std::max_element(facts.reversals.begin(), facts.reversals.end(),
                        [](const Reversal& a, const Reversal& b) { return a.peak < b.peak; });
   return out +
-         fmt::format("{} reversals: lag changes by up to {:.3g} um within 0.05 s, at {:.4g} s\n",
-                     facts.reversals.size(), greatest->peak / um, greatest->time);
+         fmt::format("{} reversals: lag changes by up to {:.3g} {} within 0.05 s, at {:.4g} s\n",
+                     facts.reversals.size(), greatest->peak / um, micro, greatest->time);
 }
 
 }  // namespace servomill::sim::identification

@@ -49,6 +49,6 @@ struct MotionFacts {
 MotionFacts motion_facts(const Record& record);
 
 /// As lines of text; empty where the motion shows none of it.
-std::string motion_facts_text(const MotionFacts& facts);
+std::string motion_facts_text(const MotionFacts& facts, bool is_rotary = false);
 
 }  // namespace servomill::sim::identification

@@ -67,7 +67,7 @@ void Prediction::refuse(const Values& values) const {
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const ModelOfValues model = model_of(
         document_, estimates_, std::span(values).first(estimates_.size()), records_[r]->number);
-    const AxisModel axis = axis_model(model, values, r);
+    const AxisModel axis = started_axis(model, values, r);
     if (!identification::simulate(records_[r]->record, {&axis, 1}, 1).front().diverges) continue;
     throw InputError({records_[r]->record.name},
                      fmt::format("the motion that is simulated with the starting values diverges: "
@@ -97,7 +97,7 @@ std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
       if (!models[n]) out[n].reset();
       if (!out[n]) continue;
       possible.push_back(n);
-      axes.push_back(axis_model(*models[n], values[n], r));
+      axes.push_back(started_axis(*models[n], values[n], r));
     }
     std::vector<Simulated> simulated =
         identification::simulate(records_[r]->record, axes, threads_);
@@ -112,20 +112,23 @@ std::vector<std::optional<Prediction::Signals>> Prediction::simulate(
   return out;
 }
 
-AxisModel Prediction::axis_model(const ModelOfValues& model, const Values& values,
-                                 std::size_t record) const {
-  const std::size_t own = estimates_.size() + 2 * record;
-  const int joint = records_[record]->joint;
+AxisModel axis_model(const ModelOfValues& model, int joint) {
   AxisModel out{.drive = model.machine.drives[static_cast<std::size_t>(joint)],
                 .loop = model.loop,
-                .position = values[own],
-                .speed = values[own + 1],
-                .step = 0.0,
                 .machine = nullptr,
                 .joint = joint};
   if (model.loop.kind == LoopKind::nc) {
     out.machine = std::make_shared<model::MachineSettings>(model.machine);
   }
+  return out;
+}
+
+AxisModel Prediction::started_axis(const ModelOfValues& model, const Values& values,
+                                   std::size_t record) const {
+  const std::size_t own = estimates_.size() + 2 * record;
+  AxisModel out = axis_model(model, records_[record]->joint);
+  out.position = values[own];
+  out.speed = values[own + 1];
   return out;
 }
 

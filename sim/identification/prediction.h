@@ -21,6 +21,9 @@ using Values = std::vector<double>;
 /// Samples that count in a comparison, record by record: 1 or 0.
 using Mask = std::vector<std::vector<char>>;
 
+/// One axis of the model, at rest at 0; encoders that do not quantise.
+AxisModel axis_model(const ModelOfValues& model, int joint);
+
 /// Simulates the records of an experiment for any number of values at once.
 class Prediction {
  public:
@@ -65,7 +68,9 @@ class Prediction {
  private:
   std::optional<ModelOfValues> model(const Values& values, std::size_t record) const;
   bool has_own() const;
-  AxisModel axis_model(const ModelOfValues& model, const Values& values, std::size_t record) const;
+  /// With the position and speed at the start of the record.
+  AxisModel started_axis(const ModelOfValues& model, const Values& values,
+                         std::size_t record) const;
 
   const config::Document& document_;
   std::vector<Estimate> estimates_;

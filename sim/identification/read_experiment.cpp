@@ -154,16 +154,21 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
   return estimates;
 }
 
-NoiseSettings read_noise(config::Reader& root) {
-  NoiseSettings noise;
-  if (!root.has("noise")) return noise;
+// Disturbances of linear and of rotary axes.
+void read_noise(config::Reader& root, NoiseSettings& linear, NoiseSettings& rotary) {
+  if (!root.has("noise")) return;
   config::Reader table = root.table("noise");
-  noise.force_rms = table.real_or("force_rms", 0.0, config::kForce, {config::at_least(0.0)});
-  noise.force_time = table.real_or("force_time_ms", 5e-3, config::kTime, {config::above(0.0)});
-  noise.feedback_step =
+  const double time = linear.force_time;
+  linear.force_rms = table.real_or("force_rms", 0.0, config::kForce, {config::at_least(0.0)});
+  linear.force_time = table.real_or("force_time_ms", time, config::kTime, {config::above(0.0)});
+  linear.feedback_step =
       table.real_or("feedback_step_nm", 0.0, config::kLength, {config::at_least(0.0)});
-  noise.seed = static_cast<std::uint64_t>(table.integer_or("seed", 1, {config::at_least(0.0)}));
-  return noise;
+  rotary.force_rms = table.real_or("torque_rms", 0.0, config::kTorque, {config::at_least(0.0)});
+  rotary.force_time = table.real_or("torque_time_ms", time, config::kTime, {config::above(0.0)});
+  rotary.feedback_step =
+      table.real_or("feedback_step_urad", 0.0, config::kAngle, {config::at_least(0.0)});
+  linear.seed = rotary.seed =
+      static_cast<std::uint64_t>(table.integer_or("seed", 1, {config::at_least(0.0)}));
 }
 
 }  // namespace
@@ -221,7 +226,8 @@ Experiment read_experiment(const std::string& path, const RecordingFiles& record
                  .loop = {},
                  .records = {},
                  .estimates = {},
-                 .noise = {}};
+                 .noise = {},
+                 .rotary_noise = {}};
   config::Reader root(out.document);
   out.name = root.text_or("name", std::filesystem::path(path).stem().string());
   const config::Value* machine = own.root().find("machine");
@@ -232,7 +238,7 @@ Experiment read_experiment(const std::string& path, const RecordingFiles& record
   out.loop = read_loop(loop);
   const model::MachineSettings settings = read_axes(root);
   if (root.faults() == 0) check_nc_period(loop, out.loop, settings);
-  out.noise = read_noise(root);
+  read_noise(root, out.noise, out.rotary_noise);
   out.compares_laws = root.boolean_or("compare_laws", false);
   std::vector<std::size_t> repeated;
   out.estimates = read_estimates(root, out.document, repeated);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "sim/config/quantity.h"
 #include "sim/identification/channel_signal.h"
@@ -142,6 +144,7 @@ class RecordReader {
     for (const int joint : machine_.joints()) {
       if (letters.front() == std::string(1, machine_.chain.layout.letter_of(joint))) {
         out_.joint = joint;
+        out_.record.is_rotary = joint >= kLinearJoints;
       }
     }
     if (out_.joint < 0) {
@@ -338,6 +341,16 @@ class RecordReader {
   std::array<ChannelUse, kRoles.size()> uses_;
 };
 
+// "file.h5, axis X" where one file has the recordings of several axes.
+void name_axes(std::vector<AxisRecord>& records, const model::MachineSettings& machine) {
+  std::map<std::string, std::set<int>> axes;
+  for (const AxisRecord& one : records) axes[one.record.name].insert(one.joint);
+  for (AxisRecord& one : records) {
+    if (axes[one.record.name].size() == 1) continue;
+    one.record.name += fmt::format(", axis {}", machine.chain.layout.letter_of(one.joint));
+  }
+}
+
 }  // namespace
 
 std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineSettings& machine,
@@ -361,6 +374,7 @@ std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineS
   for (const std::string& file : files.validation) {
     if (!tables.empty()) read(tables.front(), file, true);
   }
+  name_axes(out, machine);
   const bool any =
       std::any_of(out.begin(), out.end(), [](const AxisRecord& r) { return !r.record.validation; });
   if (root.faults() == 0 && !any)

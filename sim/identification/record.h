@@ -28,8 +28,11 @@ struct Record {
   double force_per_current = 0.0;    // N/A: with which a current became the force; 0: it is one
   std::vector<SampleRange> omitted;  // samples that do not count: gaps, clipped current
   bool validation = false;           // not used for estimation
+  bool is_rotary = false;
 
   std::size_t size() const { return feedback.size(); }
+  /// Unit of deviations in reports.
+  const char* micro() const { return is_rotary ? "urad" : "um"; }
   double time(std::size_t sample) const { return start + period * static_cast<double>(sample); }
 };
 

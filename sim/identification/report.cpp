@@ -81,7 +81,7 @@ std::string record_table(const Identification& result) {
   const auto add = [&](const RecordResult& one, const char* use) {
     const Record& r = one.record->record;
     table.add({r.name, use, fmt::format("{:.3g} s", r.period * static_cast<double>(r.size())),
-               fmt::format("{:.3g} um", one.feedback_rms / um),
+               fmt::format("{:.3g} {}", one.feedback_rms / um, r.micro()),
                one.force_rms > 0.0 ? fmt::format("{:.2f} %", 100.0 * one.force_rms) : "-",
                one.effective_samples > 0.0
                    ? fmt::format("{:.0f} of {}", one.effective_samples, r.size())
@@ -93,8 +93,8 @@ std::string record_table(const Identification& result) {
   for (const auto* list : {&result.estimation, &result.validation}) {
     for (const RecordResult& one : *list) {
       if (one.scale_rms == 0.0) continue;
-      out += fmt::format("{}: the scale of the slide is predicted to {:.3g} um rms (not fitted)\n",
-                         one.record->record.name, one.scale_rms / um);
+      out += fmt::format("{}: the scale of the slide is predicted to {:.3g} {} rms (not fitted)\n",
+                         one.record->record.name, one.scale_rms / um, one.record->record.micro());
     }
   }
   return out;
@@ -102,14 +102,16 @@ std::string record_table(const Identification& result) {
 
 std::string law_table(const Identification& result) {
   if (result.laws.empty()) return {};
+  const char* micro = result.estimation.front().record->record.micro();
   Lines table({"friction law", "parameters", "rms", "held out", "+-", "BIC"});
   for (const LawResult& law : result.laws) {
     if (!law.refused.empty()) {
       table.add({law.name, "-", "-", "-", "-", law.refused});
       continue;
     }
-    table.add({law.name, fmt::format("{}", law.parameters), fmt::format("{:.3f} um", law.rms / um),
-               fmt::format("{:.3f} um", law.held_out / um),
+    table.add({law.name, fmt::format("{}", law.parameters),
+               fmt::format("{:.3f} {}", law.rms / um, micro),
+               fmt::format("{:.3f} {}", law.held_out / um, micro),
                fmt::format("{:.3f}", law.held_out_error / um), fmt::format("{:.0f}", law.bic)});
   }
   std::string out = "\n" + table.text();
@@ -149,8 +151,10 @@ std::string disturbance_warning(const RecordResult& one) {
   const double limit = kClearly * one.feedback_rms;
   const auto text = [&](double rms, const char* way, const char* remedy) {
     return fmt::format(
-        "{}: {} of disturbance_force the position rms is {:.3g} um in place of {:.3g} um; {}",
-        one.record->record.name, way, rms / um, one.feedback_rms / um, remedy);
+        "{0}: {1} of disturbance_force the position rms is {2:.3g} {5} in place of {3:.3g} {5}; "
+        "{4}",
+        one.record->record.name, way, rms / um, one.feedback_rms / um, remedy,
+        one.record->record.micro());
   };
   if (one.reversed_rms.value_or(limit) < limit) {
     return text(*one.reversed_rms, "with the other sign", "give it factor = -1");
@@ -235,10 +239,10 @@ std::vector<std::string> faults(const Identification& result) {
   for (const RecordResult& one : result.estimation) {
     const double motion = rms_of_motion(one.record->record);
     if (one.feedback_rms < motion || one.feedback_rms == 0.0) continue;
-    out.push_back(
-        fmt::format("{}: the simulation is {:.3g} um rms off the recording, whose motion "
-                    "is {:.3g} um rms itself; the loop is not that of the recording",
-                    one.record->record.name, one.feedback_rms / um, motion / um));
+    out.push_back(fmt::format(
+        "{0}: the simulation is {1:.3g} {3} rms off the recording, whose motion "
+        "is {2:.3g} {3} rms itself; the loop is not that of the recording",
+        one.record->record.name, one.feedback_rms / um, motion / um, one.record->record.micro()));
   }
   if (!result.uncertainty.covariance.allFinite()) {
     out.emplace_back("the covariance of the values is not finite");
@@ -258,7 +262,8 @@ std::string report(const Experiment& experiment, const Identification& result) {
   }
   for (const RecordResult& one : result.estimation) {
     if (one.record->record.command.empty()) continue;
-    const std::string facts = motion_facts_text(motion_facts(one.record->record));
+    const std::string facts =
+        motion_facts_text(motion_facts(one.record->record), one.record->record.is_rotary);
     if (!facts.empty()) out += one.record->record.name + ": " + facts;
   }
   out += inverse_dynamics_table(result) + "\n";

@@ -29,9 +29,11 @@ void add_identify_options(Options& options) {
                 "can be repeated");
   options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
                 "writes measured and simulated signals, residuals and parameters");
-  options.add()("make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
-                "writes a synthetic first recording of the machine of the experiment, with the "
-                "disturbances of its table [noise], without identifying");
+  options.add()(
+      "make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
+      "writes a synthetic recording of the machine of the experiment, for each axis that of "
+      "its first recording, with the disturbances of the table [noise], without "
+      "identifying");
   options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
   options.add()("bootstrap", po::value<int>()->value_name("N"),
                 "block bootstrap of the residual with N replicas (100 or more), next to the "
