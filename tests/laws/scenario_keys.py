@@ -87,7 +87,7 @@ def is_readings(table):
 
 
 def section_of_example(table):
-    return "machine" if {"structure", "identified", "axis", "structural_mode", "inertial_deflection", "heat"} & set(table) else ""
+    return "machine" if {"structure", "friction_model", "identified", "axis", "structural_mode", "inertial_deflection", "heat"} & set(table) else ""
 
 
 def main():
