@@ -182,9 +182,10 @@ bool MacroSource::turn_again(RunningCall& running) {
 
 // M99, and M99 P: to a block of the program that called (Fanuc) or of this one (Haas).
 void MacroSource::end_call(std::optional<long> block, int column) {
-  if (calls_.empty()) return jump(*block, column);
-  if (block && reading_.choose(WordDifference::return_block, here(column)) == 1) {
-    return jump(*block, column);
+  const Place place = here(column);
+  if (calls_.empty()) return jump(*block, place, "this program");
+  if (block && reading_.choose(WordDifference::return_block, place) == 1) {
+    return jump(*block, place, "this program");
   }
   if (!block && turn_again(calls_.back())) return;
   const RunningCall running = std::move(calls_.back());
@@ -196,7 +197,7 @@ void MacroSource::end_call(std::optional<long> block, int column) {
   }
   file_ = running.return_file;
   text().go_to(running.return_to);
-  if (block) jump(*block, column);
+  if (block) jump(*block, place, "the calling program");
 }
 
 }  // namespace servomill::controllers::macro

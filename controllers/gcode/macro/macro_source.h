@@ -63,7 +63,7 @@ class MacroSource final : public LineSource {
   void end_of_loop();
   const Loop& loop_of_line();
   void go_to(std::size_t begin);
-  void jump(long number, int column);
+  void jump(long number, const Place& place, std::string_view program);
   void count_jump();
   void nothing_behind(const Cursor& cursor);
   bool has_next_statement(const Cursor& cursor);

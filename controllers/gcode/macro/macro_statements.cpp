@@ -226,17 +226,20 @@ void MacroSource::go_to(std::size_t begin) {
   if (!number || *number < 0.0 || *number > 99'999'999.0) {
     refuse(column, "GOTO needs a block number");
   }
-  jump(std::lround(*number), column);
+  jump(std::lround(*number), here(column), "this program");
 }
 
-void MacroSource::jump(long number, int column) {
+void MacroSource::jump(long number, const Place& place, std::string_view program) {
   const int from = text().number();
   const auto mark = places().block(number);
-  if (!mark) refuse(column, fmt::format("there is no block N{} in this program", number));
+  if (!mark) {
+    reading_.refuse(place, fmt::format("there is no block N{} in {}", number, program));
+  }
   if (const Loop* loop = places().loop_entered(from, mark->line + 1)) {
-    refuse(column,
-           fmt::format("N{} is inside the loop DO{} of line {}: jumps into a loop are not allowed",
-                       number, loop->number, loop->begin_line));
+    reading_.refuse(
+        place,
+        fmt::format("N{} is inside the loop DO{} of line {}: jumps into a loop are not allowed",
+                    number, loop->number, loop->begin_line));
   }
   count_jump();
   text().go_to(*mark);

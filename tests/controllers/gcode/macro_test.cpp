@@ -73,6 +73,9 @@ TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
 TEST(Macro, JumpsAndLoopsHaveTheirRules) {
   EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"),
             "1:6: error: there is no block N7 in this program");
+  EXPECT_EQ(refusal("M98 P2 (GOTO)\n#1=1\nM2\nO2\nG0 X1. M99 P7\n"),
+            "5:8: error: there is no block N7 in the calling program")
+      << "where the jump is written, not where it goes to";
   EXPECT_EQ(refusal("GOTO 7\nWHILE[#1LT2]DO1\nN7 G0 X1.\nEND1\nM2\n"),
             "1:6: error: N7 is inside the loop DO1 of line 2: jumps into a loop are not allowed");
   EXPECT_EQ(refusal("WHILE[#1LT2]DO4\nEND4\nM2\n"),
