@@ -4,6 +4,17 @@
 
 namespace servomill::strategies {
 
+GridLine::Place GridLine::place_of(double q) const {
+  if (positions.empty()) {
+    const double u = std::clamp((q - first) / spacing, 0.0, static_cast<double>(points - 1));
+    const auto i = std::min(static_cast<std::size_t>(u), points - 2);
+    return {i, u - static_cast<double>(i)};
+  }
+  const auto next = std::upper_bound(positions.begin() + 1, positions.end() - 1, q);
+  const auto i = static_cast<std::size_t>(next - positions.begin()) - 1;
+  return {i, std::clamp((q - positions[i]) / (positions[i + 1] - positions[i]), 0.0, 1.0)};
+}
+
 Eigen::Vector3d GridTable::at(const Joints& Q) const {
   Eigen::Vector3d corner[1 << kLinearJoints];
   const std::size_t axes = lines.size();
@@ -11,11 +22,9 @@ Eigen::Vector3d GridTable::at(const Joints& Q) const {
   std::size_t base = 0, step[kLinearJoints], size = 1;
   for (std::size_t a = 0; a < axes; ++a) {
     const GridLine& line = lines[a];
-    const auto last = static_cast<double>(line.points - 1);
-    const double u = std::clamp((Q[line.joint] - line.first) / line.spacing, 0.0, last);
-    const auto i = std::min(static_cast<std::size_t>(u), line.points - 2);
-    share[a] = u - static_cast<double>(i);
-    base += i * size;
+    const GridLine::Place place = line.place_of(Q[line.joint]);
+    share[a] = place.share;
+    base += place.interval * size;
     step[a] = size;
     size *= line.points;
   }

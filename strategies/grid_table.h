@@ -1,4 +1,4 @@
-/// Values at equidistant points of up to three axes, as tables in a NC hold them.
+/// Values at points of up to three axes, as tables in a NC hold them.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,26 @@
 
 namespace servomill::strategies {
 
-/// Equidistant points of one axis.
+/// Points of one axis, equidistant unless their positions are given.
 struct GridLine {
   int joint = 0;
-  double first = 0.0;      // m
-  double spacing = 1.0;    // m
-  std::size_t points = 2;  // at least
+  double first = 0.0;                  // m
+  double spacing = 1.0;                // m
+  std::size_t points = 2;              // at least
+  std::vector<double> positions = {};  // m, ascending; empty: equidistant
 
-  double at(std::size_t i) const { return first + static_cast<double>(i) * spacing; }
+  double at(std::size_t i) const {
+    return positions.empty() ? first + static_cast<double>(i) * spacing : positions[i];
+  }
   double last() const { return at(points - 1); }
+
+  /// The interval that holds a coordinate, by its first point, and the share of it that has been
+  /// passed; beyond the ends the share is 0 or 1.
+  struct Place {
+    std::size_t interval = 0;
+    double share = 0.0;
+  };
+  Place place_of(double q) const;
 };
 
 /// Values at the points of one to three lines that cross; linear in each coordinate between the

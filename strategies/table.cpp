@@ -26,6 +26,7 @@ constexpr std::array<std::string_view, 2> kSpacingRules = {"power_of_two", "free
 constexpr std::array<std::string_view, 3> kInjectionPoints = {"before_filter", "position_command",
                                                               "feed_forward"};
 constexpr std::array<std::string_view, 1> kTravel = {"travel"};
+constexpr std::array<std::string_view, 2> kPoints = {"equidistant", "optimal"};
 constexpr double kGridStep =
     0.1 * um;  // spacing is 2^n times this (TNC 407/415/425 Technical Manual, 1998, p. 153)
 
@@ -65,8 +66,8 @@ constexpr ParameterSpec kShiftSpec = {
     .shortcoming = Shortcoming::delay,
     .ideal = "0"};
 
-const std::array<ParameterSpec, 16>& specs() {
-  static const std::array<ParameterSpec, 16> kSpecs = {{
+const std::array<ParameterSpec, 17>& specs() {
+  static const std::array<ParameterSpec, 17> kSpecs = {{
       kLayoutSpec,
       {.name = "base_axis",
        .help = "base axes of the tables; all: each linear axis",
@@ -83,6 +84,12 @@ const std::array<ParameterSpec, 16>& specs() {
        .default_text = "false",
        .is_number = false,
        .words = kBoolean},
+      {.name = "points",
+       .help = "equidistant; optimal: max_points of those at spacing_mm, where a line between them "
+               "deviates least, for NCs that take any positions",
+       .default_text = "equidistant",
+       .is_number = false,
+       .words = kPoints},
       {.name = "spacing_mm",
        .help = "spacing of the points",
        .unit = "mm",
@@ -287,6 +294,9 @@ std::vector<GridTable> tables_of(const Tabulation& of) {
   if (of.p.word("zero_at_reference") == "true") from_reference.setOnes();
   std::vector<GridTable> tables;
   if (of.p.word("layout") == "grid") {
+    if (of.p.word("points") == "optimal") {
+      throw InputError({}, "points = \"optimal\" requires layout = \"axis_tables\"");
+    }
     if (output == "own" || output == "others") {
       throw InputError({}, fmt::format("compensated_axis = \"{}\" requires layout = "
                                        "\"axis_tables\"; a grid has several base axes",
@@ -315,7 +325,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action action,
     return std::make_unique<ExactTable>(entry_of(p), action, iterations_of(p),
                                         p.word("zero_at_reference") == "true", identified);
   }
-  if (p.word("spacing_rule") == "power_of_two" &&
+  if (p.word("points") == "equidistant" && p.word("spacing_rule") == "power_of_two" &&
       !is_power_of_two_spacing(p.number("spacing_mm"))) {
     throw InputError({}, fmt::format("spacing_mm = {:g}; must be 2^n x 0.0001 (such as 1.6384, "
                                      "3.2768, 6.5536), or set spacing_rule = \"free\"",

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "strategies/axis_displacement.h"
+#include "strategies/optimal_points.h"
 #include "strategies/pose_compensation.h"
 
 namespace servomill::strategies {
@@ -24,12 +25,32 @@ std::string name_of(const std::vector<GridLine>& lines, const JointLayout& layou
   return fmt::format("{} over {}", lines.size() == 1 ? "table" : "grid", name);
 }
 
+constexpr double kLine = 256;
+
+double max_points_of(const Parameters& p, double usual) {
+  return p.is_word("max_points") ? usual : p.number("max_points");
+}
+
+// Of the points of a table over one axis those that are kept.
+void choose_points(GridTable& table, std::size_t most) {
+  GridLine& line = table.lines.front();
+  std::vector<double> candidates;
+  for (std::size_t i = 0; i < line.points; ++i) candidates.push_back(line.at(i));
+  const std::vector<Eigen::Vector3d> values = std::move(table.value);
+  table.value.clear();
+  for (const std::size_t i : optimal_points(candidates, values, most)) {
+    line.positions.push_back(candidates[i]);
+    table.value.push_back(values[i]);
+  }
+  line.points = line.positions.size();
+}
+
 // Refuses tables that the NC would refuse, by the names that its operator reads.
 void check_points(const std::vector<GridLine>& lines, const JointLayout& layout,
                   const Parameters& p) {
-  constexpr double kLine = 256, kLattice = 25.0 * 25.0 * 25.0;
+  constexpr double kLattice = 25.0 * 25.0 * 25.0;
   const double usual = lines.size() == 1 ? kLine : kLattice;
-  const double most = p.is_word("max_points") ? usual : p.number("max_points");
+  const double most = max_points_of(p, usual);
   double all = 1.0;
   std::string product;
   for (const GridLine& line : lines) {
@@ -43,6 +64,15 @@ void check_points(const std::vector<GridLine>& lines, const JointLayout& layout,
                                    name_of(lines, layout), product, most));
 }
 
+// Every candidate is tried with those behind it.
+void check_candidates(const GridLine& line, const JointLayout& layout) {
+  constexpr std::size_t kMax = 10'000;
+  if (line.points <= kMax) return;
+  throw InputError({}, fmt::format("table over {}: {} points to choose from; at most {}: use a "
+                                   "larger spacing_mm or from_mm and to_mm",
+                                   layout.letter_of(line.joint), line.points, kMax));
+}
+
 void check_slopes(const GridTable& table, const JointLayout& layout, double max_ratio) {
   std::size_t n = 0;
   for_all_points(table.lines, [&](const auto& point) {
@@ -52,8 +82,8 @@ void check_slopes(const GridTable& table, const JointLayout& layout, double max_
       const std::size_t before = size;
       size *= line.points;
       if (point[a] == 0) continue;
-      const double ratio =
-          (table.value[n] - table.value[n - before]).cwiseAbs().maxCoeff() / line.spacing;
+      const double ratio = (table.value[n] - table.value[n - before]).cwiseAbs().maxCoeff() /
+                           (line.at(point[a]) - line.at(point[a] - 1));
       if (ratio <= max_ratio) continue;
       const char axis = layout.letter_of(line.joint);
       throw InputError({}, fmt::format("{}: slope {:.2f} um/mm at {} = {:.3f} mm; the NC accepts "
@@ -90,7 +120,12 @@ GridLine Tabulation::line(int joint) const {
 
 GridTable Tabulation::table(std::vector<GridLine> lines, const Eigen::Vector3d& moved,
                             const Eigen::Vector3d& from_reference) const {
-  check_points(lines, machine.layout, p);
+  const bool is_optimal = p.word("points") == "optimal";
+  if (is_optimal) {
+    check_candidates(lines.front(), machine.layout);
+  } else {
+    check_points(lines, machine.layout, p);
+  }
   GridTable table;
   table.lines = std::move(lines);
   const Iterations iterations = iterations_of(p);
@@ -105,6 +140,7 @@ GridTable Tabulation::table(std::vector<GridLine> lines, const Eigen::Vector3d& 
     }
     table.value.push_back(moved.cwiseProduct(wanted(Q) - base));
   });
+  if (is_optimal) choose_points(table, static_cast<std::size_t>(max_points_of(p, kLine)));
   check_slopes(table, machine.layout, p.number("max_step_ratio"));
   return table;
 }

@@ -20,7 +20,7 @@ constexpr double kRounding = 1e-15;  // m, of values of some 100 um
 
 struct Options {
   std::string layout = "grid", base_axis = "all", compensated_axis = "all",
-              zero_at_reference = "false";
+              zero_at_reference = "false", points = "equidistant", max_points = "auto";
   double spacing = 50.0 * mm, max_step_ratio = 1.0, shift = 0.0;
 };
 
@@ -34,7 +34,12 @@ Parameters parameters(const Options& o) {
   p.set("spacing_rule", "free");
   p.set("from_mm", "travel");
   p.set("to_mm", "travel");
-  p.set("max_points", "auto");
+  p.set("points", o.points);
+  if (o.max_points == "auto") {
+    p.set("max_points", o.max_points);
+  } else {
+    p.set("max_points", std::stod(o.max_points));
+  }
   p.set("max_step_ratio", o.max_step_ratio);
   p.set("injection_point", "position_command");
   p.set("time_constant_ms", 40.0 * ms);
@@ -212,6 +217,33 @@ TEST(Table, RefusesWhatTheNcWouldRefuse) {
             "base_axis = \"XY\"; the machine has no such axis");
   EXPECT_EQ(fault_of(plane, {.compensated_axis = "Y"}),
             "compensated_axis = \"Y\"; the machine has no such axis");
+}
+
+TEST(Table, HoldsItsPointsWhereTheErrorBends) {
+  plant::ErrorModel errors;  // a guideway that is straight but for 80 mm
+  errors.component("EYX"_err) =
+      plant::linear_table({-200 * mm, -40 * mm, -20 * mm, 0.0, 20 * mm, 40 * mm, 200 * mm},
+                          {0.0, 0.0, 3 * um, 12 * um, 3 * um, 0.0, 0.0});
+  const IdentifiedMachine identified = three_axes(errors);
+  const Options fine = {.layout = "axis_tables", .base_axis = "X", .spacing = 2.0 * mm};
+  Options equidistant = fine, optimal = fine;
+  equidistant.spacing = 400.0 / 6.0 * mm;
+  optimal.points = "optimal";
+  optimal.max_points = "7";
+  const Made wanted(identified, fine), seven(identified, equidistant), best(identified, optimal);
+  double left = 0.0, of_seven = 0.0;
+  for (double x = -250 * mm; x <= 250 * mm; x += 0.7 * mm) {
+    left = std::max(left, std::abs(best.at(x, 0, 0)[1] - wanted.at(x, 0, 0)[1]));
+    of_seven = std::max(of_seven, std::abs(seven.at(x, 0, 0)[1] - wanted.at(x, 0, 0)[1]));
+  }
+  EXPECT_LT(left, 1e-12) << "its seven kinks are points, and it is constant beyond its ends";
+  EXPECT_GT(of_seven, 3 * um);
+  EXPECT_EQ(fault_of(identified, {.points = "optimal"}),
+            "points = \"optimal\" requires layout = \"axis_tables\"");
+  optimal.spacing = 0.01 * mm;
+  EXPECT_EQ(fault_of(identified, optimal),
+            "table over X: 40001 points to choose from; at most 10000: use a larger spacing_mm or "
+            "from_mm and to_mm");
 }
 
 // At the feed v a delay T reads the table v T too late: each point holds the error v T ahead.
