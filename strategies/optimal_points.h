@@ -1,10 +1,9 @@
-/// Where the points of a table lie best, if the NC takes any positions but only so many of them.
+/// Best positions of the points of a table, if the NC takes any positions but only so many of them.
 ///
-/// Of candidates, of which the first and the last are kept, as few points are chosen that every
-/// candidate is within a tolerance of the chord that passes it; the tolerance is the least with
-/// which they are no more than allowed. A chord from point i may end at j if its slope lies in the
-/// cone from i through the tolerances of all points between, so that the fewest chords are a
-/// shortest way through those that may be drawn.
+/// As few candidates are chosen, the first and the last among them, that all are within a tolerance
+/// of the chords; the tolerance is the least with which they are no more than allowed. A chord from
+/// point i may end at j if its slope lies in the cone from i through the tolerances of all points
+/// between, so that the fewest chords are a shortest way through those that may be drawn.
 ///
 /// Source: H. Imai, M. Iri, "Computational-geometric methods for polygonal approximations of a
 /// curve", Computer Vision, Graphics and Image Processing 36 (1986), 31-41; the cone: W. S. Chan,

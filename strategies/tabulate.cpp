@@ -31,7 +31,7 @@ double max_points_of(const Parameters& p, double usual) {
   return p.is_word("max_points") ? usual : p.number("max_points");
 }
 
-// Of the points of a table over one axis those that are kept.
+// Keeps the best points of a table over one axis.
 void choose_points(GridTable& table, std::size_t most) {
   GridLine& line = table.lines.front();
   std::vector<double> candidates;

@@ -39,7 +39,7 @@ Curve random_curve(std::size_t n, unsigned seed) {
   return out;
 }
 
-// Of all ways to keep the ends and at most `most` points, the least largest deviation.
+// Smallest largest deviation among all ways to keep the ends and at most `most` points.
 double by_trying_all(const Curve& curve, std::size_t most) {
   const std::size_t n = curve.x.size();
   double least = std::numeric_limits<double>::infinity();

@@ -103,7 +103,11 @@ void MacroSource::call_modal(const std::vector<MacroWord>& words) {
     count = *calls_.back().modal;
   }
   if (count == 0) return;
-  after_ = [this, count] { begin_call(modals_[count - 1], count - 1); };
+  after_ = [this, count, column = static_cast<int>(line_.begin) + 1] {
+    MacroCall call = modals_[count - 1];
+    call.column = column;  // of the block that calls, not of G66
+    begin_call(std::move(call), count - 1);
+  };
 }
 
 // ------------------------------------------------------------------------------------------ calls

@@ -70,6 +70,11 @@ TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
   EXPECT_EQ(run("IF[[1EQ1]AND[2GT1]]GOTO9\nG0 X1.\nN9 G0 Y1.\nM2\n", Reader::any), "R 0 1 0");
 }
 
+TEST(Macro, AModalCallIsFaultedAtTheBlockThatCalls) {
+  EXPECT_EQ(refusal("#1=0\nN100 (MILL) G66 P9010 Z-1.\nG0 X3.\nG67\nM2\n"),
+            "3:1: error: there is no program O9010 in this file, and no file 9010.ngc");
+}
+
 TEST(Macro, JumpsAndLoopsHaveTheirRules) {
   EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"),
             "1:6: error: there is no block N7 in this program");
