@@ -52,6 +52,8 @@ class Reader {
   std::optional<Number>* number_of(std::string_view name);
   void put_once(std::optional<Number>& place, const Address& address);
   void put_tool();
+  void read_assigned(Address address, const std::string& index);
+  void require_measure(const Number& number, const Address& address) const;
   int whole(double value, const Address& address) const;
 
   Scanner& scanner_;
@@ -87,10 +89,15 @@ bool Reader::read_address() {
   while (is_digit(scanner_.now())) scanner_.go_to(scanner_.position() + 1);
   const std::string digits(scanner_.from(end));
   const bool is_call = scanner_.now() == '(' && !digits.empty();
+  const bool is_numbered_program = address.name == "L" && !digits.empty() && scanner_.now() != '=';
   const bool has_letters = is_name_character(scanner_.now()) && address.name == "L";
   if (is_call || has_letters) {
     scanner_.go_to(begin);
     return false;
+  }
+  if (is_numbered_program) {  // L010 is another program than L10
+    block_.calls.push_back({address.name + digits, {}, false, address.place});
+    return true;
   }
   if (scanner_.take('=') && scanner_.now() != '=') {
     constexpr std::size_t kLongest = 4;
@@ -133,7 +140,20 @@ Number Reader::read_number(const Address& address) {
   if (address.is_assigned) {
     scanner_.skip_blanks();
     out.measure = read_measure();
+    if (out.measure != Measure::modal) {
+      scanner_.take('(');
+      require_measure(out, address);
+    }
     out.value = evaluate_number(scanner_, variables_);
+    if (out.measure != Measure::modal) scanner_.expect(')', address.name);
+    scanner_.skip_blanks();
+    if (out.measure != Measure::modal &&
+        std::string_view("+-*/").find(scanner_.now()) != std::string_view::npos) {
+      scanner_.fail(
+          fmt::format("{}: AC, IC, DC, ACP and ACN hold the whole value; write the sum in "
+                      "their parentheses",
+                      address.name));
+    }
   } else {
     const bool is_negative = scanner_.now() == '-';
     if (is_negative || scanner_.now() == '+') scanner_.go_to(scanner_.position() + 1);
@@ -146,6 +166,22 @@ Number Reader::read_number(const Address& address) {
          fmt::format("{} = {:g}: must be between -1e9 and 1e9", address.name, out.value));
   }
   return out;
+}
+
+// AC and IC are for positions, DC, ACP and ACN for rotary axes: [F] "Dimensions".
+void Reader::require_measure(const Number& number, const Address& address) const {
+  constexpr std::array<std::string_view, 6> kLinear = {"X", "Y", "Z", "I", "J", "K"};
+  constexpr std::array<std::string_view, 3> kRotary = {"A", "B", "C"};
+  const auto is_in = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), address.name) != names.end();
+  };
+  const bool is_rotary = is_in(kRotary) && !address.extension;
+  const bool is_length =
+      number.measure == Measure::absolute || number.measure == Measure::incremental;
+  if (is_rotary || (is_length && (is_in(kLinear) || address.name == "AP"))) return;
+  fail(address.place, is_length
+                          ? fmt::format("{}: AC and IC are for positions only", address.name)
+                          : fmt::format("{}: DC, ACP and ACN are for rotary axes", address.name));
 }
 
 int Reader::whole(double value, const Address& address) const {
@@ -218,13 +254,14 @@ void Reader::put(const Address& address) {
   if (put_position(address)) return;
   if (letter == 'H') {  // a function of the PLC: its number and its value
     read_number(address);
+    block_.settings.push_back({"H", address.place});
     return;
   }
   if (letter == 'S' && address.extension.value_or(1) != 1) {
     fail(address.place, fmt::format("S{}=: a second spindle", *address.extension));
   }
   std::optional<Number>* place =
-      address.extension.value_or(1) == 1 ? number_of(address.name) : nullptr;
+      !address.extension || letter == 'S' ? number_of(address.name) : nullptr;
   if (place == nullptr) {
     fail(address.place,
          fmt::format("the address {}{} is not supported", address.name,
@@ -239,7 +276,7 @@ std::optional<Number>* Reader::number_of(std::string_view name) {
       {"AR", &block_.AR},   {"TURN", &block_.TURN}, {"AP", &block_.AP},     {"RP", &block_.RP},
       {"RPL", &block_.RPL}, {"RND", &block_.RND},   {"RNDM", &block_.RNDM}, {"CHF", &block_.CHF},
       {"CHR", &block_.CHR}, {"FRC", &block_.FRC},   {"FRCM", &block_.FRCM}, {"P", &block_.P},
-      {"L", &block_.L}};
+      {"L", &block_.L},     {"OVR", &block_.OVR},   {"SPOS", &block_.SPOS}, {"DISC", &block_.DISC}};
   for (const auto& [known, place] : all) {
     if (known == name) return place;
   }
@@ -261,6 +298,25 @@ void Reader::read_call(const std::string& name, const Place& place) {
   block_.calls.push_back(std::move(call));
 }
 
+// "CR=5", "ACC[X]=50": behind '='.
+void Reader::read_assigned(Address address, const std::string& index) {
+  address.is_assigned = true;
+  if (index.empty() || (address.name == "SPOS" && index == "[1]")) {
+    if (std::optional<Number>* place = number_of(address.name)) return put_once(*place, address);
+  }
+  if (!warning_of(address.name).empty()) {
+    evaluate(scanner_, variables_);
+    block_.settings.push_back({address.name, address.place});
+    return;
+  }
+  const std::string why = refusal_of(address.name);
+  fail(address.place,
+       why.empty() ? fmt::format("{}= is neither an address nor a variable: DEF is missing before "
+                                 "it, or it is one of the machine",
+                                 address.name + index)
+                   : fmt::format("{}: {}", address.name, why));
+}
+
 // A word of several letters: a code, an address with '=', a cycle or a subprogram.
 void Reader::read_name() {
   Address address;
@@ -272,24 +328,13 @@ void Reader::read_name() {
     return;
   }
   const std::size_t behind = scanner_.position();
-  if (scanner_.take('=')) {
-    address.is_assigned = true;
-    if (std::optional<Number>* place = number_of(address.name)) return put_once(*place, address);
-    if (has_setting_only(address.name)) {
-      evaluate(scanner_, variables_);
-      return;
-    }
-    const std::string why = refusal_of(address.name);
-    fail(address.place,
-         why.empty() ? fmt::format("{}= is neither an address nor a variable: DEF is missing "
-                                   "before it, or it is one of the machine",
-                                   address.name)
-                     : fmt::format("{}: {}", address.name, why));
-  }
+  const std::string index = scanner_.read_brackets();
+  if (scanner_.take('=')) return read_assigned(address, index);
   scanner_.go_to(behind);
   if (is_code(address.name)) {
-    block_.codes.push_back({address.name, address.place});
-    if (scanner_.take('(')) scanner_.read_to_parenthesis();
+    Code code{address.name, address.place};
+    if (scanner_.take('(')) code.arguments = scanner_.read_to_parenthesis();
+    block_.codes.push_back(std::move(code));
     return;
   }
   read_call(address.name, address.place);
@@ -315,82 +360,6 @@ bool Block::has_centre() const {
 
 Block read_block(Scanner& scanner, Variables& variables) {
   return Reader(scanner, variables).read();
-}
-
-std::vector<Argument> read_arguments(Scanner& scanner, const Variables& variables) {
-  constexpr std::size_t kMax = 127;
-  std::vector<Argument> out;
-  if (scanner.take(')')) return out;
-  while (true) {
-    if (out.size() == kMax) scanner.fail("too many values in the parentheses");
-    Argument argument;
-    scanner.skip_blanks();
-    if (scanner.now() != ',' && scanner.now() != ')') {
-      const std::size_t begin = scanner.position();
-      const std::string name = scanner.peek_name();
-      const bool is_R = name.size() > 1 && name.front() == 'R' &&
-                        name.find_first_not_of("0123456789", 1) == name.npos;
-      if (is_R || (!name.empty() && variables.is_known(name))) {
-        const Reference reference = read_reference(scanner, variables);
-        scanner.skip_blanks();
-        if (scanner.now() == ',' || scanner.now() == ')') argument.variable = reference;
-        scanner.go_to(begin);
-      }
-      argument.value = evaluate(scanner, variables);
-    }
-    out.push_back(std::move(argument));
-    if (scanner.take(',')) continue;
-    scanner.expect(')', "the values in parentheses");
-    return out;
-  }
-}
-
-bool read_assignment(Scanner& scanner, Variables& variables) {
-  const std::string name = scanner.peek_name();
-  if (name.empty()) return false;
-  const bool is_R = name.front() == 'R' && name.find_first_not_of("0123456789", 1) == name.npos;
-  if (!is_R && !variables.is_known(name)) return false;
-  const std::size_t begin = scanner.position();
-  const Reference reference = read_reference(scanner, variables);
-  if (!scanner.take('=') || scanner.now() == '=' || (is_R && reference.indices.empty())) {
-    scanner.go_to(begin);
-    return false;
-  }
-  if (name.starts_with('$')) {
-    throw InputError(reference.place,
-                     fmt::format("{}: assigns to a variable of the control, whose effect is not "
-                                 "supported; remove the block if it causes no motion",
-                                 to_string(reference)));
-  }
-  assign(reference, scanner, variables);
-  return true;
-}
-
-// R1=5, A[2]=7, A[0]=SET(1,2), A[0]=REP(0), DEF REAL A[2]=(1,2).
-void assign(const Reference& reference, Scanner& scanner, Variables& variables) {
-  const bool is_repeated = scanner.take_word("REP");
-  const bool is_list = is_repeated || scanner.take_word("SET");
-  const bool is_array = variables.size(reference) > 1;
-  if (!is_list && !(is_array && reference.indices.empty())) {
-    return variables.set(reference, evaluate(scanner, variables));
-  }
-  if (!is_array) {
-    throw InputError(reference.place, fmt::format("{} is not an array", reference.name));
-  }
-  scanner.expect('(', "SET and REP");
-  const std::vector<Argument> values = read_arguments(scanner, variables);
-  const bool starts_elsewhere = std::any_of(reference.indices.begin(), reference.indices.end(),
-                                            [](int index) { return index != 0; });
-  if (starts_elsewhere) {
-    throw InputError(reference.place, "SET and REP from an element other than the first");
-  }
-  const std::size_t count = is_repeated ? variables.size(reference) : values.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = is_repeated ? 0 : i;
-    if (at < values.size() && values[at].value) {
-      variables.set_element(reference, i, *values[at].value);
-    }
-  }
 }
 
 }  // namespace servomill::controllers::siemens

@@ -27,6 +27,7 @@ struct Number {
 struct Code {
   std::string name;
   Place place;
+  std::string arguments = {};  // in parentheses: SETMS(2)
 };
 
 /// A value in parentheses; the name of the variable that holds it, for parameters VAR of PROC.
@@ -56,12 +57,14 @@ struct Block {
   std::array<std::optional<Number>, 3> centre;   // I J K
   std::array<std::optional<Number>, 3> through;  // I1= J1= K1=
   std::optional<Number> F, S, D, CR, AR, TURN, AP, RP, RPL, RND, RNDM, CHF, CHR, FRC, FRCM, P;
-  std::optional<Number> L;                         // a subprogram L100
+  std::optional<Number> L;  // a subprogram, L=R1
+  std::optional<Number> OVR, SPOS, DISC;
   std::array<std::optional<Number>, 3> direction;  // A3= B3= C3=
   std::optional<Value> tool;                       // T
   Place tool_place;
   std::vector<Function> functions;
   std::vector<Call> calls;
+  std::vector<Code> settings;  // ACC[X]=50, H5=3: words that are passed over with a warning
   bool is_modal_call = false;  // MCALL
   Place place;
 

@@ -122,7 +122,10 @@ void Translator::execute_calls(const Block& block) {
     }
     repeats = static_cast<long>(P);
   }
-  std::vector<Call> calls = block.calls;
+  std::vector<Call> calls;
+  for (const Call& one : block.calls) {
+    if (!has_text_only(one.name)) calls.push_back(one);
+  }
   if (block.L) {
     Call call;
     call.name = fmt::format("L{:.0f}", block.L->value);
@@ -150,8 +153,10 @@ void Translator::call_modal() {
 }
 
 void Translator::call(const Call& call, long repeats) {
-  if (has_text_only(call.name)) return;
   if (ProgramFile* program = find_program(call.name)) return enter(program, call, repeats);
+  if (repeats != 1) {
+    fail(call.place, fmt::format("{}: P repeats subprograms only; program a loop", call.name));
+  }
   if (run_cycle(call)) return;
   const std::string why = refusal_of(call.name);
   if (!why.empty()) fail(call.place, fmt::format("{}: {}", call.name, why));
@@ -245,6 +250,7 @@ void Translator::restore(const Modes& modes) {
     forget_linear_positions();
   }
   if (modes.feed_code != modes_.feed_code) feed_.reset();
+  if (modes.stops_exactly != modes_.stops_exactly) use_path(modes.stops_exactly);
   modes_ = modes;
   last_element_.reset();
 }

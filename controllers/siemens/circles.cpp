@@ -28,30 +28,31 @@ double Translator::coordinate(const Number& number, double now) const {
   return number.value * unit() + (is_increment(number) ? now : 0.0);
 }
 
-// AP and RP about the pole; one that is left out keeps its value. [F] "Travel commands with polar
-// coordinates"
-std::optional<Point> Translator::polar_point(const Block& block, int normal) {
+// AP and RP about the pole. RP is absolute and stays; AP stays until another pole or plane, and
+// AP=IC counts from the one programmed last. NC programming 12/2019 (6FC5398-2EP40-0BA0) p. 175
+Point Translator::polar_point(const Block& block) {
   if (!pole_) fail("AP and RP without a pole: program G111 before, in the same frame");
-  const auto now = program_point(normal);
-  const Point ray = now ? Point(*now - *pole_) : Point(Point::Zero());
-  const auto value = [&](const std::optional<Number>& number, std::optional<double>& last,
-                         double factor, double present, const char* name) {
-    if (!number) {
-      if (!last) fail(fmt::format("{} is missing, and none was programmed before", name));
-      return *last;
+  if (block.RP && block.RP->value < 0.0) fail(block.RP->place, "RP must be >= 0");
+  if (block.RP) polar_radius_ = block.RP->value * unit();
+  if (!polar_radius_) fail("RP is missing, and none was programmed before");
+  if (block.AP) {
+    const Number& AP = *block.AP;
+    if (AP.measure == Measure::modal && modes_.is_incremental) {
+      fail(AP.place, "AP with G91: write AP=AC(...) or AP=IC(...)");
     }
-    const bool is_by = number->measure == Measure::incremental;
-    if (is_by && !last && !now)
-      fail(number->place, fmt::format("{}=IC from an unknown position", name));
-    return number->value * factor + (is_by ? last.value_or(present) : 0.0);
-  };
-  polar_radius_ = value(block.RP, polar_radius_, unit(), ray.norm(), "RP");
-  polar_angle_ = value(block.AP, polar_angle_, 1.0, std::atan2(ray.y(), ray.x()) / deg, "AP");
+    const bool is_by = AP.measure == Measure::incremental;
+    if (is_by && !polar_angle_) {
+      fail(AP.place,
+           "AP=IC: no angle about this pole was programmed before; program AP=AC(...) first");
+    }
+    polar_angle_ = AP.value + (is_by ? *polar_angle_ : 0.0);
+  }
+  if (!polar_angle_) fail("AP is missing, and none was programmed since the pole was set");
   return *pole_ + *polar_radius_ * turned(Point(1.0, 0.0), *polar_angle_ * deg);
 }
 
 std::optional<Point> Translator::end_in_plane(const Block& block, const Point& start) {
-  if (block.is_polar()) return polar_point(block, modes_.normal);
+  if (block.is_polar()) return polar_point(block);
   const auto axes = plane_axes(modes_.normal);
   Point end = start;
   bool is_named = false;
@@ -93,8 +94,11 @@ void Translator::arc(const Block& block) {
   const auto end = end_in_plane(block, *start);
   const auto centre = programmed_centre(block, *start);
   Element element;
+  if (block.CR && (centre || block.AR)) {
+    fail(block.CR->place, "CR with the centre or the angle of the arc; use one of them");
+  }
   if (centre) {
-    element = about_centre(block, *start, *centre, sign);
+    element = about_centre(block, *start, *centre, end, sign);
     if (end) {
       element.end = *end;
       const bool is_closed = (*end - *start).norm() < kSamePoint;
@@ -118,11 +122,10 @@ void Translator::arc(const Block& block) {
 
 // Centre alone: a full circle, or the angle AR.
 Element Translator::about_centre(const Block& block, const Point& start, const Point& centre,
-                                 double sign) {
+                                 const std::optional<Point>& end, double sign) {
   const double radius = (start - centre).norm();
   if (radius < kSamePoint) fail("the centre of the arc is its start");
   Element out{start, start, true, centre, sign * kFullTurn};
-  const auto end = end_in_plane(block, start);
   if (end && std::abs((*end - centre).norm() - radius) > kRadiusFits) {
     fail(fmt::format("the arc starts {:.4f} mm from its centre and ends {:.4f} mm from it", radius,
                      (*end - centre).norm()));
@@ -167,9 +170,6 @@ Element Translator::through_end(const Block& block, const Point& start, const Po
 // Start, point and end in a plane of two axes; the direction follows from them. [F] "Circular
 // interpolation via intermediate point"
 void Translator::arc_through_point(const Block& block) {
-  if (block.has_centre() || block.CR || block.AR || block.TURN) {
-    fail("CIP with I, J, K, CR, AR or TURN; the point is I1=, J1=, K1=");
-  }
   Eigen::Vector3d start, end, by;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -302,8 +302,10 @@ void Translator::thread(const Block& block) {
 // compensating chuck"
 void Translator::tap_with_chuck(const Block& block) {
   const MotionCode before = std::exchange(modes_.motion, MotionCode::line);
+  const double override = std::exchange(override_, 1.0);
   move_straight(block);
   modes_.motion = before;
+  override_ = override;
 }
 
 }  // namespace servomill::controllers::siemens

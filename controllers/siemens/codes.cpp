@@ -68,6 +68,9 @@ constexpr auto kCodes = std::to_array<Entry>({
     {"G93", Group::feed},
     {"G94", Group::feed},
     {"G95", Group::feed},
+    {"G97", Group::feed},
+    {"G971", Group::feed},
+    {"G972", Group::feed},
     {"COMPON", Group::compressor},
     {"COMPCURV", Group::compressor},
     {"COMPCAD", Group::compressor},
@@ -82,13 +85,17 @@ constexpr auto kCodes = std::to_array<Entry>({
 
 // Jerk, dynamics, feed-forward, exact-stop criteria, displays, preprocessing, monitoring.
 constexpr auto kWithoutEffect = std::to_array<std::string_view>(
-    {"G601",    "G602",      "G603",     "G97",       "G971",       "G972",     "BRISK",
-     "SOFT",    "DRIVE",     "BRISKA",   "SOFTA",     "DRIVEA",     "FFWON",    "FFWOF",
-     "DYNNORM", "DYNPOS",    "DYNROUGH", "DYNFINISH", "DYNSEMIFIN", "DYNPREC",  "DIAMOF",
-     "STOPRE",  "STARTFIFO", "STOPFIFO", "NORM",      "FNORM",      "CDON",     "CDOF",
-     "CDOF2",   "CUT2D",     "CUT2DF",   "SETMS",     "RTLION",     "FIFOCTRL", "SBLON",
-     "SBLOF",   "DISPLON",   "DISPLOF",  "WALIMON",   "WALIMOF",    "PAROTOF",  "TOROTOF",
-     "ORIAXES", "ORIMKS",    "ORIWKS",   "SPCOF",     "SPCON",      "FENDNORM", "G290"});
+    {"G601",      "G602",       "G603",     "BRISK",   "SOFT",    "DRIVE",     "BRISKA",
+     "SOFTA",     "DRIVEA",     "FFWON",    "FFWOF",   "DYNNORM", "DYNPOS",    "DYNROUGH",
+     "DYNFINISH", "DYNSEMIFIN", "DYNPREC",  "DIAMOF",  "STOPRE",  "STARTFIFO", "STOPFIFO",
+     "NORM",      "FNORM",      "CDON",     "CDOF",    "CDOF2",   "CUT2D",     "CUT2DF",
+     "SETMS",     "RTLION",     "FIFOCTRL", "SBLON",   "SBLOF",   "DISPLON",   "DISPLOF",
+     "WALIMON",   "WALIMOF",    "PAROTOF",  "TOROTOF", "ORIAXES", "ORIMKS",    "ORIWKS",
+     "SPCOF",     "SPCON",      "FENDNORM", "G290"});
+
+// Words of the list above that name axes or spindles in parentheses.
+constexpr auto kWithNames = std::to_array<std::string_view>(
+    {"BRISKA", "SOFTA", "DRIVEA", "SPCON", "SPCOF", "STOPRE", "FIFOCTRL", "SBLON", "SBLOF"});
 
 // Words that do not belong to one of the lists above, and their meaning.
 constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_view>>({
@@ -133,9 +140,10 @@ constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_
      "position"},
     {"G75",
      "moves to a fixed point of the machine builder (MD30600); write SUPA with the position"},
-    {"G96", "constant cutting speed is not supported; use G97 with S"},
-    {"G961", "constant cutting speed is not supported; use G97 with S"},
-    {"G962", "constant cutting speed is not supported; use G97 with S"},
+    {"G96", "constant cutting speed is not supported; use G94 or G95 with S"},
+    {"G961", "constant cutting speed is not supported; use G94 or G95 with S"},
+    {"G962", "constant cutting speed is not supported; use G94 or G95 with S"},
+    {"G931", "a feed as the time of a block in seconds is not supported; use G93"},
     {"G147", "soft approach and retraction (WAB) is not supported; program the moves"},
     {"G148", "soft approach and retraction (WAB) is not supported; program the moves"},
     {"G247", "soft approach and retraction (WAB) is not supported; program the moves"},
@@ -185,6 +193,17 @@ constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_
     {"TOFFR", "offsets of the tool radius in the program are not supported"},
     {"FGROUP", "a choice of the axes that F counts is not supported"},
     {"FL", "limits of single axes' feeds are not supported"},
+    {"FD", "a feed by the handwheel has no time; remove the word"},
+    {"FDA", "a feed by the handwheel has no time; remove the word"},
+    {"FA", "feeds of positioning axes are not supported; use F"},
+    {"FB", "a feed of one block only is not supported; use F in both blocks"},
+    {"OVRA",
+     "overrides of positioning axes and spindles are not supported; program the speed by S"},
+    {"SPP", "division of the path for punching is not supported; remove the word"},
+    {"SPN", "division of the path for punching is not supported; remove the word"},
+    {"DISPR", "repositioning is of interrupts, which are not supported"},
+    {"ORIRESET", "turns the rotary axes to a place that is not in the program; program them"},
+    {"ATOL", "tolerances of single axes are not supported; use CYCLE832"},
     {"FZ", "feed per tooth needs the number of teeth; use G94 or G95"},
     {"POS", "positioning axes that move beside the path are not supported; use G0 or G1"},
     {"POSA", "positioning axes that move beside the path are not supported; use G0 or G1"},
@@ -211,9 +230,25 @@ constexpr auto kRefused = std::to_array<std::pair<std::string_view, std::string_
 constexpr auto kTextOnly = std::to_array<std::string_view>(
     {"MSG", "WORKPIECE", "GROUP_BEGIN", "GROUP_END", "GROUP_ADDEND", "EXTERN"});
 
-constexpr auto kSettingOnly = std::to_array<std::string_view>(
-    {"SPOS", "SPP", "ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL", "DISC", "ACC", "FD", "OVR", "OVRRAP",
-     "OVRA", "VELOLIM", "JERKLIM", "ACCLIMA", "LIMS", "ORIRESET", "DISPR"});
+// Words with '=' that change neither the path nor F: of the machine's limits, which are those of
+// the machine file, of tolerances, and of what no supported function reads. H is of the PLC.
+constexpr auto kPassedOver = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"ACC", "the acceleration stays that of the machine"},
+    {"ACCLIMA", "the acceleration of following axes stays that of the machine"},
+    {"ADIS", "the distance is not read; CYCLE832 gives a tolerance"},
+    {"ADISPOS", "the distance is not read; rapid moves keep the tolerance of the others"},
+    {"CTOL", "the tolerance is not read; CYCLE832 gives one"},
+    {"H", "a function of the PLC; ignored: no effect on motion"},
+    {"JERKLIM", "the jerk stays that of the machine"},
+    {"JERKLIMA", "the jerk of following axes stays that of the machine"},
+    {"LIMS",
+     "the limit of the spindle speed is not applied; it acts with G96, which is refused, and "
+     "with G97"},
+    {"OTOL", "the tolerance of the tool's orientation is not read"},
+    {"OVRRAP", "rapid moves keep the velocity of the machine"},
+    {"VELOLIM", "the velocity stays that of the machine"},
+    {"VELOLIMA", "the velocity of following axes stays that of the machine"},
+});
 
 template <std::size_t n>
 bool is_in(const std::array<std::string_view, n>& all, std::string_view name) {
@@ -250,7 +285,14 @@ std::string refusal_of(std::string_view name) {
 }
 
 bool has_text_only(std::string_view name) { return is_in(kTextOnly, name); }
-bool has_setting_only(std::string_view name) { return is_in(kSettingOnly, name); }
+bool takes_names(std::string_view code) { return is_in(kWithNames, code); }
+
+std::string_view warning_of(std::string_view setting) {
+  for (const auto& [known, why] : kPassedOver) {
+    if (known == setting) return why;
+  }
+  return {};
+}
 
 std::string similar_word(std::string_view name) {
   std::vector<std::string_view> names;

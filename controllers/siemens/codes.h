@@ -23,7 +23,7 @@ enum class Group {
   exact_stop,      // G9
   units,           // G70 G71 G700 G710
   distance,        // G90 G91
-  feed,            // G93 G94 G95
+  feed,            // G93 G94 G95 G97 G971 G972
   contour_feed,    // CFC CFTCP
   transformation,  // TRAORI TRAFOOF
   rapid,           // RTLIOF
@@ -43,8 +43,11 @@ std::string refusal_of(std::string_view name);
 /// True for functions whose parentheses hold texts for the operator and pictures: MSG, WORKPIECE.
 bool has_text_only(std::string_view name);
 
-/// True for settings with '=' that have no effect on motion: SPOS, SPP.
-bool has_setting_only(std::string_view name);
+/// True for words without effect whose parentheses name axes or spindles: SOFTA(X).
+bool takes_names(std::string_view code);
+
+/// The reason why a word with '=' may be passed over, for the warning; empty: it may not.
+std::string_view warning_of(std::string_view setting);
 
 /// The word of the language that is meant by another: "; did you mean 'TRANS'?", or nothing.
 std::string similar_word(std::string_view name);

@@ -27,6 +27,13 @@ bool is_measuring(std::string_view name) {
 
 }  // namespace
 
+bool Translator::is_cycle(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kFronts = {"CYCLE", "HOLES", "POCKET", "SLOT",
+                                                       "LONGHOLE"};
+  return std::any_of(kFronts.begin(), kFronts.end(),
+                     [&](std::string_view front) { return name.starts_with(front); });
+}
+
 bool Translator::run_cycle(const Call& call) {
   if (run_drilling_cycle(call)) return true;
   if (call.name == "CYCLE832") {
@@ -69,7 +76,8 @@ void Translator::smoothing(const Call& call) {
   if (tolerance < 0.0) fail(call.place, "CYCLE832: the tolerance must be >= 0");
   const bool is_off =
       call.arguments.size() > 1 && std::fmod(value_of(call, 1, 0.0, "the kind"), 10.0) == 0.0;
-  note(tolerance > 0.0 && !is_off ? "G64 " + word('P', tolerance) : "G64");
+  tolerance_line_ = tolerance > 0.0 && !is_off ? "G64 " + word('P', tolerance) : "G64";
+  use_path(false);
 }
 
 // HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM): on a line, from its nearer end. HOLES2(CPA, CPO, RAD,

@@ -82,13 +82,15 @@ void Translator::cycle_dwell(double time) {
   dwell_for(-time * 60.0 / *speed_);
 }
 
-Feed Translator::cycle_feed(double per_minute) const {
+Feed Translator::cycle_feed(double per_minute) {
   if (modes_.feed_code != 94) {
     fail(fmt::format("a feed of the cycle with G{} is not supported; program G94 before the cycle",
                      modes_.feed_code));
   }
   if (!(per_minute > 0.0)) fail(fmt::format("a feed of {:g} in a cycle; must be > 0", per_minute));
-  return {Feed::Kind::per_minute, per_minute * (modes_.is_feed_inch ? 25.4 : 1.0)};
+  const double unit = unit_of_feed(place_);
+  if (unit == 0.0) return {Feed::Kind::unknown};
+  return effective({Feed::Kind::per_minute, per_minute * unit}, override_);
 }
 
 // Parameters that turn the drilling axis or measure the depth from elsewhere. [C], from memory
@@ -144,6 +146,9 @@ bool Translator::run_drilling_cycle(const Call& call) {
   if (found == kCycles.end()) return false;
   require_no_compensation(call.name);
   if (is_tcp_) fail(call.place, fmt::format("{} with TRAORI; end it with TRAFOOF", call.name));
+  if (modes_.feed_code == 93) {
+    fail(call.place, fmt::format("{} with G93; program G94 or G95 before it", call.name));
+  }
   check_length_axis(true);
   refuse_other_geometry(call);
   (this->*found->second)(call);
@@ -274,6 +279,7 @@ void Translator::tap_84(const Call& call) {
   const std::optional<double> before = speed_;
   const int direction = pitch > 0.0 ? 1 : -1;
   const auto set_speed_to = [&](double speed) {
+    require_speed_in_limits(speed, call.place);
     if (speed_ != speed) note(word('S', speed));
     speed_ = speed;
   };
@@ -297,7 +303,7 @@ void Translator::tap_840(const Call& call) {
   if (spindle_ == 0) fail(call.place, "CYCLE840: M3 or M4 must be active");
   const double pitch = std::abs(pitch_of(call, 9, 12));
   if (pitch > 0.0 && (!speed_ || *speed_ <= 0.0)) fail(call.place, "CYCLE840: no S is active");
-  const Feed feed = pitch > 0.0 ? Feed{Feed::Kind::per_minute, pitch * *speed_} : modal_feed();
+  const Feed feed = pitch > 0.0 ? Feed{Feed::Kind::per_minute, pitch * *speed_} : modal_feed(1.0);
   const int direction = spindle_;
   cycle_move({}, hole.clearance);
   cycle_move(feed, hole.bottom);

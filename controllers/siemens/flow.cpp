@@ -51,6 +51,9 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
                         word == "EXTCALL" || word == "CASE" || word == "REDEF";
   if (!is_taken) return false;
   scanner.take_word(word);
+  const bool stands_alone = word == "ELSE" || word == "ENDIF" || word == "ENDWHILE" ||
+                            word == "ENDFOR" || word == "LOOP" || word == "ENDLOOP";
+  if (stands_alone) require_end(scanner, word);
   if (word == "IF" || word == "ELSE" || word == "ENDIF") {
     if (word == "IF") branch(scanner, line);
     if (word == "ELSE") go_behind(line);
@@ -59,7 +62,9 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
   } else if (word == "ENDFOR") {
     end_count_loop(line);
   } else if (is_jump(word)) {
-    jump(scanner, word);
+    const std::string target = read_target(scanner, word);
+    require_end(scanner, target);
+    jump(word, target);
   } else if (word == "REPEAT" || word == "REPEATB") {
     repeat(scanner, word, line);
   } else if (word == "DEF") {
@@ -73,7 +78,9 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
   } else if (word == "RET") {
     if (!scanner.at_end()) fail("RET with values is not supported");
     returns_.empty() ? end_program(30) : leave_subprogram();
-  } else if (word == "EXTERN" || word == "ENDLABEL") {
+  } else if (word == "ENDLABEL") {
+    fail("ENDLABEL is a label: write ENDLABEL:");
+  } else if (word == "EXTERN") {
     return true;
   } else if (word == "REDEF") {
     fail("REDEF is not supported");
@@ -87,25 +94,33 @@ void Translator::go_behind(const Line& line) {
   if (const BlockMark* partner = program_->partner(line.mark)) program_->go_to(*partner);
 }
 
-// IF ... GOTOF LABEL in one block; else a structure.
+// Words that nothing would read.
+void Translator::require_end(Scanner& scanner, std::string_view what) {
+  if (!scanner.at_end()) scanner.fail(fmt::format("unexpected words behind {}", what));
+}
+
+// IF ... GOTOF LABEL in one block, several of them one after the other; else a structure.
 void Translator::branch(Scanner& scanner, const Line& line) {
   const bool is_true = condition(scanner) != 0.0;
   const std::string word = scanner.peek_name();
   if (is_jump(word)) {
     scanner.read_name();
-    if (is_true) jump(scanner, word);
+    const std::string target = read_target(scanner, word);
+    if (scanner.peek_name() != "IF") require_end(scanner, target);
+    if (is_true) return jump(word, target);
+    if (scanner.take_word("IF")) branch(scanner, line);
     return;
   }
-  if (!scanner.at_end()) scanner.fail("IF: unexpected words behind the condition");
+  require_end(scanner, "the condition of IF");
   if (!is_true) go_behind(line);
 }
 
 void Translator::loop(Scanner& scanner, const std::string& word, const Line& line) {
   const BlockMark* partner = program_->partner(line.mark);
-  if (word == "WHILE") {
-    if (condition(scanner) == 0.0) go_to(*partner);
-  } else if (word == "UNTIL") {
-    if (condition(scanner) == 0.0) go_to(*partner);
+  if (word == "WHILE" || word == "UNTIL") {
+    const bool is_true = condition(scanner) != 0.0;
+    require_end(scanner, fmt::format("the condition of {}", word));
+    if (!is_true) go_to(*partner);
   } else if (word == "ENDWHILE" || word == "ENDLOOP") {
     go_to(*partner);
   }
@@ -120,6 +135,7 @@ void Translator::count_loop(Scanner& scanner, const Line& line) {
   const double first = evaluate_number(scanner, variables_);
   if (!scanner.take_word("TO")) scanner.fail("FOR without TO");
   const double last = evaluate_number(scanner, variables_);
+  require_end(scanner, "FOR");
   variables_.set(counter, {first});
   if (first <= last) return;
   if (const BlockMark* partner = program_->partner(line.mark)) go_to(*partner);
@@ -146,20 +162,27 @@ void Translator::end_count_loop(const Line& line) {
     variables_.set(counter, {next});
     count_jump();
   } else {
+    variables_.forget(counter,
+                      "counted a loop of FOR, and behind its end holds the last value or the one "
+                      "after it, by the control");
     program_->go_to(behind);
   }
 }
 
-// GOTOF searches towards the end, GOTOB towards the begin, GOTO towards the end and then from the
-// begin; GOTOC goes on without an alarm.
-void Translator::jump(Scanner& scanner, const std::string& word) {
+std::string Translator::read_target(Scanner& scanner, const std::string& word) {
   scanner.skip_blanks();
   std::string name = scanner.now() == '"' ? capitals(scanner.read_text()) : scanner.read_name();
+  if (name.empty()) scanner.fail(fmt::format("{} without a label", word));
+  return name;
+}
+
+// GOTOF searches towards the end, GOTOB towards the begin, GOTO towards the end and then from the
+// begin; GOTOC goes on without an alarm.
+void Translator::jump(const std::string& word, std::string name) {
   if (variables_.is_known(name) && !name.starts_with('$') && name != "R") {
-    const Value target = variables_.get({name, {}, scanner.place()});
+    const Value target = variables_.get({name, {}, place_});
     name = target.text ? capitals(*target.text) : fmt::format("N{:g}", target.number);
   }
-  if (name.empty()) scanner.fail(fmt::format("{} without a label", word));
   const Label* label = nullptr;
   const BlockMark here = program_->mark();
   if (word != "GOTOB") label = program_->label_behind(name, here);
@@ -183,56 +206,98 @@ void Translator::choose(Scanner& scanner) {
         scanner.take_word("DEFAULT") || evaluate_number(scanner, variables_) == value;
     const std::string word = scanner.read_name();
     if (!is_jump(word)) scanner.fail("CASE: expected GOTOF, GOTOB or GOTO behind a value");
-    if (is_chosen) return jump(scanner, word);
-    if (scanner.read_name().empty()) scanner.fail(fmt::format("{} without a label", word));
+    const std::string target = read_target(scanner, word);
+    if (is_chosen) return jump(word, target);
   }
 }
 
-// REPEAT LABEL P=n: from the label up to here; REPEAT LABEL LABEL P=n: between labels, the second
-// of them ENDLABEL if it is not named; REPEATB LABEL P=n: the block of the label.
-void Translator::repeat(Scanner& scanner, const std::string& word, const Line& line) {
-  if (scanner.at_end()) return;  // REPEAT ... UNTIL
-  std::vector<std::string> names;
-  long times = 1;
+// REPEAT LABEL LABEL P=n
+Translator::Repetition Translator::read_repetition(Scanner& scanner) {
+  Repetition out;
   while (!scanner.at_end()) {
     const std::string name = scanner.read_name();
     if (name == "P" || (name.size() > 1 && name[0] == 'P' && is_digit(name[1]))) {
       const double P = name == "P" ? (scanner.take('='), evaluate_number(scanner, variables_))
                                    : std::stod(name.substr(1));
-      if (!(P >= 0.0 && P <= kMaxRepeats)) fail("REPEAT: P must be from 1 to 9999");
-      times = static_cast<long>(P);
-      break;
+      if (!(P >= 0.0 && P <= kMaxRepeats) || P != std::floor(P)) {
+        fail("REPEAT: P must be an integer from 0 to 9999");
+      }
+      out.times = static_cast<long>(P);
+      require_end(scanner, "P");
+      return out;
     }
     if (name.empty()) scanner.fail("REPEAT: expected a label or P=");
-    names.push_back(name);
+    out.labels.push_back(name);
   }
-  if (names.empty()) fail("REPEAT with P and without a label");
+  return out;
+}
+
+// The block behind ENDLABEL.
+BlockMark Translator::behind_end_label(const BlockMark& mark) {
+  program_->go_to(mark);
+  const Line line = *program_->next();
+  Scanner scanner(line.text, program_->file(), line.number, line.column);
+  scanner.read_name();
+  scanner.take(':');
+  if (!scanner.at_end()) {
+    scanner.fail(
+        "words behind ENDLABEL: whether REPEAT repeats them is not certain; program them "
+        "in the next block");
+  }
+  return program_->mark();
+}
+
+// The part of REPEAT LABEL ends at ENDLABEL, or at the block of REPEAT where none stands before it;
+// that of REPEAT LABEL LABEL behind the block of the second, that of REPEATB behind its own block.
+BlockMark Translator::end_of_part(const std::vector<BlockMark>& labels, bool is_block,
+                                  const BlockMark& repeat) {
+  if (is_block || labels.size() > 1) {
+    program_->go_to(labels.back());
+    program_->next();
+    return program_->mark();
+  }
+  const Label* closing = program_->label_behind("ENDLABEL", labels.front());
+  const bool is_ahead = labels.front().offset > repeat.offset;
+  if (closing != nullptr && (is_ahead || closing->mark.offset < repeat.offset)) {
+    return behind_end_label(closing->mark);
+  }
+  if (is_ahead) fail("REPEAT of a part behind it needs ENDLABEL: at its end");
+  return repeat;
+}
+
+void Translator::repeat(Scanner& scanner, const std::string& word, const Line& line) {
+  if (scanner.at_end()) return;  // REPEAT ... UNTIL
+  const Repetition repetition = read_repetition(scanner);
+  const std::size_t most = word == "REPEATB" ? 1 : 2;
+  if (repetition.labels.empty() || repetition.labels.size() > most) {
+    fail(fmt::format("{} takes {}", word, most == 1 ? "one label" : "one or two labels"));
+  }
   const BlockMark behind = program_->mark();
-  const auto find = [&](const std::string& name) {
+  std::vector<BlockMark> labels;
+  for (const std::string& name : repetition.labels) {
     const Label* label = program_->label_before(name, line.mark);
     if (label == nullptr) label = program_->label_behind(name, behind);
     if (label == nullptr) fail(fmt::format("{} {}: there is no such label", word, name));
-    return label->mark;
-  };
-  const BlockMark begin = find(names.front());
-  BlockMark end = line.mark;
-  if (names.size() > 1 || word == "REPEATB") {
-    program_->go_to(names.size() > 1 ? find(names[1]) : begin);
-    program_->next();
-    end = program_->mark();
-    program_->go_to(behind);
-  } else if (const Label* closing = program_->label_behind("ENDLABEL", begin); closing != nullptr) {
-    end = closing->mark;
+    labels.push_back(label->mark);
   }
+  const BlockMark begin = labels.front();
+  const BlockMark end = end_of_part(labels, word == "REPEATB", line.mark);
+  program_->go_to(behind);
   if (end.offset <= begin.offset)
     fail(fmt::format("{}: the second label is before the first", word));
-  if (times == 0) return;
+  if (begin.offset <= line.mark.offset && line.mark.offset < end.offset) {
+    fail(
+        fmt::format("{}: the part to repeat holds this block itself; repeat a part before or "
+                    "behind it",
+                    word));
+  }
+  if (repetition.times == 0) return;
   constexpr std::size_t kMaxNested = 32;
   if (returns_.size() >= kMaxNested) fail("REPEAT and calls nested too deep");
   Return one;
   one.program = program_;
   one.mark = behind;
-  one.left = times - 1;
+  one.left = repetition.times - 1;
   one.is_repetition = true;
   one.begin = begin;
   one.end = end.offset;

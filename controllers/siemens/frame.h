@@ -22,7 +22,9 @@ class Frame {
   void rotate(int axis, double angle_deg);
   void scale(const Eigen::Vector3d& by);
   void mirror(int axis);
-  void translate_rotary(std::size_t axis, double by) { rotary_shift_[axis - 3] += by; }
+  void translate_rotary(std::size_t axis, double by) {
+    rotary_shift_[axis - 3] += rotary_increment(axis, by);
+  }
   void mirror_rotary(std::size_t axis);
 
   Eigen::Vector3d to_work(const Eigen::Vector3d& program) const {

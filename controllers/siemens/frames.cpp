@@ -23,6 +23,16 @@ void Translator::forget_linear_positions() {
   last_element_.reset();
 }
 
+// Values of frames and poles are absolute, or count from what the function itself says.
+void Translator::refuse_measures(const Block& block, const Code& code) const {
+  const auto check = [&](const std::optional<Number>& number) {
+    if (!number || number->measure == Measure::modal) return;
+    fail(number->place, fmt::format("{}: its values take no AC, IC or the like", code.name));
+  };
+  for (const auto& number : block.axes) check(number);
+  check(block.AP);
+}
+
 // Returns true if the words of the block belong to a function that moves nothing.
 bool Translator::act(const Block& block) {
   const Code* code = codes_[static_cast<std::size_t>(Group::action)];
@@ -32,7 +42,7 @@ bool Translator::act(const Block& block) {
     if (moves(block)) fail(code->place, "G4 stands in a block of its own; the block moves an axis");
     dwell(block);
   } else if (code->name == "G25" || code->name == "G26") {
-    warn_once("G25", "G25 and G26: limits of the working area and of the speed are ignored");
+    limit(block, *code);
   } else if (code->name.starts_with("G11")) {
     pole(block, *code);
   } else {
@@ -45,6 +55,7 @@ bool Translator::act(const Block& block) {
 // AMIRROR add to it in its own coordinates; without words they delete it. [F] "Frame instructions"
 void Translator::set_frame(const Block& block, const Code& code) {
   require_no_compensation(code.name);
+  refuse_measures(block, code);
   const bool is_additive = code.name.front() == 'A';
   const std::string name = is_additive ? code.name.substr(1) : code.name;
   const bool has_words = block.has_axes() || block.RPL;
@@ -104,12 +115,14 @@ void Translator::use_frame(const Frame& frame) {
   if (frame == modes_.frame) return;
   modes_.frame = frame;
   pole_.reset();
+  polar_angle_.reset();
   last_element_.reset();
 }
 
 // G110: from the position programmed last, G111: from the origin of the workpiece, G112: from the
 // last pole. [F] "Defining the pole"
 void Translator::pole(const Block& block, const Code& code) {
+  refuse_measures(block, code);
   const auto axes = plane_axes(modes_.normal);
   Point from = Point::Zero();
   if (code.name == "G110") {
@@ -121,7 +134,9 @@ void Translator::pole(const Block& block, const Code& code) {
     if (!pole_) fail(code.place, "G112: no pole is set");
     from = *pole_;
   }
+  polar_angle_.reset();
   if (block.is_polar()) {
+    polar_radius_.reset();  // whether it is that of the pole from here on is not in the manual
     if (block.has_axes()) {
       fail(code.place,
            fmt::format("{} with AP and RP beside axis words; use one of both", code.name));
@@ -130,9 +145,13 @@ void Translator::pole(const Block& block, const Code& code) {
     const double angle = block.AP->value * deg;
     from += block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));
   } else {
-    for (int i = 0; i < 2; ++i) {
-      const auto& value = block.axes[axes[static_cast<std::size_t>(i)]];
-      if (value) from[i] += value->value * unit();
+    for (std::size_t i = 0; i < block.axes.size(); ++i) {
+      if (!block.axes[i]) continue;
+      if (i != axes[0] && i != axes[1]) {
+        fail(block.axes[i]->place,
+             fmt::format("{}: the pole lies in the plane of G{}", code.name, 19 - modes_.normal));
+      }
+      from[i == axes[0] ? 0 : 1] += block.axes[i]->value * unit();
     }
   }
   pole_ = from;

@@ -39,15 +39,13 @@ void Translator::set_modes(const Block& block) {
     modes_.is_incremental = code->name == "G91";
   }
   if (const Code* code = codes_[at(Group::feed)]) {
-    const int number = number_of(*code);
-    if (number != modes_.feed_code) feed_.reset();
-    modes_.feed_code = number;
+    set_feed_code(number_of(*code));
   }
   if (const Code* code = codes_[at(Group::contour_feed)]) {
     modes_.is_contour_feed = code->name == "CFC";
   }
   if (const Code* code = codes_[at(Group::work_offset)]) set_offset(*code);
-  if (const Code* code = codes_[at(Group::path)]) set_path(block, *code);
+  if (const Code* code = codes_[at(Group::path)]) set_path(*code);
   if (codes_[at(Group::exact_stop)] != nullptr) {
     warn_once("G9", "G9: the exact stop at the end of single blocks is ignored; use G60");
   }
@@ -64,6 +62,20 @@ void Translator::set_modes(const Block& block) {
     modes_.motion = motion_named(code->name);
   }
   set_feed(block);
+}
+
+// G97 and G971 end a constant cutting speed and have the feed of G95 and G94, also without G96
+// before them: Fundamentals 10.2004 (6FC5298-7AB00-0BP1) p. 7-40. G972 leaves it.
+void Translator::set_feed_code(int number) {
+  constexpr int kPerRevolution = 95, kPerMinute = 94;
+  if (number == 972) return;
+  if (number == 971) number = kPerMinute;
+  if (number == 97) {
+    number = kPerRevolution;
+    if (modes_.feed_code != number) warn_once("G97", "G97: F counts per revolution, as with G95");
+  }
+  if (number != modes_.feed_code) feed_.reset();
+  modes_.feed_code = number;
 }
 
 void Translator::set_units(const Code& code) {
@@ -131,47 +143,72 @@ void Translator::put_offset(int offset) {
   note(system <= 6 ? fmt::format("G{}", 53 + system) : fmt::format("G59.{}", system - 6));
 }
 
-// G642 with CTOL; G641 with ADIS and G645 blend by other rules.
-void Translator::set_path(const Block&, const Code& code) {
-  if (code.name == "G60") return note("G61.1");
+// G642 with CTOL; G641 with ADIS and G645 blend by other rules. The tolerance of CYCLE832 stays.
+void Translator::set_path(const Code& code) {
   if (code.name == "G641" || code.name == "G642" || code.name == "G645") {
     warn_once("smoothing", fmt::format("{}: taken as G64: the tolerance is not read; CYCLE832 "
                                        "gives one",
                                        code.name));
   }
-  note("G64");
+  use_path(code.name == "G60");
 }
 
-// mm/min. F of G70 counts in the basic unit of the machine: [F] "Inch or metric dimensions".
-void Translator::set_feed(const Block& block) {
-  if (!block.F || block.has("G4")) return;
-  const double F = block.F->value;
-  if (!(F > 0.0)) fail(block.F->place, fmt::format("F{:g}: a feed must be > 0", F));
-  if (modes_.feed_code == 93) {
-    feed_ = Feed{Feed::Kind::time, 60.0 / F};
-    return;
-  }
-  double unit_of_feed = modes_.is_feed_inch ? 25.4 : 1.0;
+void Translator::use_path(bool stops_exactly) {
+  modes_.stops_exactly = stops_exactly;
+  note(stops_exactly ? "G61.1" : tolerance_line_);
+}
+
+// F of G70 counts in the basic unit of the machine: [F] "Inch or metric dimensions".
+double Translator::unit_of_feed(const Place& place) {
   const auto is_metric = variables_.given("$MN_SCALING_SYSTEM_IS_METRIC");
-  if (!modes_.is_full_units && is_metric == 0.0) unit_of_feed = 25.4;
-  if (modes_.is_inch && !modes_.is_feed_inch) {
+  if (modes_.is_inch && !modes_.is_feed_inch && !is_metric) {
     const std::string why =
         "F with G70: in the basic unit of the machine (MD10240), which is not in the program; "
         "pass --parameter '$MN_SCALING_SYSTEM_IS_METRIC=1' for mm/min, '=0' for inch/min, or "
         "program G700";
-    if (!is_metric && !setup_.accepts_unknown_feeds) fail(block.F->place, why);
-    if (!is_metric) {
-      warn_once("G70", why + "; the cycle time stays unknown");
-      feed_ = Feed{Feed::Kind::unknown};
-      return;
-    }
+    if (!setup_.accepts_unknown_feeds) fail(place, why);
+    warn_once("G70", why + "; the cycle time stays unknown");
+    return 0.0;
   }
-  if (modes_.feed_code == 95) {
-    if (!speed_ && !block.S) fail(block.F->place, "F with G95: no S is active");
-    unit_of_feed *= block.S ? block.S->value : *speed_;
-    if (!(unit_of_feed > 0.0)) fail(block.F->place, "F with G95: S must be > 0");
+  const bool is_inch = modes_.is_feed_inch || (!modes_.is_full_units && is_metric == 0.0);
+  return is_inch ? 25.4 : 1.0;
+}
+
+// As programmed; a unit of 0 is unknown.
+void Translator::set_feed(const Block& block) {
+  if (block.OVR) set_override(*block.OVR);
+  if (!block.F || block.has("G4")) return;
+  const double F = block.F->value;
+  if (!(F > 0.0)) fail(block.F->place, fmt::format("F{:g}: a feed must be > 0", F));
+  if (path_.has_corner()) warn_of_corner();
+  if (modes_.feed_code == 93) {
+    feed_ = Feed{Feed::Kind::time, 60.0 / F};
+    return;
   }
-  feed_ = Feed{Feed::Kind::per_minute, F * unit_of_feed};
+  feed_unit_ = unit_of_feed(block.F->place);
+  feed_ =
+      feed_unit_ == 0.0 ? Feed{Feed::Kind::unknown} : Feed{Feed::Kind::per_minute, F * feed_unit_};
+}
+
+// [F] "Programmable feedrate override"; the range: Feeds (V1), 6FC5397-0BP10-0BA0, p. 2-30
+void Translator::set_override(const Number& OVR) {
+  constexpr double kLargest = 200.0;
+  if (!(OVR.value > 0.0 && OVR.value <= kLargest)) {
+    fail(OVR.place, fmt::format("OVR={:g}: must be > 0 and <= 200", OVR.value));
+  }
+  override_ = OVR.value / 100.0;
+}
+
+// A feed with the revolutions of G95 and the override.
+Feed Translator::effective(Feed feed, double override) const {
+  if (feed.kind == Feed::Kind::time) feed.value /= override;
+  if (feed.kind != Feed::Kind::per_minute) return feed;
+  feed.value *= override;
+  if (modes_.feed_code != 95) return feed;
+  if (!speed_) fail("F with G95: no S is active");
+  if (!(*speed_ > 0.0)) fail("F with G95: S must be > 0");
+  feed.value *= *speed_;
+  return feed;
 }
 
 // Functions that no block has set act as the control is delivered: [F] "G commands", MD20150.
@@ -202,14 +239,39 @@ void Translator::set_speed(const Block& block) {
   if (!block.S || block.has("G4") || block.has("G25") || block.has("G26")) return;
   const double S = block.S->value;
   if (S < 0.0) fail(block.S->place, "S must be >= 0");
-  if (modes_.feed_code == 95 && speed_ && feed_ && !block.F && *speed_ > 0.0 && S > 0.0) {
-    feed_->value *= S / *speed_;  // mm per revolution stay
-  }
+  require_speed_in_limits(S, block.S->place);
   speed_ = S;
   note(word('S', S));
 }
 
+// G25 and G26 limit the working area, which stops the control, and the speed of the spindle, which
+// then turns slower or faster than programmed. [F] "Programmable spindle speed limitation"
+void Translator::limit(const Block& block, const Code& code) {
+  if (!block.S) {
+    return warn_once("G25", "G25 and G26: limits of the working area are ignored");
+  }
+  (code.name == "G25" ? least_speed_ : most_speed_) = block.S->value;
+  if (speed_) require_speed_in_limits(*speed_, block.S->place);
+}
+
+void Translator::require_speed_in_limits(double S, const Place& place) const {
+  const bool is_low = S > 0.0 && S < least_speed_;
+  if (!is_low && S <= most_speed_) return;
+  fail(place, fmt::format("S{:g} is {} the limit S{:g} of {}, at which the control turns; program "
+                          "a speed within the limits",
+                          S, is_low ? "below" : "above", is_low ? least_speed_ : most_speed_,
+                          is_low ? "G25" : "G26"));
+}
+
+// SPOS and M19 leave the spindle still, in an orientation.
+void Translator::orient_spindle() {
+  warn_once("SPOS", "SPOS and M19: the spindle stops; its orientation is not simulated");
+  turn_spindle(0);
+}
+
 void Translator::begin_functions(const Block& block) {
+  if (block.SPOS) orient_spindle();
+  if (path_.has_corner() && !block.functions.empty()) warn_of_corner();
   constexpr std::array kOfLanguage = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 17, 19, 30};
   for (const Function& one : block.functions) {
     if (one.number == 70) {
@@ -233,6 +295,7 @@ void Translator::begin_functions(const Block& block) {
       spindle_ = one.number == 3 ? 1 : -1;
       note(fmt::format("M{}", one.number));
     }
+    if (one.number == 19) orient_spindle();
     if (one.number == 7 || one.number == 8) note(fmt::format("M{}", one.number));
   }
 }
@@ -258,6 +321,7 @@ void Translator::end_functions(const Block& block) {
 
 // G4 F in seconds, G4 S in revolutions of the spindle: [F] "Dwell time".
 void Translator::dwell(const Block& block) {
+  if (block.F && block.S) fail("G4 with F and S; program one of them");
   if (block.F) return dwell_for(block.F->value);
   if (!block.S) fail("G4 without F or S");
   if (!speed_ || *speed_ <= 0.0) fail(block.S->place, "G4 S: no S is active");

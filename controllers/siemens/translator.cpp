@@ -111,7 +111,10 @@ void Translator::sort_codes(const Block& block) {
 
 void Translator::execute_block(const Block& block) {
   sort_codes(block);
+  refuse_switched_on(block);
   set_modes(block);
+  refuse_unread(block);
+  warn_of_settings(block);
   tools(block);
   set_speed(block);
   begin_functions(block);

@@ -20,6 +20,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -70,6 +71,7 @@ struct Modes {
   int feed_code = 94;
   int side = 0;                 // G41: 1, G42: -1
   bool is_contour_feed = true;  // CFC
+  bool stops_exactly = false;   // G60
   int offset = 0;               // 0: the one in force at the start; 1 is G54; -1: G500
   Frame frame;
   bool operator==(const Modes&) const = default;
@@ -104,6 +106,13 @@ class Translator {
   double setting(const std::string& name, double as_delivered) const;
   double unit() const { return modes_.is_inch ? 25.4 : 1.0; }  // mm
 
+  // checks.cpp
+  void refuse_unread(const Block& block);
+  void refuse_unread_call(const Block& block, bool is_path);
+  void refuse_switched_on(const Block& block) const;
+  void warn_of_settings(const Block& block);
+  void warn_of_corner();
+
   // settings.cpp: modal functions, spindle, M functions
   void set_modes(const Block& block);
   void set_plane(const Code& code);
@@ -111,17 +120,26 @@ class Translator {
   void set_side(const Block& block, const Code& code);
   void set_offset(const Code& code);
   void put_offset(int offset);
-  void set_path(const Block& block, const Code& code);
+  void set_path(const Code& code);
+  void use_path(bool stops_exactly);
+  void set_feed_code(int number);
   void set_feed(const Block& block);
+  double unit_of_feed(const Place& place);
+  void set_override(const Number& OVR);
+  Feed effective(Feed feed, double override) const;
   void warn_of_start(const Block& block);
   void begin_functions(const Block& block);
   void end_functions(const Block& block);
   void set_speed(const Block& block);
+  void limit(const Block& block, const Code& code);
+  void require_speed_in_limits(double S, const Place& place) const;
+  void orient_spindle();
   void dwell(const Block& block);
   void dwell_for(double seconds);
 
   // frames.cpp
   bool act(const Block& block);
+  void refuse_measures(const Block& block, const Code& code) const;
   void set_frame(const Block& block, const Code& code);
   void rotate_frame(const Block& block, Frame& frame);
   void pole(const Block& block, const Code& code);
@@ -154,7 +172,11 @@ class Translator {
   void add(Motion motion);
   void corner(const Block& block);
   Feed feed_of_block(const Block& block);
+  Feed modal_feed(double override);
   Feed modal_feed();
+  void store_end(const Motion& motion);
+
+  // positions.cpp
   Values ends(const Block& block, bool& is_incremental);
   void linear_ends(const Block& block, Values& end, bool& is_incremental);
   double rotary_end(std::size_t axis, const Number& number);
@@ -163,28 +185,38 @@ class Translator {
   std::optional<double> program_position(int axis) const;
   std::optional<Point> program_point(int normal) const;
   Point work_point(int normal, const Point& program) const;
-  void store_end(const Motion& motion);
 
   // circles.cpp
   void arc(const Block& block);
   void add_arc(const Block& block, Element element, int normal);
   std::optional<Point> end_in_plane(const Block& block, const Point& start);
   std::optional<Point> programmed_centre(const Block& block, const Point& start) const;
-  Element about_centre(const Block& block, const Point& start, const Point& centre, double sign);
+  Element about_centre(const Block& block, const Point& start, const Point& centre,
+                       const std::optional<Point>& end, double sign);
   Element through_end(const Block& block, const Point& start, const Point& end, double sign);
   void arc_through_point(const Block& block);
   void tangential_arc(const Block& block);
-  std::optional<Point> polar_point(const Block& block, int normal);
+  Point polar_point(const Block& block);
   double coordinate(const Number& number, double now) const;
 
   // flow.cpp: structures, jumps, repetitions
   bool flow(Scanner& scanner, const std::string& word, const Line& line);
+  static void require_end(Scanner& scanner, std::string_view what);
+  static std::string read_target(Scanner& scanner, const std::string& word);
   void branch(Scanner& scanner, const Line& line);
   void loop(Scanner& scanner, const std::string& word, const Line& line);
   void count_loop(Scanner& scanner, const Line& line);
   void end_count_loop(const Line& line);
-  void jump(Scanner& scanner, const std::string& word);
+  void jump(const std::string& word, std::string name);
   void choose(Scanner& scanner);
+  struct Repetition {
+    std::vector<std::string> labels;
+    long times = 1;
+  };
+  Repetition read_repetition(Scanner& scanner);
+  BlockMark behind_end_label(const BlockMark& mark);
+  BlockMark end_of_part(const std::vector<BlockMark>& labels, bool is_block,
+                        const BlockMark& repeat);
   void repeat(Scanner& scanner, const std::string& word, const Line& line);
   bool end_repetition();
   void go_behind(const Line& line);
@@ -207,6 +239,7 @@ class Translator {
   void call_modal();
 
   // cycles.cpp
+  static bool is_cycle(std::string_view name);
   bool run_cycle(const Call& call);
   bool refuse_cycle(const Call& call);
   void smoothing(const Call& call);
@@ -228,7 +261,7 @@ class Translator {
   void cycle_move(const Feed& feed, double height);
   void cycle_move(const Feed& feed, const std::array<std::optional<double>, 3>& to);
   void cycle_dwell(double time);
-  Feed cycle_feed(double per_minute) const;
+  Feed cycle_feed(double per_minute);
   bool run_drilling_cycle(const Call& call);
   void refuse_other_geometry(const Call& call) const;
   std::vector<double> strokes_of(const Call& call, const Hole& hole) const;
@@ -283,8 +316,12 @@ class Translator {
   std::optional<double> polar_radius_, polar_angle_;
   std::optional<Element> last_element_;  // in program coordinates
   int last_normal_ = 2;
-  std::optional<Feed> feed_;
+  std::optional<Feed> feed_;  // as programmed: of G95 in mm per revolution, without the override
+  double feed_unit_ = 1.0;    // mm, of F programmed last
+  double override_ = 1.0;     // OVR
+  std::string tolerance_line_ = "G64";  // with that of CYCLE832
   std::optional<double> speed_;
+  double least_speed_ = 0.0, most_speed_ = std::numeric_limits<double>::infinity();  // G25, G26
   int spindle_ = 0;
   int tool_ = 0, next_tool_ = -1;
   int edge_ = 0;

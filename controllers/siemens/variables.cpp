@@ -75,7 +75,7 @@ Variables::Variables(const std::map<std::string, double>& given) : local_(1) {
     const bool is_R = key.size() > 1 && key.front() == 'R' &&
                       std::from_chars(key.data() + 1, end, number).ptr == end;
     if (is_R) {
-      R_[number] = value;
+      R_[number] = {value};
     } else {
       given_[key] = value;
     }
@@ -132,14 +132,16 @@ std::size_t Variables::element(const Variable& variable, const Reference& refere
 Value Variables::get(const Reference& reference) const {
   if (reference.name == "R") {
     const int number = reference.indices.empty() ? 0 : reference.indices.front();
-    if (const auto found = R_.find(number); found != R_.end()) return {found->second};
+    if (const auto found = R_.find(number); found != R_.end()) {
+      return known(reference, found->second);
+    }
     refuse(reference.place,
            fmt::format("R{0} has no value here: the control would use the value left by an earlier "
                        "program; assign it, or pass --parameter R{0}=NUMBER",
                        number));
   }
   if (const Variable* variable = find(reference.name)) {
-    return variable->values[element(*variable, reference)];
+    return known(reference, variable->values[element(*variable, reference)]);
   }
   const std::string name = to_string(reference);
   if (const auto value = given(name)) return {*value};
@@ -167,7 +169,7 @@ double Variables::number(const Reference& reference) const {
 void Variables::set(const Reference& reference, const Value& value) {
   if (reference.name == "R") {
     if (value.text) refuse(reference.place, "an R parameter takes a number, not a text");
-    R_[reference.indices.empty() ? 0 : reference.indices.front()] = value.number;
+    R_[reference.indices.empty() ? 0 : reference.indices.front()] = {value.number};
     return;
   }
   const Variable* variable = find(reference.name);
@@ -175,6 +177,23 @@ void Variables::set(const Reference& reference, const Value& value) {
     refuse(reference.place, fmt::format("{} is not defined", reference.name));
   }
   set_element(reference, element(*variable, reference), value);
+}
+
+const Value& Variables::known(const Reference& reference, const Value& value) {
+  if (value.unknown_because == nullptr) return value;
+  refuse(reference.place, fmt::format("{} {}; assign it before reading it", to_string(reference),
+                                      value.unknown_because));
+}
+
+void Variables::forget(const Reference& reference, const char* why) {
+  Value value = get(reference);
+  value.unknown_because = why;
+  if (reference.name == "R") {
+    R_[reference.indices.front()] = value;
+  } else {
+    Variable& variable = local_.back().find(reference.name)->second;
+    variable.values[element(variable, reference)] = value;
+  }
 }
 
 std::size_t Variables::size(const Reference& reference) const {

@@ -20,6 +20,7 @@ namespace servomill::controllers::siemens {
 struct Value {
   double number = 0.0;
   std::optional<std::string> text = {};
+  const char* unknown_because = nullptr;
 };
 
 enum class Type { real, integer, boolean, character, text, axis };
@@ -48,6 +49,9 @@ class Variables {
   /// Returns the number of a value that must be one.
   double number(const Reference& reference) const;
   void set(const Reference& reference, const Value& value);
+  /// Makes a variable unknown until it is set again.
+  /// @param why  behind its name in the message to who reads it
+  void forget(const Reference& reference, const char* why);
   /// Number of elements of a variable; 1 for a scalar.
   std::size_t size(const Reference& reference) const;
   /// Assigns by position in the array, from 0.
@@ -66,11 +70,12 @@ class Variables {
     std::vector<Value> values;
   };
 
+  static const Value& known(const Reference& reference, const Value& value);
   const Variable* find(std::string_view name) const;
   std::size_t element(const Variable& variable, const Reference& reference) const;
 
   std::map<std::string, double> given_;
-  std::map<int, double> R_;
+  std::map<int, Value> R_;
   std::vector<std::map<std::string, Variable, std::less<>>> local_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -67,11 +68,14 @@ void ContourPath::add(Motion motion) {
   if (corner_) inserted = cut_corner(motion);
   release_held();
   if (inserted) compensate(std::move(*inserted));
+  for (GcodeLine& line : std::exchange(behind_corner_, {})) compensate(Entry(std::move(line)));
   held_ = std::move(motion);
 }
 
 void ContourPath::note(GcodeLine note) {
-  if (held_) {
+  if (corner_) {
+    behind_corner_.push_back(std::move(note));
+  } else if (held_) {
     behind_held_.emplace_back(std::move(note));
   } else {
     compensate(Entry(std::move(note)));
@@ -80,7 +84,12 @@ void ContourPath::note(GcodeLine note) {
 
 void ContourPath::corner(CornerKind kind, double size, const std::optional<Feed>& feed,
                          const Place& place) {
-  if (!held_ || corner_) fail(place, "a contour element in the plane must precede RND and CHF");
+  const bool has_moved_since =
+      std::any_of(behind_held_.begin(), behind_held_.end(),
+                  [](const Entry& entry) { return std::holds_alternative<Motion>(entry); });
+  if (!held_ || corner_ || has_moved_since) {
+    fail(place, "a contour element in the plane must precede RND and CHF");
+  }
   corner_ = Corner{kind, size, feed, place};
 }
 

@@ -56,7 +56,7 @@ class ContourPath {
   ContourPath(GcodeLines& lines, const ContourWords& words) : lines_(lines), words_(words) {}
 
   void add(Motion motion);
-  /// Adds a line of G-code after the motions added so far.
+  /// Adds a line of G-code after the motions added so far, and after their corner.
   void note(GcodeLine note);
   /// An arc; a line that cuts the same length from each side; a line of a length of its own.
   enum class CornerKind { rounding, chamfer, chamfer_width };
@@ -67,6 +67,8 @@ class ContourPath {
   void approach(const Run& run);
   /// @return its end point, in the plane
   Point depart(const Run& run);
+  /// True from RND or CHF up to the next element.
+  bool has_corner() const { return corner_.has_value(); }
   /// Writes the elements held back.
   void flush();
   /// True from the block with RL or RR on.
@@ -101,6 +103,7 @@ class ContourPath {
   std::optional<Motion> held_;      // written once no RND or CHF can follow
   std::vector<Entry> behind_held_;  // entries after `held_` without motion in the plane
   std::optional<Corner> corner_;
+  std::vector<GcodeLine> behind_corner_;  // lines between RND or CHF and the next element
 
   int side_ = 0;
   std::optional<Motion> entry_;    // switches compensation on; waits for the next element

@@ -39,6 +39,11 @@ std::vector<Example> arc_examples() {
       {"polar coordinates", "G111 X10 Y10\nG1 RP=5 AP=0 F100\nAP=90\nG3 AP=180\nG0 AP=IC(90)\n",
        "2 feed 15 10 0 F100\n3 feed 10 15 0 F100\n4 arc 5 10 0 about 10 10 turns 1 F100\n"
        "5 rapid 10 5 0\n"},
+      // NC programming 12/2019 (6FC5398-2EP40-0BA0) p. 175: from the angle programmed last
+      {"arcs by increments of the angle",
+       "G111 X0 Y0\nG1 RP=10 AP=0 F100\nG3 AP=IC(90)\nAP=IC(90)\n",
+       "2 feed 10 0 0 F100\n3 arc 0 10 0 about 0 0 turns 1 F100\n"
+       "4 arc -10 0 0 about 0 0 turns 1 F100\n"},
       {"poles from the position and from the last pole",
        "G110 X5\nG1 RP=3 AP=90 F100\nG112 Y10\nAP=0\nG110 RP=2 AP=180\nAP=90 RP=1\n",
        "2 feed 5 3 0 F100\n4 feed 8 10 0 F100\n6 feed 6 11 0 F100\n"},

@@ -7,6 +7,13 @@ std::vector<Example> contour_examples() {
   return {
       {"rounding", "G1 X10 F100 RND=2\nY10\n",
        "1 feed 8 0 0 F100\n1 arc 10 2 0 about 8 2 turns 1 F100\n2 feed 10 10 0 F100\n"},
+      // bit 0 of MD20201 = 1: the corner belongs to the block before it
+      {"functions behind a rounding", "G1 X10 F100 RND=2\nM8\nM0\nY10 M3 F50\n",
+       "1 feed 8 0 0 F100\n1 arc 10 2 0 about 8 2 turns 1 F100\n2 coolant 2\n3 stop 0\n"
+       "4 spindle 1 S1000\n4 feed 10 10 0 F50\n"},
+      // FRC is in mm per revolution, too: 0.05 mm at 1000 rev/min
+      {"rounding with a feed of its own per revolution", "G95 G1 X10 F0.1 RND=2 FRC=0.05\nY10\n",
+       "1 feed 8 0 0 F100\n1 arc 10 2 0 about 8 2 turns 1 F50\n2 feed 10 10 0 F100\n"},
       // CHR along each side, CHF the length of the chamfer
       {"chamfers", "G1 X10 F100 CHR=2\nY10 CHF=2.828427125 FRC=50\nX0\n",
        "1 feed 8 0 0 F100\n1 feed 10 2 0 F100\n2 feed 10 8 0 F100\n2 feed 8 10 0 F50\n"

@@ -22,6 +22,8 @@ std::vector<Example> flow_examples() {
        "3 feed 1 0 0 F100\n13 feed 5 0 0 F100\n"},
       {"FOR", "DEF INT I\nFOR I=1 TO 3\nG1 X=I*10 F100\nENDFOR\nFOR I=2 TO 1\nX0\nENDFOR\n",
        "3 feed 10 0 0 F100\n3 feed 20 0 0 F100\n3 feed 30 0 0 F100\n"},
+      {"a counter of FOR assigned behind it", "FOR R1=1 TO 2\nENDFOR\nR1=7\nG1 X=R1 F100\n",
+       "4 feed 7 0 0 F100\n"},
       {"WHILE and REPEAT UNTIL",
        "R1=0\nWHILE R1<2\nR1=R1+1\nG1 X=R1 F100\nENDWHILE\nREPEAT\nR1=R1-1\nY=R1\nUNTIL R1==0\n",
        "4 feed 1 0 0 F100\n4 feed 2 0 0 F100\n8 feed 2 1 0 F100\n8 feed 2 0 0 F100\n"},
@@ -32,6 +34,10 @@ std::vector<Example> flow_examples() {
        "GOTO LAST\nX8\nLAST: Y2\nGOTOC NOWHERE\nY3\n",
        "3 feed 1 0 0 F100\n3 feed 2 0 0 F100\n3 feed 3 0 0 F100\n7 feed 3 1 0 F100\n"
        "10 feed 3 2 0 F100\n12 feed 3 3 0 F100\n"},
+      // [J] "Program jumps to jump markers": more than one condition in a block
+      {"several conditions in a block",
+       "R1=2\nIF R1==1 GOTOF ONE IF R1==2 GOTOF TWO\nONE: G1 X1 F100\nTWO: G1 X2 F100\n",
+       "4 feed 2 0 0 F100\n"},
       {"CASE",
        "R1=2\nAGAIN: CASE R1 OF 1 GOTOF ONE 2 GOTOF TWO DEFAULT GOTOF LAST\nONE: G1 X1 F100\n"
        "GOTOF LAST\nTWO: G1 X2 F100\nR1=1\nGOTOB AGAIN\nLAST: Y1\n",
@@ -40,6 +46,12 @@ std::vector<Example> flow_examples() {
       {"repetition of a part", "PART: G1 X=IC(1) F100\nY=IC(1)\nREPEAT PART P=2\nX0\n",
        "1 feed 1 0 0 F100\n2 feed 1 1 0 F100\n1 feed 2 1 0 F100\n2 feed 2 2 0 F100\n"
        "1 feed 3 2 0 F100\n2 feed 3 3 0 F100\n4 feed 0 3 0 F100\n"},
+      {"repetition up to ENDLABEL", "PART: G1 X=IC(1) F100\nENDLABEL:\nY=IC(1)\nREPEAT PART\n",
+       "1 feed 1 0 0 F100\n3 feed 1 1 0 F100\n1 feed 2 1 0 F100\n"},
+      {"ENDLABEL of a part further on", "PART: G1 X=IC(1) F100\nREPEAT PART P=2\nX0\nENDLABEL:\n",
+       "1 feed 1 0 0 F100\n1 feed 2 0 0 F100\n1 feed 3 0 0 F100\n3 feed 0 0 0 F100\n"},
+      {"repetition of a part behind it", "REPEAT PART\nG0 Z5\nPART: G1 X=IC(1) F100\nENDLABEL:\n",
+       "3 feed 1 0 0 F100\n2 rapid 1 0 5\n3 feed 2 0 5 F100\n"},
       {"repetition of a block and between labels",
        "ONE: G1 X=IC(1) F100\nTWO: Y=IC(1)\nREPEATB ONE P=2\nREPEAT ONE TWO P1\nX0\n",
        "1 feed 1 0 0 F100\n2 feed 1 1 0 F100\n1 feed 2 1 0 F100\n1 feed 3 1 0 F100\n"

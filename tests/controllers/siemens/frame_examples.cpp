@@ -25,6 +25,9 @@ std::vector<Example> frame_examples() {
       {"increments behind a shift of another axis", "TRANS Y10\nG91 G1 X5 F100\nG90 Y1\nG91 Y1\n",
        "2 feed 5 0 0 F100\n3 feed 5 11 0 F100\n4 feed 5 12 0 F100\n"},
       {"rotary axes", "TRANS C30\nAMIRROR C0\nG0 C10\n", "3 rapid 0 0 0 C20\n"},
+      // ATRANS adds in the mirrored coordinates: -(30 + 10)
+      {"rotary axes, mirrored before the shift", "MIRROR C0\nATRANS C30\nG0 C10\n",
+       "3 rapid 0 0 0 C-40\n"},
       {"work offsets", "G505\nG0 X1\nG500\nX2 Z3\nG54\nX3\n",
        "2 rapid 1 0 0\n4 rapid 2 0 3\n6 rapid 3 0 3\n"},
   };

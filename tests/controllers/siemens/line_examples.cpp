@@ -18,6 +18,18 @@ std::vector<Example> line_examples() {
       // 0.1 mm at 1000 and 2000 rev/min
       {"feed per revolution", "G95 G1 X10 F0.1\nS2000 X0\n",
        "1 feed 10 0 0 F100\n2 spindle 0 S2000\n2 feed 0 0 0 F200\n"},
+      // [F] "Constant cutting rate": G97 has the feed of G95, G971 that of G94
+      {"G97 and G971", "G97 S2000 G1 X10 F0.1\nG971 X0 F100\n",
+       "1 spindle 0 S2000\n1 feed 10 0 0 F200\n2 feed 0 0 0 F100\n"},
+      {"feed per revolution through a speed of 0", "G95 G1 X10 F0.1\nS0\nS2000\nX0\n",
+       "1 feed 10 0 0 F100\n2 spindle 0 S0\n3 spindle 0 S2000\n4 feed 0 0 0 F200\n"},
+      // half of F200 and F100; 10 mm in 30 s at 150 %; G63 without the override
+      {"override", "G1 X10 F200 OVR=50\nX0 F100\nOVR=150 G93 X10 F2\nG94 G63 Z-5 F80\nZ0\n",
+       "1 feed 10 0 0 F100\n2 feed 0 0 0 F50\n3 feed 10 0 0 F30\n4 feed 10 0 -5 F80\n"
+       "5 feed 10 0 0 F120\n"},
+      {"an oriented stop of the spindle", "M3\nSPOS=90\nM4\nSPOS[1]=0\nM3\nM19\n",
+       "1 spindle 1 S1000\n2 spindle 0 S1000\n3 spindle -1 S1000\n4 spindle 0 S1000\n"
+       "5 spindle 1 S1000\n6 spindle 0 S1000\n"},
       // 20 mm in 2 minutes; then in every block
       {"inverse time", "G93 G1 X20 F0.5\nX0\nG94 X10 F100\n",
        "1 feed 20 0 0 F10\n2 feed 0 0 0 F10\n3 feed 10 0 0 F100\n"},

@@ -56,7 +56,7 @@ const Refusal kRefusals[] = {
      "program is written for ISO mode, choose --reader fanuc"},
     {"G123\n", "t.mpf:4:1: error: G123 is not supported"},
     {"G96 S100\n",
-     "t.mpf:4:1: error: G96: constant cutting speed is not supported; use G97 with S"},
+     "t.mpf:4:1: error: G96: constant cutting speed is not supported; use G94 or G95 with S"},
     {"TRANZ X5\n",
      "t.mpf:4:1: error: TRANZ: no such word, cycle or subprogram: no file TRANZ.SPF "
      "next to the program or in the folders of --subs, where an empty one leaves the "
@@ -132,11 +132,112 @@ const Refusal kRefusals[] = {
     {"S1000 G95 F0.1\nCYCLE85(5,0,2,-10,,0,0.2,0.4)\n",
      "t.mpf:5:1: error: a feed of the cycle with G95 is not supported; program G94 before the "
      "cycle"},
-    {"S1000 G95 F0.1\nG1 X10 RND=1 FRC=0.05\nY10\n",
-     "t.mpf:5:14: error: FRC with G95 is not supported; use it with G94"},
     {"G1 X9 G4 F1\n", "t.mpf:4:7: error: G4 stands in a block of its own; the block moves an axis"},
     {"G1 X60 G110 AP=0 RP=1\n",
      "t.mpf:4:8: error: G110 with AP and RP beside axis words; use one of both"},
+    {"G1 X=IC(5)+1 F1\n",
+     "t.mpf:4:11: error: X: AC, IC, DC, ACP and ACN hold the whole value; write the sum in their "
+     "parentheses"},
+    {"G1 X5 F=IC(100)\n", "t.mpf:4:7: error: F: AC and IC are for positions only"},
+    {"G1 X=DC(5) F1\n", "t.mpf:4:4: error: X: DC, ACP and ACN are for rotary axes"},
+    {"SUPA G0 C=DC(5)\n", "t.mpf:4:9: error: SUPA with DC, ACP or ACN; program the position"},
+    {"F1=5\n", "t.mpf:4:1: error: the address F1= is not supported"},
+    {"G1 X5 P2 F1\n",
+     "t.mpf:4:7: error: P: the number of runs needs the call of a subprogram in its block: L10 P3"},
+    {"MCALL CYCLE81(5,0,2,-3) P2\n",
+     "t.mpf:4:25: error: P: the number of runs needs the call of a subprogram in its block: L10 "
+     "P3"},
+    {"CYCLE81(5,0,2,-3) P2\n",
+     "t.mpf:4:1: error: CYCLE81: P repeats subprograms only; program a loop"},
+    {"G1 X5 F1 CYCLE81(5,0,2,-3)\n",
+     "t.mpf:4:10: error: a call beside words that move axes; program it in a block of its own"},
+    {"G111 X0\nG1 AP=0 RP=5 F1\nG111 X10\nAP=IC(90)\n",
+     "t.mpf:7:1: error: AP=IC: no angle about this pole was programmed before; program AP=AC(...) "
+     "first"},
+    {"G111 X0\nG1 AP=0 RP=5 F1\nG111 X10\nRP=5\n",
+     "t.mpf:7:1: error: AP is missing, and none was programmed since the pole was set"},
+    {"G111 X0\nG91 G1 AP=0 RP=5 F1\n",
+     "t.mpf:5:8: error: AP with G91: write AP=AC(...) or AP=IC(...)"},
+    {"G111 X0\nG1 AP=0 RP=-5 F1\n", "t.mpf:5:9: error: RP must be >= 0"},
+    {"G111 X=IC(5)\n", "t.mpf:4:6: error: G111: its values take no AC, IC or the like"},
+    {"G111 X0 Z5\n", "t.mpf:4:9: error: G111: the pole lies in the plane of G17"},
+    {"ATRANS X=IC(5)\n", "t.mpf:4:8: error: ATRANS: its values take no AC, IC or the like"},
+    {"RNDM=2\n",
+     "t.mpf:4:1: error: RNDM: modal rounding is not supported; program RND in each block"},
+    {"RND=2\n",
+     "t.mpf:4:1: error: RND: nothing in the block reads it; it is for a move of G0 to G3, CIP or "
+     "CT "
+     "in the plane"},
+    {"SUPA G0 X5 RND=2\n",
+     "t.mpf:4:12: error: RND: nothing in the block reads it; it is for a move of G0 to G3, CIP or "
+     "CT "
+     "in the plane"},
+    {"G1 X5 CR=3 F1\n", "t.mpf:4:7: error: CR: nothing in the block reads it; it is for G2 and G3"},
+    {"G1 X5 F1\nCT X9 Y2 TURN=1\n",
+     "t.mpf:5:10: error: TURN: nothing in the block reads it; it is for G2 and G3"},
+    {"G111 X0\nCIP AP=0 RP=5 I1=2 J1=2 F1\n",
+     "t.mpf:5:5: error: AP: nothing in the block reads it; it is for G0 to G3, CT and G110 to "
+     "G112"},
+    {"G2 X10 Y0 J1=5 I5 F1\n",
+     "t.mpf:4:11: error: J1: nothing in the block reads it; it is for CIP"},
+    {"TRANS X10 RPL=45\n",
+     "t.mpf:4:11: error: RPL: nothing in the block reads it; it is for ROT and AROT"},
+    {"G2 X10 Y0 I5 CR=5 F1\n",
+     "t.mpf:4:14: error: CR with the centre or the angle of the arc; use one of them"},
+    {"G1 X5 F1 FRC=2\n",
+     "t.mpf:4:10: error: FRC: nothing in the block reads it; it is for RND, CHR and CHF"},
+    {"G1 X5 F1 RND=1 CHR=1\n",
+     "t.mpf:4:1: error: RND, CHR and CHF exclude each other; program one of them"},
+    {"F1 G0 X5 RND=1\nY5\n",
+     "t.mpf:4:10: error: RND, CHF and CHR between rapid moves are not supported; use G1"},
+    {"G93 G1 X5 F1 RND=1\nY5\n",
+     "t.mpf:4:14: error: RND, CHF and CHR with G93 are not supported; use them with G94 or G95"},
+    {"G93 F1\nCYCLE81(5,0,2,-3)\n",
+     "t.mpf:5:1: error: CYCLE81 with G93; program G94 or G95 before it"},
+    {"G700 F10\nG1 A5\n",
+     "t.mpf:5:1: error: F in inches for rotary axes alone: the degrees of an inch depend on FGREF; "
+     "program G710"},
+    {"FD=100\n", "t.mpf:4:1: error: FD: a feed by the handwheel has no time; remove the word"},
+    {"OVRA[S1]=50\n",
+     "t.mpf:4:1: error: OVRA: overrides of positioning axes and spindles are not supported; "
+     "program "
+     "the speed by S"},
+    {"OVR=0\n", "t.mpf:4:1: error: OVR=0: must be > 0 and <= 200"},
+    {"DISC=50\n",
+     "t.mpf:4:1: error: DISC: outside corners that rise are not supported; use DISC=0"},
+    {"SETMS(2)\n", "t.mpf:4:1: error: SETMS(2): a second spindle is not supported"},
+    {"TRAORI(2)\n",
+     "t.mpf:4:1: error: TRAORI(2): only the first transformation is supported, without parameters"},
+    {"G26 S500\n",
+     "t.mpf:4:5: error: S1000 is above the limit S500 of G26, at which the control turns; program "
+     "a "
+     "speed within the limits"},
+    {"G25 S800\nS700\n",
+     "t.mpf:5:1: error: S700 is below the limit S800 of G25, at which the control turns; program a "
+     "speed within the limits"},
+    {"G4 F1 S2\n", "t.mpf:4:1: error: G4 with F and S; program one of them"},
+    {"FOR R1=1 TO 3\nENDFOR\nG1 X=R1 F1\n",
+     "t.mpf:6:6: error: R1 counted a loop of FOR, and behind its end holds the last value or the "
+     "one "
+     "after it, by the control; assign it before reading it"},
+    {"DEF INT I\nFOR I=1 TO 3\nENDFOR\nG1 X=I F1\n",
+     "t.mpf:7:6: error: I counted a loop of FOR, and behind its end holds the last value or the "
+     "one "
+     "after it, by the control; assign it before reading it"},
+    {"GOTOF AB X5\nAB:\n", "t.mpf:4:10: error: unexpected words behind AB"},
+    {"IF 1==1\nENDIF X5\n", "t.mpf:5:7: error: unexpected words behind ENDIF"},
+    {"AB: G1 X1 F1\nREPEAT AB CD\nCD:\n",
+     "t.mpf:5:1: error: REPEAT: the part to repeat holds this block itself; repeat a part before "
+     "or "
+     "behind it"},
+    {"AB: G1 X1 F1\nENDLABEL: X2\nREPEAT AB\n",
+     "t.mpf:5:11: error: words behind ENDLABEL: whether REPEAT repeats them is not certain; "
+     "program "
+     "them in the next block"},
+    {"REPEAT AB\nAB: X1\n",
+     "t.mpf:4:1: error: REPEAT of a part behind it needs ENDLABEL: at its end"},
+    {"ENDLABEL\n", "t.mpf:4:1: error: ENDLABEL is a label: write ENDLABEL:"},
+    {"REPEAT AB P=1.5\n", "t.mpf:4:1: error: REPEAT: P must be an integer from 0 to 9999"},
 };
 
 TEST(SiemensRefusals, FullMessages) {

@@ -92,6 +92,45 @@ TEST(Siemens, ReadingsAreWarnedOf) {
       "t.mpf:5: the program ends without M30: read as if it followed\n");
 }
 
+TEST(Siemens, WordsThatArePassedOverAreWarnedOf) {
+  EXPECT_EQ(
+      warnings_of(with_frame("ACC[X]=50 OVRRAP=50\nACC[Y]=50\nH5=3\nORIWKS\nSPOS=0\n"
+                             "G641 ADIS=0.5\nG97\nG1 X1 F0.1 RND=0.1\nM8\nY1\n")),
+      "t.mpf:4:1: ACC: the acceleration stays that of the machine\n"
+      "t.mpf:4:1: OVRRAP: rapid moves keep the velocity of the machine\n"
+      "t.mpf:6:1: H: a function of the PLC; ignored: no effect on motion\n"
+      "t.mpf:7:1: ORIWKS: rotary axes are taken to move linearly between blocks, as with ORIAXES; "
+      "the tool then leaves the plane of its first and last direction\n"
+      "t.mpf:8:1: SPOS and M19: the spindle stops; its orientation is not simulated\n"
+      "t.mpf:9:1: G641: taken as G64: the tolerance is not read; CYCLE832 gives one\n"
+      "t.mpf:9:1: ADIS: the distance is not read; CYCLE832 gives a tolerance\n"
+      "t.mpf:10:1: G97: F counts per revolution, as with G95\n"
+      "t.mpf:12:1: F or an M function behind RND, CHF or CHR: taken as behind the corner, as with "
+      "bit 0 of MD20201; FRC gives the corner a feed\n");
+}
+
+// G60 is exact stop; CYCLE832 gives a tolerance, which G64 and G642 keep; SAVE restores the mode
+TEST(Siemens, ExactStopAndTolerance) {
+  ProgramSetup setup = example_setup();
+  ProgramText text =
+      as_gcode(ProgramText::of_text("%_N_A_MPF\nG60\nCYCLE832(0.05,1)\nG642\nL1\nM30\n"
+                                    "%_N_L1_SPF\nPROC L1 SAVE\nG60\nM17\n",
+                                    "t.mpf"),
+               setup);
+  std::string modes;
+  for (std::string_view line; text.next(line);) {
+    if (line.starts_with("G6")) modes.append(line).append("\n");
+  }
+  EXPECT_EQ(modes, "G61.1\nG64 P0.05\nG64 P0.05\nG61.1\nG64 P0.05\n");
+}
+
+// [J] "Subprogram call": zeros in front distinguish names
+TEST(Siemens, NumberedSubprogramsKeepTheirZeros) {
+  EXPECT_EQ(all_moves("%_N_A_MPF\nG17 G71 G90 G54 G0 X0 Y0 Z0 F100\nL010\nL10\nM30\n"
+                      "%_N_L10_SPF\nG1 X10\nM17\n%_N_L010_SPF\nG1 Y5\nM17\n"),
+            "2 rapid 0 0 0\n10 feed 0 5 0 F100\n7 feed 10 5 0 F100\n5 end\n");
+}
+
 TEST(Siemens, IsRecognisedByItsNameAndItsWords) {
   const auto is_one = [](const std::string& file, const std::string& text, Reader reader) {
     ProgramText program = ProgramText::of_text(text, file);
