@@ -20,16 +20,10 @@ int Translator::whole(double value, int most, const Place& place, std::string_vi
   fail(place, fmt::format("{} {:g}: must be an integer from 0 to {}", what, value, most));
 }
 
-void Translator::count_jump() {
-  if (++jumps_ <= setup_.most_jumps) return;
-  fail(fmt::format("{} jumps: the program looks endless; raise --max-jumps if intended",
-                   setup_.most_jumps));
-}
-
 void Translator::go_to(const std::string& label) {
   const BlockMark* mark = program().find_label(label);
   if (mark == nullptr) fail(fmt::format("there is no LBL {} in the program", label));
-  count_jump();
+  run_.count_jump(place_);
   program().go_to(*mark);
 }
 
@@ -103,7 +97,7 @@ void Translator::call_program(std::span<const HeidenhainWord> words) {
   }
   require_no_compensation("CALL PGM");
   const std::size_t called = file_of_program(*text, name, words.front().place);
-  count_jump();
+  run_.count_jump(place_);
   returns_.push_back({file_, program().mark(), true, name});
   file_ = called;
 }

@@ -171,7 +171,7 @@ void Translator::end_function(int m, const Place& place) {
       if (file_ != 0) fail(place, fmt::format("M{} in a program called by CALL PGM", m));
       path_.flush();
       lines_.put(fmt::format("M{}", m), place_);
-      has_ended_ = true;
+      run_.end();
       return;
     case 5:
       spindle_ = 0;

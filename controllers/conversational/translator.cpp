@@ -72,28 +72,9 @@ Translator::Translator(std::string text, std::string file, const ProgramSetup& s
   preset_ = setup_.work_system;
 }
 
-// Returns the lines of all blocks before a fault, then throws.
 std::optional<GcodeLine> Translator::next() {
-  while (lines_.is_empty()) {
-    if (error_) {
-      InputError error = *error_;
-      error_.reset();
-      throw error;
-    }
-    if (has_ended_) return std::nullopt;
-    try {
-      run_block();
-    } catch (const InputError& error) {
-      error_ = error;
-      has_ended_ = true;
-      try {
-        path_.flush();
-      } catch (const InputError&) {  // caused by the first fault
-      }
-    }
-  }
-  GcodeLine line = lines_.take();
-  current_file_ = line.place.file;
+  auto line = run_.next([this] { run_block(); });
+  if (line) current_file_ = line->place.file;
   return line;
 }
 
@@ -103,9 +84,7 @@ void Translator::run_block() {
   const auto block = program().next();
   if (!block) return end_of_file({program().file(), program().line(), 0});
   place_ = block->place;
-  constexpr long kMaxBlocks = 10;  // after the first jump, for each jump allowed
-  if (jumps_ > 0 && ++blocks_ / kMaxBlocks > setup_.most_jumps)
-    jumps_ = setup_.most_jumps, count_jump();
+  run_.count_block(place_);
   if (block->is_continued_comment) {
     warn_once("comment", "a comment that ends with '~': the next line is taken as part of it");
   }
@@ -167,7 +146,7 @@ void Translator::execute(const HeidenhainBlock& block) {
     }
     path_.flush();
     lines_.put("M2", place_);
-    has_ended_ = true;
+    run_.end();
     return;
   }
   if (is_program_word(block, "BEGIN")) fail("a second BEGIN PGM");

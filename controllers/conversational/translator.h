@@ -32,12 +32,14 @@
 #include "controllers/conversational/q_parameters.h"
 #include "controllers/conversational/words.h"
 #include "controllers/gcode/program_setup.h"
+#include "controllers/translation/block_run.h"
 #include "controllers/translation/contour_path.h"
 #include "controllers/translation/gcode_lines.h"
 
 namespace servomill::controllers::conversational {
 
 using translation::arc_of_radius;
+using translation::BlockRun;
 using translation::ContourPath;
 using translation::Element;
 using translation::Feed;
@@ -118,7 +120,6 @@ class Translator {
   std::size_t file_of_program(ProgramText& text, const std::string& name, const Place& place);
   void label(const HeidenhainBlock& block);
   void go_to(const std::string& label);
-  void count_jump();
   bool run_function(const HeidenhainBlock& block);
   bool read_of_control(int number, std::span<const HeidenhainWord> rest);
   void assign(const QName& name, double value);
@@ -282,18 +283,17 @@ class Translator {
   };
   std::vector<Return> returns_;
   std::map<std::pair<std::size_t, std::size_t>, long> repeats_;  // by file and position of CALL LBL
-  long jumps_ = 0, blocks_ = 0;                                  // blocks: since the first jump
   BlockMark block_mark_;                                         // of the block that runs
 
   ProgramSetup setup_;
   GcodeLines lines_;
   ContourPath path_{lines_, {"RL and RR", "R0", "FMAX", "F", "RND R", "CHF "}};
+  BlockRun run_{lines_, path_, setup_.most_jumps};
   QParameters parameters_;
   std::vector<Fault> warnings_;
   std::set<std::string> warned_;
-  std::optional<InputError> error_;  // thrown once the lines before it have been returned
-  Place place_;                      // of the block
-  bool has_begun_ = false, has_ended_ = false, is_skipping_ = false;
+  Place place_;  // of the block
+  bool has_begun_ = false, is_skipping_ = false;
   bool is_inch_ = false;
 
   Values work_;  // position programmed last

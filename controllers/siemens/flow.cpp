@@ -20,12 +20,6 @@ constexpr long kMaxRepeats = 9999;  // P: [J] "Repeat program section"
 
 }  // namespace
 
-void Translator::count_jump() {
-  if (++jumps_ <= setup_.most_jumps) return;
-  fail(fmt::format("{} jumps: the program looks endless; raise --max-jumps if intended",
-                   setup_.most_jumps));
-}
-
 // A jump out of a part that is repeated ends its repetition.
 void Translator::go_to(const BlockMark& mark) {
   count_jump();

@@ -11,33 +11,15 @@ namespace servomill::controllers::siemens {
 Translator::Translator(std::string text, std::string file, const ProgramSetup& setup)
     : setup_(setup),
       path_(lines_, {"G41 and G42", "G40", "G0", "G1", "RND=", "CHR="}),
+      run_(lines_, path_, setup_.most_jumps),
       variables_(setup.parameters) {
   files_.push_back(std::make_unique<ProgramFile>(std::move(text), std::move(file)));
   program_ = files_.front().get();
   tool_ = setup_.tool;
 }
 
-// Returns the lines of all blocks before a fault, then throws.
 std::optional<GcodeLine> Translator::next() {
-  while (lines_.is_empty()) {
-    if (error_) {
-      InputError error = *error_;
-      error_.reset();
-      throw error;
-    }
-    if (has_ended_) return std::nullopt;
-    try {
-      run_block();
-    } catch (const InputError& error) {
-      error_ = error;
-      has_ended_ = true;
-      try {
-        path_.flush();
-      } catch (const InputError&) {  // caused by the first fault
-      }
-    }
-  }
-  return lines_.take();
+  return run_.next([this] { run_block(); });
 }
 
 void Translator::begin_program() {
@@ -51,11 +33,7 @@ void Translator::run_block() {
   if (!has_begun_) begin_program();
   if (end_repetition()) return;
   const auto line = program_->next();
-  constexpr long kMaxBlocks = 10;  // after the first jump, for each jump allowed
-  if (jumps_ > 0 && ++blocks_ / kMaxBlocks > setup_.most_jumps) {
-    jumps_ = setup_.most_jumps;
-    count_jump();
-  }
+  run_.count_block(place_);
   if (!line) {
     place_ = {program_->file(), std::max(program_->line(), 1), 0};
     if (!returns_.empty()) return leave_subprogram();
@@ -130,7 +108,7 @@ void Translator::execute_block(const Block& block) {
 void Translator::end_program(int m) {
   path_.flush();
   lines_.put(fmt::format("M{}", m), place_);
-  has_ended_ = true;
+  run_.end();
 }
 
 void Translator::warn_once(const std::string& key, std::string message) {

@@ -35,11 +35,13 @@
 #include "controllers/siemens/frame.h"
 #include "controllers/siemens/program_file.h"
 #include "controllers/siemens/variables.h"
+#include "controllers/translation/block_run.h"
 #include "controllers/translation/contour_path.h"
 #include "controllers/translation/gcode_lines.h"
 
 namespace servomill::controllers::siemens {
 
+using translation::BlockRun;
 using translation::ContourPath;
 using translation::Element;
 using translation::Feed;
@@ -221,7 +223,7 @@ class Translator {
   bool end_repetition();
   void go_behind(const Line& line);
   void go_to(const BlockMark& mark);
-  void count_jump();
+  void count_jump() { run_.count_jump(place_); }
   double condition(Scanner& scanner);
 
   // calls.cpp: subprograms, variables
@@ -291,19 +293,18 @@ class Translator {
     std::vector<std::pair<Reference, Reference>> outputs;  // parameters VAR: ours, the caller's
   };
   std::vector<Return> returns_;
-  long jumps_ = 0, blocks_ = 0;  // blocks: since the first jump
   std::optional<Call> modal_call_;
   bool is_in_modal_call_ = false;
 
   ProgramSetup setup_;
   GcodeLines lines_;
   ContourPath path_;
+  BlockRun run_;
   Variables variables_;
   std::vector<Fault> warnings_;
   std::set<std::string> warned_;
-  std::optional<InputError> error_;  // thrown once the lines before it have been returned
-  Place place_;                      // of the block
-  bool has_begun_ = false, has_ended_ = false;
+  Place place_;  // of the block
+  bool has_begun_ = false;
 
   std::array<const Code*, kGroups> codes_{};  // of the block, by group
   Modes modes_;
