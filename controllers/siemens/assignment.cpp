@@ -38,6 +38,10 @@ std::vector<Argument> read_arguments(Scanner& scanner, const Variables& variable
 }
 
 bool read_assignment(Scanner& scanner, Variables& variables) {
+  scanner.skip_blanks();
+  const char first = scanner.now();
+  const bool may_be_R = first == 'R' || first == 'r' || first == '$';
+  if (!may_be_R && !variables.has_own()) return false;  // most words of long programs
   const std::string name = scanner.peek_name();
   if (name.empty()) return false;
   const bool is_R = name.front() == 'R' && name.find_first_not_of("0123456789", 1) == name.npos;

@@ -41,6 +41,8 @@ class Variables {
   explicit Variables(const std::map<std::string, double>& given);
 
   bool is_known(std::string_view name) const;
+  /// True if the program that runs has defined variables.
+  bool has_own() const { return !local_.back().empty(); }
   /// @throws InputError if the name is taken, or the array is too large
   void define(const std::string& name, Type type, const std::vector<int>& sizes,
               const Place& place);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -26,11 +27,17 @@ std::string feed_word(const Feed& feed) {
 }  // namespace
 
 std::string word(char letter, double value) {
-  std::string text = fmt::format("{:.9f}", value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  if (text == "-0") text = "0";
-  return letter + text;
+  constexpr int kDecimals = 9;
+  std::array<char, 400> buffer;  // the longest number has 309 digits before the point
+  buffer[0] = letter;
+  char* const begin = buffer.data() + 1;
+  char* end = std::to_chars(begin, buffer.data() + buffer.size(), value, std::chars_format::fixed,
+                            kDecimals)
+                  .ptr;
+  while (end[-1] == '0') --end;
+  if (end[-1] == '.') --end;
+  if (std::string_view(begin, end) == "-0") return {letter, '0'};
+  return {buffer.data(), end};
 }
 
 GcodeLine GcodeLines::take() {
