@@ -127,4 +127,13 @@ void Translator::warn_of_corner() {
             "of MD20201; FRC gives the corner a feed");
 }
 
+// [F] "Chamfer, rounding": the control inserts nothing then.
+void Translator::count_block_behind_corner() {
+  constexpr int kLargest = 3;
+  if (!path_.has_corner() || ++blocks_behind_corner_ <= kLargest) return;
+  fail(
+      "RND, CHF or CHR, and more than three blocks without a motion in the plane: the control "
+      "leaves the corner as it is; program the next element sooner");
+}
+
 }  // namespace servomill::controllers::siemens

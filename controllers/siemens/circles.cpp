@@ -261,6 +261,27 @@ void Translator::add_arc(const Block& block, Element element, int normal) {
 
 // -------------------------------------------------------------------------------------- threads
 
+// The axes follow the spindle at the pitch of one of them.
+void Translator::require_axis_of_pitch(const Block& block) const {
+  for (std::size_t i = 0; i < block.axes.size(); ++i) {
+    const bool is_of_pitch = i < 3 && block.centre[i].has_value();
+    if (block.axes[i].has_value() == is_of_pitch) continue;
+    const Place& place = block.axes[i] ? block.axes[i]->place : block.centre[i]->place;
+    fail(place,
+         "a thread along another axis than that of its pitch, or several, is not supported: "
+         "program X with I, Y with J or Z with K");
+  }
+  require_lengths_kept("a thread");
+}
+
+void Translator::require_lengths_kept(std::string_view what) const {
+  if (modes_.frame.keeps_lengths()) return;
+  fail(
+      fmt::format("{} while SCALE is active: whether it scales the pitch is not certain; end it by "
+                  "SCALE",
+                  what));
+}
+
 // G33 cuts with the spindle that runs; G331 and G332 turn it, to the right for K > 0 and back. The
 // axes follow the spindle, as a feed of the pitch per revolution. [F] "Thread cutting", "Tapping
 // without compensating chuck"
@@ -278,6 +299,7 @@ void Translator::thread(const Block& block) {
     if (one) pitch = std::exchange(one, std::nullopt);
   }
   if (!pitch || pitch->value == 0.0) fail("G33, G331 and G332 need the pitch as I, J or K");
+  require_axis_of_pitch(block);
   const bool is_right = pitch->value > 0.0;
   if (!is_cut) {
     const bool is_forward = block.has("G331") == is_right;

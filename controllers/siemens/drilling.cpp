@@ -268,6 +268,7 @@ void Translator::turn_spindle(int direction) {
 void Translator::tap_84(const Call& call) {
   const Hole hole = hole_of(call);
   const double pitch = pitch_of(call, 7, 13);
+  require_lengths_kept(call.name);
   if (pitch == 0.0) fail(call.place, "CYCLE84 without MPIT and PIT");
   if (std::fmod(value_of(call, 15, 0.0, "_VARI"), 10.0) != 0.0) {
     fail(call.place, "CYCLE84 with chip breaking (_VARI) is not supported; program G331 and G332");
@@ -302,6 +303,7 @@ void Translator::tap_840(const Call& call) {
   const Hole hole = hole_of(call);
   if (spindle_ == 0) fail(call.place, "CYCLE840: M3 or M4 must be active");
   const double pitch = std::abs(pitch_of(call, 9, 12));
+  require_lengths_kept(call.name);
   if (pitch > 0.0 && (!speed_ || *speed_ <= 0.0)) fail(call.place, "CYCLE840: no S is active");
   const Feed feed = pitch > 0.0 ? Feed{Feed::Kind::per_minute, pitch * *speed_} : modal_feed(1.0);
   const int direction = spindle_;

@@ -62,6 +62,11 @@ bool Frame::keeps_plane(int normal) const {
 
 double Frame::scale_in_plane(int normal) const { return matrix_.col((normal + 1) % 3).norm(); }
 
+bool Frame::keeps_lengths() const {
+  constexpr double kEqual = 1e-12;
+  return (matrix_.transpose() * matrix_).isIdentity(kEqual);
+}
+
 bool Frame::is_alike_in_plane(int normal) const {
   constexpr double kEqual = 1e-12;
   const Eigen::Vector3d u = matrix_.col((normal + 1) % 3), v = matrix_.col((normal + 2) % 3);

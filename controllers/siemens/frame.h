@@ -47,6 +47,8 @@ class Frame {
   bool is_alike_in_plane(int normal) const;
   /// Arcs of the plane run the other way round, and the tool is on the other side.
   bool is_mirrored(int normal) const;
+  /// True without SCALE.
+  bool keeps_lengths() const;
   /// Scale of lengths in the plane.
   double scale_in_plane(int normal) const;
 

@@ -241,6 +241,7 @@ void Translator::corner(const Block& block) {
   using Kind = ContourPath::CornerKind;
   const Kind kind = block.RND ? Kind::rounding : block.CHR ? Kind::chamfer : Kind::chamfer_width;
   path_.corner(kind, length, feed, place_);
+  blocks_behind_corner_ = 0;
   last_element_.reset();
 }
 

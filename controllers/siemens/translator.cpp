@@ -101,6 +101,7 @@ void Translator::execute_block(const Block& block) {
     move(block);
     if (modal_call_ && !is_in_modal_call_) call_modal();
   }
+  if (is_action || !moves(block)) count_block_behind_corner();
   execute_calls(block);
   end_functions(block);
 }

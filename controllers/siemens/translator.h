@@ -114,6 +114,7 @@ class Translator {
   void refuse_switched_on(const Block& block) const;
   void warn_of_settings(const Block& block);
   void warn_of_corner();
+  void count_block_behind_corner();
 
   // settings.cpp: modal functions, spindle, M functions
   void set_modes(const Block& block);
@@ -168,6 +169,8 @@ class Translator {
   void move_straight(const Block& block);
   void move_to_machine(const Block& block);
   void thread(const Block& block);
+  void require_axis_of_pitch(const Block& block) const;
+  void require_lengths_kept(std::string_view what) const;
   void tap_with_chuck(const Block& block);
   Motion motion_of(const Block& block);
   Motion straight_motion(const Block& block);
@@ -317,6 +320,7 @@ class Translator {
   std::optional<double> polar_radius_, polar_angle_;
   std::optional<Element> last_element_;  // in program coordinates
   int last_normal_ = 2;
+  int blocks_behind_corner_ = 0;  // RND, CHF or CHR; without motion
   std::optional<Feed> feed_;  // as programmed: of G95 in mm per revolution, without the override
   double feed_unit_ = 1.0;    // mm, of F programmed last
   double override_ = 1.0;     // OVR

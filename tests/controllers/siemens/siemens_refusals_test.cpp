@@ -215,6 +215,22 @@ const Refusal kRefusals[] = {
     {"G25 S800\nS700\n",
      "t.mpf:5:1: error: S700 is below the limit S800 of G25, at which the control turns; program a "
      "speed within the limits"},
+    {"M3\nG33 X5 Z-20 K2\n",
+     "t.mpf:5:5: error: a thread along another axis than that of its pitch, or several, is not "
+     "supported: program X with I, Y with J or Z with K"},
+    {"G331 X5 K2\n",
+     "t.mpf:4:6: error: a thread along another axis than that of its pitch, or several, is not "
+     "supported: program X with I, Y with J or Z with K"},
+    {"SCALE Z2\nG331 Z-5 K1\n",
+     "t.mpf:5:1: error: a thread while SCALE is active: whether it scales the pitch is not "
+     "certain; "
+     "end it by SCALE"},
+    {"SCALE Z2\nCYCLE84(5,0,3,-10,,0.5,3,8,,0,400)\n",
+     "t.mpf:5:1: error: CYCLE84 while SCALE is active: whether it scales the pitch is not certain; "
+     "end it by SCALE"},
+    {"G1 X10 F1 RND=1\nM8\nM9\nM8\nM9\nY10\n",
+     "t.mpf:8:1: error: RND, CHF or CHR, and more than three blocks without a motion in the plane: "
+     "the control leaves the corner as it is; program the next element sooner"},
     {"G4 F1 S2\n", "t.mpf:4:1: error: G4 with F and S; program one of them"},
     {"FOR R1=1 TO 3\nENDFOR\nG1 X=R1 F1\n",
      "t.mpf:6:6: error: R1 counted a loop of FOR, and behind its end holds the last value or the "
