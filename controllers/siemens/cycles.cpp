@@ -113,6 +113,7 @@ std::vector<Point> Translator::points_of(const Call& call) const {
 
 void Translator::pattern(const Call& call) {
   require_no_compensation(call.name);
+  refuse_pattern_options(call);
   std::vector<Point> points = points_of(call);
   const auto now = program_point(modes_.normal);
   const bool is_row = call.name == "HOLES1";

@@ -93,40 +93,6 @@ Feed Translator::cycle_feed(double per_minute) {
   return effective({Feed::Kind::per_minute, per_minute * unit}, override_);
 }
 
-// Parameters that turn the drilling axis or measure the depth from elsewhere. [C], from memory
-void Translator::refuse_other_geometry(const Call& call) const {
-  struct Places {
-    std::string_view name;
-    std::size_t GMODE, DMODE, AXN;  // 0: the cycle has none
-  };
-  constexpr auto kPlaces = std::to_array<Places>({{"CYCLE81", 6, 7, 0},
-                                                  {"CYCLE82", 6, 7, 0},
-                                                  {"CYCLE83", 17, 18, 12},
-                                                  {"CYCLE84", 21, 22, 12},
-                                                  {"CYCLE840", 17, 18, 11},
-                                                  {"CYCLE85", 8, 9, 0},
-                                                  {"CYCLE86", 11, 12, 0},
-                                                  {"CYCLE87", 6, 7, 0},
-                                                  {"CYCLE88", 7, 8, 0},
-                                                  {"CYCLE89", 6, 7, 0}});
-  const auto* at = std::find_if(kPlaces.begin(), kPlaces.end(),
-                                [&](const Places& one) { return one.name == call.name; });
-  value_of(call, 0, {}, "RTP");
-  if (value_of(call, at->GMODE, 0.0, "_GMODE") != 0.0) {
-    fail(call.place, fmt::format("{}: a depth from the shank or by a diameter (_GMODE) is not "
-                                 "supported; give the depth of the tip",
-                                 call.name));
-  }
-  const double plane = std::fmod(value_of(call, at->DMODE, 0.0, "_DMODE"), 10.0);
-  const double axis = at->AXN == 0 ? 0.0 : value_of(call, at->AXN, 0.0, "_AXN");
-  if ((plane == 0.0 || plane == 3.0 - modes_.normal) &&
-      (axis == 0.0 || axis == modes_.normal + 1.0))
-    return;
-  fail(call.place, fmt::format("{}: drilling along another axis than that of the active plane "
-                               "(_DMODE, _AXN) is not supported; program G17, G18 or G19",
-                               call.name));
-}
-
 bool Translator::run_drilling_cycle(const Call& call) {
   using Run = void (Translator::*)(const Call&);
   constexpr auto kCycles = std::to_array<std::pair<std::string_view, Run>>({
@@ -150,7 +116,7 @@ bool Translator::run_drilling_cycle(const Call& call) {
     fail(call.place, fmt::format("{} with G93; program G94 or G95 before it", call.name));
   }
   check_length_axis(true);
-  refuse_other_geometry(call);
+  refuse_options(call);
   (this->*found->second)(call);
   return true;
 }
@@ -174,6 +140,7 @@ std::vector<double> Translator::strokes_of(const Call& call, const Hole& hole) c
   double stroke = FDPR;
   if (stroke == 0.0) stroke = std::abs(hole.surface - value_of(call, 5, {}, "FDEP") * unit());
   const double DAM = value_of(call, 7, 0.0, "DAM");
+  if (DAM < -1.0) fail(call.place, "CYCLE83: DAM < 0 is a factor and must be >= -1");
   const double least = std::max(value_of(call, 13, 0.0, "_MDEP"), 0.0) * unit();
   const double step = DAM > 0.0 ? DAM * unit() : 0.0;
   if (!(stroke > 0.0)) fail(call.place, "CYCLE83: the first drilling depth must not be 0");
@@ -209,6 +176,7 @@ void Translator::drill_83(const Call& call) {
   const std::vector<double> strokes = strokes_of(call, hole);
   const Feed feed = modal_feed();
   const double FRF = value_of(call, 10, 1.0, "FRF");
+  if (FRF < 0.0 || FRF > 1.0) fail(call.place, "CYCLE83: FRF must be a factor from 0 to 1");
   const bool is_removal = value_of(call, 11, 0.0, "VARI") != 0.0;
   const double VRT = std::abs(value_of(call, 14, 0.0, "_VRT")) * unit();
   const double back = VRT > 0.0 ? VRT : 1.0;
@@ -307,6 +275,10 @@ void Translator::tap_840(const Call& call) {
   if (pitch > 0.0 && (!speed_ || *speed_ <= 0.0)) fail(call.place, "CYCLE840: no S is active");
   const Feed feed = pitch > 0.0 ? Feed{Feed::Kind::per_minute, pitch * *speed_} : modal_feed(1.0);
   const int direction = spindle_;
+  const double SDR = value_of(call, 6, 0.0, "SDR");
+  if (SDR != 0.0 && SDR != (direction > 0 ? 4.0 : 3.0)) {
+    fail(call.place, "CYCLE840: SDR must reverse the spindle: 0, or 4 behind M3, 3 behind M4");
+  }
   cycle_move({}, hole.clearance);
   cycle_move(feed, hole.bottom);
   cycle_dwell(value_of(call, 5, 0.0, "DTB"));

@@ -269,7 +269,23 @@ void Translator::orient_spindle() {
   turn_spindle(0);
 }
 
+// M functions of one group would cancel each other.
+void Translator::require_one_of(const Block& block, std::initializer_list<int> group) const {
+  const Function* first = nullptr;
+  for (const Function& one : block.functions) {
+    const bool is_of_group = std::find(group.begin(), group.end(), one.number) != group.end();
+    if (!is_of_group || (one.spindle != -1 && one.spindle != 1)) continue;
+    if (first == nullptr) first = &one;
+    if (first->number == one.number) continue;
+    fail(one.place, fmt::format("M{} and M{} in one block: they cancel each other", first->number,
+                                one.number));
+  }
+}
+
 void Translator::begin_functions(const Block& block) {
+  require_one_of(block, {3, 4, 5, 19});
+  require_one_of(block, {8, 9});
+  require_one_of(block, {7, 9});
   if (block.SPOS) orient_spindle();
   if (path_.has_corner() && !block.functions.empty()) warn_of_corner();
   constexpr std::array kOfLanguage = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 17, 19, 30};

@@ -20,6 +20,7 @@
 
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <memory>
@@ -132,6 +133,7 @@ class Translator {
   Feed effective(Feed feed, double override) const;
   void warn_of_start(const Block& block);
   void begin_functions(const Block& block);
+  void require_one_of(const Block& block, std::initializer_list<int> group) const;
   void end_functions(const Block& block);
   void set_speed(const Block& block);
   void limit(const Block& block, const Code& code);
@@ -258,6 +260,11 @@ class Translator {
   void end_swivel();
   void put_beside_plane(Motion motion);
 
+  // cycle_options.cpp
+  void refuse_options(const Call& call) const;
+  void refuse_alternatives(const Call& call, double AMODE) const;
+  void refuse_pattern_options(const Call& call) const;
+
   // drilling.cpp
   struct Hole;
   double value_of(const Call& call, std::size_t at, std::optional<double> otherwise,
@@ -268,7 +275,6 @@ class Translator {
   void cycle_dwell(double time);
   Feed cycle_feed(double per_minute);
   bool run_drilling_cycle(const Call& call);
-  void refuse_other_geometry(const Call& call) const;
   std::vector<double> strokes_of(const Call& call, const Hole& hole) const;
   double pitch_of(const Call& call, std::size_t at_MPIT, std::size_t at_unit) const;
   void turn_spindle(int direction);

@@ -231,6 +231,23 @@ const Refusal kRefusals[] = {
     {"G1 X10 F1 RND=1\nM8\nM9\nM8\nM9\nY10\n",
      "t.mpf:8:1: error: RND, CHF or CHR, and more than three blocks without a motion in the plane: "
      "the control leaves the corner as it is; program the next element sooner"},
+    {"F100\nCYCLE83(5,0,2,,10,,5,90,0,0,100,0,0,1,1,0,0,0,1,11211112)\n",
+     "t.mpf:5:1: error: CYCLE83: _AMODE 11211112 gives other parameters another meaning, which is "
+     "not supported; program the cycle without _AMODE"},
+    {"F100\nCYCLE83(5,0,2,,10,,5,0,0,0,100)\n",
+     "t.mpf:5:1: error: CYCLE83: FRF must be a factor from 0 to 1"},
+    {"F100\nCYCLE83(5,0,2,,10,,5,-90)\n",
+     "t.mpf:5:1: error: CYCLE83: DAM < 0 is a factor and must be >= -1"},
+    {"F100\nCYCLE82(5,0,2,,10,1,0,1,12)\n",
+     "t.mpf:5:1: error: CYCLE82: _AMODE takes the depth from DP, and the call gives DPR"},
+    {"F100\nCYCLE85(5,0,2,,10,100,50,50,0,1,21)\n",
+     "t.mpf:5:1: error: CYCLE85: a dwell in revolutions by _AMODE is not supported; program DTB < "
+     "0"},
+    {"M3 F100\nCYCLE840(5,0,2,,10,,3,3,0,,1)\n",
+     "t.mpf:5:1: error: CYCLE840: SDR must reverse the spindle: 0, or 4 behind M3, 3 behind M4"},
+    {"HOLES2(0,0,5,0,30,12,1010,0,\"2,3\")\n",
+     "t.mpf:4:1: error: HOLES2: parameters behind NUM are not supported; program the positions"},
+    {"M3 G0 X5 M5\n", "t.mpf:4:10: error: M3 and M5 in one block: they cancel each other"},
     {"G4 F1 S2\n", "t.mpf:4:1: error: G4 with F and S; program one of them"},
     {"FOR R1=1 TO 3\nENDFOR\nG1 X=R1 F1\n",
      "t.mpf:6:6: error: R1 counted a loop of FOR, and behind its end holds the last value or the "
