@@ -251,6 +251,10 @@ void Translator::restore(const Modes& modes) {
   }
   if (modes.feed_code != modes_.feed_code) feed_.reset();
   if (modes.stops_exactly != modes_.stops_exactly) use_path(modes.stops_exactly);
+  if (modes.normal != modes_.normal || modes.frame != modes_.frame) {
+    pole_.reset();
+    polar_angle_.reset();
+  }
   modes_ = modes;
   last_element_.reset();
 }

@@ -11,7 +11,7 @@
 namespace servomill::controllers::siemens {
 namespace {
 
-// Of parameters: _AMODE follows _DMODE.
+// Indices of parameters; _AMODE follows _DMODE.
 struct Places {
   std::string_view name;
   std::size_t GMODE, DMODE, AXN;  // 0: the cycle has none

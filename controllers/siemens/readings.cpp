@@ -8,7 +8,8 @@ namespace {
 
 constexpr auto kReadings = std::to_array<Reading>({
     {"a program without M30", "ends with its last block", "840D sl", "from memory"},
-    {"G17, G90, G71, a work offset that no block sets", "in force at the start, as delivered",
+    {"G17, G90, G71, G94, G64, a work offset that no block sets",
+     "in force at the start (as delivered, but for G64)",
      "by machine: MD20150 and the preset work offset",
      "840D sl, Fundamentals, \"G commands\"; from memory"},
     {"T in a program without M6", "changes the tool", "machines with MD22550 = 0",

@@ -155,6 +155,7 @@ void Translator::set_path(const Code& code) {
 
 void Translator::use_path(bool stops_exactly) {
   modes_.stops_exactly = stops_exactly;
+  is_programmed_[at(Group::path)] = true;
   note(stops_exactly ? "G61.1" : tolerance_line_);
 }
 
@@ -215,10 +216,9 @@ Feed Translator::effective(Feed feed, double override) const {
 void Translator::warn_of_start(const Block&) {
   if (std::exchange(has_moved_, true)) return;
   std::string names;
-  const std::pair<Group, std::string_view> all[] = {{Group::plane, "G17"},
-                                                    {Group::distance, "G90"},
-                                                    {Group::units, "G71"},
-                                                    {Group::work_offset, "the work offset"}};
+  const std::pair<Group, std::string_view> all[] = {
+      {Group::plane, "G17"}, {Group::distance, "G90"}, {Group::units, "G71"},
+      {Group::feed, "G94"},  {Group::path, "G64"},     {Group::work_offset, "the work offset"}};
   for (const auto& [group, name] : all) {
     if (is_programmed_[at(group)]) continue;
     names += names.empty() ? "" : ", ";

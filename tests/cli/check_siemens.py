@@ -23,7 +23,7 @@ def said_of(name, text, *arguments):
 
 class CheckSiemens(unittest.TestCase):
     def test_names_what_is_of_the_language(self):
-        done = said_of("part.nc", "%_N_PART_MPF\nG17 G71 G90 G505\nG0 X1 Y2\nMSG(\"END\")\nM30\n")
+        done = said_of("part.nc", "%_N_PART_MPF\nG17 G71 G90 G94 G64 G505\nG0 X1 Y2\nMSG(\"END\")\nM30\n")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout, """part.nc: no faults
   units          those of its G70, G71, G700 and G710
@@ -39,7 +39,7 @@ class CheckSiemens(unittest.TestCase):
 """)
 
     def test_machine_data_are_given_by_their_names(self):
-        text = "G17 G70 G90 G54\nG0 X0\nG1 X1 F10\nM30\n"
+        text = "G17 G70 G90 G94 G64 G54\nG0 X0\nG1 X1 F10\nM30\n"
         self.assertIn("F with G70", said_of("part.mpf", text).stderr)
         self.assertEqual(said_of("part.mpf", text, "--parameter", "$MN_SCALING_SYSTEM_IS_METRIC=0").stderr, "")
 

@@ -84,7 +84,7 @@ const std::vector<Style>& styles() {
        ":1:1: error: M104: heats the extruder of a 3D printer; only milling programs are "
        "supported"},
       {"sender_mdi.nc", {1, 1, 8}, 2, 20.0, 10.0},
-      {"siemens_sinumerik.mpf", {3, 3, 3}, 1, 0.0, 0.0},
+      {"siemens_sinumerik.mpf", {3, 3, 3, 5}, 1, 0.0, 0.0},
       {"smoothieware.nc", {5, 10, 10}, 2, 9.5, 2.5},
       {"vectric_grbl_inch.nc", {1}, 3, 50.8, 38.1},
       {"vectric_mach_mm.txt", {12, 13, 15}, 3, 55.0, 10.0},

@@ -7,7 +7,7 @@
 namespace servomill::controllers::siemens {
 
 std::string with_frame(const std::string& lines) {
-  return "G17 G71 G90 G94 G54\nT1 M6 D1 S1000\nG0 X0 Y0 Z0\n" + lines + "M30\n";
+  return "G17 G71 G90 G94 G54 G64\nT1 M6 D1 S1000\nG0 X0 Y0 Z0\n" + lines + "M30\n";
 }
 
 std::string all_moves(const std::string& program, const ProgramSetup& setup) {

@@ -12,7 +12,7 @@ namespace servomill::controllers::siemens {
 using conversational::Example;
 using conversational::example_setup;
 
-/// A program of these lines with G17 G71 G90 G94 G54, tool 1, S1000, at X0 Y0 Z0 before them.
+/// A program of these lines with G17 G71 G90 G94 G54 G64, tool 1, S1000, at X0 Y0 Z0 before them.
 std::string with_frame(const std::string& lines);
 inline constexpr int kFrameLines = 3;
 

@@ -39,6 +39,20 @@ TEST(Siemens, SubprogramsInTheSameFile) {
             "18 feed 9 3 -1 F100\n18 feed 9 3 -2 F100\n10 feed 9 0 -2 F100\n11 end\n");
 }
 
+// A pole counts in the frame in which it was set
+TEST(Siemens, APoleEndsWithTheFrameThatSaveTakesBack) {
+  try {
+    all_moves(
+        "%_N_A_MPF\nG17 G71 G90 G54 G0 X0 Y0 Z0 F100\nL1\nG1 AP=0 RP=5\nM30\n"
+        "%_N_L1_SPF\nPROC L1 SAVE\nTRANS X10\nG111 X0 Y0\nM17\n");
+    FAIL() << "no fault";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "t.mpf:4:1: error: AP and RP without a pole: program G111 before, in the same "
+                 "frame");
+  }
+}
+
 TEST(Siemens, SubprogramsInFilesOfTheirOwn) {
   ProgramSetup setup = example_setup();
   setup.subroutine_file = [](const std::string& name) -> std::optional<ProgramText> {
@@ -81,15 +95,14 @@ TEST(Siemens, SettingsOfTheMachineChoose) {
 }
 
 TEST(Siemens, ReadingsAreWarnedOf) {
-  EXPECT_EQ(
-      warnings_of("T1\nG0 X1\nM84\nRTLIOF\nG9\n"),
-      "t.mpf:1:1: T changes the tool at once: the program has no M6 (MD22550 = 0)\n"
-      "t.mpf:2:1: a move before any function of the groups of G17, G90, G71, G54: taken as in "
-      "force at the start\n"
-      "t.mpf:3:1: M84: a function of the machine builder; ignored: no effect on motion\n"
-      "t.mpf:4:1: RTLIOF: rapid moves are taken as straight lines, as with RTLION\n"
-      "t.mpf:5:1: G9: the exact stop at the end of single blocks is ignored; use G60\n"
-      "t.mpf:5: the program ends without M30: read as if it followed\n");
+  EXPECT_EQ(warnings_of("T1\nG0 X1\nM84\nRTLIOF\nG9\n"),
+            "t.mpf:1:1: T changes the tool at once: the program has no M6 (MD22550 = 0)\n"
+            "t.mpf:2:1: a move before any function of the groups of G17, G90, G71, G94, G64, G54: "
+            "taken as in force at the start\n"
+            "t.mpf:3:1: M84: a function of the machine builder; ignored: no effect on motion\n"
+            "t.mpf:4:1: RTLIOF: rapid moves are taken as straight lines, as with RTLION\n"
+            "t.mpf:5:1: G9: the exact stop at the end of single blocks is ignored; use G60\n"
+            "t.mpf:5: the program ends without M30: read as if it followed\n");
 }
 
 TEST(Siemens, WordsThatArePassedOverAreWarnedOf) {
