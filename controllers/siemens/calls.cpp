@@ -247,7 +247,7 @@ void Translator::restore(const Modes& modes) {
   if (modes.offset != modes_.offset) {
     if (modes.offset == 0) fail("SAVE with a work offset that no block has programmed before");
     put_offset(modes.offset);
-    forget_linear_positions();
+    forget_positions();
   }
   if (modes.feed_code != modes_.feed_code) feed_.reset();
   if (modes.stops_exactly != modes_.stops_exactly) use_path(modes.stops_exactly);

@@ -73,6 +73,9 @@ void Translator::refuse_unread_call(const Block& block, bool is_path) {
     fail(block.P->place,
          "P: the number of runs needs the call of a subprogram in its block: L10 P3");
   }
+  if (block.is_modal_call && is_path) {
+    fail("MCALL beside words that move axes; program it in a block of its own");
+  }
   if (!has_call || !is_path) return;
   const bool is_known = block.L || is_cycle(call->name) || find_program(call->name) != nullptr;
   if (!is_known) return;  // as a call that is refused by its name

@@ -173,7 +173,7 @@ void Translator::arc_through_point(const Block& block) {
   Eigen::Vector3d start, end, by;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const auto now = program_position(i);
+    const auto now = program_position(k);
     if (!now) fail(fmt::format("CIP: the position of {} is unknown here", "XYZ"[i]));
     start[i] = *now;
     if (block.axes[k]) require_same_offset(k, *block.axes[k]);

@@ -23,6 +23,11 @@ void Translator::forget_linear_positions() {
   last_element_.reset();
 }
 
+void Translator::forget_positions() {
+  forget_linear_positions();
+  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
+}
+
 // Values of frames and poles are absolute, or count from what the function itself says.
 void Translator::refuse_measures(const Block& block, const Code& code) const {
   const auto check = [&](const std::optional<Number>& number) {
@@ -128,6 +133,9 @@ void Translator::pole(const Block& block, const Code& code) {
   if (code.name == "G110") {
     const auto now = program_point(modes_.normal);
     if (!now) fail(code.place, "G110: the position in the plane is unknown here");
+    for (const std::size_t axis : axes) {
+      require_same_offset(axis, {0.0, Measure::incremental, code.place});
+    }
     from = *now;
   }
   if (code.name == "G112") {

@@ -208,8 +208,9 @@ void Translator::move_to_machine(const Block& block) {
                           is_dropped ? 0 : 1));
   }
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
-    if (motion.words[i]) work_[i].reset();
-    if (motion.words[i] && i < 3) programmed_[i].reset();
+    if (!motion.words[i]) continue;
+    work_[i].reset();
+    programmed_[i] = 0.0;  // in no frame: an increment behind it is one behind a change of frame
   }
   put_beside_plane(std::move(motion));
   last_element_.reset();

@@ -21,9 +21,9 @@ bool Translator::is_increment(const Number& number) const {
 // An increment behind a new frame or length takes it in as SD42440 and SD42442 say: K2
 // (6FC5397-0BP10-0BA0) p. 1-7.
 void Translator::require_same_offset(std::size_t axis, const Number& number) const {
-  constexpr double kSame = 1e-9;  // mm
+  constexpr double kSame = 1e-9;  // mm, degrees
   if (!is_increment(number) || !programmed_[axis]) return;
-  const auto now = program_position(static_cast<int>(axis));
+  const auto now = program_position(axis);
   if (now && std::abs(*now - *programmed_[axis]) < kSame) return;
   fail(number.place,
        fmt::format("an increment of {} behind a change of the frame, the work offset or the tool "
@@ -33,7 +33,15 @@ void Translator::require_same_offset(std::size_t axis, const Number& number) con
 }
 
 // The position of an axis in the program's coordinates, where those that it depends on are known.
-std::optional<double> Translator::program_position(int axis) const {
+std::optional<double> Translator::program_position(std::size_t axis) const {
+  if (axis >= 3) {
+    if (!work_[axis]) return std::nullopt;
+    return modes_.frame.rotary_to_program(axis, *work_[axis]);
+  }
+  return linear_position(static_cast<int>(axis));
+}
+
+std::optional<double> Translator::linear_position(int axis) const {
   Eigen::Vector3d work = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const auto& known = work_[static_cast<std::size_t>(i)];
@@ -45,8 +53,8 @@ std::optional<double> Translator::program_position(int axis) const {
 
 std::optional<Point> Translator::program_point(int normal) const {
   const auto axes = plane_axes(normal);
-  const auto u = program_position(static_cast<int>(axes[0]));
-  const auto v = program_position(static_cast<int>(axes[1]));
+  const auto u = program_position(axes[0]);
+  const auto v = program_position(axes[1]);
   if (!u || !v) return std::nullopt;
   return Point(*u, *v);
 }
@@ -69,7 +77,7 @@ void Translator::linear_ends(const Block& block, Values& end, bool& is_increment
   std::size_t named = 0, free = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const auto now = program_position(static_cast<int>(i));
+    const auto now = program_position(i);
     is_known[i] = now.has_value();
     p[k] = now.value_or(0.0);
     if (!block.axes[i]) continue;
@@ -148,6 +156,7 @@ Values Translator::ends(const Block& block, bool& is_incremental) {
   for (std::size_t i = 3; i < end.size(); ++i) {
     if (!block.axes[i]) continue;
     const Number& number = *block.axes[i];
+    require_same_offset(i, number);
     if (!is_increment(number)) {
       if (is_incremental) fail(number.place, "absolute and unknown positions in one block");
       end[i] = rotary_end(i, number);
@@ -161,6 +170,8 @@ Values Translator::ends(const Block& block, bool& is_incremental) {
     } else {
       end[i] = *work_[i] + modes_.frame.rotary_increment(i, number.value);
     }
+    programmed_[i].reset();
+    if (!is_incremental) programmed_[i] = modes_.frame.rotary_to_program(i, *end[i]);
   }
   return end;
 }

@@ -120,8 +120,7 @@ void Translator::set_offset(const Code& code) {
   require_no_compensation(code.name);
   modes_.offset = offset;
   put_offset(offset);
-  forget_linear_positions();
-  for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
+  forget_positions();
 }
 
 // G500 is a work offset of zero, G59.3, which G509 would be.

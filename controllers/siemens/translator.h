@@ -151,6 +151,7 @@ class Translator {
   void use_frame(const Frame& frame);
   void transform(const Code& code);
   void forget_linear_positions();
+  void forget_positions();
   void require_no_compensation(std::string_view what) const;
 
   // tools.cpp
@@ -189,7 +190,8 @@ class Translator {
   double rotary_end(std::size_t axis, const Number& number);
   bool is_increment(const Number& number) const;
   void require_same_offset(std::size_t axis, const Number& number) const;
-  std::optional<double> program_position(int axis) const;
+  std::optional<double> program_position(std::size_t axis) const;
+  std::optional<double> linear_position(int axis) const;
   std::optional<Point> program_point(int normal) const;
   Point work_point(int normal, const Point& program) const;
 
@@ -319,10 +321,10 @@ class Translator {
   Modes modes_;
   std::array<bool, kGroups> is_programmed_{};  // groups, since the start
   bool has_moved_ = false;
-  Values work_;                                        // position programmed last
-  std::array<std::optional<double>, 3> programmed_{};  // X Y Z as programmed last, in their frame
-  std::array<double, kAxisWords> turns_{};             // full turns of modulo axes, degrees
-  std::optional<Point> pole_;                          // in program coordinates
+  Values work_;                             // position programmed last
+  Values programmed_;                       // as programmed last, in the frame of that time
+  std::array<double, kAxisWords> turns_{};  // full turns of modulo axes, degrees
+  std::optional<Point> pole_;               // in program coordinates
   std::optional<double> polar_radius_, polar_angle_;
   std::optional<Element> last_element_;  // in program coordinates
   int last_normal_ = 2;

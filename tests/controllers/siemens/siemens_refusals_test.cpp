@@ -106,6 +106,20 @@ const Refusal kRefusals[] = {
      "tool "
      "length: whether it takes the change in depends on SD42440 and SD42442; program an absolute "
      "position first"},
+    {"G0 A10\nTRANS A5\nG91 A10\n",
+     "t.mpf:6:5: error: an increment of A behind a change of the frame, the work offset or the "
+     "tool length: whether it takes the change in depends on SD42440 and SD42442; program an "
+     "absolute position first"},
+    {"SUPA G0 X5\nX=IC(5)\n",
+     "t.mpf:5:1: error: an increment of X behind a change of the frame, the work offset or the "
+     "tool length: whether it takes the change in depends on SD42440 and SD42442; program an "
+     "absolute position first"},
+    {"TRANS X10\nG110 X5\n",
+     "t.mpf:5:1: error: an increment of X behind a change of the frame, the work offset or the "
+     "tool length: whether it takes the change in depends on SD42440 and SD42442; program an "
+     "absolute position first"},
+    {"MCALL CYCLE81(5,0,2,-3)\nF100 MCALL X5\n",
+     "t.mpf:5:1: error: MCALL beside words that move axes; program it in a block of its own"},
     {"T2 M6\nG91 G0 Z5\n",
      "t.mpf:5:8: error: an increment of Z behind a change of the frame, the work offset or the "
      "tool "
