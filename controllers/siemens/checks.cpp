@@ -50,9 +50,9 @@ void Translator::refuse_unread(const Block& block) {
       {&block.CR, "CR", is_arc, "G2 and G3"},
       {&block.AR, "AR", is_arc, "G2 and G3"},
       {&block.TURN, "TURN", is_arc, "G2 and G3"},
-      {&block.RND, "RND", is_element, "a move of G0 to G3, CIP or CT in the plane"},
-      {&block.CHR, "CHR", is_element, "a move of G0 to G3, CIP or CT in the plane"},
-      {&block.CHF, "CHF", is_element, "a move of G0 to G3, CIP or CT in the plane"},
+      {&block.RND, "RND", is_element, "a move of G1 to G3, CIP or CT in the plane"},
+      {&block.CHR, "CHR", is_element, "a move of G1 to G3, CIP or CT in the plane"},
+      {&block.CHF, "CHF", is_element, "a move of G1 to G3, CIP or CT in the plane"},
       {&block.FRC, "FRC", has_corner, "RND, CHR and CHF"},
   };
   for (const Word& one : words) {

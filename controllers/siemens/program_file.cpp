@@ -69,6 +69,27 @@ bool is_single_block(const std::string& word, std::string_view text) {
   return word == "REPEAT" && all.find_first_not_of(" \t\r", 0) != std::string::npos;
 }
 
+// Takes "X1" or "M06" from the front of words without blanks; 0 characters: there is none.
+std::size_t length_of_address(std::string_view text) {
+  if (text.size() < 2 || !is_letter(text[0]) || !is_digit(text[1])) return 0;
+  return std::min(text.find_first_not_of("0123456789.", 1), text.size());
+}
+
+// M6 as a word, also in T1M6; not in MSG("TAP M6"), nor in a name.
+bool changes_tool(std::string_view block) {
+  bool is_quoted = false, is_in_name = false;
+  for (std::size_t at = 0; at < block.size();) {
+    const char c = block[at];
+    if (c == '"') is_quoted = !is_quoted;
+    const std::size_t length = is_quoted || is_in_name ? 0 : length_of_address(block.substr(at));
+    const std::string address = capitals(block.substr(at, length));
+    if (address == "M6" || address == "M06") return true;
+    is_in_name = length == 0 && is_name_character(c);
+    at += std::max<std::size_t>(length, 1);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string program_name(std::string_view text) {
@@ -175,15 +196,8 @@ void ProgramFile::index() {
       behind.text = scanner.rest();
       index_structure(behind, word, open);
     }
-    if (!has_M6_ && line->text.find_first_of("Mm") != line->text.npos) {
-      const std::string all = capitals(scanner.rest());
-      for (const std::string_view change : {"M6", "M06"}) {
-        const std::size_t at = capitals(line->text).find(change);
-        const std::size_t end = at + change.size();
-        has_M6_ = has_M6_ || (at != std::string::npos &&
-                              (end == line->text.size() || !is_digit(line->text[end])));
-      }
-    }
+    const bool may_have_M = !has_M6_ && line->text.find_first_of("Mm") != line->text.npos;
+    if (may_have_M) has_M6_ = changes_tool(scanner.rest());
   }
   for (const Open& one : open) {
     faults_.push_back({one.place, fmt::format("{} without its end", one.word)});

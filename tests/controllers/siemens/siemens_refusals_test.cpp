@@ -179,11 +179,11 @@ const Refusal kRefusals[] = {
     {"RNDM=2\n",
      "t.mpf:4:1: error: RNDM: modal rounding is not supported; program RND in each block"},
     {"RND=2\n",
-     "t.mpf:4:1: error: RND: nothing in the block reads it; it is for a move of G0 to G3, CIP or "
+     "t.mpf:4:1: error: RND: nothing in the block reads it; it is for a move of G1 to G3, CIP or "
      "CT "
      "in the plane"},
     {"SUPA G0 X5 RND=2\n",
-     "t.mpf:4:12: error: RND: nothing in the block reads it; it is for a move of G0 to G3, CIP or "
+     "t.mpf:4:12: error: RND: nothing in the block reads it; it is for a move of G1 to G3, CIP or "
      "CT "
      "in the plane"},
     {"G1 X5 CR=3 F1\n", "t.mpf:4:7: error: CR: nothing in the block reads it; it is for G2 and G3"},

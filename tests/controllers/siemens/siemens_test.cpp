@@ -137,6 +137,18 @@ TEST(Siemens, ExactStopAndTolerance) {
   EXPECT_EQ(modes, "G61.1\nG64 P0.05\nG64 P0.05\nG61.1\nG64 P0.05\n");
 }
 
+// MD22550: T waits for an M6 only in a program that has one; a thread M6 is none
+TEST(Siemens, ToolsChangeByTWithoutM6) {
+  const std::string begin = "%_N_A_MPF\nG17 G71 G90 G54\n", moves = "T1\nG0 Z1\nT2\nZ2\nM30\n";
+  for (const char* const other :
+       {"MSG(\"TAP M6\")\n", "; M6\n", "DEF INT TAP_M6\n", "R1=5 ; M6\n", "M65\n"}) {
+    EXPECT_EQ(all_moves(begin + other + moves),
+              "4 tool 1\n5 rapid 0 0 1\n6 tool 2\n7 rapid 0 0 2\n8 end\n")
+        << other;
+  }
+  EXPECT_EQ(all_moves(begin + "T2M6\n" + moves), "3 tool 2\n5 rapid 0 0 1\n7 rapid 0 0 2\n8 end\n");
+}
+
 // [J] "Subprogram call": zeros in front distinguish names
 TEST(Siemens, NumberedSubprogramsKeepTheirZeros) {
   EXPECT_EQ(all_moves("%_N_A_MPF\nG17 G71 G90 G54 G0 X0 Y0 Z0 F100\nL010\nL10\nM30\n"
