@@ -243,12 +243,13 @@ void Translator::set_speed(const Block& block) {
   note(word('S', S));
 }
 
-// G25 and G26 limit the working area, which stops the control, and the speed of the spindle, which
-// then turns slower or faster than programmed. [F] "Programmable spindle speed limitation"
+// G25 and G26 limit the working area, beyond which the control stops, and the speed of the spindle,
+// which then turns slower or faster than programmed. [F] "Programmable spindle speed limitation"
 void Translator::limit(const Block& block, const Code& code) {
-  if (!block.S) {
-    return warn_once("G25", "G25 and G26: limits of the working area are ignored");
+  if (block.has_axes()) {
+    warn_once("G25", "G25 and G26: limits of the working area are ignored");
   }
+  if (!block.S) return;
   (code.name == "G25" ? least_speed_ : most_speed_) = block.S->value;
   if (speed_) require_speed_in_limits(*speed_, block.S->place);
 }

@@ -107,10 +107,11 @@ TEST(Siemens, ReadingsAreWarnedOf) {
 
 TEST(Siemens, WordsThatArePassedOverAreWarnedOf) {
   EXPECT_EQ(
-      warnings_of(with_frame("ACC[X]=50 OVRRAP=50\nACC[Y]=50\nH5=3\nORIWKS\nSPOS=0\n"
+      warnings_of(with_frame("ACC[X]=50 OVRRAP=50\nG26 X100 S2000\nH5=3\nORIWKS\nSPOS=0\n"
                              "G641 ADIS=0.5\nG97\nG1 X1 F0.1 RND=0.1\nM8\nY1\n")),
       "t.mpf:4:1: ACC: the acceleration stays that of the machine\n"
       "t.mpf:4:1: OVRRAP: rapid moves keep the velocity of the machine\n"
+      "t.mpf:5:1: G25 and G26: limits of the working area are ignored\n"
       "t.mpf:6:1: H: a function of the PLC; ignored: no effect on motion\n"
       "t.mpf:7:1: ORIWKS: rotary axes are taken to move linearly between blocks, as with ORIAXES; "
       "the tool then leaves the plane of its first and last direction\n"
