@@ -9,6 +9,10 @@ std::vector<Example> contour_examples() {
       // From X0 along X, then up Y: the arc of R4 about (16, 4)
       {"RND between lines", "L X+20 F200\nRND R4 F100\nL Y+30\n",
        "1 feed 16 0 0 F200\n2 arc 20 4 0 about 16 4 turns 1 F100\n3 feed 20 30 0 F200\n"},
+      // RND belongs to the element before it
+      {"functions behind RND", "L X+20 F200\nRND R4\nM8\nL Y+30 M3\n",
+       "1 feed 16 0 0 F200\n2 arc 20 4 0 about 16 4 turns 1 F200\n3 coolant 2\n"
+       "4 spindle 1 S1000\n4 feed 20 30 0 F200\n"},
       // [530] p. 221 (example of RND), 10 25 5 ... : corner (40, 25) between the directions (30,
       // -15) and
       // (-30, -20), normalised (2, -1) / sqrt 5 and (-3, -2) / sqrt 13. Bisector and half angle:

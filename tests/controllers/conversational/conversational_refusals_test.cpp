@@ -118,6 +118,8 @@ const Refusal kRefusals[] = {
     {"CT X+3 Y+3 F1\n",
      "t.h:4:1: error: CT: the preceding block must move in the plane of the arc"},
     {"RND R3\n", "t.h:4:1: error: a contour element in the plane must precede RND and CHF"},
+    {"L X+5 F1\nL Z-5\nRND R1\nL Y+5\n",
+     "t.h:6:1: error: a contour element in the plane must precede RND and CHF"},
     {"L X+5 F1\nRND R9\nL Y+5\n",
      "t.h:5:1: error: RND R9 is longer than the elements at the corner"},
     {"L X+5 RL F1\nL X+9\nCC X+9 Y+2\nC X+9 Y+4 DR+\n",
