@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@ namespace servomill::sim::input {
 namespace {
 
 constexpr std::string_view kLetters = "XYZABC";
+constexpr std::array<std::string_view, 2> kSeen = {"scales", "tip"};
 
 // { X = "s actual X", Y = "s actual Y" }
 std::map<char, std::string> read_channels(config::Reader& run, const char* key) {
@@ -25,6 +27,19 @@ std::map<char, std::string> read_channels(config::Reader& run, const char* key) 
   return out;
 }
 
+// A grid encoder reads along X, Y and Z of the workpiece, whatever axes move.
+void check_tip(config::Reader& run, const model::RecordedRunSpec& spec, std::size_t faults_before) {
+  if (run.faults() > faults_before) return;
+  const bool is_linear = std::all_of(spec.measured.begin(), spec.measured.end(),
+                                     [](const auto& one) { return one.first >= 'X'; });
+  if (spec.measured.empty() || !is_linear) {
+    run.fault("measured", "of a tip must name channels of X, Y or Z");
+  }
+  if (spec.reference.empty()) {
+    run.fault("reference", "must name the channels of the axes that move");
+  }
+}
+
 model::RecordedRunSpec read_run(config::Reader& run) {
   model::RecordedRunSpec out;
   const std::size_t before = run.faults();
@@ -32,12 +47,17 @@ model::RecordedRunSpec read_run(config::Reader& run) {
   out.place = run.place("file");
   if (run.faults() == before && file.empty()) run.fault("file", "must name a recording");
   out.file = beside(out.place, file);
+  out.sees_tip = run.choice_or("sees", 0, kSeen) == 1;
   if (run.has("case")) {
     out.case_name = run.text("case");
     return out;
   }
   out.measured = read_channels(run, "measured");
   out.reference = read_channels(run, "reference");
+  if (out.sees_tip) {
+    check_tip(run, out, before);
+    return out;
+  }
   const auto same_axis = [](const auto& a, const auto& b) { return a.first == b.first; };
   if (run.faults() == before &&
       (out.measured.empty() ||
@@ -55,6 +75,11 @@ void read_recorded_runs(config::Reader& table, model::StrategySpec& strategy) {
     strategy.recordings.push_back(read_run(run));
   }
   if (strategy.recordings.empty()) return;
+  for (const model::RecordedRunSpec& one : strategy.recordings) {
+    if (one.sees_tip == strategy.recordings.front().sees_tip) continue;
+    table.fault("recording", "must see the tip in all recordings, or the scales in all");
+    break;
+  }
   for (const std::string_view key : strategy.entry->recorded_instead) {
     if (!strategy.key_places.contains(key)) continue;
     table.fault(key, "is not used with [[case.strategy.recording]]: the recordings are the runs");

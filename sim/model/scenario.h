@@ -65,7 +65,8 @@ struct ProgramSpec {
 struct RecordedRunSpec {
   std::string file;
   Place place;
-  std::map<char, std::string> measured;   // positions as the scales read them
+  bool sees_tip = false;  // a grid encoder read the TCP in the workpiece; else the scales
+  std::map<char, std::string> measured;   // positions as these read them
   std::map<char, std::string> reference;  // positions as the NC interpolated them, without offset
   std::string case_name;                  // of a result file, in place of channels
 };

@@ -90,8 +90,12 @@ model::RecordedRunSpec with_channels(model::RecordedRunSpec spec, const JointLay
       return fmt::format("cases/{}/servo/{}_{}_{}", spec.case_name, signal,
                          j < kLinearJoints ? "linear" : "rotary", axis);
     };
-    spec.measured[axis] = channel("meas");
+    if (!spec.sees_tip) spec.measured[axis] = channel("meas");
     spec.reference[axis] = channel("ref");
+  }
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    if (!spec.sees_tip) break;
+    spec.measured[axis] = fmt::format("cases/{}/servo/tool_position_true_{}", spec.case_name, axis);
   }
   return spec;
 }
@@ -241,17 +245,26 @@ RecordedRun read_recorded_run(const model::RecordedRunSpec& spec, const JointLay
   const recordings::Recording recording = recordings::read_recording(spec.file);
   RecordedRun out;
   out.file = spec.file;
+  out.sees_tip = spec.sees_tip;
   Channels channels(recording, out);
+  std::size_t found = 0;
   for (int j = 0; j < kJoints; ++j) {
-    const auto measured =
-        layout.has(j) ? named.measured.find(layout.letter_of(j)) : named.measured.end();
-    if (measured == named.measured.end()) continue;
-    channels.take(measured->second, j, out.measured);
-    channels.take(named.reference.at(measured->first), j, out.reference);
+    const auto reference =
+        layout.has(j) ? named.reference.find(layout.letter_of(j)) : named.reference.end();
+    if (reference == named.reference.end()) continue;
+    ++found;
+    if (!out.sees_tip) channels.take(named.measured.at(reference->first), j, out.measured);
+    channels.take(reference->second, j, out.reference);
     out.joints.push_back(j);
   }
-  if (out.joints.size() < named.measured.size()) {
+  if (found < named.reference.size()) {
     throw InputError(spec.place, "names an axis that the machine lacks");
+  }
+  if (out.sees_tip) {
+    for (const auto& [letter, channel] : named.measured) {
+      out.seen.push_back(letter - 'X');
+      channels.take(channel, out.seen.back(), out.measured);
+    }
   }
   if (out.t.empty()) throw InputError({spec.file}, "has no samples");
   return out;
@@ -262,21 +275,21 @@ std::vector<double> instants_of(const RecordedRun& run, const PlannedInstants& p
   return Follower(run, path, layout).instants();
 }
 
-std::vector<Joints> deviations_at(const RecordedRun& run, const std::vector<double>& instants,
-                                  std::size_t every, std::size_t rows) {
+std::vector<Joints> deviations_at(const std::vector<Joints>& deviation,
+                                  const std::vector<double>& instants, std::size_t every,
+                                  std::size_t rows) {
   std::vector<Joints> out;
   std::size_t next = 0;  // the first sample at or behind a row
-  const auto of = [&](std::size_t n) -> Joints { return run.measured[n] - run.reference[n]; };
   for (std::size_t row = 0; row < rows; ++row) {
     const auto instant = static_cast<double>(row * every);
     while (next < instants.size() && instants[next] < instant) ++next;
     if (next == 0 || next == instants.size()) {
-      out.push_back(of(next == 0 ? 0 : instants.size() - 1));
+      out.push_back(deviation[next == 0 ? 0 : instants.size() - 1]);
       continue;
     }
     const double before = instants[next - 1], behind = instants[next];
     const double share = (instant - before) / (behind - before);
-    out.push_back(of(next - 1) + share * (of(next) - of(next - 1)));
+    out.emplace_back(deviation[next - 1] + share * (deviation[next] - deviation[next - 1]));
   }
   return out;
 }

@@ -14,8 +14,12 @@ namespace servomill::sim::preparation {
 struct RecordedRun {
   std::string file;
   std::vector<double> t;  // s, ascending
-  std::vector<Joints> measured, reference;
-  std::vector<int> joints;  // that are recorded, in rising order
+  std::vector<Joints> reference;
+  std::vector<int> joints;  // whose reference is recorded, in rising order
+  /// Readings of the scales of these joints; of a tip its X, Y, Z in the workpiece, first of all.
+  std::vector<Joints> measured;
+  bool sees_tip = false;
+  std::vector<int> seen = {};  // 0 to 2: X, Y, Z of the tip that are recorded
 };
 
 /// @throws InputError: no such channel, no unit of length or angle, another base than the others,
@@ -40,10 +44,12 @@ struct PlannedInstants {
 std::vector<double> instants_of(const RecordedRun& run, const PlannedInstants& path,
                                 const JointLayout& layout);
 
-/// Readings minus reference at the instants 0, every, 2 every, ..., linear between samples; behind
-/// the last sample that of it.
-/// @param instants  of the samples
-std::vector<Joints> deviations_at(const RecordedRun& run, const std::vector<double>& instants,
-                                  std::size_t every, std::size_t rows);
+/// Deviations at the instants 0, every, 2 every, ..., linear between samples; behind the last
+/// sample that of it.
+/// @param deviation  of the samples (5)
+/// @param instants   of the samples
+std::vector<Joints> deviations_at(const std::vector<Joints>& deviation,
+                                  const std::vector<double>& instants, std::size_t every,
+                                  std::size_t rows);
 
 }  // namespace servomill::sim::preparation

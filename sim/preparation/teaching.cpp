@@ -148,7 +148,8 @@ class Lessons {
                                  ? &other < &spec_  // later ones have not learnt yet
                                  : other.entry->reads_errors || other.entry->corrects_inertia ||
                                        !other.entry->corrects_following;
-      if ((setup_.sees_tip && !is_recorded()) || !displaces) continue;
+      const bool sees_tip = is_recorded() ? spec_.recordings.front().sees_tip : setup_.sees_tip;
+      if (sees_tip || !displaces) continue;
       throw InputError({}, fmt::format("sees = \"scales\" would take back what {} displaces; use "
                                        "\"tip\", or one of the two",
                                        other.entry->name));

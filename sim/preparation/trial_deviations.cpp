@@ -38,8 +38,23 @@ void CaseTrials::take_recorded_joints() {
       throw InputError({run.file}, fmt::format("axis {} moves in {} and is not recorded",
                                                actual().chain.layout.letter_of(j), path.program));
     }
-    std::erase_if(joints_, [&](int j) { return !is_recorded(run, j); });
+    std::erase_if(joints_, [&](int j) { return !is_recorded(run, j) || !is_seen(run, j, path); });
   }
+}
+
+// At a tip a joint is seen if, wherever it goes, it moves the tip along recorded coordinates alone.
+bool CaseTrials::is_seen(const RecordedRun& run, int joint, const PlannedInstants& path) const {
+  if (!run.sees_tip) return true;
+  if (joint >= kLinearJoints) return false;
+  constexpr double kAlong = 1e-6;
+  for (std::size_t n = 0; n < path.Q.size(); n += times_->every) {
+    const Eigen::Matrix3d J = plant::linear_jacobian(actual().chain, path.Q[n]);
+    for (int k = 0; k < 3; ++k) {
+      const bool is_recorded = std::find(run.seen.begin(), run.seen.end(), k) != run.seen.end();
+      if (!is_recorded && std::abs(J(k, joint)) > kAlong) return false;
+    }
+  }
+  return true;
 }
 
 // The path as the NC interpolates and filters it.
@@ -62,8 +77,8 @@ PlannedInstants CaseTrials::planned_instants() const {
   return out;
 }
 
-// Deviation of the scales from the wanted path: from the interpolated one, which is recorded, and
-// of that one from the wanted path, as the filter rounds it.
+// Deviation from the wanted path: from the interpolated one, which is recorded, and of that one
+// from the wanted path, as the filter rounds it.
 strategies::TrialRun CaseTrials::recorded_run(const RecordedRun& run) const {
   const PlannedInstants path = planned_instants();
   double longest = 0.0;
@@ -78,12 +93,53 @@ strategies::TrialRun CaseTrials::recorded_run(const RecordedRun& run) const {
                     setting_.setup.cutoff, 1.0 / (kSamplesPerSwing * setting_.setup.cutoff) / ms));
   }
   const std::vector<double> instants = instants_of(run, path, actual().chain.layout);
-  strategies::TrialRun out{deviations_at(run, instants, times_->every, wanted_.size()), {}};
+  strategies::TrialRun out{
+      run.sees_tip ? read_at_tip(run, instants, path) : read_by_scales(run, instants), {}};
   for (std::size_t n = 0; n < out.deviation.size(); ++n) {
     out.deviation[n] += path.Q[n * times_->every] - wanted_[n].Q;
     for (int j = 0; j < kJoints; ++j) {
       if (std::find(joints_.begin(), joints_.end(), j) == joints_.end()) out.deviation[n][j] = 0.0;
     }
+  }
+  return out;
+}
+
+// Row by row.
+std::vector<Joints> CaseTrials::read_by_scales(const RecordedRun& run,
+                                               const std::vector<double>& instants) const {
+  std::vector<Joints> off;
+  for (std::size_t n = 0; n < run.t.size(); ++n) {
+    off.emplace_back(run.measured[n] - run.reference[n]);
+  }
+  return deviations_at(off, instants, times_->every, wanted_.size());
+}
+
+// The same of a tip: its way from the standstill before the program less that of the ideal machine
+// at the recorded setpoints. The coordinates of the grid encoder may lie anywhere.
+std::vector<Joints> CaseTrials::read_at_tip(const RecordedRun& run,
+                                            const std::vector<double>& instants,
+                                            const PlannedInstants& path) const {
+  const plant::MachineChain& chain = actual().chain;
+  const auto ideal = [&](std::size_t n) -> Eigen::Vector3d {
+    const auto instant = static_cast<std::size_t>(instants[n]);
+    Joints Q = path.Q[instant];
+    for (const int j : run.joints) Q[j] = run.reference[n][j];
+    const std::size_t row = std::min(instant / times_->every, wanted_.size() - 1);
+    return plant::forward(chain, Q, wanted_[row].p_ST).p_WT;
+  };
+  const Eigen::Vector3d tip_0 = run.measured.front().head<3>(), ideal_0 = ideal(0);
+  std::vector<Joints> off(run.t.size(), Joints::Zero());
+  for (std::size_t n = 0; n < run.t.size(); ++n) {
+    const Eigen::Vector3d read = run.measured[n].head<3>();
+    const Eigen::Vector3d all = (read - tip_0) - (ideal(n) - ideal_0);
+    for (const int k : run.seen) off[n][k] = all[k];
+  }
+  std::vector<Joints> out = deviations_at(off, instants, times_->every, wanted_.size());
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const Eigen::Vector3d at_tip = out[n].head<3>();
+    out[n].setZero();
+    out[n].head<kLinearJoints>() =
+        plant::least_squares(plant::linear_jacobian(chain, wanted_[n].Q), at_tip).x;
   }
   return out;
 }

@@ -71,11 +71,18 @@ class CaseTrials final : public strategies::TrialRuns {
   const model::MachineSettings& machine() const {
     return setting_.setup.on_actual ? actual() : setting_.known;
   }
-  bool sees_tip() const { return setting_.setup.sees_tip && recordings_.empty(); }
+  bool sees_tip() const {
+    return recordings_.empty() ? setting_.setup.sees_tip : recordings_.front().sees_tip;
+  }
   void find_times();
   void take_recorded_joints();
   PlannedInstants planned_instants() const;
+  bool is_seen(const RecordedRun& run, int joint, const PlannedInstants& path) const;
   strategies::TrialRun recorded_run(const RecordedRun& run) const;
+  std::vector<Joints> read_by_scales(const RecordedRun& run,
+                                     const std::vector<double>& instants) const;
+  std::vector<Joints> read_at_tip(const RecordedRun& run, const std::vector<double>& instants,
+                                  const PlannedInstants& path) const;
   void find_wanted(double delay);
   std::vector<PathRange> followed_path() const;
   double between_rows_at(double f) const;

@@ -86,6 +86,28 @@ class RecordedLearning : public testing::Test {
       out << "\n";
     }
   }
+  // The tip as a grid encoder of X and Y reads it, in coordinates of its own.
+  void export_grid(const CaseOutput& one, const std::string& file) const {
+    std::ofstream out(path(file));
+    out << "time [s];x soll [mm];y soll [mm];grid x [mm];grid y [mm]\n";
+    const records::Series& servo = one.result.servo;
+    const auto value = [&](std::size_t n, const char* name, char axis) {
+      return servo.at(n, *servo.column(name, axis));
+    };
+    for (std::size_t n = 0; n < servo.rows(); ++n) {
+      out << fmt::format("{:.6f};{:.6f};{:.6f};{:.6f};{:.6f}\n", servo.at(n, *servo.column("time")),
+                         value(n, "ref_linear", 'X'), value(n, "ref_linear", 'Y'),
+                         777.0 + value(n, "tool_position_true", 'X'),
+                         -31.5 + value(n, "tool_position_true", 'Y'));
+    }
+  }
+  std::string grid(const std::string& file) const {
+    return fmt::format(
+        "[[case.strategy.recording]]\nfile = \"{}\"\nsees = \"tip\"\n"
+        "measured = {{ X = \"grid x\", Y = \"grid y\" }}\n"
+        "reference = {{ X = \"x soll\", Y = \"y soll\" }}\n",
+        path(file));
+  }
   std::string csv(const std::string& file) const {
     return fmt::format(
         "[[case.strategy.recording]]\nfile = \"{}\"\nmeasured = {{ X = \"x ist\", Y = \"y ist\" "
@@ -146,6 +168,48 @@ TEST_F(RecordedLearning, GivesTheOffsetThatTheSameRunGivesWhenItIsSimulated) {
   EXPECT_LT(difference(simulated.learnt[0], recorded.learnt[0]), 0.02 * um);
   EXPECT_NEAR(recorded.learnt[0].lesson.trials[0].rms, simulated.learnt[0].lesson.trials[0].rms,
               0.01 * um);
+}
+
+// The structure gives way to acceleration, which no scale sees.
+const std::string kGivesWay =
+    "[machine_override.inertial_deflection]\nXX = { gain_um_per_m_s2 = 2.0, frequency_Hz = 48.0, "
+    "damping = 0.04 }\n";
+
+TEST_F(RecordedLearning, OfATipGivesTheOffsetOfSimulatedRunsThatSeeIt) {
+  kept(kGivesWay + kPlain, "plain", "run_1.h5");
+  export_grid(run(kGivesWay + kPlain, "plain"), "grid.csv");
+  const std::string tip = "sees = \"tip\"\nlimits = \"ignore\"\nupdates = 1\n";
+  const CaseOutput simulated = run(kGivesWay + learning("one", tip), "one");
+  const CaseOutput by_scales = run(
+      kGivesWay + learning("one", "limits = \"ignore\"\n" + recording("run_1.h5", "plain")), "one");
+  const CaseOutput from_file =
+      run(kGivesWay + learning("one", "limits = \"ignore\"\n" + recording("run_1.h5", "plain") +
+                                          "sees = \"tip\"\n"),
+          "one");
+  const CaseOutput from_grid =
+      run(kGivesWay + learning("one", "limits = \"ignore\"\n" + grid("grid.csv")), "one");
+  EXPECT_GT(difference(simulated.learnt[0], by_scales.learnt[0]), 1.0 * um);
+  EXPECT_LT(difference(simulated.learnt[0], from_file.learnt[0]), 0.02 * um);
+  EXPECT_LT(difference(simulated.learnt[0], from_grid.learnt[0]), 0.03 * um);
+  EXPECT_EQ(std::count(from_grid.notes.begin(), from_grid.notes.end(),
+                       "case one: strategy learning: axis Z is not recorded and gets no offset"),
+            1);
+}
+
+TEST_F(RecordedLearning, OfATipNamesWhatItLacks) {
+  const auto with = [&](const std::string& channels) {
+    return refusal("[[case.strategy.recording]]\nfile = \"grid.csv\"\nsees = \"tip\"\n" + channels);
+  };
+  EXPECT_EQ(with("measured = { B = \"b\" }\nreference = { X = \"x soll\" }\n"),
+            "small.toml:16:12: error: case[0].strategy[0].recording[0].measured = {...}; of a tip "
+            "must name channels of X, Y or Z");
+  EXPECT_EQ(with("measured = { X = \"grid x\" }\nreference = {}\n"),
+            "small.toml:17:13: error: case[0].strategy[0].recording[0].reference = {...}; must "
+            "name the channels of the axes that move");
+  const std::string mixed = refusal(grid("grid.csv") + csv("run.csv"));
+  EXPECT_NE(mixed.find("must see the tip in all recordings, or the scales in all"),
+            std::string::npos)
+      << mixed;
 }
 
 // Recordings need no trial runs, and are learnt from where cases are run as a user runs them.
