@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "sim/calibration/short_waves.h"
+#include "sim/model/unit_error.h"
 
 namespace servomill::sim::calibration {
 namespace {
 
-constexpr double kUnitError = 1e-6;  // m, rad; effects are proportional to it
-constexpr double kNothing = 1e-12;   // m per m, of an effect that is rounding
+constexpr double kNothing = 1e-12;  // m per m, of an effect that is rounding
 
 }  // namespace
 
@@ -25,33 +25,24 @@ ErrorEffects::ErrorEffects(const plant::MachineChain& chain, const Unknowns& unk
     P_.block(line_of_[f], function.first, function.basis.lines(), function.basis.size()) =
         function.basis.projection();
   }
-  for (const SoughtLocation& location : unknowns.locations) {
-    plant::ErrorModel errors;
-    errors.location(location.name) = kUnitError;
-    unit_.emplace_back(chain, errors);
-  }
-  for (const SoughtFunction& function : unknowns.functions) {
-    plant::ErrorModel errors;
-    errors.component(function.name) = plant::constant(kUnitError);
-    unit_.emplace_back(chain, errors);
-  }
-  for (const SoughtGrid& grid : unknowns.grids) {
-    plant::ErrorModel errors;
-    errors.component(grid.name) = plant::constant(kUnitError);
-    unit_.emplace_back(chain, errors);
-  }
+  const auto add = [&](const plant::ErrorName& name) {
+    unit_.emplace_back(chain, model::unit_error(name));
+  };
+  for (const SoughtLocation& location : unknowns.locations) add(location.name);
+  for (const SoughtFunction& function : unknowns.functions) add(function.name);
+  for (const SoughtGrid& grid : unknowns.grids) add(grid.name);
 }
 
 void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)>& add) const {
   std::size_t k = 0;
   for (; k < unknowns_.locations.size(); ++k) {
     add(unknowns_.first_location() + static_cast<int>(k),
-        pose.weight * unit_[k].first_order_at(pose) / kUnitError);
+        pose.weight * unit_[k].first_order_at(pose) / model::kUnitError);
   }
   std::vector<BasisValue> values;
   for (std::size_t f = 0; f < unknowns_.functions.size(); ++f) {
     const SoughtFunction& function = unknowns_.functions[f];
-    const double effect = pose.weight * unit_[k + f].first_order_at(pose) / kUnitError;
+    const double effect = pose.weight * unit_[k + f].first_order_at(pose) / model::kUnitError;
     if (std::abs(effect) < kNothing) continue;
     const int joint = *chain_.layout.joint_of(function.name.axis);
     values.clear();
@@ -72,7 +63,8 @@ void ErrorEffects::visit_grids(const Pose& pose,
   std::vector<BasisValue> values;
   for (std::size_t g = 0; g < unknowns_.grids.size(); ++g) {
     const SoughtGrid& grid = unknowns_.grids[g];
-    const double effect = pose.weight * unit_[first_unit + g].first_order_at(pose) / kUnitError;
+    const double effect =
+        pose.weight * unit_[first_unit + g].first_order_at(pose) / model::kUnitError;
     if (std::abs(effect) < kNothing) continue;
     const auto& axes = grid.basis.form().axes;
     values.clear();
@@ -94,7 +86,7 @@ Eigen::Vector3d ErrorEffects::unit_shift(std::size_t f, const Joints& Q,
     pose.Q = Q;
     pose.p_ST = p_ST;
     pose.n_W = Eigen::Vector3d::Unit(k);
-    out[k] = unit_[unknowns_.locations.size() + f].first_order_at(pose) / kUnitError;
+    out[k] = unit_[unknowns_.locations.size() + f].first_order_at(pose) / model::kUnitError;
   }
   return out;
 }

@@ -2,13 +2,13 @@
 
 #include <cassert>
 
+#include "sim/model/unit_error.h"
+
 namespace servomill::sim::model {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector3d;
-
-constexpr double kUnitError = 1e-6;  // m, rad; effects are proportional to it
 
 double travelling(const plant::ErrorFunction& f, double s, const AxisWords& q, double direction) {
   const double mean = f.value(s, q);
@@ -34,13 +34,7 @@ std::size_t TipUncertainty::unit_of(const plant::MachineChain& chain,
   for (std::size_t i = 0; i < units_.size(); ++i) {
     if (units_[i].name == name) return i;
   }
-  plant::ErrorModel errors;
-  if (name.is_location) {
-    errors.location(name) = kUnitError;
-  } else {
-    errors.component(name) = plant::constant(kUnitError);
-  }
-  units_.push_back({name, plant::VolumetricModel(chain, errors)});
+  units_.push_back({name, plant::VolumetricModel(chain, unit_error(name))});
   return units_.size() - 1;
 }
 

@@ -332,6 +332,13 @@ class Wrong(Case):
         self.assertEqual(self.time("G21 G90 G0 X1 C90\nM2\n", status=2).stderr,
                          "part.ngc: error: the cycle time is unknown: line 1 moves C, but the machine has no such axis\n")
 
+    def test_faults_of_programs_come_before_those_of_outputs(self):
+        self.write("times.csv", "kept")
+        done = self.time("G0 X1\nG1 Y(\nM2\n", "--csv", "times.csv", *START, status=2)
+        self.assertIn("part.ngc:2:", done.stderr)
+        done = self.time("G0 X1\nM2\n", "--csv", "times.csv", *START, status=2)
+        self.assertIn("times.csv: error: exists", done.stderr)
+
     def test_options_of_programs_are_refused_for_scenarios(self):
         scenario = os.path.join(SCENARIOS, "iso", "circular.toml")
         self.assertIn("--start: error: is for programs", self.servomill("time", scenario, "--start", "X=0", status=2).stderr)

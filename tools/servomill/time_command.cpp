@@ -156,9 +156,9 @@ int time_command(const Arguments& arguments) {
   if (top < 0) throw InputError({"--top"}, "must be >= 0");
   form.top = static_cast<std::size_t>(top);
   const std::string csv = output_of(options, "csv", ".csv");
-  refuse_unwritable(options, csv);
   ProgressLine line(options);
   const std::vector<CycleTimeReport> reports = reports_of(options);
+  refuse_unwritable(options, csv);  // behind the faults of what is read
   line.end();
   print_warnings(reports);
   if (!csv.empty()) {

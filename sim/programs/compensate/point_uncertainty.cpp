@@ -9,6 +9,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/uncertain_errors.h"
 #include "sim/model/undetermined_errors.h"
+#include "sim/model/unit_error.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/system/json.h"
@@ -19,7 +20,6 @@ namespace {
 constexpr double kUnmoved = 1e-12;    // m, rad: what rounding leaves of positions
 constexpr double kJustBefore = 0.01;  // of a block
 
-constexpr double kUnitError = 1e-6;  // m, rad
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // A number for JSON.
@@ -38,16 +38,6 @@ std::string letters_of(const std::array<bool, 3>& which) {
   return out;
 }
 
-plant::ErrorModel unit_error(const plant::ErrorName& name) {
-  plant::ErrorModel out;
-  if (name.is_location) {
-    out.location(name) = kUnitError;
-  } else {
-    out.component(name) = plant::constant(kUnitError);
-  }
-  return out;
-}
-
 }  // namespace
 
 PointUncertainty::PointUncertainty(const plant::MachineChain& chain,
@@ -56,7 +46,7 @@ PointUncertainty::PointUncertainty(const plant::MachineChain& chain,
     : tip_(chain, identified), errors_(chain, errors), layout_(chain.layout), keeps_(keeps) {
   for (const plant::ErrorName& name :
        model::undetermined_errors(errors, identified, chain.layout)) {
-    undetermined_.push_back({name, plant::VolumetricModel(chain, unit_error(name)), {}});
+    undetermined_.push_back({name, plant::VolumetricModel(chain, model::unit_error(name)), {}});
   }
 }
 
