@@ -103,6 +103,7 @@ class RecordReader {
       : table_(table), machine_(machine), loop_(loop), own_file_(std::move(file)) {}
 
   std::optional<AxisRecord> read() {
+    const std::size_t before = table_.faults();  // of other recordings
     out_.place = table_.place("file");
     out_.record.name = table_.text("file");
     out_.record.validation = table_.choice_or("use", 0, kUses) == 1;
@@ -118,18 +119,23 @@ class RecordReader {
     longest_gap_ =
         table_.real_or("longest_gap_ms", 1.5 * loop_.period, config::kTime, {config::above(0.0)});
     const std::string unit = table_.text_or("time_unit", "");
-    if (table_.faults() > 0) return std::nullopt;
+    if (table_.faults() > before) return refused();
     recording_ = recordings::read_recording(path, unit);
     read_roles();
-    if (table_.faults() > 0) return std::nullopt;
+    if (table_.faults() > before) return refused();
     sample();
-    if (table_.faults() > 0) return std::nullopt;
+    if (table_.faults() > before) return refused();
     if (const auto fault = impossible(out_.record)) table_.fault("file", *fault);
     return std::move(out_);
   }
 
  private:
   static constexpr double kForever = 1e300;
+
+  std::nullopt_t refused() {
+    table_.skip_rest();
+    return std::nullopt;
+  }
 
   void read_roles() {
     config::Reader axes = table_.table("axis");

@@ -49,6 +49,21 @@ TEST_F(ReadExperiment, RefusesChannelsThatAreNotThereWithTheNearest) {
                                        "; did you mean 'y'?; it has q, y, F\n");
 }
 
+TEST_F(ReadExperiment, NamesTheFaultsOfEachRecording) {
+  const auto recording = [](const std::string& feedback) {
+    return "[[recording]]\nfile = \"recording.csv\"\naxis.X = { command = \"q\", feedback = \"" +
+           feedback + "\" }\n";
+  };
+  const std::string found = faults(recording("yy") + recording("y") + recording("zz") + kMass);
+  EXPECT_NE(found.find("recording[1].axis.X.feedback = \"yy\"; is not a channel"),
+            std::string::npos)
+      << found;
+  EXPECT_NE(found.find("recording[3].axis.X.feedback = \"zz\"; is not a channel"),
+            std::string::npos)
+      << found;
+  EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 2) << found;
+}
+
 TEST_F(ReadExperiment, RefusesUnitsOfAnotherQuantity) {
   const std::string other =
       "[[recording]]\nfile = \"recording.csv\"\naxis.X = { command = \"q\", "
