@@ -16,6 +16,10 @@ FUNCTION = re.compile(r"^(?:\[\[\w+\]\] )?[\w:<>,&*\s]+?\b(\w+)\(")
 NO_FUNCTION = ("namespace", "struct", "class", "enum", "using", "constexpr", "const ", "static_assert", "template", "return")
 
 
+def lists_of_sources(root):
+    return [path for room in ("plant", "controllers", "strategies", "sim", "tools") for path in (root / room).rglob("CMakeLists.txt")]
+
+
 def code(text):
     """A source without its texts and comments."""
     text = re.sub(r'R"(\w*)\(.*?\)\1"', '""', text, flags=re.DOTALL)
@@ -46,7 +50,7 @@ def called(text):
 def main():
     root = pathlib.Path(sys.argv[1])
     faults, groups = [], 0
-    for file in (path for room in ("plant", "controllers", "strategies", "sim", "tools") for path in (root / room).rglob("CMakeLists.txt")):
+    for file in lists_of_sources(root):
         for listed in GROUP.findall(file.read_text(encoding="utf-8")):
             groups += 1
             files = {name: file.parent / name for name in listed.split()}
