@@ -60,9 +60,9 @@ void Translator::refuse_unread(const Block& block) {
     fail((*one.number)->place,
          fmt::format("{}: nothing in the block reads it; it is for {}", one.name, one.where));
   }
-  if (block.RND ? block.CHR || block.CHF : block.CHR && block.CHF) {
-    fail("RND, CHR and CHF exclude each other; program one of them");
-  }
+  const int corners =
+      int{block.RND.has_value()} + int{block.CHR.has_value()} + int{block.CHF.has_value()};
+  if (corners > 1) fail("RND, CHR and CHF exclude each other; program one of them");
   refuse_unread_call(block, is_path);
 }
 

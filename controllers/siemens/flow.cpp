@@ -37,20 +37,49 @@ double Translator::condition(Scanner& scanner) {
 
 // True if the block belongs to the flow of the program or defines something.
 bool Translator::flow(Scanner& scanner, const std::string& word, const Line& line) {
-  const bool is_taken = word == "IF" || word == "ELSE" || word == "ENDIF" || word == "WHILE" ||
-                        word == "ENDWHILE" || word == "FOR" || word == "ENDFOR" || word == "LOOP" ||
-                        word == "ENDLOOP" || word == "REPEAT" || word == "REPEATB" ||
-                        word == "UNTIL" || word == "ENDLABEL" || is_jump(word) || word == "DEF" ||
-                        word == "PROC" || word == "EXTERN" || word == "RET" || word == "CALL" ||
-                        word == "EXTCALL" || word == "CASE" || word == "REDEF";
-  if (!is_taken) return false;
+  constexpr auto kStandAlone =
+      std::to_array<std::string_view>({"ELSE", "ENDIF", "ENDWHILE", "ENDFOR", "LOOP", "ENDLOOP"});
+  constexpr auto kOthers = std::to_array<std::string_view>(
+      {"IF", "WHILE", "FOR", "REPEAT", "REPEATB", "UNTIL", "ENDLABEL", "DEF", "PROC", "EXTERN",
+       "RET", "CALL", "EXTCALL", "CASE", "REDEF"});
+  const auto is_in = [&](const auto& all) {
+    return std::find(all.begin(), all.end(), word) != all.end();
+  };
+  const bool stands_alone = is_in(kStandAlone);
+  if (!stands_alone && !is_in(kOthers) && !is_jump(word)) return false;
   scanner.take_word(word);
-  const bool stands_alone = word == "ELSE" || word == "ENDIF" || word == "ENDWHILE" ||
-                            word == "ENDFOR" || word == "LOOP" || word == "ENDLOOP";
   if (stands_alone) require_end(scanner, word);
-  if (word == "IF" || word == "ELSE" || word == "ENDIF") {
-    if (word == "IF") branch(scanner, line);
-    if (word == "ELSE") go_behind(line);
+  if (!define_or_call(scanner, word)) go_on(scanner, word, line);
+  return true;
+}
+
+// True for a word that defines, calls or returns.
+bool Translator::define_or_call(Scanner& scanner, const std::string& word) {
+  if (word == "EXTERN") return true;
+  if (word == "REDEF") fail("REDEF is not supported");
+  if (word == "DEF") {
+    define(scanner);
+  } else if (word == "PROC") {
+    begin_procedure(scanner);
+  } else if (word == "CALL" || word == "EXTCALL") {
+    call_by_text(scanner);
+  } else if (word == "RET") {
+    if (!scanner.at_end()) fail("RET with values is not supported");
+    returns_.empty() ? end_program(30) : leave_subprogram();
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Words that decide which block comes next.
+void Translator::go_on(Scanner& scanner, const std::string& word, const Line& line) {
+  if (word == "IF") {
+    branch(scanner, line);
+  } else if (word == "ELSE") {
+    go_behind(line);
+  } else if (word == "ENDIF") {
+    return;
   } else if (word == "FOR") {
     count_loop(scanner, line);
   } else if (word == "ENDFOR") {
@@ -61,27 +90,13 @@ bool Translator::flow(Scanner& scanner, const std::string& word, const Line& lin
     jump(word, target);
   } else if (word == "REPEAT" || word == "REPEATB") {
     repeat(scanner, word, line);
-  } else if (word == "DEF") {
-    define(scanner);
-  } else if (word == "PROC") {
-    begin_procedure(scanner);
   } else if (word == "CASE") {
     choose(scanner);
-  } else if (word == "CALL" || word == "EXTCALL") {
-    call_by_text(scanner);
-  } else if (word == "RET") {
-    if (!scanner.at_end()) fail("RET with values is not supported");
-    returns_.empty() ? end_program(30) : leave_subprogram();
   } else if (word == "ENDLABEL") {
     fail("ENDLABEL is a label: write ENDLABEL:");
-  } else if (word == "EXTERN") {
-    return true;
-  } else if (word == "REDEF") {
-    fail("REDEF is not supported");
   } else {
     loop(scanner, word, line);
   }
-  return true;
 }
 
 void Translator::go_behind(const Line& line) {

@@ -70,27 +70,38 @@ void Translator::set_frame(const Block& block, const Code& code) {
     rotate_frame(block, frame);
     return use_frame(frame);
   }
-  Eigen::Vector3d values = name == "SCALE" ? Eigen::Vector3d::Ones() : Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < block.axes.size(); ++i) {
-    if (!block.axes[i]) continue;
-    const double value = block.axes[i]->value;
-    const auto k = static_cast<Eigen::Index>(i);
-    if (i >= 3) {
-      if (name == "TRANS") frame.translate_rotary(i, value);
-      if (name == "MIRROR") frame.mirror_rotary(i);
-      if (name == "SCALE") fail(block.axes[i]->place, "SCALE of a rotary axis is not supported");
-    } else if (name == "TRANS") {
-      values[k] = value * unit();
-    } else if (name == "SCALE") {
-      if (!(value > 0.0)) fail(block.axes[i]->place, "SCALE: the factor must be > 0");
-      values[k] = value;
-    } else {
-      frame.mirror(static_cast<int>(i));
+  for (std::size_t i = 3; i < block.axes.size(); ++i) {
+    if (block.axes[i]) set_rotary(frame, name, i, *block.axes[i]);
+  }
+  set_linear(frame, name, block);
+  use_frame(frame);
+}
+
+void Translator::set_rotary(Frame& frame, const std::string& name, std::size_t axis,
+                            const Number& number) {
+  if (name == "TRANS") {
+    frame.translate_rotary(axis, number.value);
+  } else if (name == "MIRROR") {
+    frame.mirror_rotary(axis);
+  } else {
+    fail(number.place, "SCALE of a rotary axis is not supported");
+  }
+}
+
+void Translator::set_linear(Frame& frame, const std::string& name, const Block& block) {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), factor = Eigen::Vector3d::Ones();
+  for (int i = 0; i < 3; ++i) {
+    const auto& number = block.axes[static_cast<std::size_t>(i)];
+    if (!number) continue;
+    shift[i] = number->value * unit();
+    factor[i] = number->value;
+    if (name == "MIRROR") frame.mirror(i);
+    if (name == "SCALE" && !(number->value > 0.0)) {
+      fail(number->place, "SCALE: the factor must be > 0");
     }
   }
-  if (name == "TRANS") frame.translate(values);
-  if (name == "SCALE") frame.scale(values);
-  use_frame(frame);
+  if (name == "TRANS") frame.translate(shift);
+  if (name == "SCALE") frame.scale(factor);
 }
 
 // RPL turns about the axis across the plane; angles of X, Y, Z turn about Z first, then about the
@@ -126,43 +137,50 @@ void Translator::use_frame(const Frame& frame) {
 
 // G110: from the position programmed last, G111: from the origin of the workpiece, G112: from the
 // last pole. [F] "Defining the pole"
-void Translator::pole(const Block& block, const Code& code) {
-  refuse_measures(block, code);
-  const auto axes = plane_axes(modes_.normal);
-  Point from = Point::Zero();
-  if (code.name == "G110") {
-    const auto now = program_point(modes_.normal);
-    if (!now) fail(code.place, "G110: the position in the plane is unknown here");
-    for (const std::size_t axis : axes) {
-      require_same_offset(axis, {0.0, Measure::incremental, code.place});
-    }
-    from = *now;
-  }
+Point Translator::pole_origin(const Code& code) {
   if (code.name == "G112") {
     if (!pole_) fail(code.place, "G112: no pole is set");
-    from = *pole_;
+    return *pole_;
   }
+  if (code.name != "G110") return Point::Zero();
+  const auto now = program_point(modes_.normal);
+  if (!now) fail(code.place, "G110: the position in the plane is unknown here");
+  for (const std::size_t axis : plane_axes(modes_.normal)) {
+    require_same_offset(axis, {0.0, Measure::incremental, code.place});
+  }
+  return *now;
+}
+
+void Translator::pole(const Block& block, const Code& code) {
+  refuse_measures(block, code);
+  const Point from = pole_origin(code);
   polar_angle_.reset();
-  if (block.is_polar()) {
-    polar_radius_.reset();  // whether it is that of the pole from here on is not in the manual
-    if (block.has_axes()) {
-      fail(code.place,
-           fmt::format("{} with AP and RP beside axis words; use one of both", code.name));
-    }
-    if (!block.AP || !block.RP) fail(code.place, fmt::format("{} needs AP and RP", code.name));
-    const double angle = block.AP->value * deg;
-    from += block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));
-  } else {
-    for (std::size_t i = 0; i < block.axes.size(); ++i) {
-      if (!block.axes[i]) continue;
-      if (i != axes[0] && i != axes[1]) {
-        fail(block.axes[i]->place,
-             fmt::format("{}: the pole lies in the plane of G{}", code.name, 19 - modes_.normal));
-      }
-      from[i == axes[0] ? 0 : 1] += block.axes[i]->value * unit();
-    }
+  pole_ = from + (block.is_polar() ? polar_pole(block, code) : cartesian_pole(block, code));
+}
+
+Point Translator::polar_pole(const Block& block, const Code& code) {
+  polar_radius_.reset();  // whether it is that of the pole from here on is not in the manual
+  if (block.has_axes()) {
+    fail(code.place,
+         fmt::format("{} with AP and RP beside axis words; use one of both", code.name));
   }
-  pole_ = from;
+  if (!block.AP || !block.RP) fail(code.place, fmt::format("{} needs AP and RP", code.name));
+  const double angle = block.AP->value * deg;
+  return block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));
+}
+
+Point Translator::cartesian_pole(const Block& block, const Code& code) {
+  const auto axes = plane_axes(modes_.normal);
+  Point out = Point::Zero();
+  for (std::size_t i = 0; i < block.axes.size(); ++i) {
+    if (!block.axes[i]) continue;
+    if (i != axes[0] && i != axes[1]) {
+      fail(block.axes[i]->place,
+           fmt::format("{}: the pole lies in the plane of G{}", code.name, 19 - modes_.normal));
+    }
+    out[i == axes[0] ? 0 : 1] = block.axes[i]->value * unit();
+  }
+  return out;
 }
 
 // TRAORI: positions are those of the tip whatever the rotary axes do.

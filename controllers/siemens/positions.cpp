@@ -69,17 +69,15 @@ Point Translator::work_point(int normal, const Point& program) const {
   return {work[static_cast<Eigen::Index>(axes[0])], work[static_cast<Eigen::Index>(axes[1])]};
 }
 
-// X, Y, Z that move, since the block names them or the frame is turned. Increments from unknown
-// positions stay increments.
-void Translator::linear_ends(const Block& block, Values& end, bool& is_incremental) {
-  Eigen::Vector3d p = Eigen::Vector3d::Zero(), by = Eigen::Vector3d::Zero();
-  std::array<bool, 3> is_named{}, is_known{};
+// X, Y and Z of a block in program coordinates.
+Translator::NamedEnds Translator::named_ends(const Block& block) {
+  NamedEnds out;
   std::size_t named = 0, free = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const auto now = program_position(i);
-    is_known[i] = now.has_value();
-    p[k] = now.value_or(0.0);
+    out.is_known[i] = now.has_value();
+    out.p[k] = now.value_or(0.0);
     if (!block.axes[i]) continue;
     const Number& number = *block.axes[i];
     if (number.measure != Measure::modal && number.measure != Measure::absolute &&
@@ -88,38 +86,55 @@ void Translator::linear_ends(const Block& block, Values& end, bool& is_increment
            fmt::format("{}: DC, ACP and ACN are for rotary axes", letter(kAllAxes[i])));
     }
     require_same_offset(i, number);
-    is_named[i] = true;
-    ++named;
-    by[k] = number.value * unit();
     const bool is_by = is_increment(number);
+    out.is_named[i] = true;
+    out.by[k] = number.value * unit();
+    out.p[k] = out.by[k] + (is_by ? out.p[k] : 0.0);
+    out.is_known[i] = out.is_known[i] || !is_by;
+    ++named;
     if (is_by && !now) ++free;
-    p[k] = by[k] + (is_by ? p[k] : 0.0);
-    is_known[i] = is_known[i] || !is_by;
   }
   if (free > 0 && free < named) {
     fail(
         "an increment from a position that is unknown here, beside other axes; program an "
         "absolute position first");
   }
-  is_incremental = free > 0;
+  out.is_incremental = free > 0;
+  return out;
+}
+
+// X, Y, Z that move, since the block names them or the frame is turned. Increments from unknown
+// positions stay increments.
+void Translator::linear_ends(const Block& block, Values& end, bool& is_incremental) {
+  const NamedEnds named = named_ends(block);
+  is_incremental = named.is_incremental;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_named[i]) continue;
+    if (!named.is_named[i]) continue;
     programmed_[i].reset();
-    if (!is_incremental) programmed_[i] = p[static_cast<Eigen::Index>(i)];
+    if (!is_incremental) programmed_[i] = named.p[static_cast<Eigen::Index>(i)];
   }
-  const Eigen::Vector3d to = is_incremental ? modes_.frame.increment(by) : modes_.frame.to_work(p);
+  const Eigen::Vector3d to =
+      is_incremental ? modes_.frame.increment(named.by) : modes_.frame.to_work(named.p);
   for (int i = 0; i < 3; ++i) {
-    bool is_moved = false;
-    for (int j = 0; j < 3; ++j) {
-      is_moved = is_moved || (is_named[static_cast<std::size_t>(j)] && modes_.frame.couples(i, j));
-    }
-    if (!is_moved) continue;
-    for (int j = 0; j < 3 && !is_incremental; ++j) {
-      if (is_known[static_cast<std::size_t>(j)] || !modes_.frame.couples(i, j)) continue;
-      fail(fmt::format("the frame is rotated, and the position of {} is unknown here; program it",
-                       "XYZ"[j]));
-    }
+    if (!is_moved(named, i)) continue;
+    if (!is_incremental) require_known(named, i);
     end[static_cast<std::size_t>(i)] = to[i];
+  }
+}
+
+bool Translator::is_moved(const NamedEnds& named, int axis) const {
+  for (int j = 0; j < 3; ++j) {
+    if (named.is_named[static_cast<std::size_t>(j)] && modes_.frame.couples(axis, j)) return true;
+  }
+  return false;
+}
+
+// A turned frame leads from all positions that it couples.
+void Translator::require_known(const NamedEnds& named, int axis) {
+  for (int j = 0; j < 3; ++j) {
+    if (named.is_known[static_cast<std::size_t>(j)] || !modes_.frame.couples(axis, j)) continue;
+    fail(fmt::format("the frame is rotated, and the position of {} is unknown here; program it",
+                     "XYZ"[j]));
   }
 }
 

@@ -288,32 +288,34 @@ void Translator::begin_functions(const Block& block) {
   require_one_of(block, {7, 9});
   if (block.SPOS) orient_spindle();
   if (path_.has_corner() && !block.functions.empty()) warn_of_corner();
+  for (const Function& one : block.functions) begin_function(one);
+}
+
+void Translator::begin_function(const Function& one) {
   constexpr std::array kOfLanguage = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 17, 19, 30};
-  for (const Function& one : block.functions) {
-    if (one.number == 70) {
-      fail(one.place, "M70: the spindle as an axis is not supported; use a rotary axis");
-    }
-    if (std::find(kOfLanguage.begin(), kOfLanguage.end(), one.number) == kOfLanguage.end()) {
-      const bool is_gear = one.number >= 40 && one.number <= 45;
-      warn_once(fmt::format("M{}", one.number),
-                fmt::format("M{}: {}; ignored: no effect on motion", one.number,
-                            is_gear ? "a gear stage" : "a function of the machine builder"));
-      continue;
-    }
-    const bool is_of_master = one.spindle == -1 || one.spindle == 1;
-    if (!is_of_master) {
-      warn_once("spindle",
-                fmt::format("M{}={}: a further spindle; ignored", one.spindle, one.number));
-      continue;
-    }
-    if (one.number == 3 || one.number == 4) {
-      if (!speed_) fail(one.place, fmt::format("M{}: no S before it", one.number));
-      spindle_ = one.number == 3 ? 1 : -1;
-      note(fmt::format("M{}", one.number));
-    }
-    if (one.number == 19) orient_spindle();
-    if (one.number == 7 || one.number == 8) note(fmt::format("M{}", one.number));
+  if (one.number == 70) {
+    fail(one.place, "M70: the spindle as an axis is not supported; use a rotary axis");
   }
+  if (std::find(kOfLanguage.begin(), kOfLanguage.end(), one.number) == kOfLanguage.end()) {
+    const bool is_gear = one.number >= 40 && one.number <= 45;
+    warn_once(fmt::format("M{}", one.number),
+              fmt::format("M{}: {}; ignored: no effect on motion", one.number,
+                          is_gear ? "a gear stage" : "a function of the machine builder"));
+    return;
+  }
+  const bool is_of_master = one.spindle == -1 || one.spindle == 1;
+  if (!is_of_master) {
+    warn_once("spindle",
+              fmt::format("M{}={}: a further spindle; ignored", one.spindle, one.number));
+    return;
+  }
+  const bool turns_on = one.number == 3 || one.number == 4;
+  if (turns_on) {
+    if (!speed_) fail(one.place, fmt::format("M{}: no S before it", one.number));
+    spindle_ = one.number == 3 ? 1 : -1;
+  }
+  if (one.number == 19) orient_spindle();
+  if (turns_on || one.number == 7 || one.number == 8) note(fmt::format("M{}", one.number));
 }
 
 void Translator::end_functions(const Block& block) {

@@ -133,6 +133,7 @@ class Translator {
   Feed effective(Feed feed, double override) const;
   void warn_of_start(const Block& block);
   void begin_functions(const Block& block);
+  void begin_function(const Function& one);
   void require_one_of(const Block& block, std::initializer_list<int> group) const;
   void end_functions(const Block& block);
   void set_speed(const Block& block);
@@ -146,8 +147,13 @@ class Translator {
   bool act(const Block& block);
   void refuse_measures(const Block& block, const Code& code) const;
   void set_frame(const Block& block, const Code& code);
+  void set_rotary(Frame& frame, const std::string& name, std::size_t axis, const Number& number);
+  void set_linear(Frame& frame, const std::string& name, const Block& block);
   void rotate_frame(const Block& block, Frame& frame);
   void pole(const Block& block, const Code& code);
+  Point pole_origin(const Code& code);
+  Point polar_pole(const Block& block, const Code& code);
+  Point cartesian_pole(const Block& block, const Code& code);
   void use_frame(const Frame& frame);
   void transform(const Code& code);
   void forget_linear_positions();
@@ -186,7 +192,16 @@ class Translator {
 
   // positions.cpp
   Values ends(const Block& block, bool& is_incremental);
+  struct NamedEnds {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();   // m, program coordinates; 0 where unknown
+    Eigen::Vector3d by = Eigen::Vector3d::Zero();  // m, as programmed
+    std::array<bool, 3> is_named{}, is_known{};
+    bool is_incremental = false;
+  };
+  NamedEnds named_ends(const Block& block);
   void linear_ends(const Block& block, Values& end, bool& is_incremental);
+  bool is_moved(const NamedEnds& named, int axis) const;
+  void require_known(const NamedEnds& named, int axis);
   double rotary_end(std::size_t axis, const Number& number);
   bool is_increment(const Number& number) const;
   void require_same_offset(std::size_t axis, const Number& number) const;
@@ -210,6 +225,8 @@ class Translator {
 
   // flow.cpp: structures, jumps, repetitions
   bool flow(Scanner& scanner, const std::string& word, const Line& line);
+  bool define_or_call(Scanner& scanner, const std::string& word);
+  void go_on(Scanner& scanner, const std::string& word, const Line& line);
   static void require_end(Scanner& scanner, std::string_view what);
   static std::string read_target(Scanner& scanner, const std::string& word);
   void branch(Scanner& scanner, const Line& line);
