@@ -9,8 +9,10 @@
 namespace servomill {
 namespace {
 
-constexpr double kLengthTol = 1e-13;   // m, of the length of a cell
-constexpr int kMaxHalvings = 40;       // of a Bezier curve, at cusps
+constexpr double kLengthTol = 1e-13;  // m, of the length of a cell
+constexpr int kMaxHalvings = 40;      // of a Bezier curve, at cusps
+// Far more than any path has: coordinates of 1e20 m leave more rounding than kLengthTol everywhere.
+constexpr std::size_t kMaxCells = 20000;
 constexpr double kStill = 1e-9;        // of the length: derivative by t below which it stands
 constexpr double kBeside = 1e-5;       // t, how far beside a standstill its direction is taken
 constexpr double kCornerAngle = 1e-4;  // rad, sharper ones are corners
@@ -132,7 +134,8 @@ void SplineCurve::measure_part(std::size_t bezier, double from, double to, doubl
   const double middle = 0.5 * (from + to);
   const double first = part_length(bezier, from, middle);
   const double second = part_length(bezier, middle, to);
-  if (std::abs(first + second - whole) > kLengthTol && depth < kMaxHalvings) {
+  const bool is_exact = std::abs(first + second - whole) <= kLengthTol;
+  if (!is_exact && depth < kMaxHalvings && cells_.size() < kMaxCells) {
     measure_part(bezier, from, middle, first, depth + 1);
     measure_part(bezier, middle, to, second, depth + 1);
     return;
