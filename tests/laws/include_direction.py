@@ -30,7 +30,7 @@ SIM_ROOMS = {
     "metrology": ["numerics"],
     "records": ["system"],
     "recordings": ["records", "system"],
-    "readings": ["config", "recordings"],
+    "readings": ["config", "recordings", "records"],
     "standards": ["config", "metrology", "numerics", "readings", "recordings", "system"],
     "responses": ["numerics", "recordings", "records", "system"],
     "model": ["controllers", "strategies", "config", "metrology", "numerics", "records", "standards"],
