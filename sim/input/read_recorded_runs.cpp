@@ -14,7 +14,7 @@ namespace servomill::sim::input {
 namespace {
 
 constexpr std::string_view kLetters = "XYZABC";
-constexpr std::array<std::string_view, 2> kSeen = {"scales", "tip"};
+constexpr std::array<std::string_view, 3> kSeen = {"scales", "tip", "part"};  // as model::SeenBy
 
 // { X = "s actual X", Y = "s actual Y" }
 std::map<char, std::string> read_channels(config::Reader& run, const char* key) {
@@ -47,14 +47,17 @@ model::RecordedRunSpec read_run(config::Reader& run) {
   out.place = run.place("file");
   if (run.faults() == before && file.empty()) run.fault("file", "must name a recording");
   out.file = beside(out.place, file);
-  out.sees_tip = run.choice_or("sees", 0, kSeen) == 1;
+  out.sees = static_cast<model::SeenBy>(run.choice_or("sees", 0, kSeen));
+  const bool is_part = out.sees == model::SeenBy::part;
   if (run.has("case")) {
     out.case_name = run.text("case");
+    if (is_part) out.probes = run.texts_or("probes", {});
     return out;
   }
+  if (is_part) return out;
   out.measured = read_channels(run, "measured");
   out.reference = read_channels(run, "reference");
-  if (out.sees_tip) {
+  if (out.sees == model::SeenBy::tip) {
     check_tip(run, out, before);
     return out;
   }
@@ -76,8 +79,8 @@ void read_recorded_runs(config::Reader& table, model::StrategySpec& strategy) {
   }
   if (strategy.recordings.empty()) return;
   for (const model::RecordedRunSpec& one : strategy.recordings) {
-    if (one.sees_tip == strategy.recordings.front().sees_tip) continue;
-    table.fault("recording", "must see the tip in all recordings, or the scales in all");
+    if (one.sees == strategy.recordings.front().sees) continue;
+    table.fault("recording", "must see the same in all recordings: scales, tip or part");
     break;
   }
   for (const std::string_view key : strategy.entry->recorded_instead) {

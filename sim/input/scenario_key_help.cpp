@@ -322,10 +322,14 @@ constexpr KeyHelp kScenario[] = {
     {"case.strategy", "machine",
      "machine that the strategy knows: a machine file, or keys that override those of the case"},
     {"case.strategy", "recording", "recorded runs of the program, in place of simulated ones"},
-    {"case.strategy.recording", "file", "recording of an actual run, or result file"},
+    {"case.strategy.recording", "file",
+     "recording of an actual run, readings of its part (x_mm, y_mm, z_mm, i, j, k, deviation_um), "
+     "or result file"},
     {"case.strategy.recording", "case", "case of a result file, in place of channels"},
     {"case.strategy.recording", "sees",
-     "what was recorded: the scales of the axes, or the TCP in the workpiece (a grid encoder)"},
+     "what was recorded: the scales of the axes, the TCP in the workpiece (a grid encoder), or the "
+     "part on a CMM"},
+    {"case.strategy.recording", "probes", "of a part in a result file: its features; default: all"},
     {"case.strategy.recording", "measured",
      "channels of the axes as the scales read them; of the tip X, Y and Z of the workpiece"},
     {"case.strategy.recording", "reference",

@@ -2,6 +2,7 @@
 /// and in SI; nothing behind this point meets an input that it must doubt.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -61,14 +62,22 @@ struct ProgramSpec {
   const std::string& text() const { return *shared_text; }
 };
 
+/// What shows the deviation of an actual run.
+enum class SeenBy : std::uint8_t {
+  scales,
+  tip,   // a grid encoder reads the TCP in the workpiece
+  part,  // a CMM probes what was cut
+};
+
 /// Recording of an actual run, as a strategy learns from it. Channels by the letters of axes.
 struct RecordedRunSpec {
   std::string file;
   Place place;
-  bool sees_tip = false;  // a grid encoder read the TCP in the workpiece; else the scales
-  std::map<char, std::string> measured;   // positions as these read them
+  SeenBy sees = SeenBy::scales;
+  std::map<char, std::string> measured;   // positions as scales or grid encoder read them
   std::map<char, std::string> reference;  // positions as the NC interpolated them, without offset
   std::string case_name;                  // of a result file, in place of channels
+  std::vector<std::string> probes;        // features of a part in a result file; empty: all
 };
 
 struct StrategySpec {

@@ -83,6 +83,7 @@ class Channels {
 // Channels of a case of a result file, of all axes.
 model::RecordedRunSpec with_channels(model::RecordedRunSpec spec, const JointLayout& layout) {
   if (spec.case_name.empty()) return spec;
+  const bool sees_tip = spec.sees == model::SeenBy::tip;
   for (int j = 0; j < kJoints; ++j) {
     if (!layout.has(j)) continue;
     const char axis = layout.letter_of(j);
@@ -90,11 +91,11 @@ model::RecordedRunSpec with_channels(model::RecordedRunSpec spec, const JointLay
       return fmt::format("cases/{}/servo/{}_{}_{}", spec.case_name, signal,
                          j < kLinearJoints ? "linear" : "rotary", axis);
     };
-    if (!spec.sees_tip) spec.measured[axis] = channel("meas");
+    if (!sees_tip) spec.measured[axis] = channel("meas");
     spec.reference[axis] = channel("ref");
   }
   for (const char axis : {'X', 'Y', 'Z'}) {
-    if (!spec.sees_tip) break;
+    if (!sees_tip) break;
     spec.measured[axis] = fmt::format("cases/{}/servo/tool_position_true_{}", spec.case_name, axis);
   }
   return spec;
@@ -241,11 +242,18 @@ class Follower {
 }  // namespace
 
 RecordedRun read_recorded_run(const model::RecordedRunSpec& spec, const JointLayout& layout) {
-  const model::RecordedRunSpec named = with_channels(spec, layout);
-  const recordings::Recording recording = recordings::read_recording(spec.file);
   RecordedRun out;
   out.file = spec.file;
-  out.sees_tip = spec.sees_tip;
+  out.sees = spec.sees;
+  if (spec.sees == model::SeenBy::part) {
+    out.points = spec.case_name.empty()
+                     ? readings::read_part_table(spec.file)
+                     : readings::read_part_of_case(spec.file, spec.case_name, spec.probes);
+    return out;
+  }
+  const model::RecordedRunSpec named = with_channels(spec, layout);
+  const recordings::Recording recording = recordings::read_recording(spec.file);
+  const bool sees_tip = spec.sees == model::SeenBy::tip;
   Channels channels(recording, out);
   std::size_t found = 0;
   for (int j = 0; j < kJoints; ++j) {
@@ -253,14 +261,14 @@ RecordedRun read_recorded_run(const model::RecordedRunSpec& spec, const JointLay
         layout.has(j) ? named.reference.find(layout.letter_of(j)) : named.reference.end();
     if (reference == named.reference.end()) continue;
     ++found;
-    if (!out.sees_tip) channels.take(named.measured.at(reference->first), j, out.measured);
+    if (!sees_tip) channels.take(named.measured.at(reference->first), j, out.measured);
     channels.take(reference->second, j, out.reference);
     out.joints.push_back(j);
   }
   if (found < named.reference.size()) {
     throw InputError(spec.place, "names an axis that the machine lacks");
   }
-  if (out.sees_tip) {
+  if (sees_tip) {
     for (const auto& [letter, channel] : named.measured) {
       out.seen.push_back(letter - 'X');
       channels.take(channel, out.seen.back(), out.measured);

@@ -7,23 +7,26 @@
 
 #include "plant/vocabulary/axes.h"
 #include "sim/model/scenario.h"
+#include "sim/readings/part_readings.h"
 
 namespace servomill::sim::preparation {
 
-/// Readings and setpoints of one run, sample by sample (5; m, rad; 0 of joints without).
+/// Readings and setpoints of one run, sample by sample (5; m, rad; 0 of joints without); of a part
+/// its points alone.
 struct RecordedRun {
   std::string file;
+  model::SeenBy sees = model::SeenBy::scales;
   std::vector<double> t;  // s, ascending
   std::vector<Joints> reference;
   std::vector<int> joints;  // whose reference is recorded, in rising order
   /// Readings of the scales of these joints; of a tip its X, Y, Z in the workpiece, first of all.
   std::vector<Joints> measured;
-  bool sees_tip = false;
   std::vector<int> seen = {};  // 0 to 2: X, Y, Z of the tip that are recorded
+  std::vector<readings::PartPoint> points = {};
 };
 
 /// @throws InputError: no such channel, no unit of length or angle, another base than the others,
-///         a sample that is missing, an axis that the machine lacks
+///         a sample that is missing, an axis that the machine lacks; what is wrong with a part
 RecordedRun read_recorded_run(const model::RecordedRunSpec& spec, const JointLayout& layout);
 
 /// A path as it is planned, position period after position period.

@@ -120,6 +120,7 @@ class Lessons {
 
   void note_unrecorded(const CaseTrials& runs) const {
     if (!is_recorded()) return;
+    for (const std::string& text : runs.notes()) one_.warnings.push_back(note(text));
     for (const int j : machine().joints()) {
       const auto& joints = runs.joints();
       if (std::find(joints.begin(), joints.end(), j) != joints.end()) continue;
@@ -148,7 +149,8 @@ class Lessons {
                                  ? &other < &spec_  // later ones have not learnt yet
                                  : other.entry->reads_errors || other.entry->corrects_inertia ||
                                        !other.entry->corrects_following;
-      const bool sees_tip = is_recorded() ? spec_.recordings.front().sees_tip : setup_.sees_tip;
+      const bool sees_tip =
+          is_recorded() ? spec_.recordings.front().sees != model::SeenBy::scales : setup_.sees_tip;
       if (sees_tip || !displaces) continue;
       throw InputError({}, fmt::format("sees = \"scales\" would take back what {} displaces; use "
                                        "\"tip\", or one of the two",

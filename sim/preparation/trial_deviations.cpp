@@ -23,6 +23,10 @@ constexpr double kStandstill = 1e-9;          // m, rad
 
 // Joints that all recordings have get an offset. What moves and is not recorded is not known.
 void CaseTrials::take_recorded_joints() {
+  if (sees_part()) {  // which shows no rotary axis apart
+    std::erase_if(joints_, [](int j) { return j >= kLinearJoints; });
+    return;
+  }
   const PlannedInstants path = planned_instants();
   const auto is_recorded = [](const RecordedRun& run, int j) {
     return std::find(run.joints.begin(), run.joints.end(), j) != run.joints.end();
@@ -44,7 +48,7 @@ void CaseTrials::take_recorded_joints() {
 
 // At a tip a joint is seen if, wherever it goes, it moves the tip along recorded coordinates alone.
 bool CaseTrials::is_seen(const RecordedRun& run, int joint, const PlannedInstants& path) const {
-  if (!run.sees_tip) return true;
+  if (run.sees == model::SeenBy::scales) return true;
   if (joint >= kLinearJoints) return false;
   constexpr double kAlong = 1e-6;
   for (std::size_t n = 0; n < path.Q.size(); n += times_->every) {
@@ -93,8 +97,9 @@ strategies::TrialRun CaseTrials::recorded_run(const RecordedRun& run) const {
                     setting_.setup.cutoff, 1.0 / (kSamplesPerSwing * setting_.setup.cutoff) / ms));
   }
   const std::vector<double> instants = instants_of(run, path, actual().chain.layout);
-  strategies::TrialRun out{
-      run.sees_tip ? read_at_tip(run, instants, path) : read_by_scales(run, instants), {}};
+  strategies::TrialRun out{run.sees == model::SeenBy::tip ? read_at_tip(run, instants, path)
+                                                          : read_by_scales(run, instants),
+                           {}};
   for (std::size_t n = 0; n < out.deviation.size(); ++n) {
     out.deviation[n] += path.Q[n * times_->every] - wanted_[n].Q;
     for (int j = 0; j < kJoints; ++j) {
@@ -137,9 +142,7 @@ std::vector<Joints> CaseTrials::read_at_tip(const RecordedRun& run,
   std::vector<Joints> out = deviations_at(off, instants, times_->every, wanted_.size());
   for (std::size_t n = 0; n < out.size(); ++n) {
     const Eigen::Vector3d at_tip = out[n].head<3>();
-    out[n].setZero();
-    out[n].head<kLinearJoints>() =
-        plant::least_squares(plant::linear_jacobian(chain, wanted_[n].Q), at_tip).x;
+    out[n] = in_linear_joints(wanted_[n], at_tip);
   }
   return out;
 }
@@ -177,8 +180,14 @@ Joints CaseTrials::in_joints(const Wanted& wanted, const ToolPose& seen) const {
     return strategies::displacement_for(chain, wanted.Q, wanted.p_ST, setting_.setup.sigma_0, off,
                                         seen.k_W - ideal.k_W);
   }
+  return in_linear_joints(wanted, off);
+}
+
+// Linear joints that move the tip by `off` (m), or as near as they can.
+Joints CaseTrials::in_linear_joints(const Wanted& wanted, const Eigen::Vector3d& off) const {
   Joints out = Joints::Zero();
-  out.head<kLinearJoints>() = plant::least_squares(plant::linear_jacobian(chain, wanted.Q), off).x;
+  out.head<kLinearJoints>() =
+      plant::least_squares(plant::linear_jacobian(actual().chain, wanted.Q), off).x;
   return out;
 }
 

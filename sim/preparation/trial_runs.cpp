@@ -31,6 +31,7 @@ CaseTrials::CaseTrials(const TrialSetting& setting, std::vector<RecordedRun> rec
   if (!recordings_.empty()) take_recorded_joints();
   const model::NcSettings& nc = actual().nc;
   find_wanted(engine::Setpoint(nc, setting.motion.trajectory, {}).delay());
+  if (sees_part()) take_parts();
   limits_.emplace(followed_path(), times_->row_period(),
                   controllers::JointLimits{nc.v_max, nc.a_max, nc.j_max});
   if (setting.spec.servo == model::ServoModel::ideal) return;
@@ -90,7 +91,9 @@ void CaseTrials::find_wanted(double delay) {
     const auto now = trajectory.at(t - delay, cursor);
     const double then = place ? place->advance(t, now.s) * times_->h : t - delay;
     const auto at = wanted.trajectory.at(then, found);
-    wanted_.push_back({at.Q_ref, setting_.program.tips.at(path.tool_offset(pieces[at.move]))});
+    const std::size_t piece = pieces[at.move];
+    wanted_.push_back({at.Q_ref, setting_.program.tips.at(path.tool_offset(piece)), piece,
+                       at.rapid && !at.dQ_ref.isZero(0.0)});
     in_feed_.push_back(!now.rapid && !now.dQ_ref.isZero(0.0));
   }
 }
@@ -163,7 +166,9 @@ std::vector<Joints> CaseTrials::admissible(std::vector<Joints> offset) const {
 
 strategies::TrialRun CaseTrials::run(const std::shared_ptr<const strategies::PathOffset>& offset) {
   ++runs_;
-  if (!recordings_.empty()) return recorded_run(recordings_[static_cast<std::size_t>(runs_ - 1)]);
+  const auto number = static_cast<std::size_t>(runs_ - 1);
+  if (sees_part()) return {of_parts_[number], {}};
+  if (!recordings_.empty()) return recorded_run(recordings_[number]);
   model::MachineSettings machine = this->machine();
   for (std::size_t j = 0; j < kJoints; ++j) {
     machine.scale[j] = machine.scale[j].in_run(static_cast<std::uint64_t>(runs_));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
@@ -13,6 +14,7 @@
 #include "sim/model/scenario.h"
 #include "sim/preparation/offset_limits.h"
 #include "sim/preparation/offset_response.h"
+#include "sim/preparation/part_deviations.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/recorded_run.h"
 #include "strategies/trial_runs.h"
@@ -58,12 +60,16 @@ class CaseTrials final : public strategies::TrialRuns {
   std::complex<double> response(int joint, double f) const override;
   std::vector<Joints> admissible(std::vector<Joints> offset) const override;
   const OffsetLimits& limits() const { return *limits_; }
+  /// Sentences on recordings: what parts do not show.
+  const std::vector<std::string>& notes() const { return notes_; }
   strategies::TrialRun run(const std::shared_ptr<const strategies::PathOffset>& offset) override;
 
  private:
   struct Wanted {
     Joints Q;
     Eigen::Vector3d p_ST;
+    std::size_t piece = 0;  // of the program
+    bool rapid = false;
   };
   const model::MachineSettings& actual() const {
     return setting_.scenario.machine_of(setting_.spec);
@@ -72,7 +78,11 @@ class CaseTrials final : public strategies::TrialRuns {
     return setting_.setup.on_actual ? actual() : setting_.known;
   }
   bool sees_tip() const {
-    return recordings_.empty() ? setting_.setup.sees_tip : recordings_.front().sees_tip;
+    return recordings_.empty() ? setting_.setup.sees_tip
+                               : recordings_.front().sees != model::SeenBy::scales;
+  }
+  bool sees_part() const {
+    return !recordings_.empty() && recordings_.front().sees == model::SeenBy::part;
   }
   void find_times();
   void take_recorded_joints();
@@ -93,6 +103,12 @@ class CaseTrials final : public strategies::TrialRuns {
                                   const std::vector<double>& places) const;
   std::vector<double> places_of(const controllers::Trajectory& run, std::size_t rows) const;
   Joints in_joints(const Wanted& wanted, const ToolPose& seen) const;
+  Joints in_linear_joints(const Wanted& wanted, const Eigen::Vector3d& off) const;
+  void take_parts();
+  std::vector<ToolRow> tool_rows() const;
+  std::vector<ProbedCut> probed_cuts(const RecordedRun& run,
+                                     const std::vector<ToolRow>& rows) const;
+  void note_unprobed(const RecordedRun& run, const std::vector<UnprobedRun>& unprobed);
   void add_noise(std::vector<Joints>& deviation) const;
 
   const TrialSetting& setting_;
@@ -104,6 +120,8 @@ class CaseTrials final : public strategies::TrialRuns {
   std::vector<int> joints_;
   OffsetResponses known_, running_;
   std::optional<OffsetLimits> limits_;
+  std::vector<std::vector<Joints>> of_parts_;  // deviations, recording by recording
+  std::vector<std::string> notes_;
   int runs_ = 0;
 };
 

@@ -43,7 +43,7 @@ SIM_ROOMS = {
     "identification": ["controllers", "config", "engine", "input", "model", "numerics", "recordings", "records", "system"],
     "calibration": ["config", "input", "metrology", "model", "numerics", "readings", "system"],
     "preparation": ["controllers", "strategies", "config", "engine", "evaluation", "frequency", "input", "metrology", "model",
-                    "recordings", "system"],
+                    "numerics", "readings", "recordings", "system"],
     "run": ["controllers", "strategies", "config", "engine", "evaluation", "frequency", "input", "metrology", "model",
             "preparation", "records", "standards", "system"],
     "sweep": ["config", "evaluation", "input", "model", "preparation", "records", "run", "system"],

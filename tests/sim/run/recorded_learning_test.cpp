@@ -207,7 +207,7 @@ TEST_F(RecordedLearning, OfATipNamesWhatItLacks) {
             "small.toml:17:13: error: case[0].strategy[0].recording[0].reference = {...}; must "
             "name the channels of the axes that move");
   const std::string mixed = refusal(grid("grid.csv") + csv("run.csv"));
-  EXPECT_NE(mixed.find("must see the tip in all recordings, or the scales in all"),
+  EXPECT_NE(mixed.find("must see the same in all recordings: scales, tip or part"),
             std::string::npos)
       << mixed;
 }
