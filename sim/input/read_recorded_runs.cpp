@@ -40,6 +40,17 @@ void check_tip(config::Reader& run, const model::RecordedRunSpec& spec, std::siz
   }
 }
 
+// The case of a result file, and which features of its part.
+void read_case(config::Reader& run, model::RecordedRunSpec& spec) {
+  if (run.has("case")) {
+    spec.case_name = run.text("case");
+    if (spec.case_name.empty()) run.fault("case", "must name a case of the file");
+  }
+  spec.probes = run.texts_or("probes", {});
+  if (spec.probes.empty() || (spec.sees == model::SeenBy::part && run.has("case"))) return;
+  run.fault("probes", "are those of a case: needs sees = \"part\", and case");
+}
+
 model::RecordedRunSpec read_run(config::Reader& run) {
   model::RecordedRunSpec out;
   const std::size_t before = run.faults();
@@ -48,13 +59,8 @@ model::RecordedRunSpec read_run(config::Reader& run) {
   if (run.faults() == before && file.empty()) run.fault("file", "must name a recording");
   out.file = beside(out.place, file);
   out.sees = static_cast<model::SeenBy>(run.choice_or("sees", 0, kSeen));
-  const bool is_part = out.sees == model::SeenBy::part;
-  if (run.has("case")) {
-    out.case_name = run.text("case");
-    if (is_part) out.probes = run.texts_or("probes", {});
-    return out;
-  }
-  if (is_part) return out;
+  read_case(run, out);
+  if (out.sees == model::SeenBy::part || !out.case_name.empty()) return out;
   out.measured = read_channels(run, "measured");
   out.reference = read_channels(run, "reference");
   if (out.sees == model::SeenBy::tip) {

@@ -62,7 +62,7 @@ struct ProgramSpec {
   const std::string& text() const { return *shared_text; }
 };
 
-/// What shows the deviation of an actual run.
+/// Instrument that shows the deviation of an actual run.
 enum class SeenBy : std::uint8_t {
   scales,
   tip,   // a grid encoder reads the TCP in the workpiece

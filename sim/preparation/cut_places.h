@@ -20,7 +20,7 @@ struct ToolRow {
   int line = 0;  // of the program
 };
 
-/// What of the cutter makes the surface.
+/// Part of the cutter that makes a surface.
 enum class CutBy : std::uint8_t { flank, tip, corner };
 
 /// A place between a row and the next one.

@@ -111,7 +111,7 @@ class ProbedRun {
     faces_.insert(faces_.end(), faces.begin(), faces.end());
   }
 
-  // Where the tool stands or plunges, as before; at the beginning, as behind it.
+  // A tool that stands or plunges keeps the frame before; at the beginning it has that behind.
   void find_frames() {
     std::optional<PathFrame> last;
     std::size_t unknown = 0;

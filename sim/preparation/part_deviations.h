@@ -27,11 +27,11 @@ struct PartDeviations {
 
 /// Along each run the points that the same part of the cutter has made on the same face are put in
 /// a row: the next point has a normal within 60 deg, as seen from the part or, where the path
-/// turns, from the path. Between them the deviation is linear in the arc length and along the normal
-/// of the face where the tool is, of what the tip has cut along the tool axis; before the first and
-/// behind the last one it is constant. Points within 10 um count as one.
+/// turns, from the path. Between them the deviation is linear in the arc length and along the
+/// normal of the face where the tool is, of what the tip has cut along the tool axis; before the
+/// first and behind the last one it is constant. Points within 10 um count as one.
 ///
-/// Where a run has several faces, the deviation is the shortest vector that fits theirs best:
+/// On a run with several faces the deviation is the shortest vector that fits theirs best:
 /// opposite walls of a slot show where the tool was between them, not its diameter. Along the path
 /// nothing is known. Runs without points deviate by nothing; in rapid moves the deviation goes
 /// linearly from the run before to the one behind.

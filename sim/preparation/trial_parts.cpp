@@ -14,12 +14,12 @@
 namespace servomill::sim::preparation {
 namespace {
 
-constexpr std::size_t kMostRanges = 8;  // of lines in a note
+constexpr std::size_t kMaxRanges = 8;  // of lines in a note
 
 std::string lines_text(const std::vector<UnprobedRun>& runs) {
   std::vector<std::string> out;
   for (const UnprobedRun& run : runs) {
-    if (out.size() == kMostRanges) break;
+    if (out.size() == kMaxRanges) break;
     out.push_back(run.first_line == run.last_line
                       ? std::to_string(run.first_line)
                       : fmt::format("{}-{}", run.first_line, run.last_line));

@@ -96,7 +96,7 @@ class PartLearning : public testing::Test {
     store.commit({});
     return output.cases[0].probes;
   }
-  // What learning from a CSV gives.
+  // The lesson of a case that learns.
   LearntRuns learnt(const std::string& keys, const std::string& program = kProgram,
                     const std::string& toml = "[errors.machine]\n") const {
     return run_named_case(scenario(toml + learning(keys), program), "next").learnt.at(0);
@@ -295,7 +295,9 @@ TEST_F(PartLearning, RefusesWhatAPartDoesNotHave) {
   EXPECT_EQ(refusal(part("part.csv", "measured = { X = \"x\" }\n")),
             "small.toml:17:1: error: case[0].strategy[0].recording[0].measured is not known");
   EXPECT_EQ(refusal(part("part.csv", "probes = [\"side\"]\n")),
-            "small.toml:17:1: error: case[0].strategy[0].recording[0].probes is not known");
+            "small.toml:17:10: error: case[0].strategy[0].recording[0].probes = [\"side\"]; are "
+            "those of a "
+            "case: needs sees = \"part\", and case");
   EXPECT_EQ(refusal("sees = \"tip\"\n" + part("part.csv")),
             "small.toml:14:8: error: case[0].strategy[0].sees = \"tip\"; is not used with "
             "[[case.strategy.recording]]: the recordings are the runs");
