@@ -142,6 +142,13 @@ std::vector<CutPlace> places_of(const std::vector<Candidate>& all) {
   return out;
 }
 
+// True if no place of a step can be nearer to a point than `distance` (m).
+bool is_farther(const ToolRow& from, const ToolRow& to, const Vector3d& point, double distance) {
+  const double reach =
+      std::hypot(from.cutter->radius, from.cutter->length) + (to.tip - from.tip).norm() + distance;
+  return (point - from.tip).squaredNorm() > reach * reach;
+}
+
 // Leaves those whose value is as small as the least one.
 template <typename Value>
 void keep_nearest(std::vector<Candidate>& all, Value value) {
@@ -160,6 +167,7 @@ CutSearch find_cut(const std::vector<ToolRow>& rows, const SurfacePoint& point) 
     const ToolRow &from = rows[n], &to = rows[n + 1];
     if (from.cutter == nullptr || from.run < 0 || to.run != from.run) continue;
     if ((to.tip - from.tip).norm() <= kMoves) continue;
+    if (is_farther(from, to, point.point, std::max(farthest, out.nearest))) continue;
     const Step step(from, to, point);
     const std::optional<Candidate> one = step.candidate(n);
     if (!one) continue;

@@ -6,6 +6,7 @@
 
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/work_frame.h"
 #include "sim/preparation/trial_runs.h"
@@ -113,6 +114,7 @@ std::vector<ProbedCut> CaseTrials::probed_cuts(const RecordedRun& run,
   std::vector<ProbedCut> out;
   std::vector<Fault> faults;
   for (const readings::PartPoint& one : run.points) {
+    throw_if_interrupted();
     const Eigen::Vector3d normal = frame.R_WG * one.normal;
     const CutSearch search = find_cut(rows, {frame.in_workpiece(one.point), normal, one.deviation});
     for (const CutPlace& place : search.places) out.push_back({place, normal, one.deviation});

@@ -172,6 +172,27 @@ TEST_F(PartLearning, CorrectsWallsFloorBoreAndBoss) {
   }
 }
 
+// The part lies beside machine zero, on a table that is turned: what is a side of it in its program
+// faces elsewhere in the workpiece.
+TEST_F(PartLearning, CountsInWorkCoordinates) {
+  const std::string error =
+      "[errors.machine]\nEXX = { polynomial_um = [20.0] }\nEYY = { polynomial_um = [-15.0] }\n";
+  const std::string offset =
+      "work_offset = { X_mm = 30.0, Y_mm = -20.0, Z_mm = 5.0, C_deg = 50.0 }\n";
+  const std::string probes = flank(11) + kSide + kRound;
+  const auto before = keep(error + probes, "part.h5", kPlain + offset);
+  const std::string next = learning("") + of_case("part.h5");
+  const auto case_end = next.find("[[case.strategy]]");
+  const RunOutput output =
+      run(scenario(error + probes + next.substr(0, case_end) + offset + next.substr(case_end)));
+  const auto& after = output.cases[0].probes;
+  ASSERT_EQ(after.size(), 4U);
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    EXPECT_GT(largest(before[k].deviation), 12 * um) << before[k].name;
+    EXPECT_LT(largest(after[k].deviation), kPart) << after[k].name;
+  }
+}
+
 // A flat end mill leaves the lowest of what passes within its radius, 4 mm at 0.47 um/mm: of a
 // slope a part shows less than the tip has, and the next part again.
 TEST_F(PartLearning, GoesOnFromPartToPart) {
