@@ -83,6 +83,13 @@ TEST(CutPlaces, OfAClosedContourAreItsBeginningAndItsEnd) {
   expect_places(find_cut(rows, point({20, 0, -5}, {1, 0, 0})), {0.0, 360.0}, CutBy::flank);
 }
 
+// Rows leave out where its ends turn to and from the wall: 20 um behind the point and 10 um before.
+TEST(CutPlaces, OfAClosedContourMayBeMissedByAStep) {
+  const auto rows =
+      ToolPath(kMill).from(20.02, -4, -10).to(60, -4, -10).from(0, -4, -10).to(19.99, -4, -10).rows;
+  expect_places(find_cut(rows, point({20, 0, -5}, {0, -1, 0})), {0.0, 61.0}, CutBy::flank);
+}
+
 // Two passes 6 mm apart: rows 0 to 50 and 51 to 101.
 TEST(CutPlaces, OfAFloorLieWhereTheAxisComesNearest) {
   const auto rows = ToolPath(kMill).from(0, 0, 0).to(50, 0, 0).from(0, 6, 0).to(50, 6, 0).rows;

@@ -68,6 +68,17 @@ TEST(PartDeviations, TurnWithThePathAroundACorner) {
   expect_at(part, 100, {30, 0, 0});
 }
 
+// Rows 54 and 55 are the last on the first leg and the first on the second: the step between them
+// cuts the corner, and is the direction of neither.
+TEST(PartDeviations, AreThoseOfTheLegUpToTheCorner) {
+  const auto rows =
+      ToolPath(kMill).from(0, -4, -10).to(53.6, -4, -10).to(54, -3.6, -10).to(54, 50, -10).rows;
+  const PartDeviations part =
+      deviations(rows, {{{34, 0, -5}, {0, -1, 0}, 10.0}, {{50, 16, -5}, {1, 0, 0}, 10.0}});
+  expect_at(part, 54, {0, -10, 0});
+  expect_at(part, 55, {10, 0, 0});
+}
+
 TEST(PartDeviations, OfABossAndABoreAreRadial) {
   for (const double side : {1.0, -1.0}) {  // of the normal: outwards, inwards
     const double path = side > 0.0 ? 24.0 : 6.0, wall = side > 0.0 ? 20.0 : 10.0;
