@@ -71,14 +71,15 @@ void find_feedback_displacement(const IdentifiedMachine& b, Action action, Itera
 
 }  // namespace
 
-const ParameterSpec kIterationsSpec = {
-    .name = "iterations",
-    .help = "1: one step, as in the paper; converged: exact where a displacement changes the error",
-    .default_text = "1",
-    .is_number = false,
-    .words = kWords,
-    .shortcoming = Shortcoming::single_evaluation,
-    .ideal = "converged"};
+const ParameterSpec kIterationsSpec = {.name = "iterations",
+                                       .help =
+                                           "1: single evaluation, as in the paper; converged: "
+                                           "exact even where the displacement changes the error",
+                                       .default_text = "1",
+                                       .is_number = false,
+                                       .words = kWords,
+                                       .shortcoming = Shortcoming::single_evaluation,
+                                       .ideal = "converged"};
 
 const ParameterSpec kAxesSpec = {
     .name = "axes",

@@ -24,22 +24,23 @@ constexpr double kLongest = 1e5;  // position periods
 const std::array<ParameterSpec, 3>& specs() {
   static const std::array<ParameterSpec, 3> kSpecs = {{
       {.name = "gain_per_s",
-       .help = "C, velocity per contour error; auto: the largest that leaves X, Y and Z a phase "
-               "margin of 45 deg and a gain margin of 6 dB",
+       .help = "gain C, velocity per contour error; auto: the largest gain with a phase margin of "
+               "45 deg and a gain margin of 6 dB for X, Y and Z",
        .unit = "1/s",
        .default_text = "auto",
        .min = 0.0,
        .max = 1e5,
        .words = kAuto},
       {.name = "reset_time_ms",
-       .help = "Ti of the integral of the contour error; 0: none; auto: 8 / (Kv + C)",
+       .help =
+           "reset time Ti of the integral of the contour error; 0: no integral; auto: 8 / (Kv + C)",
        .unit = "ms",
        .default_text = "0",
        .min = 0.0,
        .max = 1e6,
        .words = kAuto},
       {.name = "max_mm_per_s",
-       .help = "limit of the velocity that is added",
+       .help = "limit of the added velocity",
        .unit = "mm/s",
        .default_text = "20",
        .min = 0.0,

@@ -12,13 +12,13 @@ namespace {
 const std::array<ParameterSpec, 2>& specs() {
   static const std::array<ParameterSpec, 2> kSpecs = {{
       {.name = "tolerance_um",
-       .help = "largest deviation of the TCP from the chord",
+       .help = "maximum deviation of the TCP from the chord",
        .unit = "um",
        .default_text = "0.1",
        .min = 1e-3,
        .shortcoming = Shortcoming::chord_tolerance},
       {.name = "axis_tolerance_urad",
-       .help = "largest deviation of the tool axis from its great circle",
+       .help = "maximum deviation of the tool axis from its great circle",
        .unit = "urad",
        .default_text = "100",
        .min = 1e-2,
@@ -72,7 +72,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry exact_entry() {
-  Entry entry = {"exact", "linearises moves with rotary axes to a tolerance", specs(), make};
+  Entry entry = {"exact", "linearises moves with rotary axes to within a tolerance", specs(), make};
   entry.reads_errors = false;
   return entry;
 }

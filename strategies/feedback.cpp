@@ -22,19 +22,20 @@ constexpr std::array<std::string_view, 3> kPredictions = {"lag", "loop", "observ
 constexpr ParameterSpec kPredictionSpec = {
     .name = "prediction",
     .help =
-        "lag: the two keys above; loop: inverse of the whole position loop along the observed "
-        "motion; observer: and friction of the displaced axes",
+        "lag: extrapolation_time_ms and velocity_window_ms; loop: inverse of the whole position "
+        "loop along the observed motion; observer: as loop, and friction of the displaced axes",
     .default_text = "lag",
     .is_number = false,
     .words = kPredictions};
 
-constexpr ParameterSpec kBandwidthSpec = {
-    .name = "observer_bandwidth_Hz",
-    .help = "of position, velocity and acceleration, for loop and observer",
-    .unit = "Hz",
-    .default_text = "50",
-    .min = 1.0,
-    .max = 1e3};
+constexpr ParameterSpec kBandwidthSpec = {.name = "observer_bandwidth_Hz",
+                                          .help =
+                                              "bandwidth of the observer of position, velocity and "
+                                              "acceleration, for prediction = loop and observer",
+                                          .unit = "Hz",
+                                          .default_text = "50",
+                                          .min = 1.0,
+                                          .max = 1e3};
 
 const std::array<ParameterSpec, 11>& specs() {
   static const std::array<ParameterSpec, 11> kSpecs = {{
@@ -46,7 +47,7 @@ const std::array<ParameterSpec, 11>& specs() {
        .shortcoming = Shortcoming::saturation,
        .ideal = "1e9"},
       {.name = "max_rate_mm_per_s",
-       .help = "limit of its rate of change",
+       .help = "limit of the rate of change of the virtual displacement of a linear axis",
        .unit = "mm/s",
        .default_text = "10",
        .min = 0.0,
@@ -60,7 +61,7 @@ const std::array<ParameterSpec, 11>& specs() {
        .shortcoming = Shortcoming::saturation,
        .ideal = "1e6"},
       {.name = "max_rate_mrad_per_s",
-       .help = "limit of its rate of change",
+       .help = "limit of the rate of change of the virtual displacement of a rotary axis",
        .unit = "mrad/s",
        .default_text = "100",
        .min = 0.0,

@@ -129,7 +129,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action action,
 }  // namespace
 
 Entry gcode_entry() {
-  return {"gcode", "rewrites the program into short displaced blocks", specs(), make};
+  return {"gcode", "rewrites the program as short displaced blocks", specs(), make};
 }
 
 }  // namespace servomill::strategies

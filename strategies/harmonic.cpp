@@ -12,7 +12,7 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry harmonic_entry() {
-  Entry entry = {"harmonic", "linearises moves with rotary axes by the model a sin(pi t)",
+  Entry entry = {"harmonic", "linearises moves with rotary axes using the error model a sin(pi t)",
                  error_model_specs(), make};
   entry.reads_errors = false;
   return entry;

@@ -27,7 +27,7 @@ constexpr ParameterSpec gain(std::string_view name, std::string_view help) {
 constexpr ParameterSpec frequency(std::string_view name) {
   return {
       .name = name,
-      .help = "natural frequency of the mode that this axis excites; 0: static, smoothed by 100 Hz",
+      .help = "natural frequency of the mode that this axis excites; 0: static, filtered at 100 Hz",
       .unit = "Hz",
       .default_text = "0",
       .min = 0.0,
@@ -198,9 +198,10 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry inertia_entry() {
-  Entry entry = {"inertia",
-                 "offsets the setpoint so that the tip follows under acceleration, as CTC does",
-                 kSpecs, make};
+  Entry entry = {
+      "inertia",
+      "offsets the setpoint against the deflection of the tip under acceleration, as CTC does",
+      kSpecs, make};
   entry.once = true;
   entry.corrects_following = true;
   entry.corrects_inertia = true;

@@ -127,15 +127,16 @@ OffsetLimit offset_limit_of(const Parameters& parameters) {
 const ParameterSpec kLimitsSpec = {
     .name = "limits",
     .help =
-        "where path and offset together exceed velocity, acceleration or jerk of an axis: smooth "
-        "the offset there, slow the path, or ignore it",
+        "action where path and offset together exceed the velocity, acceleration or jerk limit of "
+        "an axis: smooth the offset, slow the path, or ignore the violation",
     .default_text = "smooth",
     .is_number = false,
     .words = kLimits};
 
 const ParameterSpec kCutoffSpec = {
     .name = "cutoff_Hz",
-    .help = "low-pass of the offset, forwards and backwards: half of it is left there",
+    .help =
+        "cut-off frequency of the zero-phase low-pass of the offset, where its gain is one half",
     .unit = "Hz",
     .default_text = "100",
     .min = 0.1,

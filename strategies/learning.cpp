@@ -15,36 +15,37 @@ constexpr std::array<std::string_view, 3> kRecordedInstead = {"updates", "sees",
 const std::array<ParameterSpec, 10>& specs() {
   static const std::array<ParameterSpec, 10> kSpecs = {{
       {.name = "updates",
-       .help = "runs of the program that are learnt from",
+       .help = "number of runs of the program to learn from",
        .default_text = "5",
        .min = 1,
        .max = 100},
       {.name = "sees",
-       .help = "tip: the tool centre point, by a grid encoder; scales: the readings of the axes",
+       .help = "tip: TCP positions read by a grid encoder; scales: scale readings of the axes",
        .default_text = "tip",
        .is_number = false,
        .words = kSeen,
        .shortcoming = Shortcoming::measurement,
        .ideal = "tip"},
       {.name = "noise_um",
-       .help = "standard deviation of what is seen of each linear axis, beside encoder noise",
+       .help = "standard deviation of the observed position of each linear axis, in addition to "
+               "encoder noise",
        .unit = "um",
        .default_text = "0",
        .min = 0.0,
        .shortcoming = Shortcoming::measurement,
        .ideal = "0"},
       {.name = "gain",
-       .help = "share of the error that an update corrects where the axis follows as it is known",
+       .help = "fraction of the error that an update corrects if the axis responds as known",
        .default_text = "1",
        .min = 0.01,
        .max = 2.0},
       {.name = "forgetting",
-       .help = "share of the offset that an update forgets",
+       .help = "fraction of the offset that each update forgets",
        .default_text = "0",
        .min = 0.0,
        .max = 0.99},
       {.name = "feed_share",
-       .help = "feed of the runs that are learnt from, as a share of that of the case",
+       .help = "feed of the runs to learn from, as a fraction of that of the case",
        .default_text = "1",
        .min = 0.1,
        .max = 10.0},
@@ -72,9 +73,10 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry learning_entry() {
-  Entry entry = {"learning",
-                 "offsets the setpoints against what earlier runs of the program have shown",
-                 specs(), make};
+  Entry entry = {
+      "learning",
+      "offsets the setpoints against the deviations observed in earlier runs of the program",
+      specs(), make};
   entry.once = true;
   entry.corrects_following = true;
   entry.reads_errors = false;

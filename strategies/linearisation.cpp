@@ -21,7 +21,7 @@ const std::array<ParameterSpec, 4>& specs() {
        .is_number = false,
        .words = kDefinitions},
       {.name = "amplitude",
-       .help = "frame in which the error halfway gives the amplitude of the model; the machine as "
+       .help = "frame in which the error at mid-move gives the amplitude of the model; machine: as "
                "published",
        .default_text = "machine",
        .is_number = false,

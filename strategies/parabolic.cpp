@@ -12,7 +12,8 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry parabolic_entry() {
-  Entry entry = {"parabolic", "linearises moves with rotary axes by the model 4 a t (1 - t)",
+  Entry entry = {"parabolic",
+                 "linearises moves with rotary axes using the error model 4 a t (1 - t)",
                  error_model_specs(), make};
   entry.reads_errors = false;
   return entry;

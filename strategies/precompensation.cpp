@@ -14,20 +14,20 @@ constexpr std::array<std::string_view, 2> kForms = {"setpoint", "program"};
 const std::array<ParameterSpec, 11>& specs() {
   static const std::array<ParameterSpec, 11> kSpecs = {{
       {.name = "residual_um",
-       .help = "largest predicted deviation of the tip in feed motion that is good enough",
+       .help = "the iteration ends when the maximum predicted deviation of the tip in feed motion "
+               "is below this value",
        .unit = "um",
        .default_text = "0.1",
        .min = 0.0},
       {.name = "max_runs",
-       .help = "runs of the model at most",
+       .help = "maximum number of runs of the model",
        .default_text = "8",
        .min = 2,
        .max = 100},
       kCutoffSpec,
       {.name = "as",
-       .help =
-           "setpoint: the NC adds the offset; program: it is written into the program, in short "
-           "blocks that any NC reads",
+       .help = "setpoint: the NC adds the offset; program: the offset is written into the program, "
+               "as short blocks that any NC can read",
        .default_text = "setpoint",
        .is_number = false,
        .words = kForms},
@@ -56,7 +56,8 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 
 Entry precompensation_entry() {
   Entry entry = {"precompensation",
-                 "offsets the setpoints against what an identified model of the machine predicts",
+                 "offsets the setpoints against the deviations that an identified model of the "
+                 "machine predicts",
                  specs(), make};
   entry.once = true;
   entry.corrects_following = true;

@@ -57,8 +57,8 @@ constexpr ParameterSpec response_time(std::string_view name, std::string_view he
 constexpr ParameterSpec kShiftSpec = {
     .name = "shift_mm",
     .help =
-        "each point holds the error so far ahead of it along its base axis: v times the delay "
-        "compensates the delay at the feed v, in one direction",
+        "each point contains the error that far ahead along its base axis; v times the delay of "
+        "the table compensates this delay at the feed v, in one direction",
     .unit = "mm",
     .default_text = "0",
     .min = -100.0,
@@ -75,18 +75,20 @@ const std::array<ParameterSpec, 17>& specs() {
        .is_number = false,
        .words = kBaseAxes},
       {.name = "compensated_axis",
-       .help = "axes that the tables correct; own: the base axis, others: all except the base axis",
+       .help =
+           "axes that the tables displace; own: the base axis, others: all except the base axis",
        .default_text = "all",
        .is_number = false,
        .words = kCompensatedAxes},
       {.name = "zero_at_reference",
-       .help = "true: zero at the reference position, where another table holds the error there",
+       .help = "true: the tables are zero at the reference position, because another table "
+               "contains the error there",
        .default_text = "false",
        .is_number = false,
        .words = kBoolean},
       {.name = "points",
-       .help = "equidistant; optimal: max_points of those at spacing_mm, where a line between them "
-               "deviates least, for NCs that take any positions",
+       .help = "equidistant; optimal: the max_points of the points at spacing_mm between which "
+               "linear interpolation deviates least, for NCs that accept any positions",
        .default_text = "equidistant",
        .is_number = false,
        .words = kPoints},

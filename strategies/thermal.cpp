@@ -23,13 +23,13 @@ constexpr std::array<std::string_view, 2> kTemperatures = {"sensors", "network"}
 
 constexpr std::array<ParameterSpec, 3> kSpecs = {{
     {.name = "temperatures",
-     .help = "sensors: readings, with the errors_per_K of the sensors; network: what the thermal "
-             "network of the known machine computes",
+     .help = "sensors: readings, with the errors_per_K of the sensors; network: temperatures "
+             "computed by the thermal network of the known machine",
      .default_text = "sensors",
      .is_number = false,
      .words = kTemperatures},
     {.name = "filter_s",
-     .help = "time constant of the filter of the temperatures; 0: none",
+     .help = "time constant of the temperature filter; 0: no filter",
      .unit = "s",
      .default_text = "60",
      .min = 0.0,
@@ -37,7 +37,7 @@ constexpr std::array<ParameterSpec, 3> kSpecs = {{
      .shortcoming = Shortcoming::delay,
      .ideal = "0"},
     {.name = "max_um",
-     .help = "an offset of a linear axis beyond it ends the case",
+     .help = "maximum offset of a linear axis; a larger offset ends the case",
      .unit = "um",
      .default_text = "500",
      .min = 0.0,
@@ -163,9 +163,10 @@ std::unique_ptr<Strategy> make(const Parameters& p, Action, const IdentifiedMach
 }  // namespace
 
 Entry thermal_entry() {
-  Entry entry = {"thermal",
-                 "offsets the setpoint by the errors that temperatures cause, as read or computed",
-                 kSpecs, make};
+  Entry entry = {
+      "thermal",
+      "offsets the setpoint against thermal errors, from measured or computed temperatures", kSpecs,
+      make};
   entry.once = true;
   entry.corrects_heat = true;
   entry.computes_heat = [](const Parameters& p) { return p.word("temperatures") == "network"; };

@@ -172,7 +172,7 @@ def main(arguments):
     parser = argparse.ArgumentParser(prog="serve.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("page", type=pathlib.Path, help="servomill.html")
     parser.add_argument("files", nargs="+", metavar="OUT.h5", help="result files of servomill")
-    parser.add_argument("--no-browser", action="store_true", help="prints the address; nothing is opened")
+    parser.add_argument("--no-browser", action="store_true", help="prints the address instead of opening the browser")
     parser.add_argument("--port", type=int, default=0, help="of the address (default: one that is free)")
     chosen = parser.parse_args(arguments)
     files = [ResultFile(name) for name in chosen.files]

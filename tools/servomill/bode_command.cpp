@@ -53,7 +53,7 @@ void print_curve(const sim::frequency::BodeResult& result, const sim::frequency:
     fmt::print("\n");
   }
   if (!std::all_of(curve.measured.begin(), curve.measured.end(), is_known)) {
-    fmt::print("-: below what the encoders resolve; raise --amplitude\n");
+    fmt::print("-: below the resolution of the encoders; raise --amplitude\n");
   }
 }
 
@@ -190,10 +190,10 @@ int bode_command(const Arguments& arguments) {
       "bode", "SCENARIO.toml --axis Y [--loop position|velocity|compliance|all] [-o OUT.h5]",
       "Prints frequency responses of an axis with its sampled loops: open and closed position\n"
       "loop, open and closed velocity loop, compliance (slide per force). 'Exact' is the\n"
-      "fundamental of the linear multirate model; 'measured' is what a simulation of the whole\n"
-      "axis with friction, backlash, quantisation and limits shows when it is fed with sinusoids.\n"
-      "The open position loop is reading over position error, the open velocity loop measured\n"
-      "speed over speed error. Margins are those of the exact model.",
+      "fundamental of the linear multirate model; 'measured' is the result of simulating the\n"
+      "whole axis, with friction, backlash, quantisation and limits, excited by sinusoids. The\n"
+      "open position loop is position feedback over following error, the open velocity loop\n"
+      "measured speed over speed error. Margins are those of the exact model.",
       "SCENARIO.toml");
   add_bode_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -117,7 +117,7 @@ void add_bode_options(Options& options) {
                 "highest frequency, bare numbers in Hz, up to half the rate of the loop (default: "
                 "0.4 times its rate)");
   options.add()("points", po::value<int>()->default_value(30)->value_name("N"),
-                "frequencies, evenly spaced in the logarithm");
+                "number of frequencies, spaced logarithmically");
   options.add()("method", po::value<std::string>()->default_value("sine")->value_name("METHOD"),
                 "sine (one frequency after the other), multisine (all at once, Schroeder phases) "
                 "or none (exact only)");
@@ -125,11 +125,10 @@ void add_bode_options(Options& options) {
                 "peak of the excitation: a length (position), a velocity (velocity), a force "
                 "(compliance), angles and torques for a rotary axis; bare numbers in mm, mm/s, N, "
                 "deg, deg/s, Nm (default: the velocity loop takes 2 % of the current limit)");
-  options.add()(
-      "velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
-      "superimposed constant velocity, so that the axis does not stick; bare numbers in mm/min "
-      "or deg/min (default: 0 without "
-      "friction and backlash, else four times the velocity of the amplitude)");
+  options.add()("velocity", po::value<std::string>()->value_name("\"300 mm/min\""),
+                "superimposed constant velocity that keeps the axis from sticking; bare numbers in "
+                "mm/min or deg/min (default: 0 without friction and backlash, else four times the "
+                "velocity of the amplitude)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the curves to a result file, for tools/plot.py");
   options.add()("force,f", "replaces the result file if it exists");

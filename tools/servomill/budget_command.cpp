@@ -25,32 +25,24 @@ namespace po = boost::program_options;
 
 std::string causes_help() {
   std::string out =
-      "Splits the residuals of a scenario's cases into the contributions of their causes: runs "
-      "each\ncase again without each cause and compares the signals at equal arc length. A long "
-      "one first\n"
-      "reports the number of its runs, and what they take. Causes:\n";
+      "Splits the residuals of a scenario's cases into the contributions of their causes: runs\n"
+      "each case again without each cause and compares the signals at equal arc length. A long\n"
+      "budget first reports the number of its runs, their time, memory and disk space. Causes:";
   for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
     const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
     out += fmt::format("  {:<18}{}\n", info.name, info.help);
   }
   out +=
-      "All goes through interpolation, lag and delay: what these do to the program alone is "
-      "theirs, "
-      "and\n"
-      "what they make of another cause is that one's. Each of the others is taken away alone\n"
-      "(measurement first, of all), so that parts do not depend on an order; what these do "
-      "together "
-      "is\n"
-      "in the remainder; where that is more than a tenth of the residual, pairs of causes are\n"
-      "taken away, too, and show which of them make it: half of a pair is the share of either "
-      "cause,\n"
-      "and what is left of the residual then is of three causes and more. What stays without all "
-      "is\n"
-      "uncorrected, uncorrectable or imposed.\n"
-      "Their sums by kind: static geometry, servo, inertia, heat, force, imposed.\n"
-      "Quantities that have a budget: imposed_error_residual, trajectory_difference, "
-      "tool_deviation,\n"
-      "following_error.";
+      "Every cause acts through interpolation, lag and delay. Their effect on the program alone\n"
+      "is their own; their effect on another cause is counted as part of that cause. Each of the\n"
+      "other causes is removed alone (measurement from all runs, first), so that parts do not\n"
+      "depend on an order. The interaction of causes is in the remainder. Where it exceeds a\n"
+      "tenth of the residual, pairs of causes are removed, too, to show which of them interact:\n"
+      "half of the interaction of a pair is added to the share of each cause, and what then\n"
+      "remains is due to three or more causes. The error that remains without any cause is\n"
+      "uncorrected, uncorrectable or imposed. Sums are printed by kind: static geometry, servo,\n"
+      "inertia, heat, force, imposed. Quantities that have a budget: imposed_error_residual,\n"
+      "trajectory_difference, tool_deviation, following_error.";
   return out;
 }
 
@@ -278,16 +270,16 @@ std::string budget_json(const sim::run::Budget& budget) {
 
 void add_budget_options(Options& options) {
   options.add()("case,c", po::value<std::vector<std::string>>()->value_name("NAME"),
-                "only of this case (default: of all that the quantities of the scenario name)");
+                "only this case (default: all cases named by the quantities of the scenario)");
   options.add()("quantity", po::value<std::vector<std::string>>()->value_name("NAME"),
-                "only of this quantity; tool_deviation and following_error also where the scenario "
-                "asks for neither");
+                "only this quantity; tool_deviation and following_error are available even if the "
+                "scenario does not list them");
   options.add()("axis", po::value<std::vector<std::string>>()->value_name("Y"),
                 "only of this axis");
   options.add()("section", po::value<std::vector<std::string>>()->value_name("NAME"),
-                "only along this section of the program (default: those of the quantity)");
+                "only this section of the program (default: the sections of the quantity)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
-                "writes the signals of all parts, for tools/plot.py");
+                "writes the signals of all contributions, for tools/plot.py");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario, as in run");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),

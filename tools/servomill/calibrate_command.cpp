@@ -35,7 +35,7 @@ void add_calibrate_options(Options& options) {
   options.add()("seed", po::value<int>()->default_value(1)->value_name("N"),
                 "seed of the noise of --make-up");
   options.add()("accept-contradictions",
-                "writes the machine although readings contradict each other");
+                "writes the machine even if readings contradict each other");
   options.add()("force,f", "replaces outputs that exist");
   options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only faults and warnings");
@@ -68,10 +68,10 @@ void print_suggestions(const std::vector<std::string>& suggestions) {
 int calibrate_command(const Arguments& arguments) {
   Options options(
       "calibrate", "READINGS.toml [--machine MACHINE.toml] [-o identified.toml]",
-      "Finds the geometric errors of a machine from readings of lasers, squares, ball\nbars, "
-      "R-tests and touch probes: adjusts all of them at once and reports the\nuncertainty of each "
-      "error, the errors that the readings cannot separate, and the\nreadings that contradict the "
-      "others. Kinds of readings: sim/readings/README.md.",
+      "Finds the geometric errors of a machine from readings of lasers, squares, ball\n"
+      "bars, R-tests and touch probes: adjusts all of them at once and reports the\n"
+      "uncertainty of each error, errors that the readings cannot separate, and readings\n"
+      "that contradict the others. Kinds of readings: sim/readings/README.md.",
       "READINGS.toml");
   add_calibrate_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -22,12 +22,13 @@ void declare(Options& options) {
   };
   options.add()("set", texts("KEY=VALUE"), "changes a key of the scenarios, as for servomill run");
   add_program_options(options);
-  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
-                "machine that runs the programs: for the cycle time (v_max, a_max and j_max of its "
-                "axes are enough), the travel of known positions, G43.4, G43.5, G53.1 and G68.2");
+  options.add()(
+      "machine", po::value<std::string>()->value_name("M.toml"),
+      "machine that runs the programs: needed for the cycle time (v_max, a_max and j_max of its "
+      "axes are sufficient), for travel limits, and for G43.4, G43.5, G53.1 and G68.2");
   options.add()("work-offset", texts("X=10,Y=-5"),
                 "programs: position of G54 in the machine, mm and deg; G55:X=10,R=30 for another "
-                "one and with a rotation");
+                "work offset with a rotation");
   options.add()("tool-length", texts("1=50"),
                 "programs: length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
   options.add()("json", "prints a JSON list, one object per FILE");
@@ -90,18 +91,18 @@ int check_command(const Arguments& arguments) {
   Options options(
       "check", "FILE... [--set KEY=VALUE]... [--tools TABLE] [--machine M.toml] [--json]",
       "Checks scenarios and machines (.toml), cutter locations (.cls, .apt, .csv) and programs\n"
-      "(all others) and prints every fault with file:line:column. Scenarios are prepared as for a\n"
-      "run, up to the first tick, at every point of their sweep. Runs from which strategies learn\n"
-      "are not made; their number is printed.\n\n"
-      "Of each program it prints units, work offsets, tools, extent, cycle time, the controls "
-      "that\n"
-      "read it as it stands, and for the others the first line that stops them. Positions are\n"
-      "known as far as the program names them, machine coordinates as far as --work-offset or\n"
-      "--parameter-file and the tool lengths are given. What needs an option that is not there\n"
-      "(--additional-offset for G54.1 P, --machine for G43.4, G68.2 and M140 MB MAX) is unknown,\n"
-      "with the name of the option. The extent holds the ends of all moves "
-      "and\n"
-      "the extreme points of arcs. The cycle time is that of the motion, planned as in a run.",
+      "(all other files) and prints every error with file:line:column. Scenarios are prepared as\n"
+      "for a run, up to the first tick, at every point of their sweep. Runs from which strategies\n"
+      "learn are not executed; their number is printed.\n"
+      "\n"
+      "For each program it prints units, work offsets, tools, extent, cycle time, the controls\n"
+      "that accept it unchanged, and for every other control the first line that it refuses.\n"
+      "Positions are known if the program specifies them; machine coordinates are known if, in\n"
+      "addition, --work-offset or --parameter-file and the tool lengths are given. A value that\n"
+      "needs a missing option (--additional-offset for G54.1 P, --machine for G43.4, G68.2 and\n"
+      "M140 MB MAX) is printed as unknown, with the name of the option. The extent includes the\n"
+      "ends of all moves and the extreme points of arcs. The cycle time is that of the motion,\n"
+      "planned as in a run.",
       "FILE");
   declare(options);
   add_plugin_option(options);

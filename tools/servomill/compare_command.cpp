@@ -19,8 +19,8 @@ namespace servomill::tools {
 int compare_command(const Arguments& arguments) {
   Options options(
       "compare", "OUT.h5...",
-      "Evaluates the comparison of result files again from their recorded signals and prints it; "
-      "days of machines with heat side by side: drift, temperatures, readings, parts.",
+      "Evaluates the comparison of result files again from their recorded signals and prints it. "
+      "Days of machines with heat are printed side by side: drift, temperatures, readings, parts.",
       "OUT.h5");
   options.add()("json", "prints a JSON list, one object per line of the comparison and per day");
   add_plugin_option(options);

@@ -35,18 +35,18 @@ int compensate_command(const Arguments& arguments) {
   Options options(
       "compensate", "PROGRAM --machine M.toml [-o OUT] [...]",
       "Writes a program with the errors of the machine corrected. Only motion changes: comments,\n"
-      "spindle, coolant, tool calls and the order of blocks are kept. Moves are split as little "
-      "as\n"
-      "the tolerance allows, and arcs are kept as arcs where possible. Loops and subroutines are\n"
-      "unrolled, expressions are replaced by numbers, canned cycles and cutter compensation by "
-      "their\n"
-      "moves.\n\n"
+      "spindle, coolant, tool calls and the order of blocks are kept. Moves are split only as far\n"
+      "as the tolerance requires, and arcs remain arcs where possible. Loops and subroutines are\n"
+      "unrolled, expressions are replaced by numbers, canned cycles and cutter compensation by\n"
+      "their moves.\n"
+      "\n"
       "Errors depend on machine coordinates: give the work offset (--work-offset or\n"
       "--parameter-file) and the tool lengths (--tools or --tool-length). Machine positions (G53,\n"
-      "G28, G30) are not corrected, rapids are corrected at their end points only.\n\n"
-      "The result is read back as its control reads it, under every setting of the machine "
-      "builder,\n"
-      "and compared with the original before it gets its name; a difference is refused.",
+      "G28, G30) are not corrected, rapids are corrected at their end points only.\n"
+      "\n"
+      "The result is read back as its control reads it, under every setting of the machine\n"
+      "builder, and compared with the original before the file gets its name. A result that\n"
+      "differs is refused.",
       "PROGRAM");
   add_compensate_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -145,11 +145,12 @@ void add_correction_options(Options& options) {
   options.add()("errors", text()->value_name("E.toml"),
                 "file of error models [errors.NAME], instead of the machine's own");
   options.add()("model", text()->value_name("NAME"), "error model; required if there are several");
-  options.add()("servo", text()->value_name("MODEL.toml"),
-                "machine file of an identified model, such as servomill identify writes: corrects "
-                "what it predicts of servo, friction and structure together with the errors");
+  options.add()(
+      "servo", text()->value_name("MODEL.toml"),
+      "machine file of an identified model, such as servomill identify writes: also corrects the "
+      "effects of servo loops, friction and structure that this model predicts");
   options.add()("cutoff", text()->value_name("\"40 Hz\""),
-                "with --servo: the offset is low-passed there; default: 40 Hz");
+                "with --servo: cut-off frequency of the low-pass of the offset; default: 40 Hz");
   options.add()("set", texts()->value_name("KEY=VALUE"),
                 "changes a key of the machine, such as errors.measured.EC0Y.um_per_m=120");
   options.add()("output,o", text()->value_name("OUT"),
@@ -162,7 +163,7 @@ void add_correction_options(Options& options) {
       "max-block", text()->value_name("\"1 mm\""),
       "longest block where the correction varies, bare numbers in mm; default: as long as "
       "the tolerance allows");
-  options.add()("correct-rapids", "also corrects G0 along its path");
+  options.add()("correct-rapids", "corrects G0 along its path, too");
   options.add()("axes", text()->default_value("linear")->value_name("linear|all"),
                 "axes that carry the correction: X, Y and Z only, or all including rotary axes");
   options.add()(
@@ -185,38 +186,40 @@ void add_control_options(Options& options) {
       "other dialects: resolution of positions, bare numbers in um; default: 1 um (IS-B), "
       "siemens 10 nm");
   options.add()("smoothing", text()->value_name("\"10 um\""),
-                "other dialects: switches the control's smoothing on for feeds (G5.1 Q1, CYCLE832, "
-                "cycle 32) with this tolerance; short blocks run faster, and the path deviates "
-                "from the corrected one by as much");
+                "other dialects: switches on the smoothing of the control for feeds (G5.1 Q1, "
+                "CYCLE832, cycle 32) with this tolerance; short blocks run faster, and the path "
+                "may deviate from the corrected one by the tolerance");
   options.add()("preset", text()->value_name("N"),
                 "heidenhain: activates this row of the preset table (cycle 247) as G54; default: "
                 "the active preset is G54");
-  options.add()(
-      "without", text()->value_name("polar,mirror"),
-      "fanuc: options that the control lacks, so that the code that cancels them is omitted (it "
-      "would be an alarm): polar (G15), scaling (G50), mirror (G50.1), surface-speed (G97), preset "
-      "(G92.1); and settings that it lacks: rollover of rotary axes (No. 1008#0), length-b (No. "
-      "5001#1: without it arcs in G18 and G19 stay arcs). Default: it may have all of them");
+  options.add()("without", text()->value_name("polar,mirror"),
+                "fanuc: options that the control does not have; the codes that cancel them are "
+                "omitted, because they would cause an alarm: polar (G15), scaling (G50), mirror "
+                "(G50.1), surface-speed (G97), preset (G92.1); and settings that it does not have: "
+                "rollover of rotary axes (No. 1008#0), length-b (No. 5001#1: without it arcs in "
+                "G18 and G19 stay arcs). Default: the control may have all of them");
 }
 
 void add_other_options(Options& options) {
   const auto text = [] { return po::value<std::string>(); };
   const auto texts = [] { return po::value<std::vector<std::string>>(); };
   add_program_options(options);
-  options.add()("work-offset", texts()->value_name("X=10,Y=-5"),
-                "position of G54 in the machine, such as X=10,Y=-5 (mm, deg) or \"X=10 mm\"; "
-                "G55:X=10,R=30 for another one with a rotation; may be given once per axis");
+  options.add()(
+      "work-offset", texts()->value_name("X=10,Y=-5"),
+      "position of G54 in the machine, such as X=10,Y=-5 (mm, deg) or \"X=10 mm\"; G55:X=10,R=30 "
+      "for another work offset with a rotation; may be given once per axis");
   options.add()("tool-length", texts()->value_name("1=50"),
                 "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
   options.add()("start", text()->value_name("X=0,Y=0"),
                 "machine position before the program, for programs that feed before every axis has "
                 "been programmed");
-  options.add()("record", text()->value_name("OUT.h5"), "path and correction, for tools/plot.py");
-  options.add()("point-uncertainty", text()->value_name("OUT.csv"),
-                "expanded uncertainty (k = 2) of every corrected point, from the covariance in the "
-                "machine file that servomill calibrate has written; the report has the largest and "
-                "the rms");
-  options.add()("json", "prints what it changed as JSON");
+  options.add()("record", text()->value_name("OUT.h5"),
+                "writes path and correction, for tools/plot.py");
+  options.add()(
+      "point-uncertainty", text()->value_name("OUT.csv"),
+      "writes the expanded uncertainty (k = 2) of every corrected point, from the covariance in "
+      "the machine file of servomill calibrate; the report gives maximum and rms");
+  options.add()("json", "prints the changes as JSON");
   options.add()("force,f", "replaces OUT if it exists");
   options.add()("quiet,q", "prints only warnings and faults");
 }

@@ -17,20 +17,20 @@ namespace po = boost::program_options;
 
 std::string summary() {
   std::string out =
-      "Runs a scenario unchanged and once with each of these steps halved, and prints how\n"
+      "Runs a scenario unchanged, then once with each of these steps halved, and prints how\n"
       "each line of its comparison changes:\n";
   for (std::size_t n = 0; n < sim::run::kRefinements; ++n) {
     const sim::run::RefinementInfo& info = sim::run::info_of(static_cast<sim::run::Refinement>(n));
     out += fmt::format("  {:<11}{}\n", info.name, info.help);
   }
   out +=
-      "The last columns say how many significant digits of the value are certain, and print it "
-      "with\nthese. The error is taken as twice the sum of all changes (an error that halves with "
-      "its\nstep is twice the change), but at least half the resolution of the recording or of "
-      "the\nscales; an r after the digits means that the resolution limits them. Blocks whose "
-      "length or\ntolerance the scenario sets to another value than the default, such as an "
-      "identified one,\nare an input: they are not halved, and named below the table. Where no "
-      "drive is to be solved\nfor, or no strategy writes blocks, nothing changes.";
+      "The last columns give the number of certain digits of the value, and the value with these\n"
+      "digits. The error is taken as twice the sum of all changes (an error that halves with its\n"
+      "step is twice the change), but at least half the resolution of the recording or of the\n"
+      "scales; an r after the digits means that the resolution limits them. A block length or\n"
+      "tolerance that the scenario sets to a value other than the default, such as an identified\n"
+      "one, is an input: it is not halved, and is listed below the table. Steps without effect\n"
+      "(no drive to be solved, no strategy that writes blocks) change nothing.";
   return out;
 }
 

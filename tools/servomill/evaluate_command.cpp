@@ -46,15 +46,18 @@ void add_evaluate_options(Options& options) {
   options.add()("period", text("P"),
                 "iso230-2: prints the periodic error of this period, mm or deg");
   options.add()("uncertainty", text("LASER.toml"),
-                "contributions of device, set-up, temperature and environment: prints U (k = 2)");
-  options.add()("target", text("CHANNEL"),
-                "iso230-2, raw logs: channel of the target position, its name or the end of it");
-  options.add()("position", text("CHANNEL"), "channel of the measured position");
-  options.add()("unit", text("UNIT"), "of that position, where the log does not name it");
-  options.add()("standstill", text("T"), "least time that a target holds (default: 1 s)");
+                "file with the contributions of device, set-up, temperature and environment: "
+                "prints U (k = 2)");
+  options.add()(
+      "target", text("CHANNEL"),
+      "iso230-2, raw logs: channel of the target position, by its name or the end of its name");
+  options.add()("position", text("CHANNEL"), "raw logs: channel of the measured position");
+  options.add()("unit", text("UNIT"),
+                "unit of the measured position, if the log does not state it");
+  options.add()("standstill", text("T"), "minimum standstill time of a target (default: 1 s)");
   options.add()("seed", po::value<std::uint64_t>()->default_value(1)->value_name("N"),
                 "seed of the Monte Carlo simulation of U");
-  options.add()("targets", "prints the tables of targets and curves, too");
+  options.add()("targets", "also prints the tables of targets and curves");
   options.add()("json", "prints one JSON object per test, numbers in m and rad");
   options.add()("force,f", "replaces OUT.csv if it exists");
 }
@@ -246,9 +249,9 @@ void print_reports(const std::vector<Report>& reports, const Options& options) {
 int evaluate_command(const Arguments& arguments) {
   Options options(
       "evaluate", "READINGS... --standard iso230-2|iso230-4|iso230-6|iso230-7|iso10791-6 [--json]",
-      "Parameters of a test as its standard defines them, from readings of a real machine:\n"
-      "CSV files of one test each, or the groups of one READINGS.toml. Columns and results:\n"
-      "sim/standards/README.md.",
+      "Prints the parameters of a test as its standard defines them, from readings of a real\n"
+      "machine: CSV files with one test each, or the groups of one READINGS.toml. Columns and\n"
+      "results: sim/standards/README.md.",
       "READINGS");
   add_evaluate_options(options);
   if (!options.parse(arguments)) return kDone;

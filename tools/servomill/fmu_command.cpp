@@ -136,16 +136,15 @@ std::string fmu_json(const std::vector<sim::fmu::AxisConstants>& axes, const std
 
 void add_fmu_options(Options& options) {
   add_axis_options(options);
-  options.add()("machine", "all axes, and where kinematics and geometric errors put the tool");
-  options.add()(
-      "tool", po::value<int>()->value_name("T"),
-      "with --machine: tool of the scenario whose tip is followed (else the spindle nose; "
-      "parameters tool.tip_x, _y, _z)");
+  options.add()("machine", "all axes, and the tool position from kinematics and geometric errors");
+  options.add()("tool", po::value<int>()->value_name("T"),
+                "with --machine: tool of the scenario whose tip is the measured point (default: "
+                "the spindle nose; FMU parameters tool.tip_x, _y, _z)");
   options.add()("fmi", po::value<std::string>()->default_value("2")->value_name("2|3"),
                 "version of the Functional Mock-up Interface");
   options.add()("output,o", po::value<std::string>()->value_name("DRIVE.fmu"), "the FMU");
   options.add()("force,f", "replaces the FMU if it exists");
-  options.add()("json", "prints what it wrote as one JSON object");
+  options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only faults");
 }
 
@@ -154,9 +153,10 @@ void add_fmu_options(Options& options) {
 int fmu_command(const Arguments& arguments) {
   Options options(
       "fmu", "SCENARIO.toml --axis Y|X,Y|all or --machine [--case NAME] [--fmi 2|3] -o DRIVE.fmu",
-      "Exports an axis, drive and NC loops, several, or the whole machine as a co-simulation unit "
-      "(FMU)\nfor other simulators. It gives the bits of servomill run for the same setpoints; "
-      "strategies stay outside: their\ncorrections enter at the inputs.\n" +
+      "Exports one axis (drive and NC loops), several axes, or the whole machine as a\n"
+      "co-simulation unit (FMU) for other simulators. For the same setpoints its results equal\n"
+      "those of servomill run bit for bit. Strategies are not included: their corrections enter\n"
+      "at the inputs." +
           list_of_variables(),
       "SCENARIO.toml");
   add_fmu_options(options);

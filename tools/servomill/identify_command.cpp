@@ -22,19 +22,18 @@ void add_identify_options(Options& options) {
                 "writes the identified machine: the initial machine overridden by the identified "
                 "values, with their uncertainty and covariance");
   options.add()("recording", po::value<std::vector<std::string>>()->value_name("FILE"),
-                "file of the first recording in place of the one that the experiment names; again: "
-                "of the second, ...");
+                "file of the first recording, instead of the one in the experiment; repeat for the "
+                "second, ...");
   options.add()("validation", po::value<std::vector<std::string>>()->value_name("FILE"),
-                "a further recording that the fit does not see, with the channels of the first; "
-                "can be repeated");
+                "a further recording that is excluded from the fit, with the channels of the "
+                "first; can be repeated");
   options.add()("signals", po::value<std::string>()->value_name("OUT.h5"),
                 "writes measured and simulated signals, residuals and parameters");
   options.add()(
       "make-up", po::value<std::string>()->value_name("RECORDING.csv|.h5"),
-      "writes a synthetic recording of the machine of the experiment, for each axis that of "
-      "its first recording, with the disturbances of the table [noise], without "
-      "identifying");
-  options.add()("compare-laws", "compares friction laws, whatever compare_laws says");
+      "writes synthetic recordings of the machine of the experiment, one per axis (that of its "
+      "first recording), with the disturbances of the table [noise]; identifies nothing");
+  options.add()("compare-laws", "compares friction laws, regardless of compare_laws");
   options.add()("bootstrap", po::value<int>()->value_name("N"),
                 "block bootstrap of the residual with N replicas (100 or more), next to the "
                 "intervals from its spectrum");
@@ -90,14 +89,14 @@ sim::identification::IntervalSettings intervals_of(
 int identify_command(const Arguments& arguments) {
   Options options(
       "identify", "EXPERIMENT.toml [-o identified.toml] [--signals OUT.h5]",
-      "Finds parameters of drives from recordings of real axes: simulates the "
-      "recorded\ncontrol with the modelled drives, varies the parameters of the "
-      "experiment until\nthe simulated feedback fits the recorded one best, and "
-      "reports the uncertainty of\neach value, the parameters that the recordings do "
-      "not determine, and the\nprediction error for recordings excluded from the fit.\n\n"
-      "Exit status 1: a value has ended at its bound, the fit has not converged or its "
-      "simulation\nexplains nothing of the motion. But for values at their bound, -o is "
-      "then refused (2).",
+      "Finds parameters of drives from recordings of real axes: simulates the recorded control\n"
+      "with the modelled drives, varies the parameters of the experiment until the simulated\n"
+      "feedback fits the recorded one best, and reports the uncertainty of each value, the\n"
+      "parameters that the recordings do not determine, and the prediction error for recordings\n"
+      "excluded from the fit.\n"
+      "\n"
+      "Exit status 1: a value is at its bound, the fit has not converged, or its simulation\n"
+      "explains none of the motion. In the last two cases -o is refused (exit status 2).",
       "EXPERIMENT.toml");
   add_identify_options(options);
   if (!options.parse(arguments)) return kDone;

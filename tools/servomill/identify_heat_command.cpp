@@ -26,7 +26,7 @@ void add_heat_options(Options& options) {
   options.add()("machine", text("MACHINE.toml"), "machine that was measured, with [heat.sensor]");
   options.add()("case", text("NAME"), "DAY.h5: case whose day is read (default: the only one)");
   options.add()("errors", text("LIST"),
-                "errors that are sought, with commas between them (default: EXX,EYY,EZZ)");
+                "errors to be identified, separated by commas (default: EXX,EYY,EZZ)");
   options.add()("output,o", text("OUT.toml"),
                 "writes the machine with errors_per_K of its sensors, and their covariance");
   options.add()("json", "prints one JSON object, numbers in um and urad per kelvin");
@@ -111,13 +111,13 @@ HeatReadings readings_of_day(const std::string& path, const Options& options) {
 }  // namespace
 
 int identify_heat_command(const Arguments& arguments) {
-  Options options("identify-heat", "READINGS.csv|DAY.h5 --machine MACHINE.toml [-o OUT.toml]",
-                  "Finds errors per kelvin of the temperature sensors of a machine, by linear "
-                  "regression of the drift of its tip: of the day of a result file, or of a table "
-                  "with the columns X_mm, ..., C_deg, tool_mm, NAME_degC of each sensor and "
-                  "drift_X_um, drift_Y_um, drift_Z_um. The strategy thermal compensates them "
-                  "(machine = \"OUT.toml\").",
-                  "READINGS.csv|DAY.h5");
+  Options options(
+      "identify-heat", "READINGS.csv|DAY.h5 --machine MACHINE.toml [-o OUT.toml]",
+      "Finds errors per kelvin for the temperature sensors of a machine, by linear regression of "
+      "the drift of its tip. The drift is that of a day in a result file, or of a table with the "
+      "columns X_mm, ..., C_deg, tool_mm, NAME_degC for each sensor and drift_X_um, drift_Y_um, "
+      "drift_Z_um. The strategy thermal compensates these errors (machine = \"OUT.toml\").",
+      "READINGS.csv|DAY.h5");
   add_heat_options(options);
   if (!options.parse(arguments)) return kDone;
   const std::string path = options.word();

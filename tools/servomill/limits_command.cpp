@@ -25,31 +25,34 @@ void declare_limits_options(Options& options) {
   options.add()("machine,m", text("M.toml"),
                 "machine with the limits v_max, a_max, j_max of its axes");
   options.add()("channel", texts("\"X=NAME [mm]\""),
-                "channel of an axis, with its unit if the log has none: a position, a velocity "
-                "(mm/s) or an acceleration; default: by the names of channels");
-  options.add()("line", text("NAME"), "channel of the line of the program; default: by its name");
-  options.add()("case", text("NAME"), "of a result file with several cases");
-  options.add()("period", text("\"1 ms\""),
-                "time between samples of a log that numbers them (halsampler), bare numbers in ms");
+                "channel of an axis, with its unit if the log states none: a position, a velocity "
+                "(mm/s) or an acceleration; default: recognised by name");
+  options.add()("line", text("NAME"), "channel of the program line; default: recognised by name");
+  options.add()("case", text("NAME"), "case to be checked, for a result file with several cases");
+  options.add()(
+      "period", text("\"1 ms\""),
+      "time between samples, for a log that only numbers them (halsampler); bare numbers in ms");
   options.add()("time-unit", text("us"), "unit of times without a unit in the log; default: s");
-  options.add()("window", text("\"5 ms\""),
-                "window of the means, bare numbers in ms; default: the shortest in which the "
-                "resolution of the log takes 5 % of the limit, at most 100 ms or the log");
+  options.add()(
+      "window", text("\"5 ms\""),
+      "averaging window, bare numbers in ms; default: the shortest window in which the resolution "
+      "of the log causes at most 5 % of the limit, not longer than 100 ms or the log");
   options.add()(
       "resolution", text("\"1 um\""),
       "resolution of samples, bare numbers in um (of rotary axes in urad, of velocities per "
       "s); default: the step of which all samples are multiples");
   options.add()("program,p", text("PROGRAM"),
-                "program that the log is of: its path is compared, too; the log begins at the "
-                "position of the machine before it");
+                "program that was recorded: its path is compared, too; the log begins at the "
+                "machine position before the program");
   options.add()("tolerance", text("\"20 um\""),
-                "of the path, bare numbers in um; default: P of G64, of G64 without P "
-                "nc.path_tolerance of the machine file, of G61 0.1 um");
+                "tolerance of the path, bare numbers in um; default: P of G64; for G64 without P "
+                "nc.path_tolerance of the machine file; for G61 0.1 um");
   add_program_options(options);
   add_placement_options(options);
   options.add()("set", texts("KEY=VALUE"), "changes a key of the machine");
-  options.add()("top", po::value<int>()->default_value(5)->value_name("N"),
-                "lists the N largest excesses of each limit, the N lines of the largest deviation");
+  options.add()(
+      "top", po::value<int>()->default_value(5)->value_name("N"),
+      "lists the N largest violations of each limit, and the N lines with the largest deviation");
   options.add()("json", "prints one JSON object");
   options.add()("quiet,q", "prints only faults");
 }
@@ -74,15 +77,19 @@ int limits_command(const Arguments& arguments) {
   Options options(
       "limits",
       "LOG --machine M.toml [--program PROGRAM] [--channel \"X=NAME [mm]\"]... [--period \"1 ms\"]",
-      "Checks a recorded motion against the limits of a machine: velocity, acceleration and jerk "
-      "of\neach axis, the largest factor over the limit, when, in which line and how often. LOG "
-      "is a\nrecording of any known format (halsampler, halscope, CSV, HDF5, ...: see servomill "
-      "recording).\n\n"
-      "Derivatives are means over windows: divided differences of the samples, which a motion "
-      "within\nits limits cannot exceed, whatever the sampling. The resolution of the log changes "
-      "them by no\nmore than is printed; an excess counts if it is larger than that.\n\n"
-      "With --program the motion is followed along the programmed path: how far it leaves it, and "
-      "how\nnear it comes to the corners, line by line, against the tolerance.\n\n"
+      "Checks a recorded motion against the limits of a machine: velocity, acceleration and jerk\n"
+      "of each axis, the largest factor over the limit, when, in which line and how often. LOG is\n"
+      "a recording of any known format (halsampler, halscope, CSV, HDF5, ...: see servomill\n"
+      "recording).\n"
+      "\n"
+      "Derivatives are means over windows: divided differences of the samples. If the motion is\n"
+      "within its limits, these cannot exceed the limits, whatever the sampling. The possible\n"
+      "effect of the resolution of the log is printed; a violation counts only if it is larger.\n"
+      "\n"
+      "With --program the motion is compared with the programmed path, line by line: the\n"
+      "deviation from the path and the distance from the corners are checked against the\n"
+      "tolerance.\n"
+      "\n"
       "Exit status 1: a limit or a tolerance is exceeded, or a limit is not evaluated because no\n"
       "window fits into the log.",
       "LOG");

@@ -94,19 +94,17 @@ int list_command(const Arguments& arguments) {
   namespace po = boost::program_options;
   Options options(
       "list", "strategies|machines|scenarios|quantities|rules|keys [SECTION]",
-      "Prints the strategies with their keys, the quantities that a comparison can hold, "
-      "the rules by which programs are read beyond LinuxCNC's, the machines and scenarios of a "
-      "folder, or every key of scenarios and machines: what it does, type, unit, range, default. "
-      "SECTION is one such as program or machine.axis.X, with those below it; top has the keys "
-      "outside "
-      "of sections. Machine files leave out 'machine.'. Required keys are so where they apply.",
+      "Prints the strategies with their keys, the quantities available in a comparison, the rules "
+      "for reading programs beyond those of LinuxCNC, the machines and scenarios of a folder, or "
+      "every key of scenarios and machines: meaning, type, unit, range, default. SECTION, such as "
+      "program or machine.axis.X, includes its subsections; top selects the keys outside of "
+      "sections. Machine files omit 'machine.'. A required key is required wherever it applies.",
       "strategies|machines|scenarios|quantities|rules|keys");
-  options.add()(
-      "folder", po::value<std::string>()->value_name("DIR"),
-      "folder of machines and scenarios, whose files are printed; default: scenarios in the "
-      "current folder, or those that are installed");
-  options.add()("json", "prints a JSON list, one object each");
-  options.add()("markdown", "keys: prints a page with one table a section");
+  options.add()("folder", po::value<std::string>()->value_name("DIR"),
+                "folder of the machines and scenarios to list; default: scenarios in the current "
+                "folder, or the installed ones");
+  options.add()("json", "prints a JSON list, one object per item");
+  options.add()("markdown", "keys: prints a page with one table per section");
   add_plugin_option(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);

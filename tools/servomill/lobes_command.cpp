@@ -300,27 +300,31 @@ void add_lobes_options(Options& options) {
   options.add()("tool", po::value<int>()->value_name("N"),
                 "tool of the scenario (default: its only one)");
   options.add()("teeth", po::value<int>()->value_name("N"), "number of teeth");
-  options.add()("diameter", text("D"), "of the cutter; a bare number is in mm");
-  options.add()("helix", text("\"30 deg\""), "of the cutter (default: of the tool, else 0)");
-  options.add()("material", text("NAME"), "typical coefficients (default: [cutting])");
+  options.add()("diameter", text("D"), "diameter of the cutter; a bare number is in mm");
+  options.add()("helix", text("\"30 deg\""),
+                "helix angle of the cutter (default: that of the tool, else 0)");
+  options.add()("material", text("NAME"),
+                "material with typical coefficients (default: [cutting])");
   options.add()("Ktc", text("K"), "tangential coefficient; a bare number is in N/mm^2");
   options.add()("Krc", text("K"), "radial coefficient; a bare number is in N/mm^2");
   options.add()("milling", po::value<std::string>()->default_value("slot"), "slot, up or down");
   options.add()("radial-depth", text("AE"),
-                "width of cut of up and down milling; a bare number is in mm");
+                "radial depth of cut in up and down milling; a bare number is in mm");
   options.add()("feed-angle", po::value<std::string>()->default_value("0 deg"),
-                "direction of feed, from X to Y");
-  options.add()("stiffness", text("\"20 N/um\""), "modal stiffness, in place of the file's modes");
+                "direction of feed, as angle from X towards Y");
+  options.add()("stiffness", text("\"20 N/um\""),
+                "modal stiffness of one mode, instead of the modes of the file");
   options.add()("frequency", text("\"500 Hz\""), "its natural frequency");
   options.add()("damping", text("0.03"), "its damping ratio");
-  options.add()("mode-angle", text("\"90 deg\""), "its direction, from X to Y (default: Y)");
+  options.add()("mode-angle", text("\"90 deg\""),
+                "direction of the mode, as angle from X towards Y (default: Y)");
   options.add()("speed-min", po::value<double>()->default_value(2000.0)->value_name("RPM"),
-                "lowest speed of the spindle");
+                "lowest spindle speed");
   options.add()("speed-max", po::value<double>()->default_value(12000.0)->value_name("RPM"),
                 "highest speed");
   options.add()("points", po::value<int>()->default_value(41)->value_name("N"), "speeds");
   options.add()("depth-max", po::value<std::string>()->default_value("20 mm"),
-                "depth up to which limits are searched, from a fiftieth of it on");
+                "maximum depth of cut of the search, which begins at a fiftieth of it");
   options.add()("threads", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (0: all cores)");
   options.add()("output,o", text("OUT.csv"), "writes the table");
@@ -333,13 +337,13 @@ void add_lobes_options(Options& options) {
 int lobes_command(const Arguments& arguments) {
   Options options(
       "lobes", "[MACHINE.toml|SCENARIO.toml] [--teeth N] [--material NAME] [-o OUT.csv]",
-      "Prints stability lobes: the depth of cut at which a milling cutter begins to chatter, over "
-      "the\nspeed of its spindle. Modes are those of [[structural_mode]] of the machine or one of "
-      "the options;\ntool and material those of the scenario or of the options. Limits are found "
-      "by semi-discretisation\nfor the engagement as it is, with helix; Hopf: a second frequency, "
-      "flip: the vibration repeats\nafter two teeth. The last column is the closed form with mean "
-      "directional factors, exact for\nslots with four straight teeth. Cuts are with the flank, "
-      "tool along Z.",
+      "Prints stability lobes: the depth of cut at which a milling cutter begins to chatter, over\n"
+      "spindle speed. Modes come from [[structural_mode]] of the machine, or one mode from the\n"
+      "options; tool and material come from the scenario or the options. Limits are found by\n"
+      "semi-discretisation for the actual engagement and helix. Hopf: chatter has a frequency of\n"
+      "its own; flip: it repeats after two teeth. The last column is the closed form with mean\n"
+      "directional factors, exact for slots with four straight teeth. The flank of the tool cuts,\n"
+      "and the tool is along Z.",
       "MACHINE.toml or SCENARIO.toml");
   add_lobes_options(options);
   options.add()("case", po::value<std::string>()->value_name("NAME"),

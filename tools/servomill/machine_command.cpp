@@ -25,12 +25,12 @@ void declare_machine_options(Options& options) {
                 "machine file (default: name of the settings with .toml, in this folder; - for "
                 "standard output)");
   options.add()("control", text("NAME"),
-                "linuxcnc, grbl, fluidnc or rrf; default: by the contents of the file");
+                "linuxcnc, grbl, fluidnc or rrf; default: recognised by the contents of the file");
   options.add()("structure", text("\"[w C' A' b X Y Z (C1) t]\""),
-                "structure of the machine, in place of the assumed one");
+                "structure of the machine, instead of the assumed one");
   options.add()("acceleration-time", text("\"20 ms\""),
-                "time in which the acceleration rises, for the jerk limits (bare numbers in ms); "
-                "default: that of a control that plans with constant acceleration");
+                "rise time of the acceleration, which gives the jerk limits; bare numbers in ms; "
+                "default: assumed for a control that plans with constant acceleration");
   options.add()("path-tolerance", text("\"10 um\""),
                 "path tolerance for G64 without P, bare numbers in um");
   options.add()("force,f", "replaces MACHINE.toml if it exists");
@@ -60,11 +60,13 @@ int machine_command(const Arguments& arguments) {
   Options options(
       "machine", "from SETTINGS [-o MACHINE.toml] [--control NAME]",
       "Writes a machine file from the settings of a real control: an INI file of LinuxCNC, the\n"
-      "settings of grbl as $$ lists them, config.yaml of FluidNC, config.g of RepRapFirmware. It\n"
-      "holds axes, travel, velocity, acceleration, path tolerance, each with the line that it is\n"
-      "from, for servomill time, check, limits and compensate; a run needs drives, too.\n\n"
-      "What the settings do not give is not invented: it is a comment, or, where a machine file\n"
-      "needs a value (jerk, structure), an assumption, which the file and this command name.",
+      "settings of grbl as listed by $$, config.yaml of FluidNC, config.g of RepRapFirmware. The\n"
+      "file contains axes, travel, velocity, acceleration and path tolerance, each with its\n"
+      "source line. It is sufficient for servomill time, check, limits and compensate; a run also\n"
+      "needs drives.\n"
+      "\n"
+      "Values that the settings do not contain are left as comments. Where a machine file needs a\n"
+      "value (jerk, structure), an assumption is made, which the file and this command state.",
       "from SETTINGS");
   declare_machine_options(options);
   if (!options.parse(arguments)) return kDone;

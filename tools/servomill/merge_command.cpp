@@ -40,7 +40,7 @@ int merge_command(const Arguments& arguments) {
                   "would have written.",
                   "SHARD.h5");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"), "result file");
-  options.add()("partial", "merges the existing points if shards or points are missing");
+  options.add()("partial", "merges the existing points even if shards or points are missing");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("json", "prints one JSON object: points by status, statistics of samples");
   options.add()("quiet,q", "prints only faults");

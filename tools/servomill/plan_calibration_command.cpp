@@ -37,15 +37,15 @@ void add_plan_options(Options& options) {
   options.add()("hours", po::value<double>()->default_value(8.0)->value_name("H"),
                 "available measuring time");
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
-                "writes readings.toml to this folder with a CSV file to be filled in for each "
-                "set-up, and measuring programs of the touch probe for --controls");
+                "folder for readings.toml, a CSV file to be filled in for each set-up, and "
+                "measuring programs of the touch probe for --controls");
   options.add()("controls",
                 po::value<std::string>()
                     ->default_value("linuxcnc,heidenhain,fanuc,siemens")
                     ->value_name("LIST"),
-                "controls that measuring programs are written for");
+                "controls for which measuring programs are written");
   options.add()("sphere", po::value<double>()->default_value(25.0)->value_name("D"),
-                "diameter of the spheres that these touch, mm");
+                "diameter of the spheres to be touched, mm");
   options.add()("stylus", po::value<double>()->default_value(6.0)->value_name("D"),
                 "diameter of the stylus, mm");
   options.add()("force,f", "replaces outputs that exist");
@@ -145,10 +145,10 @@ void write_programs(const std::string& folder, const sim::readings::Readings& pl
 int plan_calibration_command(const Arguments& arguments) {
   Options options(
       "plan-calibration", "[READINGS.toml] --machine MACHINE.toml [-o FOLDER]",
-      "Plans measurements: selects the set-ups of the available instruments that lower the\nworst "
-      "uncertainty of the TCP in the working volume most for their time, given the\nexisting "
-      "readings. Prints the expected uncertainty, that of lines through the middle\nof the travel "
-      "in the same time, and the lower bound of all plans of these set-ups.",
+      "Plans measurements: selects the set-ups of the available instruments that reduce the\n"
+      "worst uncertainty of the TCP in the working volume most in the available time, given the\n"
+      "existing readings. Prints the expected uncertainty, that of lines through the middle\n"
+      "of the travel in the same time, and the lower bound for all plans of these set-ups.",
       "READINGS.toml");
   add_plan_options(options);
   if (!options.parse(arguments)) return kDone;

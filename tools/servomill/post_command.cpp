@@ -63,16 +63,19 @@ std::string program_name(const Options& options) {
 int post_command(const Arguments& arguments) {
   Options options(
       "post", "PART.cls --machine M.toml [-o OUT.ngc] [...]",
-      "Post-processes cutter locations to G-code for a machine. PART is an APT cutter location "
-      "file\n(GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n\nBetween "
-      "locations the TCP moves on a straight line and the tool axis on a great circle:\npoints are "
-      "inserted where axis interpolation would exceed the tolerance. The feed is that of\nthe TCP; "
-      "each block has inverse-time feed (G93). Every location uses the axis positions\nnearest to "
-      "the previous ones, within the travel.\n\nTo the first location, after a tool change and "
-      "across rapids on which the tool axis changes:\nZ to the retract height, rotary axes, "
-      "spindle on, X and Y, Z to the clearance, and along\nthe tool axis; back in reverse order. "
-      "The program is read back and compared with the locations\nbefore it is written. Bare "
-      "numbers are in the unit that each option names.",
+      "Post-processes cutter locations to G-code for a machine. PART is an APT cutter location\n"
+      "file (GOTO, FEDRAT, RAPID, ...) or, named .csv, a table x,y,z,i,j,k[,feed].\n"
+      "\n"
+      "Between locations the TCP moves on a straight line and the tool axis on a great circle:\n"
+      "points are inserted where axis interpolation would exceed the tolerance. The feed is that\n"
+      "of the TCP; each block has inverse-time feed (G93). Every location uses the axis positions\n"
+      "nearest to the previous ones, within the travel.\n"
+      "\n"
+      "The approach to the first location, after a tool change and across rapids that change the\n"
+      "tool axis: Z to the retract height, rotary axes, spindle on, X and Y, Z to the clearance,\n"
+      "then along the tool axis. The retract reverses this order. The program is read back and\n"
+      "compared with the locations before it is written. Bare numbers are in the unit that each\n"
+      "option names.",
       "PART.cls");
   add_post_options(options);
   if (!options.parse(arguments)) return kDone;

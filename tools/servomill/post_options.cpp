@@ -147,14 +147,14 @@ void add_post_options(Options& options) {
   options.add()("axis-tolerance",
                 po::value<std::string>()->default_value("100 urad")->value_name("\"100 urad\""),
                 "largest deviation of the tool axis from its great circle (urad)");
-  options.add()("classical", "one block per location, nothing between them");
+  options.add()("classical", "one block per location, without inserted points");
   options.add()("tcp", "for an NC with tool-centre-point control: G43.4, X Y Z are the TCP");
   options.add()("work-offset", po::value<std::string>()->value_name("X,Y,Z"),
                 "work offset of the part in the machine with the rotary axes at zero, mm; required "
                 "with rotary axes (with --tcp only for a rotary table, unless --approach direct)");
-  options.add()("approach",
-                po::value<std::string>()->default_value("safe")->value_name("safe|direct"),
-                "safe: as above; direct: one rapid of all axes to the first location, no retract");
+  options.add()(
+      "approach", po::value<std::string>()->default_value("safe")->value_name("safe|direct"),
+      "safe: as described above; direct: one rapid of all axes to the first location, no retract");
   options.add()("clearance", po::value<std::string>()->value_name("\"10 mm\""),
                 "distance over which the tool approaches along its axis (mm); default: 10 mm");
   options.add()("retract", po::value<std::string>()->value_name("Z=400"),
@@ -168,18 +168,19 @@ void add_post_options(Options& options) {
       "tool-length", po::value<std::vector<std::string>>()->value_name("\"110 mm\""),
       "length of every tool, or 1=110 of tool 1 (mm); this or --tools is required (0 is allowed)");
   options.add()("tool", po::value<int>()->value_name("N"),
-                "tool in the spindle before the first LOADTL; T1 where the file has none and "
-                "--tool-length is given; 0: none, G49, with --tool-length 0");
+                "tool in the spindle before the first LOADTL; default: T1 if the file has no "
+                "LOADTL and --tool-length is given; 0: no tool, G49, with --tool-length 0");
   options.add()("feed", po::value<std::string>()->value_name("\"300 mm/min\""),
-                "feed of the TCP where the file gives none (mm/min)");
+                "feed of the TCP where the file specifies none (mm/min)");
   options.add()(
       "rotary-feed",
       po::value<std::string>()->default_value("3600 deg/min")->value_name("\"3600 deg/min\""),
       "feed of the tool axis where the TCP is at rest (deg/min)");
-  options.add()("start", po::value<std::string>()->value_name("A=10,C=90"),
-                "axis positions near which the first location is solved; default: zero");
+  options.add()(
+      "start", po::value<std::string>()->value_name("A=10,C=90"),
+      "axis positions near which the solution for the first location is chosen; default: zero");
   options.add()("force,f", "replaces the program if it exists");
-  options.add()("json", "prints what it wrote as one JSON object");
+  options.add()("json", "prints the report as one JSON object");
   options.add()("quiet,q", "prints only warnings and faults");
 }
 

@@ -14,7 +14,7 @@ void add_program_options(Options& options) {
   options.add()("tools", text("TABLE"), "tool table in LinuxCNC's format, mm");
   options.add()("parameter", texts("#N=NUMBER"),
                 "sets a parameter before the program runs, such as '#101=1394', Q5=20 in a "
-                "conversational program, or R5=20 and machine data in one of Siemens");
+                "conversational program, or R5=20 and machine data in a Siemens program");
   options.add()("parameter-file", text("FILE"),
                 "LinuxCNC's file of numbered parameters (\"var\" file), mm; it is never written");
   options.add()("subs", texts("FOLDER"),
@@ -22,19 +22,19 @@ void add_program_options(Options& options) {
                 "CALL PGM, NAME.SPF of Siemens; the folder of the program is searched first");
   options.add()(
       "reader", text("NAME"),
-      "control whose rules the program follows: any (default: LinuxCNC plus what other "
-      "controls accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, "
-      "heidenhain (conversational; any takes it from BEGIN PGM or a file *.h), siemens (any "
-      "takes it from a file *.mpf or *.spf or from words that only it has)");
+      "control whose rules the program follows: any (default: LinuxCNC plus what other controls "
+      "accept, with a warning), linuxcnc (strict), fanuc, haas, mach, grbl, heidenhain "
+      "(conversational; any recognises it by BEGIN PGM or a file *.h), siemens (any recognises it "
+      "by a file *.mpf or *.spf or by words that only Siemens has)");
   options.add()("decimal-point", text("NAME"),
-                "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments "
-                "(X1000 = 1 mm); required with readers fanuc and haas");
+                "meaning of lengths without a decimal point: calculator (X1000 = 1000 mm) or "
+                "increments (X1000 = 1 mm); required with readers fanuc and haas");
   options.add()("feed", text("\"300 mm/min\""), "feed of G1, G2 and G3 before the first F");
   options.add()("additional-offset", texts("P3:X=10,Y=5,Z=0"),
                 "additional work offset of G54.1 P3 or G154 P3, mm");
   options.add()("ignore-code", texts("M82"),
                 "M code of the machine builder without effect on motion; otherwise the code is "
-                "refused, as some mirror or move axes");
+                "refused, because some of them mirror or move axes");
   options.add()("block-delete", "skips blocks that start with '/'");
   options.add()(
       "max-jumps", po::value<long>()->value_name("N"),
@@ -43,9 +43,9 @@ void add_program_options(Options& options) {
 
 void add_machine_option(Options& options) {
   namespace po = boost::program_options;
-  options.add()(
-      "machine", po::value<std::string>()->value_name("M.toml"),
-      "machine that runs it: required by G43.5, G53.1, and G43.4 or G68.2 with rotated axes");
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
+                "machine that runs the program: required by G43.5, G53.1, and G43.4 or G68.2 with "
+                "rotated axes");
 }
 
 sim::programs::ProgramInputs program_inputs(const Options& options) {
@@ -78,12 +78,12 @@ void add_placement_options(Options& options) {
     return po::value<std::vector<std::string>>()->value_name(name);
   };
   options.add()("work-offset", texts("X=10,Y=-5"),
-                "position of G54 in the machine, mm and deg; G55:X=10,R=30 for another one and "
+                "position of G54 in the machine, mm and deg; G55:X=10,R=30 for another work offset "
                 "with a rotation");
   options.add()("tool-length", texts("1=50"),
                 "length of tool 1 (in mm, or \"1=50 mm\"), overrides --tools");
   options.add()("start", po::value<std::string>()->value_name("X=0,Y=0,Z=50"),
-                "machine position before the program, mm and deg, 0 for axes without one");
+                "machine position before the program, mm and deg; 0 for axes that are not given");
 }
 
 sim::programs::ProgramPlacement program_placement(const Options& options,

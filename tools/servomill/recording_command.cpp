@@ -27,12 +27,12 @@ void refuse_output(const std::string& out, bool force) {
 }  // namespace
 
 int recording_command(const Arguments& arguments) {
-  Options options(
-      "recording", "FILE... [-o OUT.h5|OUT.csv]",
-      "Prints the content of recordings of real axes: channels, units, rates, gaps,\nclipping, "
-      "missing samples; and converts one. The format of a file is recognised\nby its content: " +
-          sim::recordings::format_names() + ".",
-      "FILE");
+  Options options("recording", "FILE... [-o OUT.h5|OUT.csv]",
+                  "Prints the contents of recordings of real axes: channels, units, rates, gaps,\n"
+                  "clipping, missing samples. Also converts a recording. The format of a file is\n"
+                  "recognised by its contents: " +
+                      sim::recordings::format_names() + ".",
+                  "FILE");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"),
                 "writes the recording as OUT.h5 or OUT.csv");
   options.add()("time-unit", po::value<std::string>()->value_name("us"),

@@ -31,11 +31,11 @@ void add_response_options(Options& options) {
   options.add()("output", text("CHANNEL"), "response: an angle or a position");
   options.add()("period", po::value<double>()->value_name("S"),
                 "period of the excitation in s (in samples, if the file has no time); without it "
-                "the local polynomial method takes the record as it is: a chirp, a pseudo-random "
-                "binary signal");
-  options.add()("of-control",
-                "takes the response that the control has computed itself; CHANNEL is "
-                "the number of a signal");
+                "the local polynomial method evaluates the record as a whole, for a chirp or a "
+                "pseudo-random binary signal");
+  options.add()(
+      "of-control",
+      "uses the response computed by the control itself; CHANNEL is then the number of a signal");
   options.add()("skip", po::value<int>()->default_value(1)->value_name("N"),
                 "periods skipped at the beginning, for the transient");
   options.add()("f-min", po::value<double>()->value_name("HZ"),
@@ -43,8 +43,8 @@ void add_response_options(Options& options) {
   options.add()("f-max", po::value<double>()->value_name("HZ"),
                 "excludes lines above this frequency");
   options.add()("fit", text("two-mass|N/M|N/M+delay"),
-                "fits the two-mass model from a current or torque to the motor's angle, or a "
-                "rational function: degrees of numerator and denominator, dead time");
+                "fits the two-mass model from current or torque to motor angle, or a rational "
+                "function given by the degrees of numerator and denominator, and dead time");
   options.add()("lines", "prints every line, not only the most significant ones");
   options.add()("table", text("OUT.csv"), "writes all lines with their uncertainty");
   options.add()("signals", text("OUT.h5"),
@@ -294,9 +294,9 @@ sim::responses::SignalName signal_name(const sim::recordings::Recording& recordi
 int response_command(const Arguments& arguments) {
   Options options(
       "response", "RECORDING --input CHANNEL --output CHANNEL --period S [--fit two-mass]",
-      "Frequency response of a real axis from a recording with a periodic excitation\n(multisine): "
-      "maximum likelihood over its periods, with an interval for every line\nfrom the scatter of "
-      "the periods; and the two-mass model fitted to it.",
+      "Computes the frequency response of a real axis from a recording with periodic excitation\n"
+      "(multisine), by maximum likelihood over its periods, with a confidence interval for every\n"
+      "frequency from the scatter of the periods. Fits the two-mass model to it.",
       "RECORDING");
   add_response_options(options);
   if (!options.parse(arguments)) return kDone;

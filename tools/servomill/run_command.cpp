@@ -144,7 +144,7 @@ void add_run_options(Options& options) {
                 "threads (default: one per core); results do not depend on it");
   options.add()("force,f", "replaces the result file if it exists");
   options.add()("touches", po::value<std::string>()->value_name("FOLDER"),
-                "writes the positions that probing moves (G38.2 ...) latch to FOLDER/CASE.csv, as "
+                "writes the positions latched by probing moves (G38.2 ...) to FOLDER/CASE.csv, as "
                 "readings of kind touch");
   options.add()("readings", po::value<std::string>()->value_name("FOLDER"),
                 "writes the readings of every [[test]] to FOLDER/CASE/TEST.csv (diagonals: "
@@ -153,7 +153,7 @@ void add_run_options(Options& options) {
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
   options.add()("isolate",
-                "simulates cases with plug-ins in processes of their own: a plug-in that crashes, "
+                "simulates each case with a plug-in in a separate process: a plug-in that crashes, "
                 "calls exit() or does not return within 10 s ends its case, not the command");
 }
 
@@ -170,12 +170,12 @@ void print_estimate_once(bool& is_printed, const sim::preparation::RunEstimate& 
 }  // namespace
 
 int run_command(const Arguments& arguments) {
-  Options options(
-      "run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
-      "Runs every case of a scenario, prints the comparison and writes all signals to one HDF5 "
-      "file. A long run first reports its number of rows, file size, memory and time; its rows are "
-      "thinned if record.period_ms is not given and their signals exceed record.max_size_GB.",
-      "SCENARIO.toml");
+  Options options("run", "SCENARIO.toml [-o OUT.h5] [--set KEY=VALUE]...",
+                  "Runs every case of a scenario, prints the comparison and writes all signals to "
+                  "one HDF5 file. A long run first reports its number of rows, file size, memory "
+                  "and time. If record.period_ms is not given and the signals exceed "
+                  "record.max_size_GB, the rows are thinned.",
+                  "SCENARIO.toml");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   load_plugins(options);

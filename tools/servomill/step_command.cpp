@@ -176,15 +176,14 @@ void add_step_options(Options& options) {
   options.add()("kind,k", po::value<std::string>()->default_value("all")->value_name("KIND"),
                 "position, velocity, load or all");
   options.add()("amplitude", po::value<std::string>()->value_name("\"0.1 mm\""),
-                "of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 deg/s, "
-                "50 Nm); bare numbers are in these units");
-  options.add()(
-      "band", po::value<std::string>()->default_value("2 %")->value_name("\"2 %\""),
-      "settling band as a share of the amplitude, of the peak of a load step; a bare number "
-      "is in %");
+                "amplitude of the step, with --kind (default: 0.1 mm, 10 mm/s, 500 N; 0.02 deg, 1 "
+                "deg/s, 50 Nm); bare numbers are in these units");
+  options.add()("band", po::value<std::string>()->default_value("2 %")->value_name("\"2 %\""),
+                "settling band as a fraction of the amplitude (load step: of the peak); a bare "
+                "number is in %");
   options.add()("duration", po::value<std::string>()->value_name("\"0.5 s\""),
-                "simulated time after the step, bare numbers in s (default: 12 of the slowest time "
-                "constant)");
+                "simulated time after the step, bare numbers in s (default: 12 times the slowest "
+                "time constant)");
   options.add()("linear", "disables friction, backlash, gravity load, quantisation and limits");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
                 "writes the signals to a result file, for tools/plot.py");
@@ -196,12 +195,13 @@ void add_step_options(Options& options) {
 }  // namespace
 
 int step_command(const Arguments& arguments) {
-  Options options("step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
-                  "Simulates a step response of an axis, with friction, backlash, quantisation and "
-                  "limits of\nthe scenario, and prints figures of merit: a step of the setpoint "
-                  "(without feed-forward),\nof the velocity command (position loop open; motor "
-                  "speed as slide velocity), of a force\non the slide.",
-                  "SCENARIO.toml");
+  Options options(
+      "step", "SCENARIO.toml --axis Y [--kind position|velocity|load|all] [-o OUT.h5]",
+      "Simulates step responses of an axis with the friction, backlash, quantisation and limits\n"
+      "of the scenario, and prints figures of merit. The step is one of the setpoint (without\n"
+      "feed-forward), of the velocity command (position loop open; motor speed as slide\n"
+      "velocity), or of a force on the slide.",
+      "SCENARIO.toml");
   add_step_options(options);
   if (!options.parse(arguments)) return kDone;
 

@@ -28,12 +28,11 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr const char* kSummary =
-    "Runs a scenario at the points of its [sweep] table, prints one line for each and writes one "
-    "row per point to one HDF5 file; for samples it prints the mean, the standard deviation and "
-    "the interval of 95 % of each quantity, and of those with a tolerance the probability of "
-    "conformity with the guard band of ISO 14253-1. An interrupted or killed sweep is continued. "
-    "Exit status 1: at some points the machine stopped or the input was refused; their rows give "
-    "the reason.";
+    "Runs a scenario at the points of its [sweep] table, prints one line per point and writes one "
+    "row per point to one HDF5 file. For samples it prints mean, standard deviation and 95 % "
+    "interval of each quantity, and for quantities with a tolerance the probability of conformity "
+    "with the guard band of ISO 14253-1. An interrupted or killed sweep is continued. Exit status "
+    "1: at some points the machine stopped or the input was refused; their rows give the reason.";
 constexpr const char* kSynopsis = "SCENARIO.toml [-o OUT.h5] [--shard I/N] [--set KEY=VALUE]...";
 
 void add_sweep_options(Options& options) {
@@ -52,11 +51,11 @@ void add_sweep_options(Options& options) {
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads (default: one per core); results do not depend on it");
   options.add()("retry-failed",
-                "runs points again at which the program or the system failed, such as for lack of "
-                "memory");
+                "runs points again that failed because of the program or the system, for example "
+                "for lack of memory");
   options.add()("force,f", "replaces the result file if it exists");
-  options.add()("json", "prints a JSON list, one object per point that is run and quantity");
-  options.add()("csv", "prints the table as the CSV file has it, at the end");
+  options.add()("json", "prints a JSON list, one object per quantity of each point that is run");
+  options.add()("csv", "prints the table at the end, as in the CSV file");
   options.add()("quiet,q", "prints only faults");
 }
 

@@ -284,38 +284,38 @@ void add_table_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("FOLDER"),
                 "folder for the files; with --import the file of the error model");
   options.add()("import", po::value<std::vector<std::string>>()->value_name("FILE"),
-                "reads a parameter file of csv, isg or etalon and writes it as a file "
-                "[errors.NAME] of the machine of --machine; NAME is that of --model (measured); "
-                "csv: once for each file");
-  options.add()(
-      "machine", po::value<std::string>()->value_name("M.toml"),
-      "machine file, which needs only structure, travel and errors; the scenario is then replaced "
-      "by a file of error models [errors.NAME], or omitted: the error models of the machine");
+                "reads a parameter file in the format csv, isg or etalon and writes it as "
+                "[errors.NAME] for the machine of --machine; NAME is given by --model (default: "
+                "measured); csv: once for each file");
+  options.add()("machine", po::value<std::string>()->value_name("M.toml"),
+                "machine file; it needs only structure, travel and errors. The scenario is then "
+                "omitted, and the error models are those of the machine, or it is replaced by a "
+                "file of error models [errors.NAME]");
   options.add()("model", po::value<std::string>()->value_name("NAME"),
                 "error model; required if there are several");
   options.add()("axis,a", po::value<std::string>()->default_value("all")->value_name("X,Y"),
-                "axes over which tables run");
+                "base axes of the tables");
   options.add()(
       "spacing", po::value<std::string>()->value_name("\"5 mm\""),
       "spacing of the points of linear axes, bare numbers in mm; default: 1, 2 or 5 x 10^n mm, "
       "heidenhain 2^n x 0.1 um, the smallest that gives 256 points or fewer (siemens: 200)");
   options.add()("rotary-spacing", po::value<std::string>()->value_name("\"5 deg\""),
-                "the same for rotary axes, bare numbers in deg");
+                "spacing of the points of rotary axes, bare numbers in deg");
   options.add()("max-points", po::value<int>()->value_name("N"),
                 "maximum number of points per table: siemens as set by MD38000 and MD18342 "
                 "(default 200), linuxcnc and heidenhain at most 256, csv 10000");
   options.add()("travel", po::value<std::vector<std::string>>()->value_name("X=FROM:TO"),
                 "range of an axis in mm or deg; default: its travel");
   options.add()("at", po::value<std::vector<std::string>>()->value_name("Z=POSITION"),
-                "position of an axis while the tables of others are computed, in mm or deg; "
-                "default: the middle of travel (linear) or 0 (rotary)");
+                "position of an axis for which the tables of the other axes are computed, in mm or "
+                "deg; default: the middle of travel (linear) or 0 (rotary)");
   options.add()("tool-length", po::value<std::string>()->value_name("\"110 mm\""),
                 "distance from the spindle nose to the TCP; default 0; bare numbers in mm");
   options.add()("bed-mesh", po::value<std::string>()->value_name("7x5"),
-                "of marlin, klipper and reprapfirmware: also writes a bed mesh of that many points "
+                "marlin, klipper and reprapfirmware: also writes a bed mesh with that many points "
                 "along X and Y, at the reference of Z (--at)");
   options.add()("comp-file-type", po::value<int>()->value_name("0|1"),
-                "linuxcnc: 0 positions reached (default), 1 trims");
+                "linuxcnc: COMP_FILE_TYPE; 0: actual positions (default), 1: trims");
   options.add()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                 "changes a key of the scenario or of the machine file, as for servomill run");
   options.add()("force,f", "replaces files of the same names");
@@ -329,15 +329,15 @@ void add_table_options(Options& options) {
 int table_command(const Arguments& arguments) {
   Options options(
       "table", "SCENARIO.toml|--machine M.toml --format FORMAT -o FOLDER",
-      "Writes an error model as compensation tables for a real NC: corrections of each axis "
-      "over\nits own position, with heidenhain and siemens also over those of the two other linear "
-      "axes.\nA table contains the errors on one line along its axis, and 0 at the reference. "
-      "Errors that\nit cannot represent are listed by their ISO 230-1 names, with their residual "
-      "at the TCP. csv, isg (ISG CSV,\nfor Beckhoff TF5280) and etalon (exchange format, as TF5280 "
-      "reads it) contain the errors\nthemselves, and can be read by --import. marlin, klipper and "
-      "reprapfirmware represent the\nsquareness of X, Y and Z as a skew correction. The document "
-      "of each format is named in its files. The files are read back\nby the rules of that "
-      "document and compared with the error model before they are written.",
+      "Writes an error model as compensation tables for a real NC: corrections of each axis over\n"
+      "its own position, for heidenhain and siemens also over the positions of the two other\n"
+      "linear axes. A table contains the errors on one line along its axis; its value at the\n"
+      "reference is 0. Errors that a table cannot represent are listed by their ISO 230-1 names,\n"
+      "with their residual at the TCP. csv, isg (ISG CSV, for Beckhoff TF5280) and etalon\n"
+      "(exchange format, as TF5280 reads it) contain the errors themselves and can be read by\n"
+      "--import. marlin, klipper and reprapfirmware represent the squareness of X, Y and Z as a\n"
+      "skew correction. Every file cites the document of its format. Files are read back by the\n"
+      "rules of that document and compared with the error model before they are written.",
       "SCENARIO.toml");
   add_table_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -27,27 +27,28 @@ void declare_time_options(Options& options) {
     return po::value<std::vector<std::string>>()->value_name(name);
   };
   options.add()("machine,m", text("M.toml"),
-                "machine that runs the program; v_max, a_max and j_max of its axes are enough");
+                "machine that runs the program; v_max, a_max and j_max of its axes are sufficient");
   options.add()("by", text("line|tool|section"),
-                "table to print; default: tools and sections where there are several, and lines");
+                "table to print; default: tools and sections if there are several, and lines");
   options.add()("top", po::value<int>()->default_value(10)->value_name("N"),
                 "prints the N lines that take longest");
   options.add()("raise", text("PERCENT"),
-                "plans the program again with each limit raised by as much, such as 10, and prints "
-                "the time that this saves");
-  options.add()("csv", text("FILE.csv"), "writes the table of --by (default: line), all rows");
+                "plans the program again with each limit raised in turn by PERCENT, such as 10, "
+                "and prints the time saved");
+  options.add()("csv", text("FILE.csv"),
+                "writes all rows of the table selected by --by (default: line)");
   add_program_options(options);
   add_placement_options(options);
   options.add()("feed-override", po::value<double>()->value_name("0.5"), "factor on all feeds");
   options.add()("set", texts("KEY=VALUE"),
-                "changes a key of the machine, such as axis.X.a_max=\"2 m/s^2\"; of the scenario, "
-                "as for servomill run");
+                "changes a key of the machine, such as axis.X.a_max=\"2 m/s^2\", or of the "
+                "scenario, as for servomill run");
   options.add()("case", texts("NAME"), "scenarios: only this case");
   options.add()("threads,j", po::value<int>()->default_value(0)->value_name("N"),
                 "threads of --raise (default: one per core)");
   options.add()(
       "json",
-      "prints the result as JSON, of a scenario a list of motions; null for what is unknown");
+      "prints the result as JSON, for a scenario a list of motions; unknown values are null");
   options.add()("force,f", "replaces the file of --csv if it exists");
   options.add()("quiet,q", "prints only warnings and faults");
   add_plugin_option(options);
@@ -133,16 +134,22 @@ int time_command(const Arguments& arguments) {
   Options options(
       "time",
       "PROGRAM --machine M.toml [--by line|tool|section] [--raise PERCENT] [--csv FILE] [--json]",
-      "Cycle time of a program: its motion is planned as in a run, without the servo loops.\n"
-      "Prints where the time goes: feed, rapid, dwell; what bounds the motion (programmed feed,\n"
-      "velocity, acceleration, jerk, corners within the tolerance), axis by axis; tools, sections\n"
-      "(MSG comments) and the lines that take longest. --raise prints what higher limits save.\n\n"
-      "A limit bounds the motion where it is used by 90 % or more, and most of all. A corner\n"
-      "counts where the acceleration or jerk of rounding it between straight blocks does.\n\n"
-      "What is unknown is said, and never taken for 0: moves from positions that nothing names\n"
-      "(--start names the first), stops, and, unless the machine file has nc.tool_change_time_s\n"
-      "and nc.spindle_time_s, tool changes and changes of spindle speed.\n\n"
-      "Of a SCENARIO.toml: each motion of its cases, as their strategies rewrite the program.",
+      "Prints the cycle time of a program, whose motion is planned as in a run, without servo\n"
+      "loops. The time is split into feed, rapid and dwell; by the limits that bound the motion\n"
+      "(programmed feed, velocity, acceleration, jerk, corners within the tolerance), axis by\n"
+      "axis; by tools and sections (MSG comments); and by line, longest first. --raise prints\n"
+      "what higher limits save.\n"
+      "\n"
+      "A limit bounds the motion while it is used to 90 % or more, and to a larger fraction than\n"
+      "any other limit. It is counted as a corner if its acceleration or jerk comes from rounding\n"
+      "between straight blocks.\n"
+      "\n"
+      "Unknown times are listed and never counted as 0: moves from positions that nothing\n"
+      "specifies (--start specifies the first), stops and, unless the machine file has\n"
+      "nc.tool_change_time_s and nc.spindle_time_s, tool changes and spindle speed changes.\n"
+      "\n"
+      "For a SCENARIO.toml each motion of its cases is timed, with the program as their\n"
+      "strategies rewrite it.",
       "PROGRAM|SCENARIO.toml");
   declare_time_options(options);
   if (!options.parse(arguments)) return kDone;

@@ -279,9 +279,9 @@ void add_tune_options(Options& options) {
                 "minimum for both loops; a bare number is in dB");
   options.add()("overshoot", text()->default_value("5 %")->value_name("\"5 %\""),
                 "maximum after a step of the setpoint without feed-forward; a bare number is in %");
-  options.add()("bandwidth", text()->value_name("\"50 Hz\""),
-                "of the closed position loop (-3 dB): limits Kv; a bare "
-                "number is in Hz");
+  options.add()(
+      "bandwidth", text()->value_name("\"50 Hz\""),
+      "bandwidth of the closed position loop (-3 dB), which limits Kv; a bare number is in Hz");
   options.add()("velocity-bandwidth", po::value<std::string>()->value_name("\"300 rad/s\""),
                 "upper limit; a bare number is in rad/s");
   options.add()("reset-ratio", po::value<double>()->default_value(4.0)->value_name("N"),
@@ -292,14 +292,15 @@ void add_tune_options(Options& options) {
 }  // namespace
 
 int tune_command(const Arguments& arguments) {
-  Options options("tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
-                  "Finds gains for an axis on the exact multirate model: the largest velocity "
-                  "bandwidth that\nkeeps phase and gain margin of the velocity loop (its reset "
-                  "time follows), then the\nlargest Kv that keeps those of the position loop and "
-                  "the overshoot. Reports the limiting\ncriterion, the changes and the result of a "
-                  "simulation of the whole axis, and prints the\nlines for the scenario. Several "
-                  "axes get a common Kv, as interpolation requires: the smallest.",
-                  "SCENARIO.toml");
+  Options options(
+      "tune", "SCENARIO.toml --axis Y|all [--phase-margin 60] [--gain-margin 8]",
+      "Finds gains for an axis on the exact multirate model: first the largest velocity bandwidth\n"
+      "that keeps the phase and gain margins of the velocity loop (its reset time follows from\n"
+      "it), then the largest Kv that keeps the margins of the position loop and the overshoot.\n"
+      "Reports the limiting criterion, the changes and the result of a simulation of the whole\n"
+      "axis, and prints the lines for the scenario. Several axes get a common Kv, the smallest,\n"
+      "as interpolation requires.",
+      "SCENARIO.toml");
   add_tune_options(options);
   if (!options.parse(arguments)) return kDone;
 

@@ -58,15 +58,15 @@ std::string port_of(const Options& options) {
 int view_command(const Arguments& arguments) {
   Options options(
       "view", "OUT.h5... [--no-browser]",
-      "Shows result files in the browser: signals, path, circles, comparison, sweeps, budgets, "
-      "frequency\nresponses. Ctrl-C ends it. The page and these files alone are served, to this "
-      "computer alone\n(127.0.0.1), under an address that cannot be guessed; nothing comes from "
-      "elsewhere. The page\n(servomill.html in share/servomill/page) also works by itself: open "
-      "it and drop files on it.",
+      "Shows result files in the browser: signals, path, circles, comparison, sweeps, budgets,\n"
+      "frequency responses. Press Ctrl-C to end. Only the page and these files are served, only\n"
+      "to this computer (127.0.0.1), at an address that cannot be guessed; nothing is loaded from\n"
+      "elsewhere. The page (servomill.html in share/servomill/page) also works by itself: open it\n"
+      "and drop files on it.",
       "OUT.h5...");
-  options.add()("no-browser", "prints the address; nothing is opened");
+  options.add()("no-browser", "prints the address instead of opening the browser");
   options.add()("port", po::value<int>()->default_value(0)->value_name("N"),
-                "of the address; 0: one that is free");
+                "port of the address; 0: any free port");
   if (!options.parse(arguments)) return kDone;
   const std::vector<std::string> files = options.words();
   if (files.empty()) {

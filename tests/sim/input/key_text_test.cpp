@@ -14,11 +14,12 @@ const std::vector<KeyEntry>& hardware() {
 
 TEST(KeyText, HasOneLineAKey) {
   EXPECT_EQ(as_text(hardware()),
-            "[feedback_hardware]\n  connected                also puts the hardware in the signal "
-            "path of cases that do not use it [true | false; default false]\n  signal_delay_us     "
-            "     delay from the scale to the reading of the NC [number in us, >= 0 and <= 6e+07; "
-            "default 10]\n  model_period_us          period of the error model; its value acts one "
-            "period later [number in us, > 0 and <= 6e+07; default 60]\n");
+            "[feedback_hardware]\n  connected                true: the hardware is in the signal "
+            "path of all cases, also of those that do not use it [true | false; default false]\n  "
+            "signal_delay_us          delay from the scale to the position feedback of the NC "
+            "[number in us, >= 0 and <= 6e+07; default 10]\n  model_period_us          evaluation "
+            "period of the error model; its value acts one period later [number in us, > 0 and <= "
+            "6e+07; default 60]\n");
   EXPECT_TRUE(as_text(keys_of("top")).starts_with("[top]\n  based_on "));
   EXPECT_NE(as_text(keys_of("machine.axis.X")).find("\n\n[machine.axis.X.friction]\n"),
             std::string::npos);
@@ -40,7 +41,7 @@ TEST(KeyText, EscapesWhatMarkdownReads) {
 TEST(KeyText, HasOneJsonObjectAKey) {
   EXPECT_EQ(keys_json(hardware()).back(),
             (R"({"section": "feedback_hardware", "key": "model_period_us", )"
-             R"("help": "period of the error model; its value acts one period later", )"
+             R"("help": "evaluation period of the error model; its value acts one period later", )"
              R"("type": "number in us", "unit": "us", "range": "> 0 and <= 6e+07", )"
              R"("presence": "default 60", "default": "60"})"));
   const std::vector<KeyEntry> follows = {

@@ -84,7 +84,7 @@ def sweep(scenario: Loadable, *, set: Changes = None, output: Optional[Path] = N
 
 
 def compare(*paths: Path) -> Union[Comparison, List[Comparison]]:
-    """Evaluates the comparison of result files again from their recorded signals: one, or a list of as many as there are files."""
+    """Evaluates the comparison of result files again from their recorded signals: one, or a list with one per file."""
     out = []
     for path in paths:
         title, rows, text = _core.compare(_path(path))
