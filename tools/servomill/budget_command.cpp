@@ -27,7 +27,7 @@ std::string causes_help() {
   std::string out =
       "Splits the residuals of a scenario's cases into the contributions of their causes: runs\n"
       "each case again without each cause and compares the signals at equal arc length. A long\n"
-      "budget first reports the number of its runs, their time, memory and disk space. Causes:";
+      "budget first reports the number of its runs, their time, memory and disk space. Causes:\n";
   for (std::size_t c = 0; c < sim::run::kCauses; ++c) {
     const sim::run::CauseInfo& info = sim::run::info_of(static_cast<sim::run::Cause>(c));
     out += fmt::format("  {:<18}{}\n", info.name, info.help);
@@ -274,8 +274,7 @@ void add_budget_options(Options& options) {
   options.add()("quantity", po::value<std::vector<std::string>>()->value_name("NAME"),
                 "only this quantity; tool_deviation and following_error are available even if the "
                 "scenario does not list them");
-  options.add()("axis", po::value<std::vector<std::string>>()->value_name("Y"),
-                "only of this axis");
+  options.add()("axis", po::value<std::vector<std::string>>()->value_name("Y"), "only this axis");
   options.add()("section", po::value<std::vector<std::string>>()->value_name("NAME"),
                 "only this section of the program (default: the sections of the quantity)");
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),

@@ -156,7 +156,7 @@ int fmu_command(const Arguments& arguments) {
       "Exports one axis (drive and NC loops), several axes, or the whole machine as a\n"
       "co-simulation unit (FMU) for other simulators. For the same setpoints its results equal\n"
       "those of servomill run bit for bit. Strategies are not included: their corrections enter\n"
-      "at the inputs." +
+      "at the inputs.\n" +
           list_of_variables(),
       "SCENARIO.toml");
   add_fmu_options(options);
