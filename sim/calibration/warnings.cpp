@@ -36,8 +36,8 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
   const Observation& one = calibration.observations.all[outlier.observation];
   const readings::Group& group = group_of(calibration, one.group);
   return fmt::format(
-      "{}: reading of \"{}\" is off by {}, {:.1f} times its standard uncertainty; it counts: check "
-      "it at the machine, or leave it out",
+      "{}: reading of \"{}\" is off by {}, {:.1f} times its standard uncertainty; it is used: "
+      "check it at the machine, or remove it",
       readings::place_of(group, group.rows[one.row]), group.name,
       in_unit(calibration.adjustment.residuals[outlier.observation], group),
       std::abs(outlier.standardized));
@@ -94,7 +94,7 @@ void add_copied_rows(const readings::Group& group, std::vector<std::string>& out
   }
   if (copies == 0) return;
   out.push_back(fmt::format(
-      "{}: equals line {} in every number{}; it counts: remove what was copied",
+      "{}: equals line {} in every number{}; it is used: remove copied rows",
       readings::place_of(group, *first), copied->line,
       copies == 1 ? "" : fmt::format("; so do {} more rows with earlier ones", copies - 1)));
 }
@@ -154,8 +154,8 @@ void add_missing_runs(const readings::Group& group, std::vector<std::string>& ou
     const int missing = runs - static_cast<int>(rows.size());
     if (missing <= 0) continue;
     out.push_back(
-        fmt::format("{}: {} of {} runs are missing at the target of this line: measure "
-                    "them; what is there counts",
+        fmt::format("{}: {} of {} runs are missing at the target of this line: measure them; "
+                    "existing readings are used",
                     readings::place_of(group, *rows.front()), missing, runs));
   }
 }
@@ -194,8 +194,8 @@ void add_reading_warnings(const Calibration& calibration, std::vector<std::strin
     }
     if (has_temperature(group) && !group.expansion) {
       out.push_back(
-          fmt::format("{}: its column temperature_degC is not used; a table expansion "
-                      "takes lengths back to 20 degC",
+          fmt::format("{}: its column temperature_degC is not used; a table expansion corrects "
+                      "lengths to 20 degC",
                       placed_name(group)));
     }
     add_missing_runs(group, out);
@@ -212,11 +212,10 @@ void add_reading_warnings(const Calibration& calibration, std::vector<std::strin
     const auto first = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
       return group.kind == readings::Kind::positioning && group.axis == axis;
     });
-    out.push_back(
-        fmt::format("{}: positions of {} are read in one direction, or their rows do not "
-                    "say in which: lost motion of {} stays unknown; add a column "
-                    "direction, and runs back",
-                    placed_name(*first), letter(axis), letter(axis)));
+    out.push_back(fmt::format(
+        "{}: positions of {} are read in one direction, or their rows do not state the direction: "
+        "lost motion of {} stays unknown; add a column direction, and runs in the other direction",
+        placed_name(*first), letter(axis), letter(axis)));
   }
 }
 

@@ -53,7 +53,8 @@ constexpr QuantityEntry kQuantities[] = {
      .evaluate = of_turn<&metrology::CircularTurn::G_least_squares>},
     {.name = "bidirectional_circular_error",
      .unit = "um",
-     .help = "ISO 230-4 G(b): the same as G around the paths of both directions",
+     .help = "ISO 230-4 G(b): smallest radial separation of two concentric circles around the "
+             "paths of both directions",
      .circles = 2,
      .evaluate = of_both<&metrology::BidirectionalCircle::G_b>},
     {.name = "radial_error_max",

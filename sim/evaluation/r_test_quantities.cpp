@@ -44,13 +44,15 @@ constexpr QuantityEntry kQuantities[] = {
      .evaluate = of_nest<metrology::NestDirection::radial>},
     {.name = "axial_ball_deviation",
      .unit = "um",
-     .help = "R-test: the same, along that axis",
+     .help = "R-test: displacement of the ball in the spindle relative to the table, along the "
+             "moving rotary axis",
      .has_statistic = true,
      .is_r_test = true,
      .evaluate = of_nest<metrology::NestDirection::axial>},
     {.name = "tangential_ball_deviation",
      .unit = "um",
-     .help = "R-test: the same, tangential, in the positive direction of the axis",
+     .help = "R-test: displacement of the ball in the spindle relative to the table, tangential, "
+             "in the positive direction of the moving rotary axis",
      .has_statistic = true,
      .is_r_test = true,
      .evaluate = of_nest<metrology::NestDirection::tangential>},
@@ -64,7 +66,8 @@ constexpr QuantityEntry kQuantities[] = {
      .evaluate = of_bar},
     {.name = "location_error",
      .unit = "um",
-     .help = "identified by a nest of sensors, or by each [[quantity.bar]]; angles in urad",
+     .help = "location error identified from the nest of sensors, or from each [[quantity.bar]]; "
+             "angles in urad",
      .is_r_test = true,
      .bars = BallBars::optional,
      .identifies = true,

@@ -85,8 +85,8 @@ QuantityValue synchronisation_error(const model::QuantitySpec& spec, CaseEvaluat
 constexpr QuantityEntry kQuantities[] = {
     {.name = "synchronisation_error",
      .unit = "um",
-     .help = "tool centre point minus the place that the angle of the spindle asks for, along the "
-             "way of G33 and G33.1",
+     .help = "tool centre point minus the position required by the spindle angle, along the path "
+             "of G33 and G33.1",
      .has_statistic = true,
      .evaluate = synchronisation_error},
 };

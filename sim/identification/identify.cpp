@@ -160,7 +160,7 @@ std::vector<std::string> implausible(const Experiment& experiment,
   for (std::size_t k = 0; k < identified.size(); ++k) {
     const double start = experiment.estimates[k].start, now = identified[k].start;
     if (start == 0.0 || std::abs(now) < kOtherUnit * std::abs(start)) continue;
-    out.push_back(fmt::format("{} = {:.4g} {} is {:.3g} times the value that it was started from",
+    out.push_back(fmt::format("{} = {:.4g} {} is {:.3g} times its start value",
                               identified[k].keys.front(), now, identified[k].unit,
                               std::abs(now / start)));
   }

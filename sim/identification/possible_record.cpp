@@ -40,8 +40,8 @@ std::optional<std::string> impossible(const Record& r) {
   }
   if (along < 0.0) {
     return fmt::format(
-        "has a feedback that moves against the command, first of all at {:.4g} s: one of them has "
-        "the wrong sign; give it factor = -1",
+        "has a feedback that moves against the command, first at {:.4g} s: one of them has the "
+        "wrong sign; give it factor = -1",
         r.time(fastest));
   }
   const double ratio = feedback.width() / command.width();

@@ -33,8 +33,8 @@ void read_bed(config::Reader& axis, bool linear, double base_period,
   const double most = 1.0 / (kTicksPerPeriod * base_period);
   if (f > most) {
     table.fault("frequency_Hz",
-                fmt::format("must be <= {:g} Hz: {:g} base periods of {:g} us in "
-                            "each period of the mode; without machine_bed it stands still",
+                fmt::format("must be <= {:g} Hz: {:g} base periods of {:g} us in each period of "
+                            "the mode; without machine_bed the bed is at rest",
                             most, kTicksPerPeriod, base_period / us));
   }
   drive.bed = {M, 2.0 * std::numbers::pi * f, zeta};

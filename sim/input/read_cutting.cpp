@@ -59,7 +59,8 @@ void read_force(config::Reader& table, model::CuttingSpec& spec) {
   if (spec.regeneration && !spec.teeth) {
     table.fault("regeneration", "needs force = \"instantaneous\"");
   } else if (spec.regeneration && spec.actual_depth) {
-    table.fault("regeneration", "needs depth_of_cut = \"nominal\": chips follow the vibration");
+    table.fault("regeneration",
+                "needs depth_of_cut = \"nominal\": the vibration determines the depth of cut");
   }
   if (!spec.teeth && table.has("steps_per_tooth")) {
     table.raw("steps_per_tooth");

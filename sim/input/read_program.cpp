@@ -81,7 +81,7 @@ void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& pro
 void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
                     config::Reader& table, model::ProgramSpec& program) {
   for (const char* const key : {"file", "text", "subroutines"}) {
-    if (table.raw(key) != nullptr) table.fault(key, "has no effect: [[test]] makes the program");
+    if (table.raw(key) != nullptr) table.fault(key, "has no effect: [[test]] writes the program");
   }
   program.file = "[[test]]";
   if (std::any_of(tests.begin(), tests.end(), [](const auto& one) { return !one->moves(); })) {

@@ -43,7 +43,7 @@ model::RecordWindows read_windows(config::Reader& record) {
   out.every =
       static_cast<int>(table.integer_or("every", 1, {config::at_least(1.0), config::at_most(1e9)}));
   if (table.faults() > before) return out;
-  if (!out.limited()) table.fault("needs sections or time_s: what is recorded");
+  if (!out.limited()) table.fault("needs sections or time_s, which select the rows to record");
   if (out.sections.empty() && table.has("every")) {
     table.fault("every", "needs sections, whose passes it counts");
   }

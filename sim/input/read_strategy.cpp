@@ -162,9 +162,10 @@ const config::Value* read_strategy(config::Reader& table, std::span<const std::s
   const bool knows_machine = strategy.entry->knows_machine(strategy.parameters);
   if (table.has("machine") && !knows_machine && strategy.entry->reads_loops != nullptr) {
     table.raw("machine");
-    table.fault("machine", fmt::format("is read by the strategy {} only where it predicts with "
-                                       "the position loops",
-                                       strategy.entry->name));
+    table.fault(
+        "machine",
+        fmt::format("applies to the strategy {} only if its prediction uses the position loops",
+                    strategy.entry->name));
   } else if (table.has("machine") && knows_machine) {
     machine = table.raw("machine");
   }

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSuffix = ".toml";
 constexpr const char* kNoFolder =
-    "is no file, and there is no folder of scenarios in which names are looked up: neither "
-    "scenarios here nor installed ones";
+    "no such file; names cannot be looked up, because there is no folder of scenarios here and "
+    "none is installed";
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;

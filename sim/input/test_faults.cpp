@@ -105,8 +105,8 @@ class TestOnMachine {
   std::string travel_text(Axis axis, const Range& at) const {
     const double unit = unit_of(axis);
     if (at.from == at.to) {
-      return fmt::format("test {} is made at {} = {:g} {}", test_.name, letter(axis),
-                         at.from / unit, unit_name_of(axis));
+      return fmt::format("test {} is run at {} = {:g} {}", test_.name, letter(axis), at.from / unit,
+                         unit_name_of(axis));
     }
     const bool has_overrun = test_.standard != TestStandard::circles;
     return fmt::format("test {} moves {} from {:g} to {:g} {}{}", test_.name, letter(axis),

@@ -38,8 +38,8 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
   const auto refuse = [&](std::string_view why) {
     throw InputError(
         scenario.cutting->place,
-        fmt::format("case {}: regeneration = true needs a tool point that gives way across the "
-                    "tool ([[structural_mode]] or structural_stiffness of the machine); {}",
+        fmt::format("case {}: regeneration = true needs a tool point that is compliant across the "
+                    "tool axis ([[structural_mode]] or structural_stiffness of the machine); {}",
                     spec.name, why));
   };
   const model::MachineSettings& machine = scenario.machine_of(spec);

@@ -246,7 +246,7 @@ class Planner {
       if (shank.depth <= 0.0) continue;
       plan_.warnings.push_back(
           {{in_.file, shank.line},
-           fmt::format("tool {} cuts {:.4g} mm deep, at most here, with flutes of {:.4g} mm: its "
+           fmt::format("tool {} cuts {:.4g} mm deep (the maximum) with flutes of {:.4g} mm: its "
                        "shank rubs, and that force is not computed",
                        tool, shank.depth / mm, shank.flutes / mm)});
     }

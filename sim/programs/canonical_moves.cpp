@@ -155,7 +155,7 @@ bool is_binary(const std::string& path) {
 
 void refuse_no_program(const std::string& path) {
   if (path.ends_with(".toml")) {
-    throw InputError({path}, "is a file of TOML (scenario, machine, ...); a program is needed");
+    throw InputError({path}, "is a TOML file (scenario, machine, ...); a program is needed");
   }
   std::error_code ignored;  // a pipe is read once
   if (std::filesystem::is_regular_file(path, ignored) && is_binary(path))

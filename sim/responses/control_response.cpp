@@ -30,10 +30,11 @@ ControlSpectra control_spectra(const recordings::Recording& recording, const std
   if (real == nullptr || imaginary == nullptr || of_input == nullptr || of_output == nullptr) {
     std::vector<std::string> names;
     for (const recordings::Channel& channel : recording.channels) names.push_back(channel.name);
-    throw InputError({recording.file},
-                     fmt::format("holds no response of signal {} to signal {} that its control has "
-                                 "computed; it has {}",
-                                 output, input, fmt::join(names, ", ")));
+    throw InputError(
+        {recording.file},
+        fmt::format(
+            "contains no response of signal {} to signal {} computed by the control; it has {}",
+            output, input, fmt::join(names, ", ")));
   }
   ControlSpectra out;
   out.frequency = recording.bases[real->base].values;

@@ -210,8 +210,7 @@ void add_copies(const CirclePath& turn, Report& out) {
         lines.try_emplace({turn.points[i].x(), turn.points[i].y()}, turn.places[i].line);
     if (is_new) continue;
     out.remarks.push_back(
-        fmt::format("{}: equals line {} on the circle {}; it counts: remove what "
-                    "was copied",
+        fmt::format("{}: equals line {} on the circle {}; it is used: remove copied rows",
                     to_string(turn.places[i]), found->second, sense_name(turn.sense)));
   }
 }

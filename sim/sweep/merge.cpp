@@ -88,7 +88,7 @@ class Owners {
       std::uint32_t& owner = owner_[whole_.place(selection.point(place))];
       if (owner != kNobody) {
         throw InputError({shards[one].path},
-                         fmt::format("overlaps {}: both hold point {}", shards[owner].path,
+                         fmt::format("overlaps {}: both contain point {}", shards[owner].path,
                                      selection.point(place) + 1));
       }
       owner = static_cast<std::uint32_t>(one);

@@ -194,7 +194,7 @@ void refuse_partial(const std::string& partial) {
   if (!may_be_result_file(partial)) {
     throw InputError(
         {partial},
-        fmt::format("exists and is {}; results have this name until complete: remove it, or choose "
+        fmt::format("exists and is {}; incomplete results have this name: remove it, or choose "
                     "another result file",
                     fs::is_directory(partial, ignored) ? "a folder" : "not a result file"));
   }

@@ -60,8 +60,8 @@ class Merge(Sweeps):
     def test_refuses_what_overlaps_or_is_of_another_sweep(self):
         three, two = self.shards(3), self.shards(2)
         out = ["-o", self.path("merged.h5")]
-        self.refused("out.1-of-3.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], three[0], *out)
-        self.refused("out.1-of-2.h5: error: overlaps out.1-of-3.h5: both hold point 1", "merge", three[0], two[0], *out)
+        self.refused("out.1-of-3.h5: error: overlaps out.1-of-3.h5: both contain point 1", "merge", three[0], three[0], *out)
+        self.refused("out.1-of-2.h5: error: overlaps out.1-of-3.h5: both contain point 1", "merge", three[0], two[0], *out)
         self.sweep("other.h5", "--shard", "2/3", status=None, points=POINTS.replace("10.0", "11.0"))
         self.refused("other.2-of-3.h5: error: contains a sweep of another scenario than out.1-of-3.h5",
                      "merge", three[0], self.path("other.2-of-3.h5"), *out)

@@ -252,7 +252,7 @@ sim::programs::CompensateRequest compensate_request(const Options& options) {
   request.changes = options.list("set");
   request.servo_file = text_of(options, "servo");
   if (options.has("cutoff") && request.servo_file.empty()) {
-    throw InputError({"--cutoff"}, "is that of --servo, which is not given");
+    throw InputError({"--cutoff"}, "applies to --servo, which is not given");
   }
   request.cutoff =
       positive_option(options, "cutoff", sim::config::kRate, "Hz").value_or(request.cutoff);

@@ -153,7 +153,7 @@ std::string output_name(const Options& options, const std::string& scenario_name
 void refuse_other_format(const std::string& out) {
   for (const std::string_view other : {".csv", ".json", ".mat", ".toml", ".txt", ".xlsx"}) {
     if (!out.ends_with(other)) continue;
-    throw InputError({"--output"}, fmt::format("'{}' would hold HDF5; must end with .h5", out));
+    throw InputError({"--output"}, fmt::format("'{}' would contain HDF5; must end with .h5", out));
   }
 }
 

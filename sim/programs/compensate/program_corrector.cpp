@@ -153,7 +153,7 @@ void ProgramCorrector::refuse(const Move& move, const AxisFlags& was_known) cons
   }
   if (move.synchronised != Synchronised::no) {
     throw InputError({options_.file, move.line},
-                     "motion that the spindle turns with (G33, G33.1) cannot be compensated");
+                     "spindle-synchronised motion (G33, G33.1) cannot be compensated");
   }
   if (move.kind == MoveKind::spline) {
     throw InputError({options_.file, move.line},

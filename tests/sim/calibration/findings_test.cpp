@@ -235,8 +235,8 @@ TEST(Findings, NamesACopiedRow) {
   readings::Reading copy = all.groups[2].rows[4];
   copy.line = 20;
   all.groups[2].rows.push_back(copy);
-  EXPECT_TRUE(warns(calibrated(all),
-                    ":20: equals line 6 in every number; it counts: remove what was copied"));
+  EXPECT_TRUE(
+      warns(calibrated(all), ":20: equals line 6 in every number; it is used: remove copied rows"));
 }
 
 }  // namespace

@@ -189,9 +189,9 @@ key = "axis.X.moving_mass"
   ASSERT_FALSE(found.implausible.empty());
   EXPECT_NE(warnings(found).front().find("recording.csv: axis.X.moving_mass = "), std::string::npos)
       << warnings(found).front();
-  EXPECT_NE(warnings(found).front().find("times the value that it was started from: a channel has "
-                                         "another unit or factor"),
-            std::string::npos);
+  EXPECT_NE(
+      warnings(found).front().find("times its start value: a channel has another unit or factor"),
+      std::string::npos);
 }
 
 TEST(Identify, AValueAtItsBoundIsNamed) {

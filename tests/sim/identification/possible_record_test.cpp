@@ -24,8 +24,8 @@ TEST(PossibleRecord, RefusesStandstill) {
 
 TEST(PossibleRecord, RefusesTheWrongSignWithItsInstant) {
   EXPECT_EQ(impossible(record(-1.0)),
-            "has a feedback that moves against the command, first of all at 0.2 s: one of them has "
-            "the wrong sign; give it factor = -1");
+            "has a feedback that moves against the command, first at 0.2 s: one of them has the "
+            "wrong sign; give it factor = -1");
 }
 
 TEST(PossibleRecord, RefusesAnotherUnit) {

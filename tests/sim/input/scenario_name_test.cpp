@@ -107,8 +107,8 @@ TEST_F(ScenarioName, NeedsAFolderForANameThatIsNoFile) {
       ADD_FAILURE() << "taken";
     } catch (const InputError& error) {
       EXPECT_STREQ(error.what(),
-                   "paper/experimant1: error: is no file, and there is no folder of scenarios in "
-                   "which names are looked up: neither scenarios here nor installed ones");
+                   "paper/experimant1: error: no such file; names cannot be looked up, because "
+                   "there is no folder of scenarios here and none is installed");
     }
   }
 }

@@ -87,11 +87,11 @@ TEST(PlanCutting, shanks_that_rub_are_reported_with_their_depth) {
   EXPECT_EQ(notes_of(slots({2.0}), tool), Notes{});
   EXPECT_EQ(notes_of(slots({2.0, 4.0}), tool), Notes{}) << "the shank is in the first slot";
   EXPECT_EQ(notes_of(slots({2.5}), tool),
-            Notes{"small.ngc:6: warning: case cut: tool 1 cuts 2.5 mm deep, at most here, with "
+            Notes{"small.ngc:6: warning: case cut: tool 1 cuts 2.5 mm deep (the maximum) with "
                   "flutes of 2 mm: its shank rubs, and that force is not computed"});
   EXPECT_EQ(notes_of(slots({2.0, 5.0}), tool),
-            Notes{"small.ngc:9: warning: case cut: tool 1 cuts 3 mm deep, at most here, with "
-                  "flutes of 2 mm: its shank rubs, and that force is not computed"});
+            Notes{"small.ngc:9: warning: case cut: tool 1 cuts 3 mm deep (the maximum) with flutes "
+                  "of 2 mm: its shank rubs, and that force is not computed"});
 }
 
 // The tip is programmed in the workpiece as it stands with the table at zero.

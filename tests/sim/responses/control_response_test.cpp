@@ -58,8 +58,8 @@ TEST(ControlResponse, NamesTheSignalsThatThereAre) {
   empty.file = "a.xml";
   empty.channels = {{"signal 61 series 1", "", {}, 0}};
   EXPECT_EQ(fault_messages([&] { control_spectra(empty, "1", "2"); }),
-            "holds no response of signal 2 to signal 1 that its control has computed; it has "
-            "signal 61 series 1\n");
+            "contains no response of signal 2 to signal 1 computed by the control; it has signal "
+            "61 series 1\n");
 }
 
 }  // namespace

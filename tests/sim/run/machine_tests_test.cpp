@@ -207,9 +207,9 @@ std::string changed(const std::string& from, const std::string& to) {
 // One fault an axis, not one a block; the length of the tool counts.
 TEST(MachineTest, IsRefusedWhereAnAxisWouldLeaveItsTravel) {
   EXPECT_EQ(refusal(kTest + "at = { Y_mm = 5000.0 }\n"),
-            "test X is made at Y = 5000 mm, in machine coordinates; the travel is -300 to 300 mm");
+            "test X is run at Y = 5000 mm, in machine coordinates; the travel is -300 to 300 mm");
   const std::string tool = "tool = 1\n[[program.tool]]\nnumber = 1\nlength_mm = 5000.0\n";
-  EXPECT_EQ(refusal(kTest + tool).substr(0, 28), "test X is made at Z = 5000 m");
+  EXPECT_EQ(refusal(kTest + tool).substr(0, 27), "test X is run at Z = 5000 m");
 }
 
 TEST(MachineTest, IsRefusedWithTheRule) {
@@ -235,9 +235,9 @@ TEST(MachineTest, IsRefusedWithTheRule) {
   EXPECT_EQ(refusal(kTest + "at = { X_mm = 1.0 }\n"),
             "test[0].at.X_mm = 1.0; is the axis under test");
   EXPECT_EQ(refusal(kTest + "[program]\nfile = \"a.ngc\"\n"),
-            "program.file = \"a.ngc\"; has no effect: [[test]] makes the program");
+            "program.file = \"a.ngc\"; has no effect: [[test]] writes the program");
   EXPECT_EQ(refusal(kTest + "[program]\ntext = \"M2\"\n"),
-            "program.text = \"M2\"; has no effect: [[test]] makes the program");
+            "program.text = \"M2\"; has no effect: [[test]] writes the program");
   EXPECT_EQ(refusal(changed("\"X\"", "\"X \"")),
             "test[0].name = \"X \"; must not begin or end with blanks");
   EXPECT_EQ(refusal(changed("\"X\"", "\".\"")),

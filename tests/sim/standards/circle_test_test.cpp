@@ -192,7 +192,7 @@ TEST(CircleTest, NamesACopiedRow) {
   const Report report = report_of(text);
   ASSERT_EQ(report.remarks.size(), 1u);
   EXPECT_TRUE(report.remarks[0].ends_with(
-      ":13: equals line 12 on the circle ccw; it counts: remove what was copied"))
+      ":13: equals line 12 on the circle ccw; it is used: remove copied rows"))
       << report.remarks[0];
 }
 
