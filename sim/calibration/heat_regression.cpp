@@ -159,8 +159,8 @@ class Sums {
       if (std::abs(eigen.vectors(i, 0)) > 0.3) names.push_back(name(i, readings));
     }
     throw InputError({readings.file},
-                     fmt::format("does not tell apart {}: their temperatures change alike; leave "
-                                 "one out, or measure where they differ",
+                     fmt::format("cannot distinguish {}: their temperatures change alike; omit "
+                                 "one, or measure where they differ",
                                  fmt::join(names, ", ")));
   }
 

@@ -53,7 +53,7 @@ void refuse_regeneration(const model::Scenario& scenario, const model::CaseSpec&
     axes << across, k.cross(across);
     if (C.isZero(0.0)) refuse("it is rigid");
     if ((axes.transpose() * J * C * J.transpose() * axes).norm() <= 1e-9 * C.norm()) {
-      refuse("it gives way along the tool alone");
+      refuse("it is compliant along the tool axis only");
     }
     return;
   }

@@ -64,9 +64,9 @@ MeasuredResponse control_response(const ControlSpectra& s, const std::string& na
   assert(s.cross.size() == s.frequency.size() && s.input.size() == s.frequency.size() &&
          s.output.size() == s.frequency.size());
   if (s.averages < 2) {
-    throw InputError({name},
-                     "holds spectra of one measurement alone: without an average nothing "
-                     "tells their noise");
+    throw InputError(
+        {name},
+        "contains spectra of a single measurement: without averaging their noise is unknown");
   }
   const double greatest = s.input.empty() ? 0.0 : *std::max_element(s.input.begin(), s.input.end());
   if (!(greatest > 0.0)) throw InputError({name}, "has an input without excitation");

@@ -165,8 +165,8 @@ class LogReader {
     for (const auto& [target, directions] : ways) {
       if (directions.size() == 2) continue;
       out_.remarks.push_back(
-          fmt::format("{}: target {:g} is approached in one direction only, {} "
-                      "times: taken as a place to turn round, left out",
+          fmt::format("{}: target {:g} is approached in one direction only, {} times: taken as a "
+                      "reversal point, not evaluated",
                       recording_.file, target / factor, times[target]));
       std::erase_if(readings_, [&, target = target](const TargetReading& one) {
         return one.target == target;

@@ -208,8 +208,8 @@ class PositioningReader {
       return;
     }
     remarks_.push_back(
-        fmt::format("{}: has no column direction: taken from the order of the rows, "
-                    "rising targets as forward",
+        fmt::format("{}: has no column direction: taken from the order of the rows, ascending "
+                    "targets as forward",
                     table_.file));
   }
 

@@ -106,7 +106,7 @@ class Positioning(unittest.TestCase):
         name = self.write("rows.csv", text)
         found, report = parameters(name, "--standard", "2", cwd=self.folder.name)
         self.assertAlmostEqual(found["B"], 5e-6, delta=1e-12)
-        self.assertIn("rising targets as forward", " ".join(report["notes"]))
+        self.assertIn("ascending targets as forward", " ".join(report["notes"]))
 
     def test_printed_table_file_and_json_agree(self):
         found, report = parameters(LINEAR_AXIS, "--standard", "ISO 230-2")

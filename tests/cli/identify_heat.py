@@ -89,7 +89,7 @@ class IdentifyHeat(unittest.TestCase):
 
     def test_drift_that_is_compensated_is_not_that_of_the_machine(self):
         self.run_in_folder("run", "corrected_day.toml", "-o", "corrected_day.h5", "-q")
-        self.assertIn("corrected_day.h5: error: case sensors has the strategy thermal: its drift is what that leaves; name a case without it",
+        self.assertIn("corrected_day.h5: error: case sensors has the strategy thermal: its drift is the residual of this strategy; name a case without it",
                       self.refusal("corrected_day.h5", "--machine", MACHINE, "--case", "sensors"))
         self.assertIn("--case: error: is missing; corrected_day.h5 has days of datums alone, sensors, network, wrong network",
                       self.refusal("corrected_day.h5", "--machine", MACHINE))

@@ -78,8 +78,8 @@ void refuse_compensated(const sim::model::Scenario& scenario, const std::string&
   if (spec == nullptr) return;
   for (const sim::model::StrategySpec& strategy : spec->strategies) {
     if (!strategy.entry->corrects_heat) continue;
-    throw InputError({path}, fmt::format("case {} has the strategy {}: its drift is what that "
-                                         "leaves; name a case without it",
+    throw InputError({path}, fmt::format("case {} has the strategy {}: its drift is the residual "
+                                         "of this strategy; name a case without it",
                                          name, strategy.entry->name));
   }
 }

@@ -137,8 +137,8 @@ std::string refusal(const HeatReadings& readings, const std::vector<plant::Error
 
 TEST(HeatRegression, RefusesWhatTheReadingsDoNotTell) {
   EXPECT_EQ(refusal(made_up(0.0, 0, true), {"EZZ"_err}),
-            "does not tell apart EZZ of ram, EZZ of column: their temperatures change alike; leave "
-            "one out, or measure where they differ");
+            "cannot distinguish EZZ of ram, EZZ of column: their temperatures change alike; omit "
+            "one, or measure where they differ");
   HeatReadings cold = made_up(0.0);
   for (HeatReading& one : cold.rows) one.T[1] = kelvin(20.0);
   EXPECT_EQ(refusal(cold, {"EZZ"_err}),

@@ -33,8 +33,7 @@ TEST(ControlResponse, RefusesOneMeasurementAlone) {
   ControlSpectra one = spectra();
   one.averages = 1;
   EXPECT_EQ(fault_messages([&] { control_response(one, "a.xml"); }),
-            "holds spectra of one measurement alone: without an average nothing tells their "
-            "noise\n");
+            "contains spectra of a single measurement: without averaging their noise is unknown\n");
 }
 
 const std::string kMeasured =

@@ -66,16 +66,15 @@ TEST(PositioningLog, NamesWhatItLeavesOut) {
   const auto remarks = positioning_of(Log().recording(), {"PosSet", "PosAct", "", 1.0}).remarks;
   std::string all;
   for (const std::string& one : remarks) all += one + "\n";
-  EXPECT_EQ(
-      all,
-      "log.txt: ioc:M1-PosSet has no unit: taken as mm\n"
-      "log.txt: ioc:Enc01-PosAct has no unit: taken as that of the target\n"
-      "log.txt: 25 standstills of ioc:M1-PosSet; the first one, -5, has no direction and does "
-      "not count\n"
-      "log.txt: target -5 is approached in one direction only, 3 times: taken as a place to "
-      "turn round, left out\n"
-      "log.txt: target 25 is approached in one direction only, 3 times: taken as a place to "
-      "turn round, left out\n");
+  EXPECT_EQ(all,
+            "log.txt: ioc:M1-PosSet has no unit: taken as mm\n"
+            "log.txt: ioc:Enc01-PosAct has no unit: taken as that of the target\n"
+            "log.txt: 25 standstills of ioc:M1-PosSet; the first one, -5, has no direction and "
+            "does not count\n"
+            "log.txt: target -5 is approached in one direction only, 3 times: taken as a reversal "
+            "point, not evaluated\n"
+            "log.txt: target 25 is approached in one direction only, 3 times: taken as a reversal "
+            "point, not evaluated\n");
 }
 
 TEST(PositioningLog, TakesTheZeroOfTheInstrumentAwayAndItsUnit) {
