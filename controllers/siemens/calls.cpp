@@ -136,7 +136,13 @@ void Translator::execute_calls(const Block& block) {
     modal_call_.reset();
     if (calls.empty() || calls.front().name == "CYCLE80") return;
     if (calls.size() > 1) fail(calls[1].place, "MCALL with two programs");
-    modal_call_ = calls.front();
+    const Call& modal = calls.front();
+    if (modal.name.starts_with("HOLES") || modal.name == "CYCLE832" || modal.name == "CYCLE800") {
+      fail(modal.place, fmt::format("MCALL {}: only drilling cycles and subprograms are called at "
+                                    "each position",
+                                    modal.name));
+    }
+    modal_call_ = modal;
     return;
   }
   if (calls.size() > 1) fail(calls[1].place, "a second call in the block");

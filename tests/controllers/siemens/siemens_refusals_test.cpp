@@ -132,6 +132,9 @@ const Refusal kRefusals[] = {
     {"WHENEVER $AA_IM>5 DO M8\n",
      "t.mpf:4:1: error: WHENEVER: synchronised actions are not supported; remove the block if it "
      "causes no motion"},
+    {"MCALL HOLES1(10,20,90,5,5,3)\nX5\n",
+     "t.mpf:4:7: error: MCALL HOLES1: only drilling cycles and subprograms are called at each "
+     "position"},
     {"MCALL CYCLE84(5,0,2,-10,,,3)\nX5\n", "t.mpf:4:7: error: CYCLE84 without MPIT and PIT"},
     {"CYCLE82(5,0,2,-10,,0,10,1,12)\n",
      "t.mpf:4:1: error: CYCLE82: a depth from the shank or by a diameter (_GMODE) is not "
