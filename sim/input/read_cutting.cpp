@@ -60,7 +60,7 @@ void read_force(config::Reader& table, model::CuttingSpec& spec) {
     table.fault("regeneration", "needs force = \"instantaneous\"");
   } else if (spec.regeneration && spec.actual_depth) {
     table.fault("regeneration",
-                "needs depth_of_cut = \"nominal\": the vibration determines the depth of cut");
+                "needs depth_of_cut = \"nominal\": the chip thickness follows the vibration");
   }
   if (!spec.teeth && table.has("steps_per_tooth")) {
     table.raw("steps_per_tooth");

@@ -29,7 +29,7 @@ def rows(feedback=lambda q: q, force=lambda k: 400.0 * math.cos(k / 8), time=lam
 def fitted(title, old="", new="", about="", record=None):
     """The same, where a fit is found and warned of; its numbers are left out, as they depend on the machine that computes them."""
     numbers = r"s/-?[0-9]+(\.[0-9]+)?(e[-+]?[0-9]+)?/#/g"
-    said = "clipped|bound|times the value|unexplained"
+    said = "clipped|bound|times its start value|unexplained"
     command = f"servomill identify experiment.toml 2>&1 | grep -E '{said}' | sed -E '{numbers}' >&2"
     return experiment(title, old, new, about, record or rows(feedback=lambda q: 0.98 * q, time=lambda k: 2 * k, count=400), (command,))
 

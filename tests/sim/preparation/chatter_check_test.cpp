@@ -102,8 +102,8 @@ TEST(ChatterCheck, regeneration_needs_teeth_and_modes_across_the_tool) {
   EXPECT_EQ(refusal(common + kSteel + "regeneration = true\n" + one_case("cut")),
             "cutting.regeneration = true; needs force = \"instantaneous\"");
   EXPECT_EQ(refusal(common + teeth + "depth_of_cut = \"actual\"\n" + one_case("cut")),
-            "cutting.regeneration = true; needs depth_of_cut = \"nominal\": the vibration "
-            "determines the depth of cut");
+            "cutting.regeneration = true; needs depth_of_cut = \"nominal\": the chip thickness "
+            "follows the vibration");
   const std::string needs =
       "case cut: regeneration = true needs a tool point that is compliant across the tool axis "
       "([[structural_mode]] or structural_stiffness of the machine); ";
