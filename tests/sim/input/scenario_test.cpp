@@ -50,8 +50,8 @@ std::vector<std::string> files(bool machines) {
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& file) {
-  const fs::path path(file.param);  // two folders may have a file of one name
-  std::string name = path.parent_path().filename().string() + "_" + path.stem().string();
+  // The whole path from the folder of scenarios: several studies have a machines/actual.toml.
+  std::string name = fs::relative(file.param, kFolder).replace_extension().string();
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
