@@ -236,13 +236,13 @@ class PartialFiles(Folder):
             file.write("hello\n")
         foreign = self.run_here("run", "scenario.toml", "-o", "out.h5")
         self.assertEqual((foreign.returncode, foreign.stderr),
-                         (2, "out.h5.partial: error: exists and is not a result file; results have this name until "
-                             "complete: remove it, or choose another result file\n"))
+                         (2, "out.h5.partial: error: exists and is not a result file; incomplete results have this "
+                             "name: remove it, or choose another result file\n"))
         os.mkdir(self.path("two.h5.partial"))
         folder = self.run_here("run", "scenario.toml", "-o", "two.h5")
         self.assertEqual((folder.returncode, folder.stderr),
-                         (2, "two.h5.partial: error: exists and is a folder; results have this name until "
-                             "complete: remove it, or choose another result file\n"))
+                         (2, "two.h5.partial: error: exists and is a folder; incomplete results have this "
+                             "name: remove it, or choose another result file\n"))
 
     def test_nothing_stays_where_nothing_was_promised(self):
         before = set(contents(self.folder))
