@@ -35,7 +35,7 @@ struct ReadingOptions {
   bool accepts_unknown_feeds = false;
   std::set<int> ignored_codes = {};  // as of ProgramSetup
   std::function<void(int)> refuses_code = {};
-  bool is_trial = false;             // as of ProgramSetup
+  bool is_trial = false;  // as of ProgramSetup
   /// The controls that would read the whole program; nullptr if nobody can tell.
   std::function<const PossibleReaders*()> possible_readers = {};
   std::function<double(int D)> radius_of = {};  // m, of a tool; 0: unknown
