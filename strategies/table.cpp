@@ -54,6 +54,20 @@ constexpr ParameterSpec response_time(std::string_view name, std::string_view he
           .ideal = "0"};
 }
 
+// Machine coordinate of an end of the tables.
+constexpr ParameterSpec end_of_table(std::string_view name, std::string_view help) {
+  return {.name = name, .help = help, .unit = "mm", .default_text = "travel", .words = kTravel};
+}
+
+constexpr ParameterSpec kPointsSpec = {
+    .name = "points",
+    .help =
+        "equidistant; optimal: the max_points of the points at spacing_mm between which "
+        "linear interpolation deviates least, for NCs that accept any positions",
+    .default_text = "equidistant",
+    .is_number = false,
+    .words = kPoints};
+
 constexpr ParameterSpec kShiftSpec = {
     .name = "shift_mm",
     .help =
@@ -86,12 +100,7 @@ const std::array<ParameterSpec, 17>& specs() {
        .default_text = "false",
        .is_number = false,
        .words = kBoolean},
-      {.name = "points",
-       .help = "equidistant; optimal: the max_points of the points at spacing_mm between which "
-               "linear interpolation deviates least, for NCs that accept any positions",
-       .default_text = "equidistant",
-       .is_number = false,
-       .words = kPoints},
+      kPointsSpec,
       {.name = "spacing_mm",
        .help = "spacing of the points",
        .unit = "mm",
@@ -102,16 +111,9 @@ const std::array<ParameterSpec, 17>& specs() {
        .default_text = "power_of_two",
        .is_number = false,
        .words = kSpacingRules},
-      {.name = "from_mm",
-       .help = "machine coordinate of the first point; travel: lower travel limit",
-       .unit = "mm",
-       .default_text = "travel",
-       .words = kTravel},
-      {.name = "to_mm",
-       .help = "machine coordinate that the last point must reach; travel: upper travel limit",
-       .unit = "mm",
-       .default_text = "travel",
-       .words = kTravel},
+      end_of_table("from_mm", "machine coordinate of the first point; travel: lower travel limit"),
+      end_of_table("to_mm",
+                   "machine coordinate that the last point must reach; travel: upper travel limit"),
       {.name = "max_points",
        .help = "maximum number of points per table; auto: 256, in a grid 15625 (25 x 25 x 25)",
        .default_text = "auto",

@@ -13,55 +13,63 @@ struct MachineKey {
   std::size_t estimate;
 };
 
-}  // namespace
-
-input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,
-                                         const std::string& path) {
+void refuse_faults(const Experiment& experiment, const Identification& result,
+                   const std::string& path) {
   if (experiment.machine_path.empty()) {
     throw InputError({experiment.path},
                      "describes the machine itself; name a machine file (machine = \"FILE\") so "
                      "that the identified values can override it");
   }
-  const std::vector<std::string> reasons = faults(result);
-  if (!reasons.empty()) {
-    std::vector<Fault> not_written;
-    for (const std::string& one : reasons) not_written.push_back({{path}, "not written: " + one});
-    throw InputError(std::move(not_written));
+  std::vector<Fault> not_written;
+  for (const std::string& one : faults(result))
+    not_written.push_back({{path}, "not written: " + one});
+  if (!not_written.empty()) throw InputError(std::move(not_written));
+}
+
+std::vector<std::string> comments(const Experiment& experiment, const Identification& result) {
+  std::vector<std::string> out = {fmt::format("Identified from {}:", experiment.name)};
+  for (const RecordResult& one : result.estimation) {
+    out.push_back(fmt::format("  {}: position rms {:.3g} {}", one.record->record.name,
+                              one.feedback_rms * 1e6, one.record->record.micro()));
   }
+  const auto unidentifiable = unidentifiable_sentences(result);
+  out.insert(out.end(), unidentifiable.begin(), unidentifiable.end());
+  return out;
+}
+
+// One key of an estimate: a comment, a value that is held, or one with its uncertainty.
+void add_key(const Experiment& experiment, const Identification& result, const MachineKey& key,
+             std::vector<MachineKey>& keys, input::IdentifiedFile& out) {
+  const Estimate& one = result.estimates[key.estimate];
+  const std::string unit = one.unit.empty() ? std::string(input::kPlainNumber) : one.unit;
+  if (one.record != Estimate::kAllRecords) {
+    out.comments.push_back(fmt::format("{} of {}: {:.6g} {}, of this recording alone", key.key,
+                                       experiment.records[one.record].record.name, one.start,
+                                       one.unit));
+  } else if (one.is_at_bound()) {
+    out.held.push_back({key.key, unit, one.start, "at its bound"});
+  } else if (!result.uncertainty.identifiable[key.estimate]) {
+    out.identified.unidentifiable.push_back(key.key);
+  } else {
+    keys.push_back(key);
+    out.identified.keys.push_back(key.key);
+    out.identified.units.push_back(unit);
+    out.identified.values.push_back(one.start);
+  }
+}
+
+}  // namespace
+
+input::IdentifiedFile identified_machine(const Experiment& experiment, const Identification& result,
+                                         const std::string& path) {
+  refuse_faults(experiment, result, path);
   input::IdentifiedFile out;
   out.based_on = input::machine_seen_from(path, experiment.machine_path);
-  out.comments.push_back(fmt::format("Identified from {}:", experiment.name));
-  for (const RecordResult& one : result.estimation) {
-    out.comments.push_back(fmt::format("  {}: position rms {:.3g} {}", one.record->record.name,
-                                       one.feedback_rms * 1e6, one.record->record.micro()));
-  }
-  for (const std::string& sentence : unidentifiable_sentences(result))
-    out.comments.push_back(sentence);
+  out.comments = comments(experiment, result);
   std::vector<MachineKey> keys;
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
-    const Estimate& one = result.estimates[k];
-    for (const std::string& key : one.keys) {
-      if (key.starts_with("loop.")) continue;
-      if (one.record != Estimate::kAllRecords) {
-        out.comments.push_back(fmt::format("{} of {}: {:.6g} {}, of this recording alone", key,
-                                           experiment.records[one.record].record.name, one.start,
-                                           one.unit));
-        continue;
-      }
-      if (one.is_at_bound()) {
-        out.held.push_back({key, one.unit.empty() ? std::string(input::kPlainNumber) : one.unit,
-                            one.start, "at its bound"});
-        continue;
-      }
-      if (!result.uncertainty.identifiable[k]) {
-        out.identified.unidentifiable.push_back(key);
-        continue;
-      }
-      keys.push_back({key, k});
-      out.identified.keys.push_back(key);
-      out.identified.units.push_back(one.unit.empty() ? std::string(input::kPlainNumber)
-                                                      : one.unit);
-      out.identified.values.push_back(one.start);
+    for (const std::string& key : result.estimates[k].keys) {
+      if (!key.starts_with("loop.")) add_key(experiment, result, {key, k}, keys, out);
     }
   }
   if (keys.empty()) {

@@ -44,6 +44,14 @@ def flags_of(command):
     return flags
 
 
+def flags_of_all(commands, sources):
+    """Those of all sources of a group: some have definitions of their own."""
+    flags = flags_of(commands[sources[0]])
+    for source in sources[1:]:
+        flags += [one for one in flags_of(commands[source]) if one.startswith("-D") and one not in flags]
+    return flags
+
+
 def faults_of(build, flags, number, sources):
     """What clang-tidy says of sources that are read as one; none where it says nothing."""
     one = build / "function_size" / f"{number}.cpp"
@@ -62,7 +70,7 @@ def main():
     (build / "function_size").mkdir(exist_ok=True)
     groups = groups_of(root, sources)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        faults = list(pool.map(lambda number, group: faults_of(build, flags_of(commands[group[0]]), number, group), range(len(groups)), groups))
+        faults = list(pool.map(lambda number, group: faults_of(build, flags_of_all(commands, group), number, group), range(len(groups)), groups))
     print("\n".join(filter(None, faults)) or f"{len(sources)} sources, read as {len(groups)}: no function is too long or too complex")
     return 1 if any(faults) else 0
 

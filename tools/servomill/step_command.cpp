@@ -221,8 +221,17 @@ int step_command(const Arguments& arguments) {
   Stage steps("steps", static_cast<double>(joints.size() * kinds.size()), Steps::unlike);
   const Tick delay = sim::frequency::reading_delay_of(scenario);
   bool stable = true;
+  const auto print = [&](const sim::frequency::StepSettings& settings,
+                         const sim::frequency::StepResponse& response, int joint) {
+    const auto hidden = line.hidden();
+    if (json) {
+      list.add(to_json(settings, response, machine.chain.layout.letter_of(joint)));
+    } else if (!silent) {
+      print_figures(settings, response, joint,
+                    scenario.machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+    }
+  };
   for (const int joint : joints) {
-    const char axis = machine.chain.layout.letter_of(joint);
     if (!silent && !json) {
       const auto hidden = line.hidden();
       fmt::print("{}\n", axis_headline(machine, joint, delay));
@@ -233,15 +242,8 @@ int step_command(const Arguments& arguments) {
       steps.advance();
       stable &= found.has_value();
       if (!found) continue;
-      const sim::frequency::StepResponse& response = *found;
-      if (store) store->add(axis, settings, response);
-      const auto hidden = line.hidden();
-      if (json) {
-        list.add(to_json(settings, response, axis));
-      } else if (!silent) {
-        print_figures(settings, response, joint,
-                      scenario.machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
-      }
+      if (store) store->add(machine.chain.layout.letter_of(joint), settings, *found);
+      print(settings, *found, joint);
     }
   }
   line.end();
