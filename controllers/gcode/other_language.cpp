@@ -145,7 +145,7 @@ std::string unfinished_line(std::string_view line) {
         "'{}' is a mark of an editor, which folds the lines behind it; remove the line", mark);
   }
   if (line.size() < 3 || upper(line.front()) != 'O' || line[1] != ' ') return {};
-  const std::size_t first = line.find_first_not_of(' ', 1);
+  const std::size_t first = std::min(line.find_first_not_of(' ', 1), line.size());
   const bool is_text =
       first + 1 < line.size() && is_letter(line[first]) && is_letter(line[first + 1]);
   return is_text ? "a program number is missing behind O; write one (O1000), or remove the line"

@@ -84,6 +84,7 @@ TEST(OtherLanguage, LinesThatWereNotFilledInAreNamed) {
   EXPECT_EQ(other_language("O ENTER THE NUMBER", 3),
             "a program number is missing behind O; write one (O1000), or remove the line");
   EXPECT_EQ(other_language("O 100", 3), "");
+  EXPECT_EQ(other_language("O  ", 3), "") << "nothing behind O";
 }
 
 TEST(OtherLanguage, LinesAreNamedByTheWordsThatGiveThemAway) {
