@@ -6,19 +6,17 @@
 import json
 import os
 import re
-import shutil
-import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
 import h5py
 import numpy as np
 
+import in_folder
 import nexus_rules
 
-SERVOMILL = os.path.abspath(sys.argv.pop(1))
+in_folder.InScenarios.program = os.path.abspath(sys.argv.pop(1))
 SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenarios")
 ACTUAL = {"axis.Y.moving_mass": 640.0, "axis.Y.slide_viscous_friction": 1700.0, "axis.Y.friction.coulomb": 520.0,
           "axis.Y.friction.coulomb_negative": 430.0}
@@ -27,34 +25,16 @@ ACTUAL = {"axis.Y.moving_mass": 640.0, "axis.Y.slide_viscous_friction": 1700.0, 
 MEASURED = os.path.abspath(os.path.join(SCENARIOS, "..", "..", "shared", "data", "measured", "emps_train.mat"))
 
 
-def copy_scenarios(cls):
-    cls.folder = tempfile.mkdtemp()
-    for name in ("identification", "machines", "guevel2025", "programs"):
-        shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-    cls.cwd = os.path.join(cls.folder, "identification", "experiments")
-
-
-class AllDrives(unittest.TestCase):
+class AllDrives(in_folder.InScenarios):
     """The drives of scenarios/precompensation under the loops of their own NC, in a copy of its folder."""
+
+    copied, works_in = ("precompensation", "machines", "programs"), ("precompensation", "experiments")
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        for name in ("precompensation", "machines", "programs"):
-            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-        cls.cwd = os.path.join(cls.folder, "precompensation", "experiments")
+        super().setUpClass()
         cls.run_in_folder("run", "../motion.toml", "-o", "../motion.h5", "-q")
         cls.run_in_folder("identify", "record.toml", "--make-up", "recordings.h5")
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
-
-    @classmethod
-    def run_in_folder(cls, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=cls.cwd, capture_output=True, text=True, check=False)
-        assert done.returncode == status, f"{arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
-        return done
 
     def test_each_axis_has_its_channels(self):
         with h5py.File(os.path.join(self.cwd, "recordings.h5")) as file:
@@ -107,29 +87,17 @@ class AllDrives(unittest.TestCase):
             self.assertLess(left, 0.1 * before)
 
 
-
-class Way(unittest.TestCase):
+class Way(in_folder.InScenarios):
     """The shipped way from a motion to an identified machine, in a copy of its folder."""
+
+    copied, works_in = ("identification", "machines"), ("identification", "experiments")
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        for name in ("identification", "machines"):
-            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-        cls.cwd = os.path.join(cls.folder, "identification", "experiments")
+        super().setUpClass()
         cls.run_in_folder("run", "../motion.toml", "-o", "motion.h5", "-q")
         cls.run_in_folder("identify", "record.toml", "--make-up", "recording.csv")
         cls.printed = cls.run_in_folder("identify", "identify.toml", "-o", "again.toml", "--signals", "signals.h5").stdout
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
-
-    @classmethod
-    def run_in_folder(cls, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=cls.cwd, capture_output=True, text=True, check=False)
-        assert done.returncode == status, f"{arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
-        return done
 
     def path(self, name):
         return os.path.join(self.cwd, name)
@@ -263,7 +231,7 @@ class Way(unittest.TestCase):
         self.assertIn("the simplest law that is not worse than the best: ", printed)
 
 
-class Emps(unittest.TestCase):
+class Emps(in_folder.InScenarios):
     """The command of the README on recordings with the channels of the EMPS benchmark, made up: one with pulses of force."""
     MADE_UP = """name = "made up"
 machine = "../machines/emps_start.toml"
@@ -288,17 +256,14 @@ key = "axis.Y.moving_mass"
 start = "95 kg"
 """
 
+    copied, works_in = ("identification", "machines"), ("identification", "experiments")
+
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        for name in ("identification", "machines"):
-            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-        cls.cwd = os.path.join(cls.folder, "identification", "experiments")
+        super().setUpClass()
         cls.make_up("emps_train.csv", seed=1, factor=1e-12)
         cls.make_up("emps_test.csv", seed=2, factor=1)
 
-    tearDownClass = Way.__dict__["tearDownClass"]
-    run_in_folder = Way.__dict__["run_in_folder"]
     path, write = Way.path, Way.write
 
     @classmethod
@@ -358,12 +323,9 @@ start = "95 kg"
 
 
 @unittest.skipUnless(os.path.exists(MEASURED), "no recording of the EMPS")
-class MeasuredEmps(unittest.TestCase):
+class MeasuredEmps(in_folder.InScenarios):
     """From the recording of a real drive to experiment 1 on it."""
-    folder = cwd = None
-    setUpClass = classmethod(lambda cls: copy_scenarios(cls))
-    tearDownClass = Way.__dict__["tearDownClass"]
-    run_in_folder = Way.__dict__["run_in_folder"]
+    copied, works_in = ("identification", "machines", "guevel2025", "programs"), ("identification", "experiments")
     path, identified = Way.path, Way.identified
 
     def test_the_shipped_machine_is_what_comes_out_and_runs_experiment_1(self):

@@ -5,38 +5,26 @@
 """
 import json
 import os
-import shutil
-import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
 import h5py
 
-SERVOMILL = os.path.abspath(sys.argv.pop(1))
+import in_folder
+
+in_folder.InScenarios.program = os.path.abspath(sys.argv.pop(1))
 SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenarios")
 MACHINE = "../machines/hsm600u_heat.toml"
 
 
-class IdentifyHeat(unittest.TestCase):
+class IdentifyHeat(in_folder.InScenarios):
+    copied, works_in = ("thermal", "machines", "programs"), ("thermal",)
+
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        for name in ("thermal", "machines", "programs"):
-            shutil.copytree(os.path.join(SCENARIOS, name), os.path.join(cls.folder, name))
-        cls.cwd = os.path.join(cls.folder, "thermal")
+        super().setUpClass()
         cls.run_in_folder("run", "training.toml", "-o", "training.h5", "-q")
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
-
-    @classmethod
-    def run_in_folder(cls, *arguments, status=0):
-        done = subprocess.run([SERVOMILL, *arguments], cwd=cls.cwd, capture_output=True, text=True, check=False)
-        assert done.returncode == status, f"{arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
-        return done
 
     def refusal(self, *arguments):
         return self.run_in_folder("identify-heat", *arguments, status=2).stderr
