@@ -12,12 +12,11 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/readings/columns.h"
+#include "sim/readings/unit_normal.h"
 #include "sim/records/input_file.h"
 
 namespace servomill::sim::readings {
 namespace {
-
-constexpr double kUnit = 1e-3;  // off the length of a normal that rounding may put it
 
 // x, y, z and deviation are lengths, i, j, k numbers.
 struct Wanted {
@@ -73,13 +72,8 @@ PartPoint point_of(const Table& table, const Row& row, const Columns& columns,
 }
 
 void check_normal(PartPoint& one, std::vector<Fault>& faults) {
-  const double length = one.normal.norm();
-  if (std::abs(length - 1.0) < kUnit) {
-    one.normal /= length;
-    return;
-  }
-  faults.push_back(
-      {one.place, fmt::format("i, j, k have length {:.3g}; a normal must have length 1", length)});
+  const std::string fault = make_unit(one.normal, "i, j, k");
+  if (!fault.empty()) faults.push_back({one.place, fault});
 }
 
 std::vector<Eigen::Vector3d> vectors(const std::vector<double>& values) {

@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/readings/columns.h"
+#include "sim/readings/unit_normal.h"
 
 namespace servomill::sim::readings {
 namespace {
@@ -17,7 +18,6 @@ constexpr double kColdest = -10.0;
 constexpr std::string_view kTemperature = "temperature_degC";
 constexpr std::string_view kPlaceOnCircle = "angle";
 constexpr std::array<std::string_view, 3> kNormal = {"nx", "ny", "nz"};
-constexpr double kUnit = 1e-3;  // off the length of a normal that rounding may put it
 
 // Names of the columns that hold the deviation of a kind, each with whether it is an absolute value
 // from which the nominal one is taken away.
@@ -303,13 +303,8 @@ class RowsReader {
     for (int k = 0; k < 3; ++k) {
       reading.normal[k] = value(row, *table_.find(kNormal[std::size_t(k)]));
     }
-    if (std::abs(reading.normal.norm() - 1.0) < kUnit) {
-      reading.normal.normalize();
-      return;
-    }
-    fault({table_.file, row.line},
-          fmt::format("nx, ny, nz have length {:.3g}; a normal must have length 1",
-                      reading.normal.norm()));
+    const std::string wrong = make_unit(reading.normal, "nx, ny, nz");
+    if (!wrong.empty()) fault({table_.file, row.line}, wrong);
   }
 
   void read_values(const Row& row, const Column* run, Reading& reading) {
