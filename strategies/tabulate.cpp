@@ -64,7 +64,7 @@ void check_points(const std::vector<GridLine>& lines, const JointLayout& layout,
                                    name_of(lines, layout), product, most));
 }
 
-// Every candidate is tried with those behind it.
+// The search compares each candidate with all following ones.
 void check_candidates(const GridLine& line, const JointLayout& layout) {
   constexpr std::size_t kMax = 10'000;
   if (line.points <= kMax) return;

@@ -210,7 +210,7 @@ void Translator::move_to_machine(const Block& block) {
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
     if (!motion.words[i]) continue;
     work_[i].reset();
-    programmed_[i] = 0.0;  // in no frame: an increment behind it is one behind a change of frame
+    programmed_[i] = 0.0;  // no frame applied: a following IC is treated as after a frame change
   }
   put_beside_plane(std::move(motion));
   last_element_.reset();

@@ -51,7 +51,7 @@ struct CutSearch {
 /// Finds where a point p with normal n was cut by a tool of radius R and corner radius r with its
 /// tip at c and the axis k. With m, the direction of n across k:
 ///
-///     n across k (within 2 deg)   flank    p + R n lies on the axis, p at the height of the flutes
+///     n across k (within 2 deg)   flank    p + R n is on the axis, and p within the flute length
 ///     n along k (within 2 deg)    tip      p lies at the height of c, within R - r of the axis
 ///     else; ball ends: n along k  corner   p + r n + (R - r) m = c + r k
 ///

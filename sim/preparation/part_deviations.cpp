@@ -141,8 +141,8 @@ class ProbedRun {
     return step.norm() <= kMoves ? Vector3d(Vector3d::Zero()) : step.normalized();
   }
 
-  // Unit tangent, or 0 where the tool stands. At a corner that of the leg on which the row lies:
-  // the step across the corner goes on neither as before nor as behind it.
+  // Unit tangent, or 0 if the tool is at rest. At a corner it is that of the leg with this row: the
+  // step across the corner has the direction of neither leg.
   Vector3d tangent_at(std::size_t row) const {
     const auto n = static_cast<std::ptrdiff_t>(row);
     const Vector3d before = direction(n - 1), behind = direction(n);
