@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include "controllers/path/time_optimal_law.h"
@@ -30,12 +31,28 @@ class ChainTiming {
       best = std::move(law);
       if (path_.pieces.size() == 1) return best;  // a straight line has no curvature
     }
+    return refined(std::move(best), {}, {});
+  }
+
+  TimeLaw refined(TimeLaw law, std::span<const SegmentLimits> stretches,
+                  const EndSpeeds& ends) const {
     std::vector<double> v_top;
     for_each_piece(
         [&](const CubicPiece& piece, double h, const JointLimits& limits, const FeedLimit& feed) {
           v_top.push_back(straight_speed(piece, h, limits, feed));
         });
-    return refine_time_law(std::move(best), path_, v_top, limits_);
+    return refine_time_law(std::move(law), path_, v_top, limits_, stretches, ends);
+  }
+
+  std::vector<SegmentLimits> limits_of(double curve_share) const {
+    std::vector<SegmentLimits> out;
+    out.reserve(path_.pieces.size());
+    for_each_piece(
+        [&](const CubicPiece& piece, double h, const JointLimits& limits, const FeedLimit& feed) {
+          out.push_back(segment_limits(piece, h, limits, feed, curve_share));
+          out.back().end = path_.end_of(out.size() - 1);
+        });
+    return merge_similar(out);
   }
 
  private:
@@ -99,17 +116,6 @@ class ChainTiming {
     }
   }
 
-  std::vector<SegmentLimits> limits_of(double curve_share) const {
-    std::vector<SegmentLimits> out;
-    out.reserve(path_.pieces.size());
-    for_each_piece(
-        [&](const CubicPiece& piece, double h, const JointLimits& limits, const FeedLimit& feed) {
-          out.push_back(segment_limits(piece, h, limits, feed, curve_share));
-          out.back().end = path_.end_of(out.size() - 1);
-        });
-    return merge_similar(out);
-  }
-
   const SmoothPath& path_;
   const ChainSpeeds& speeds_;
   const JointLimits& limits_;
@@ -136,6 +142,17 @@ void ChainSpeeds::clear() {
 TimeLaw fastest_law(const SmoothPath& path, const ChainSpeeds& speeds, const JointLimits& limits,
                     const PathOptions& options) {
   return ChainTiming(path, speeds, limits, options).fastest();
+}
+
+std::vector<SegmentLimits> limits_along(const SmoothPath& path, const ChainSpeeds& speeds,
+                                        const JointLimits& limits, const PathOptions& options) {
+  return ChainTiming(path, speeds, limits, options).limits_of(kCurveShares.back());
+}
+
+TimeLaw refined_law(TimeLaw law, const SmoothPath& path, const ChainSpeeds& speeds,
+                    const JointLimits& limits, const PathOptions& options,
+                    const std::vector<SegmentLimits>& stretches, const EndSpeeds& ends) {
+  return ChainTiming(path, speeds, limits, options).refined(std::move(law), stretches, ends);
 }
 
 }  // namespace servomill::controllers

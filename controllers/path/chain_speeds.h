@@ -34,4 +34,13 @@ struct ChainSpeeds {
 TimeLaw fastest_law(const SmoothPath& path, const ChainSpeeds& speeds, const JointLimits& limits,
                     const PathOptions& options);
 
+/// Limits of a law along a long path, with the share for curvature that long paths take.
+std::vector<SegmentLimits> limits_along(const SmoothPath& path, const ChainSpeeds& speeds,
+                                        const JointLimits& limits, const PathOptions& options);
+
+/// The quicker law that is found from one within those limits.
+TimeLaw refined_law(TimeLaw law, const SmoothPath& path, const ChainSpeeds& speeds,
+                    const JointLimits& limits, const PathOptions& options,
+                    const std::vector<SegmentLimits>& stretches, const EndSpeeds& ends);
+
 }  // namespace servomill::controllers

@@ -1,6 +1,7 @@
 /// Limits of the joints for the path planner, and its tolerances of the programmed path.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "plant/vocabulary/axes.h"
@@ -24,7 +25,8 @@ struct PathOptions {
   double rapid_override = 1.0;       // factor on the joint speeds of rapids
   double tolerance_share = 1.0;      // factor on tolerances of the program (G64 P)
   double spindle_acceleration = std::numeric_limits<double>::infinity();  // rad/s2, under G33
-  double block_time = 0.0;  // s, least time of a block: what the NC needs to prepare it
+  double block_time = 0.0;      // s, least time of a block: what the NC needs to prepare it
+  std::size_t stretch = 32768;  // vertices, above which a motion is planned in stretches
 };
 
 }  // namespace servomill::controllers

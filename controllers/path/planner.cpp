@@ -8,7 +8,9 @@
 
 #include "controllers/path/chain_memory.h"
 #include "controllers/path/chain_speeds.h"
+#include "controllers/path/collected_motion.h"
 #include "controllers/path/curve_points.h"
+#include "controllers/path/motion_stretches.h"
 #include "controllers/path/path_leg.h"
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/arc_sweep.h"
@@ -33,7 +35,8 @@ class Planner {
         scale_(scale_of(options)),
         limits_{limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
                 limits.j.cwiseProduct(scale_)},
-        rules_(limits_, options) {
+        rules_(limits_, options),
+        stretches_(limits_, options) {
     assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
     assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
     assert(options.feed_override > 0.0 && options.rapid_override > 0.0);
@@ -87,6 +90,11 @@ class Planner {
 
   Joints scaled(const Joints& Q) const { return Q.cwiseProduct(scale_); }
 
+  void go_on_behind(const Leg& leg) {
+    if (leg.stop_after) return finish_chain();
+    divide_long_motion();
+  }
+
   // A move that moves nothing.
   void stand(const Leg& leg) {
     if (leg.stop_after) finish_chain();
@@ -113,8 +121,8 @@ class Planner {
     leg.feed = rules_.speed_along(leg, move);
     leg.acceleration_share = rules_.acceleration_share(leg, move);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
-    ChainSpeeds::Span span = begin_span(index, leg);
-    span.feed = speeds_.index_of(rules_.feed_limit(move, leg));
+    ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
+    span.feed = motion_.speeds.index_of(rules_.feed_limit(move, leg));
     if (arc) {
       const auto begin = end_of_circle(*arc, step, 0.0);
       join_curve(index, last_arc_ ? is_same_circle(*last_arc_, *arc, step)
@@ -123,8 +131,8 @@ class Planner {
     } else {
       add_point(u_end, move, leg.feed, -1);
     }
-    span.last = last_vertex();
-    if (span.last > span.first) speeds_.spans.push_back(span);
+    span.last = motion_.last_vertex();
+    if (span.last > span.first) motion_.speeds.spans.push_back(span);
     last_move_ = index;
     u_ = u_end;
     Q_ = Q_end;
@@ -132,14 +140,14 @@ class Planner {
     last_ = leg;
     last_arc_ = arc;
     last_end_ = arc ? end_of_circle(*arc, step, 1.0) : std::nullopt;
-    if (leg.stop_after) finish_chain();
+    go_on_behind(leg);
   }
 
   // On one circle, or on curves that go on in each other, the joint is a point like any other.
   void join_curve(std::size_t index, bool continues) {
     continues = continues && last_;
     if (!continues) arc_index_ = static_cast<int>(index);
-    if (continues && !skipped_) vertices_.set_last_arc(arc_index_);
+    if (continues && !skipped_) motion_.vertices.set_last_arc(arc_index_);
   }
 
   // X and Y on a spline; the other axes are at rest.
@@ -155,22 +163,18 @@ class Planner {
     leg.tolerance = rules_.tolerance_of(move);
     leg.feed = rules_.speed_along(leg, move);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
-    const std::uint32_t feed = speeds_.index_of(rules_.feed_limit(move, leg));
+    const std::uint32_t feed = motion_.speeds.index_of(rules_.feed_limit(move, leg));
     join_curve(index, last_end_ && goes_on(*last_end_, {begin.tangent, begin.curvature}));
     double from = 0.0;
     for (const CurvePoint& point : points_of(curve, leg.tolerance)) {
-      ChainSpeeds::Span span = begin_span(index, leg);
+      ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
       span.feed = feed;
-      span.share = static_cast<std::uint32_t>(shares_.size());
       add_point(with_linear(u_, point.p), move, 0.0, point.is_inside ? arc_index_ : -1, true);
       if (skipped_) continue;
-      span.last = last_vertex();
-      speeds_.spans.push_back(span);
-      speeds_.times.push_back(0.0);
-      shares_.push_back({from, point.share});
+      motion_.end_part(span, from, point.share, 0.0);
       from = point.share;
     }
-    if (from > 0.0) shares_.back().to = 1.0;
+    if (from > 0.0) motion_.shares.back().to = 1.0;
     last_move_ = index;
     Q_ = layout_.joints(move.end_machine);
     u_ = scaled(Q_);
@@ -178,7 +182,7 @@ class Planner {
     last_ = leg;
     last_arc_.reset();
     last_end_ = CurveEnd{end.tangent, end.curvature};
-    if (leg.stop_after) finish_chain();
+    go_on_behind(leg);
   }
 
   // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
@@ -194,19 +198,15 @@ class Planner {
     double from = 0.0;
     for (const JointChord& chord : chords) {
       const bool inner = &chord != &chords.back();
-      ChainSpeeds::Span span = begin_span(index, leg);
-      span.feed = speeds_.index_of(FeedLimit{});
-      span.share = static_cast<std::uint32_t>(shares_.size());
+      ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
+      span.feed = motion_.speeds.index_of(FeedLimit{});
       const double chord_time = time * (chord.fraction - from);
       add_chord(chord, chord_time, inner ? static_cast<int>(index) : -1);
       if (skipped_) continue;
-      span.last = last_vertex();
-      speeds_.spans.push_back(span);
-      shares_.push_back({from, chord.fraction});
-      speeds_.times.push_back(chord_time);
+      motion_.end_part(span, from, chord.fraction, chord_time);
       from = chord.fraction;
     }
-    if (from > 0.0) shares_.back().to = 1.0;
+    if (from > 0.0) motion_.shares.back().to = 1.0;
     last_move_ = index;
     Q_ = chords.back().end;
     u_ = scaled(Q_);
@@ -214,27 +214,16 @@ class Planner {
     last_ = leg;
     last_arc_.reset();
     last_end_.reset();
-    if (leg.stop_after) finish_chain();
-  }
-
-  std::uint32_t last_vertex() const { return static_cast<std::uint32_t>(vertices_.size() - 1); }
-  const Joints& last_u() const { return vertices_.u(vertices_.size() - 1); }
-
-  ChainSpeeds::Span begin_span(std::size_t move, const Leg& leg) const {
-    ChainSpeeds::Span span;
-    span.move = static_cast<std::uint32_t>(move);
-    span.first = last_vertex();
-    span.rapid = leg.rapid;
-    return span;
+    go_on_behind(leg);
   }
 
   void add_chord(const JointChord& chord, double time, int arc) {
     const Joints u = scaled(chord.end);
-    const double length = (u - last_u()).norm();
+    const double length = (u - motion_.last_u()).norm();
     skipped_ = length < kMinChord;
     if (skipped_) return;
     const double speed = time > 0.0 ? length / time : limits_.v.norm();
-    vertices_.push_back(
+    motion_.vertices.push_back(
         {u, chord.tolerance_linear, chord.tolerance_rotary * options_.rotary_radius, speed, arc});
   }
 
@@ -294,29 +283,24 @@ class Planner {
       vertex.tolerance_rotary *= options_.exact_tolerance / options_.tolerance;
     }
     vertex.tolerance_rotary *= options_.rotary_radius;
-    skipped_ = (u - last_u()).norm() < kMinChord;
-    if (!skipped_) vertices_.push_back(vertex);
+    skipped_ = (u - motion_.last_u()).norm() < kMinChord;
+    if (!skipped_) motion_.vertices.push_back(vertex);
   }
 
   void add_dwell(const Move& move, std::size_t index) {
     assert(move.value >= 0.0);
     finish_chain();
     Chain chain;
-    chain.t = t_;
     chain.duration = move.value;
-    chain.begin = chain.end = Q_;
     chain.spans.push_back({static_cast<std::uint32_t>(index)});
-    t_ += chain.duration;
-    out_.chains_.push_back(std::move(chain));
+    append(std::move(chain), Q_);
   }
 
   void restart() {
     Q_ = out_.end_;
     u_ = scaled(Q_);
-    vertices_.clear();
-    vertices_.push_back(PathVertex{u_, 0.0, 0.0, 0.0, -1});
-    speeds_.clear();
-    shares_.clear();
+    motion_.start_at(u_);
+    longest_ = options_.stretch;
     last_.reset();
     last_arc_.reset();
     last_end_.reset();
@@ -326,46 +310,61 @@ class Planner {
   void finish_chain() {
     if (!last_) return;
     if (skipped_) reach_end();
-    if (vertices_.size() > 1) {
+    if (!stretches_.empty()) {
+      add_stretch(std::move(motion_));
+      append(stretches_.finish(), Q_);
+    } else if (motion_.vertices.size() > 1) {
       Chain chain;
-      chain.t = t_;
-      chain.begin = out_.end_;
-      chain.end = Q_;
       const auto make = [this] { return plan_chain(); };
-      chain.plan =
-          last_->acceleration_share < 1.0 ? make() : memory_.plan(vertices_, speeds_, make);
+      chain.plan = last_->acceleration_share < 1.0
+                       ? make()
+                       : memory_.plan(motion_.vertices, motion_.speeds, make);
       chain.duration = chain.plan->law.duration;
-      chain.spans.assign(speeds_.spans.begin(), speeds_.spans.end());
-      chain.shares = std::move(shares_);
-      t_ += chain.duration;
-      out_.chains_.push_back(std::move(chain));
+      chain.spans.assign(motion_.speeds.spans.begin(), motion_.speeds.spans.end());
+      chain.shares = std::move(motion_.shares);
+      append(std::move(chain), Q_);
     }
     out_.end_ = Q_;
     restart();
   }
 
+  // Begins where the chain before ends.
+  void append(Chain chain, const Joints& end) {
+    chain.t = t_;
+    chain.begin = out_.end_;
+    chain.end = out_.end_ = end;
+    t_ += chain.duration;
+    out_.chains_.push_back(std::move(chain));
+  }
+
+  // A motion of many vertices goes on in a stretch of its own.
+  void divide_long_motion() {
+    if (motion_.vertices.size() <= longest_ || last_->acceleration_share < 1.0) return;
+    if (const auto seam = motion_.seam()) return add_stretch(motion_.take_before(*seam));
+    longest_ *= 2;
+  }
+
+  void add_stretch(CollectedMotion motion) {
+    const Joints end = seam_;
+    seam_ = motion.last_u().cwiseQuotient(scale_);
+    if (auto before = stretches_.add(std::move(motion))) append(*std::move(before), end);
+  }
+
   // Plans the motion along the vertices, which are gone afterwards.
   ChainMemory::Plan plan_chain() {
     auto plan = std::make_shared<Chain::Plan>();
-    plan->path = smooth(std::move(vertices_), limits_.j);
+    plan->path = smooth(std::move(motion_.vertices), limits_.j);
     plan->path.pieces.shrink_to_fit();
-    plan->law = fastest_law(plan->path, speeds_, limits_of(*last_, limits_), options_);
+    plan->law = fastest_law(plan->path, motion_.speeds, limits_of(*last_, limits_), options_);
     return plan;
   }
 
   // The end lies within kMinChord of the last vertex, but not on it.
   void reach_end() {
-    if ((u_ - last_u()).norm() <= kMinChain) return;
-    const double speed = vertices_.speed(vertices_.size() - 1);
-    if (speeds_.spans.empty()) {
-      ChainSpeeds::Span span = begin_span(last_move_, *last_);
-      span.first = 0;
-      span.feed = speeds_.index_of(FeedLimit{});
-      speeds_.spans.push_back(span);
-    }
-    vertices_.push_back({u_, options_.tolerance, options_.rotary_tolerance, speed, -1});
-    speeds_.spans.back().last = last_vertex();
-    if (speeds_.spans.back().share != Chain::kWhole) shares_.back().to = 1.0;
+    if ((u_ - motion_.last_u()).norm() <= kMinChain) return;
+    const double speed = motion_.vertices.speed(motion_.last_vertex());
+    motion_.end_at({u_, options_.tolerance, options_.rotary_tolerance, speed, -1}, last_move_,
+                   last_->rapid);
   }
 
   const JointLayout& layout_;
@@ -376,6 +375,9 @@ class Planner {
   LegRules rules_;
   Trajectory out_;
   ChainMemory memory_;
+  MotionStretches stretches_;
+  Joints seam_ = Joints::Zero();  // m, rad; where the stretch that waits ends
+  std::size_t longest_ = 0;       // vertices of a stretch
   double t_ = 0.0;
   // of the chain being collected
   AxisWords words_;                   // where it is, machine coordinates
@@ -383,9 +385,7 @@ class Planner {
   std::optional<ArcSweep> last_arc_;  // of the leg before, if it was an arc
   std::optional<CurveEnd> last_end_;  // of the leg before, if it was a circle or a spline
   int arc_index_ = -1;                // of the circle that is being followed
-  Polyline vertices_;
-  ChainSpeeds speeds_;
-  std::vector<Chain::Share> shares_;  // of chords of moves under tool control
+  CollectedMotion motion_;
   std::optional<Leg> last_;
   std::size_t last_move_ = 0;
   bool skipped_ = false;  // the last point was too close to the one before

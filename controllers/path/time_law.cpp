@@ -74,20 +74,62 @@ struct Waypoint {
 
 class SpeedPlanner {
  public:
-  explicit SpeedPlanner(std::span<const SegmentLimits> stretches) : limits_(stretches) {
-    points_.push_back({0.0, 0.0, 0, 1, 0, {}, {}});
-    points_.push_back({limits_.back().end, 0.0, limits_.size(), 1, 0, {}, {}});
+  explicit SpeedPlanner(std::span<const SegmentLimits> stretches, const EndSpeeds& ends = {})
+      : limits_(stretches), ends_(ends) {
+    points_.push_back({0.0, ends.begin, 0, kLast, 0, {}, {}});
+    points_.push_back({limits_.back().end, ends.end, limits_.size(), kLast, 0, {}, {}});
+    dirty_ = {0};
   }
 
-  TimeLaw run() {
-    dirty_ = {0};
+  // A place that is passed without acceleration. @return its waypoint
+  std::size_t pass(double s) {
+    put(0, s, std::numeric_limits<double>::infinity());
+    return points_.size() - 1;
+  }
+
+  // Returns whether the speeds at both ends could be kept.
+  bool run() {
     while (!dirty_.empty()) {
       throw_if_interrupted();
       const std::size_t l = dirty_.back();
       dirty_.pop_back();
       solve(l);
     }
-    return write();
+    return points_[0].v == ends_.begin && points_[kLast].v == ends_.end;
+  }
+
+  double speed_at(std::size_t point) const { return points_[point].v; }
+
+  // The law between two waypoints.
+  TimeLaw write(std::size_t from = 0, std::size_t to = kLast) const {
+    TimeLaw law;
+    double t = 0.0;
+    const double origin = points_[from].s;
+    const auto phase = [&](double s, double v, double a, double j, double duration) {
+      if (duration <= 0.0) return;
+      law.phases.push_back({t, s - origin, v, a, j, 0.0});
+      t += duration;
+    };
+    for (std::size_t l = from; l != to; l = points_[l].next) {
+      const Waypoint& p = points_[l];
+      const double s_r = points_[p.next].s;
+      const Rise &up = p.up, &down = p.down;
+      const double T = up.t_jerk, dv = 0.5 * up.j * T * T, a = up.j * T;
+      const double x1 = p.s + T * (up.v0 + dv / 3.0), x3 = p.s + up.length;
+      phase(p.s, up.v0, 0.0, up.j, T);
+      phase(x1, up.v0 + dv, a, 0.0, up.t_even);
+      phase(x3 - T * (up.v1 - dv / 3.0), up.v1 - dv, a, -up.j, T);
+      const double cruise = s_r - down.length - x3;
+      if (cruise > kRounding) phase(x3, up.v1, 0.0, 0.0, cruise / up.v1);
+      const double U = down.t_jerk, dw = 0.5 * down.j * U * U, b = down.j * U;
+      const double y1 = s_r - down.length;
+      phase(y1, down.v1, 0.0, -down.j, U);
+      phase(y1 + U * (down.v1 - dw / 3.0), down.v1 - dw, -b, 0.0, down.t_even);
+      phase(s_r - U * (down.v0 + dw / 3.0), down.v0 + dw, -b, down.j, U);
+    }
+    law.duration = t;
+    assert(is_continuous(law, {t, points_[to].s - origin, points_[to].v, 0.0, 0.0, 0.0}));
+    return law;
   }
 
  private:
@@ -267,46 +309,15 @@ class SpeedPlanner {
     put(l, std::min(limits_[stretch].end, s_r), v);
   }
 
-  TimeLaw write() const {
-    TimeLaw law;
-    double t = 0.0;
-    const auto phase = [&](double s, double v, double a, double j, double duration) {
-      if (duration <= 0.0) return;
-      law.phases.push_back({t, s, v, a, j, 0.0});
-      t += duration;
-    };
-    for (std::size_t l = 0; l != 1; l = points_[l].next) {
-      const Waypoint& p = points_[l];
-      const double s_r = points_[p.next].s;
-      const Rise &up = p.up, &down = p.down;
-      const double T = up.t_jerk, dv = 0.5 * up.j * T * T, a = up.j * T;
-      const double x1 = p.s + T * (up.v0 + dv / 3.0), x3 = p.s + up.length;
-      phase(p.s, up.v0, 0.0, up.j, T);
-      phase(x1, up.v0 + dv, a, 0.0, up.t_even);
-      phase(x3 - T * (up.v1 - dv / 3.0), up.v1 - dv, a, -up.j, T);
-      const double cruise = s_r - down.length - x3;
-      if (cruise > kRounding) phase(x3, up.v1, 0.0, 0.0, cruise / up.v1);
-      const double U = down.t_jerk, dw = 0.5 * down.j * U * U, b = down.j * U;
-      const double y1 = s_r - down.length;
-      phase(y1, down.v1, 0.0, -down.j, U);
-      phase(y1 + U * (down.v1 - dw / 3.0), down.v1 - dw, -b, 0.0, down.t_even);
-      phase(s_r - U * (down.v0 + dw / 3.0), down.v0 + dw, -b, down.j, U);
-    }
-    law.duration = t;
-    assert(is_continuous(law));
-    return law;
-  }
-
-  // Does every phase end where the next begins, and the last at rest at the end? The times are sums
+  // Does every phase end where the next begins, and the last at the end? The times are sums
   // from the begin of the law and are rounded with its duration: short phases of a high jerk behind
   // hours of a slow feed are met only so well.
-  bool is_continuous(const TimeLaw& law) const {
+  static bool is_continuous(const TimeLaw& law, const Phase& end) {
     const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * law.duration;  // s
     for (std::size_t i = 0; i < law.phases.size(); ++i) {
       const bool last = i + 1 == law.phases.size();
       const Phase& p = law.phases[i];
-      const Phase next =
-          last ? Phase{law.duration, limits_.back().end, 0.0, 0.0, 0.0, 0.0} : law.phases[i + 1];
+      const Phase& next = last ? end : law.phases[i + 1];
       const double x = next.t - p.t;
       const double s = p.s + x * (p.v + x * (p.a / 2.0 + x * p.j / 6.0));
       const double v = p.v + x * (p.a + x * p.j / 2.0), a = p.a + x * p.j;
@@ -318,8 +329,11 @@ class SpeedPlanner {
     return true;
   }
 
+  static constexpr std::size_t kLast = 1;
+
   std::span<const SegmentLimits> limits_;
-  std::vector<Waypoint> points_;  // 0 is the first, 1 the last
+  EndSpeeds ends_;
+  std::vector<Waypoint> points_;  // 0 is the first, kLast the last
   std::vector<std::size_t> dirty_;
 };
 
@@ -348,7 +362,24 @@ Phase::State Phase::at(double time) const {
 
 TimeLaw plan_speed(std::span<const SegmentLimits> stretches) {
   assert(!stretches.empty());
-  return SpeedPlanner(stretches).run();
+  SpeedPlanner planner(stretches);
+  planner.run();
+  return planner.write();
+}
+
+std::optional<TimeLaw> plan_speed(std::span<const SegmentLimits> stretches,
+                                  const EndSpeeds& speeds) {
+  SpeedPlanner planner(stretches, speeds);
+  if (!planner.run()) return std::nullopt;
+  return planner.write();
+}
+
+std::optional<DividedLaw> plan_speed_through(std::span<const SegmentLimits> stretches,
+                                             double v_begin, double place) {
+  SpeedPlanner planner(stretches, {v_begin, 0.0});
+  const std::size_t there = planner.pass(place);
+  if (!planner.run()) return std::nullopt;
+  return DividedLaw{planner.write(0, there), planner.write(there), planner.speed_at(there)};
 }
 
 }  // namespace servomill::controllers

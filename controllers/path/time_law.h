@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,5 +49,27 @@ struct TimeLaw {
 ///
 /// @param stretches  ends increasing, all limits > 0
 TimeLaw plan_speed(std::span<const SegmentLimits> stretches);
+
+/// Speeds where a law begins and ends, there without acceleration.
+struct EndSpeeds {
+  double begin = 0.0, end = 0.0;  // m/s
+};
+
+/// The same between two speeds.
+/// @return nullopt if the limits do not let one be reached from the other
+std::optional<TimeLaw> plan_speed(std::span<const SegmentLimits> stretches,
+                                  const EndSpeeds& speeds);
+
+/// A law that passes a place without acceleration. Both parts count time and way from their begin.
+struct DividedLaw {
+  TimeLaw before, behind;
+  double speed = 0.0;  // m/s, there
+};
+
+/// From a speed through a place to rest.
+/// @param place  m, between the first and the last stretch
+/// @return nullopt if the way to rest is too short for the speed at the begin
+std::optional<DividedLaw> plan_speed_through(std::span<const SegmentLimits> stretches,
+                                             double v_begin, double place);
 
 }  // namespace servomill::controllers

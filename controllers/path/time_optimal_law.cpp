@@ -10,6 +10,7 @@
 #include "controllers/path/band.h"
 #include "controllers/path/barrier_kernel.h"
 #include "controllers/path/barrier_store.h"
+#include "controllers/path/law_ends.h"
 #include "controllers/path/limit_use.h"
 #include "controllers/path/path_parts.h"
 #include "controllers/path/speed_spline.h"
@@ -44,8 +45,9 @@ BarrierKernel barrier_kernel() {
 class Refinement {
  public:
   Refinement(const TimeLaw& law, const SmoothPath& path, std::span<const double> v_top,
-             const JointLimits& limits)
+             const JointLimits& limits, const LawEnds& ends)
       : law_(law),
+        ends_(ends),
         path_(path),
         v_top_(v_top),
         per_jerk_((limits.j * kMargin).cwiseInverse()),
@@ -64,24 +66,12 @@ class Refinement {
   }
 
  private:
-  struct Region {
-    std::size_t first = 0, last = 0;  // phases of the law
-    double s_begin = 0.0, s_end = 0.0, t_begin = 0.0, t_end = 0.0, v_begin = 0.0, v_end = 0.0;
-  };
-
   // Between the first and the last instant at which the speed neither rises nor falls.
   bool find_region() {
-    const auto& ph = law_.phases;
-    const auto still = [&](std::size_t i) { return ph[i].a == 0.0 && ph[i].v > 0.0; };
-    std::size_t first = 1;
-    while (first < ph.size() && !still(first)) ++first;
-    std::size_t last = ph.size();
-    while (last > first && !(last - 1 > 0 && still(last - 1))) --last;
-    if (last <= first) return false;
-    --last;
-    if (last <= first) return false;
-    r_ = {first, last, ph[first].s, ph[last].s, ph[first].t, ph[last].t, ph[first].v, ph[last].v};
-    return r_.s_end > r_.s_begin;
+    const auto begin = ends_.begin(), end = begin ? ends_.end() : std::nullopt;
+    if (!end || end->s <= begin->s) return false;
+    begin_ = *begin, end_ = *end;
+    return true;
   }
 
   // Speed of the law at s; `phase` is where to look first.
@@ -101,16 +91,16 @@ class Refinement {
 
   // Knots where pieces meet, unless they are short; long pieces are divided.
   void lay_knots() {
-    t_.assign(1, r_.s_begin);
-    std::size_t phase = r_.first, i = 0;
-    while (path_.end_of(i) <= r_.s_begin) ++i;
+    t_.assign(1, begin_.s);
+    std::size_t phase = begin_.phase, i = 0;
+    while (path_.end_of(i) <= begin_.s) ++i;
     first_piece_ = i;
-    double v_from = r_.v_begin;
-    for (; t_.back() < r_.s_end; ++i) {
-      const double from = t_.back(), to = std::min(path_.end_of(i), r_.s_end);
+    double v_from = begin_.v;
+    for (; t_.back() < end_.s; ++i) {
+      const double from = t_.back(), to = std::min(path_.end_of(i), end_.s);
       const double v_to = speed_at(to, phase);
       const double time = (to - from) / std::min(v_from, v_to);
-      if (to < r_.s_end && time < kShortest) continue;
+      if (to < end_.s && time < kShortest) continue;
       const int n = std::max(1, static_cast<int>(std::ceil(time / kLongest)));
       for (int k = 1; k < n; ++k) t_.push_back(from + (to - from) * k / n);
       t_.push_back(to);
@@ -137,7 +127,7 @@ class Refinement {
 
   void start() {
     c_.resize(N_ + 2);
-    std::size_t phase = r_.first;
+    std::size_t phase = begin_.phase;
     for (std::size_t i = 1; i <= N_; ++i) {
       const double v = speed_at(0.5 * (t_[i - 1] + t_[i]), phase);
       c_[i] = v * v;
@@ -163,7 +153,7 @@ class Refinement {
              std::max(use.acceleration, here.acceleration), std::max(use.speed, here.speed)};
     }
     if (!(use.b_least > 0.0)) return false;
-    const double v_a = r_.v_begin, v_b = r_.v_end;
+    const double v_a = begin_.v, v_b = end_.v;
     const double scale = std::min({kFirstScale, 0.98 * v_a * v_a / c_[1], 0.98 * v_b * v_b / c_[N_],
                                    0.9 * std::pow(use.jerk, -2.0 / 3.0),
                                    0.9 / std::max(use.acceleration, 1e-12), 0.9 / use.speed});
@@ -220,27 +210,39 @@ class Refinement {
     band_.assign(last - first, {0.0, 0.0, 0.0});
     std::fill_n(step_.begin() + static_cast<std::ptrdiff_t>(first), last - first, 0.0);
     for (std::size_t k = first < 3 ? 0 : first - 2; k < std::min(last, N_); ++k) {
-      std::array<double, 3> g{};
-      std::array<double, 6> h{};
-      const std::size_t end = 3 * parts_.first_of(k + 1);
-      for (std::size_t n = 3 * parts_.first_of(k); n < end; ++n) {
-        const BarrierTerms& terms = terms_[n / kLaneWidth - at.first];
-        const std::size_t lane = n % kLaneWidth;
-        for (std::size_t i = 0; i < 3; ++i) g[i] += terms.g[i][lane];
-        for (std::size_t i = 0; i < 6; ++i) h[i] += terms.h[i][lane];
-      }
-      if (k == 0) add_end(0, r_.v_begin, mu, at, g, h);
-      if (k + 1 == N_) add_end(3 * parts_.size() - 1, r_.v_end, mu, at, g, h);
-      std::size_t n = 0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t row = free_coefficient(k + i);
-        const bool is_free = row >= first && row < last;
-        if (is_free) step_[row] -= g[i];
-        for (std::size_t j = i; j < 3; ++j, ++n) {
-          const std::size_t column = free_coefficient(k + j);
-          if (!is_free || column >= last) continue;
-          band_[row - first][column - row] += (column == row && j != i ? 2.0 : 1.0) * h[n];
-        }
+      Derivatives of = sum_over(k, at);
+      if (k == 0) add_end(0, begin_.v, mu, at, of.g, of.h);
+      if (k + 1 == N_) add_end(3 * parts_.size() - 1, end_.v, mu, at, of.g, of.h);
+      add_interval(k, of, first, last);
+    }
+  }
+
+  // By the three coefficients of an interval; second ones 00 01 02 11 12 22.
+  struct Derivatives {
+    std::array<double, 3> g{};
+    std::array<double, 6> h{};
+  };
+  Derivatives sum_over(std::size_t interval, const BarrierStore::Blocks& at) const {
+    Derivatives of;
+    const std::size_t end = 3 * parts_.first_of(interval + 1);
+    for (std::size_t n = 3 * parts_.first_of(interval); n < end; ++n) {
+      const BarrierTerms& terms = terms_[n / kLaneWidth - at.first];
+      const std::size_t lane = n % kLaneWidth;
+      for (std::size_t i = 0; i < 3; ++i) of.g[i] += terms.g[i][lane];
+      for (std::size_t i = 0; i < 6; ++i) of.h[i] += terms.h[i][lane];
+    }
+    return of;
+  }
+  void add_interval(std::size_t k, const Derivatives& of, std::size_t first, std::size_t last) {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t row = free_coefficient(k + i);
+      const bool is_free = row >= first && row < last;
+      if (is_free) step_[row] -= of.g[i];
+      for (std::size_t j = i; j < 3; ++j, ++n) {
+        const std::size_t column = free_coefficient(k + j);
+        if (!is_free || column >= last) continue;
+        band_[row - first][column - row] += (column == row && j != i ? 2.0 : 1.0) * of.h[n];
       }
     }
   }
@@ -260,8 +262,8 @@ class Refinement {
   // c_0 = c_1 and c_N+1 = c_N: the speed at the ends is that of the outermost coefficients
   std::size_t free_coefficient(std::size_t i) const { return std::clamp(i, std::size_t{1}, N_); }
   double largest_loss_at_ends() const {
-    return std::max(step_[1] / (r_.v_begin * r_.v_begin - c_[1]),
-                    step_[N_] / (r_.v_end * r_.v_end - c_[N_]));
+    return std::max(step_[1] / (begin_.v * begin_.v - c_[1]),
+                    step_[N_] / (end_.v * end_.v - c_[N_]));
   }
 
   // Factor on the speed with which every limit holds everywhere.
@@ -272,25 +274,13 @@ class Refinement {
   }
 
   bool write(double k, TimeLaw& out) const {
-    const double v_a = std::sqrt(c_[1]) * k, v_b = std::sqrt(c_[N_]) * k;
-    // The ramps before and behind go with it; beyond rounding they cannot be made quicker.
-    constexpr double kRounding = 1e-12;
-    if (v_a > r_.v_begin * (1.0 + kRounding) || v_b > r_.v_end * (1.0 + kRounding)) return false;
-    const double slower_a = std::min(v_a / r_.v_begin, 1.0);
-    const double slower_b = std::min(v_b / r_.v_end, 1.0);
+    const auto before = ends_.before(begin_, std::sqrt(c_[1]) * k);
+    const auto behind = ends_.behind(end_, std::sqrt(c_[N_]) * k);
+    if (!before || !behind) return false;
     out.phases.clear();
-    out.phases.reserve(r_.first + N_ + law_.phases.size() - r_.last);
-    const auto scaled = [](Phase p, double t0, double out_t0, double f) {
-      p.t = out_t0 + (p.t - t0) / f;
-      p.v *= f;
-      p.a *= f * f;
-      p.j *= f * f * f;
-      return p;
-    };
-    for (std::size_t i = 0; i < r_.first; ++i) {
-      out.phases.push_back(scaled(law_.phases[i], 0.0, 0.0, slower_a));
-    }
-    double t = r_.t_begin / slower_a;
+    out.phases.reserve(before->phases.size() + N_ + behind->phases.size());
+    out.phases.insert(out.phases.end(), before->phases.begin(), before->phases.end());
+    double t = before->duration;
     for (std::size_t i = 0; i < N_; ++i) {
       const SpeedSpline::State x = b_.begin_of(i);
       Phase p;
@@ -302,19 +292,21 @@ class Refinement {
       out.phases.push_back(p);
       t += b_.duration(i, x) / k;
     }
-    for (std::size_t i = r_.last; i < law_.phases.size(); ++i) {
-      out.phases.push_back(scaled(law_.phases[i], r_.t_end, t, slower_b));
+    for (Phase phase : behind->phases) {
+      phase.t += t;
+      out.phases.push_back(phase);
     }
-    out.duration = t + (law_.duration - r_.t_end) / slower_b;
+    out.duration = t + behind->duration;
     return out.duration < law_.duration;
   }
 
   const TimeLaw& law_;
+  const LawEnds& ends_;
   const SmoothPath& path_;
   std::span<const double> v_top_;
   Joints per_jerk_, ratio_;  // 1/(margin J); J/A
   BarrierKernel kernel_ = barrier_kernel();
-  Region r_;
+  LawEnds::Place begin_, end_;
   std::size_t N_ = 0, first_piece_ = 0;
   SpeedSpline b_;
   std::vector<double>&t_ = b_.t, &c_ = b_.c;
@@ -333,9 +325,11 @@ class Refinement {
 }  // namespace
 
 TimeLaw refine_time_law(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
-                        const JointLimits& limits) {
+                        const JointLimits& limits, std::span<const SegmentLimits> stretches,
+                        const EndSpeeds& speeds) {
   TimeLaw quicker;
-  if (Refinement(law, path, v_top, limits).run(quicker)) return quicker;
+  const LawEnds ends(law, stretches, speeds);
+  if (Refinement(law, path, v_top, limits, ends).run(quicker)) return quicker;
   return law;
 }
 

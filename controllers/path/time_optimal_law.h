@@ -29,13 +29,16 @@
 
 namespace servomill::controllers {
 
-/// @param law    rest to rest along the path, within the limits
+/// @param law    along the path, within the limits
 /// @param v_top  largest speed on each piece (m/s), by feed and joint speeds
 /// @param limits acceleration and jerk of the joints, scaled like the path
+/// @param stretches  limits of the law; needed where it does not begin and end at rest
+/// @param speeds  where it begins and ends; they are kept
 /// @return a law that takes less time; `law` itself if none is found
 /// Law: (1) and v <= v_top hold everywhere on the way: between the points where slacks are kept
 /// positive the hull of the polynomials is looked at, and the whole slowed down by what is missing.
 TimeLaw refine_time_law(TimeLaw law, const SmoothPath& path, std::span<const double> v_top,
-                        const JointLimits& limits);
+                        const JointLimits& limits, std::span<const SegmentLimits> stretches = {},
+                        const EndSpeeds& speeds = {});
 
 }  // namespace servomill::controllers

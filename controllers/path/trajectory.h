@@ -39,7 +39,8 @@ class Trajectory {
   /// Neither allocates nor throws; reading backwards costs a search from the begin.
   Sample at(double t, Cursor& cursor) const;
 
-  /// A part of the motion from rest to rest, or a dwell (without path).
+  /// A part of the motion from rest to rest, a stretch of a long one (motion_stretches.h), or a
+  /// dwell (without path).
   struct Chain {
     struct Span {  // one move on the path, or one chord of a move under tool control
       std::uint32_t move = 0;

@@ -215,13 +215,14 @@ void add(system::MemoKey& key, const controllers::JointLimits& limits) {
 
 void add(system::MemoKey& key, const controllers::PathOptions& options) {
   const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
-               feed_override, rapid_override, tolerance_share, spindle_acceleration, block_time] =
-      options;
+               feed_override, rapid_override, tolerance_share, spindle_acceleration, block_time,
+               stretch] = options;
   for (const double value :
        {tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius, feed_override,
         rapid_override, tolerance_share, spindle_acceleration, block_time}) {
     key.add(value);
   }
+  key.add(stretch);
 }
 
 void add_linear_axis(system::MemoKey& key, const model::MachineSettings& linear, int joint) {

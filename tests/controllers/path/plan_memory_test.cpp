@@ -11,8 +11,10 @@
 namespace servomill::controllers::test::plan_memory_test {
 namespace {
 
-// Rows over a curved surface, in chords of that length (m).
-MoveList surface(std::size_t lines, double shortest, double longest, double feed) {
+// Rows over a curved surface, in chords of that length (m). At the end of a row the motion turns
+// back and stops, or a block leads to the next one.
+MoveList surface(std::size_t lines, double shortest, double longest, double feed,
+                 bool stops = true) {
   std::mt19937 dice(5);
   Program program;
   MoveList out;
@@ -20,8 +22,10 @@ MoveList surface(std::size_t lines, double shortest, double longest, double feed
   AxisWords at = AxisWords::Zero();
   for (std::size_t n = 0; n < lines; ++n) {
     const double share = static_cast<double>(dice()) / 4294967296.0;
-    x += direction * (shortest + share * (longest - shortest));
-    if (std::abs(x - 0.1) > 0.1) {
+    const double next = x + direction * (shortest + share * (longest - shortest));
+    const bool ends_row = std::abs(next - 0.1) > 0.1;
+    if (!ends_row || stops) x = next;
+    if (ends_row) {
       direction = -direction;
       y += 0.3 * mm;
     }
@@ -78,6 +82,18 @@ TEST(PlanMemory, OfShortLinesIsBounded) {
   constexpr Memory kMax = {250.0, 150.0};
   const auto moves = [](std::size_t n) { return surface(n, 0.05 * mm, 0.2 * mm, 50 * mm); };
   expect_bounded("short lines", memory_of(moves(kLines)), memory_of(moves(2 * kLines)), kMax);
+}
+
+// Beyond what is kept, planning needs the memory of a stretch and of the one ahead: undivided,
+// these motions took 57 and 114 MB.
+TEST(PlanMemory, OfPlanningDoesNotGrowWithTheMotion) {
+  constexpr double kMax = 20e6;  // bytes
+  for (const std::size_t lines : {300'000U, 600'000U}) {
+    const Memory memory = memory_of(surface(lines, 0.05 * mm, 0.2 * mm, 50 * mm, false));
+    const double extra = (memory.peak - memory.kept) * static_cast<double>(lines);
+    fmt::print("planning of {} lines takes {:.1f} MB\n", lines, extra / 1e6);
+    EXPECT_LE(extra, kMax);
+  }
 }
 
 }  // namespace

@@ -104,6 +104,23 @@ Extremes extremes(const Program& program, const Trajectory& path, const JointLim
   return worst;
 }
 
+void expect_laws(const Program& program, const Trajectory& path, const Extremes& x) {
+  EXPECT_LE(x.v, 1.0 + kRounding);
+  EXPECT_LE(x.a, 1.0 + kRounding);
+  EXPECT_LE(x.j, 1.0 + kRounding);
+  EXPECT_LE(x.fd_v, 1.0 + kRounding);
+  EXPECT_LE(x.fd_a, 1.0 + kRounding);
+  EXPECT_LE(x.fd_j, 1.0 + kRounding);
+  EXPECT_LE(x.feed, 1.0 + kRounding);
+  EXPECT_LE(x.deviation, 1.0 + kRounding);
+  Trajectory::Cursor cursor;
+  const auto end = path.at(path.duration(), cursor);
+  EXPECT_EQ(end.Q_ref, kLayout.joints(program.at()));
+  EXPECT_TRUE(end.dQ_ref.isZero(0.0) && end.ddQ_ref.isZero(0.0));
+  const auto nearly = path.at(path.duration() - 1e-7, cursor);
+  EXPECT_LE((nearly.Q_ref - end.Q_ref).norm(), 1e-12);
+}
+
 TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
   const JointLimits limits = machine_limits();
   const PathOptions options;
@@ -116,20 +133,7 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
     const Trajectory path = program.plan();
     const Extremes x = extremes(program, path, limits, options);
-    EXPECT_LE(x.v, 1.0 + kRounding);
-    EXPECT_LE(x.a, 1.0 + kRounding);
-    EXPECT_LE(x.j, 1.0 + kRounding);
-    EXPECT_LE(x.fd_v, 1.0 + kRounding);
-    EXPECT_LE(x.fd_a, 1.0 + kRounding);
-    EXPECT_LE(x.fd_j, 1.0 + kRounding);
-    EXPECT_LE(x.feed, 1.0 + kRounding);
-    EXPECT_LE(x.deviation, 1.0 + kRounding);
-    Trajectory::Cursor cursor;
-    const auto end = path.at(path.duration(), cursor);
-    EXPECT_EQ(end.Q_ref, kLayout.joints(program.at()));
-    EXPECT_TRUE(end.dQ_ref.isZero(0.0) && end.ddQ_ref.isZero(0.0));
-    const auto nearly = path.at(path.duration() - 1e-7, cursor);
-    EXPECT_LE((nearly.Q_ref - end.Q_ref).norm(), 1e-12);
+    expect_laws(program, path, x);
     const double bound = time_bound(path, program.moves(), limits, options);
     EXPECT_GE(path.duration(), bound * (1.0 - kBoundGrid));
     time += path.duration();
@@ -149,6 +153,35 @@ TEST(RandomPrograms, KeepEveryLimitAndReachTheEnd) {
       "the sums {:.3f}\nlargest use of a {:.6f}, j {:.6f}, j from differences {:.6f}, tolerance "
       "{:.6f}\n",
       count, moves, sum / count, largest, time / bounds, all.a, all.j, all.fd_j, all.deviation);
+}
+
+// Stretches of a motion meet in motion, without a jump of position, velocity or acceleration, and
+// the lines and arc lengths of the blocks go on.
+TEST(RandomPrograms, KeepEveryLimitInStretches) {
+  const JointLimits limits = machine_limits();
+  std::size_t moving = 0;
+  for (unsigned seed = 0; seed < program_count() && !HasFailure(); ++seed) {
+    const Program program = random_program(seed);
+    PathOptions options;
+    options.stretch = 16 + seed % 100;
+    SCOPED_TRACE(fmt::format("seed {}, stretches of {} vertices", seed, options.stretch));
+    const Trajectory path = program.plan(options);
+    expect_laws(program, path, extremes(program, path, limits, options));
+    Trajectory::Cursor one, other;
+    for (const Trajectory::Chain& chain : path.chains()) {
+      if (chain.t == 0.0) continue;
+      const auto before = path.at(std::nextafter(chain.t, 0.0), one), at = path.at(chain.t, other);
+      EXPECT_LE((at.Q_ref - before.Q_ref).norm(), 1e-12);
+      EXPECT_LE((at.dQ_ref - before.dQ_ref).norm(), 1e-9);
+      EXPECT_LE((at.ddQ_ref - before.ddQ_ref).norm(), 1e-6);
+      if (at.dQ_ref.isZero(1e-6)) continue;
+      ++moving;
+      EXPECT_LE((chain.begin - at.Q_ref).norm(), 1e-12);
+      EXPECT_EQ(before.line, at.line);
+      EXPECT_NEAR(before.s, at.s, 1e-9);
+    }
+  }
+  EXPECT_GT(moving, program_count());
 }
 
 }  // namespace

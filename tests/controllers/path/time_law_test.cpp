@@ -100,5 +100,61 @@ TEST(TimeLaw, IsFasterOnAShorterSlowStretch) {
   }
 }
 
+TEST(TimeLaw, LeadsFromOneSpeedToAnother) {
+  const std::vector<SegmentLimits> even = {{0.1, 0.1, 10.0, 100.0}};
+  EXPECT_DOUBLE_EQ(plan_speed(even, {0.1, 0.1})->duration, 1.0);
+  const auto law = plan_speed(even, {0.05, 0.1});
+  ASSERT_TRUE(law);
+  const double ramp = 2.0 * std::sqrt(0.05 / 100.0);  // at the mean of both speeds
+  EXPECT_NEAR(law->duration, ramp + (0.1 - 0.075 * ramp) / 0.1, 1e-12);
+  EXPECT_EQ(state(*law, 0.0).v, 0.05);
+  const State end = state(*law, law->duration);
+  EXPECT_NEAR(end.s, 0.1, 1e-15);
+  EXPECT_NEAR(end.v, 0.1, 1e-12);
+  EXPECT_NEAR(end.a, 0.0, 1e-12);
+}
+
+// From v to rest over v sqrt(v/j), both sides of the limit.
+TEST(TimeLaw, RefusesWhatCannotBeReached) {
+  const double v = 0.1, j = 100.0, way = v * std::sqrt(v / j);
+  const auto law = [&](double length) {
+    return plan_speed(std::vector<SegmentLimits>{{length, 1.0, 100.0, j}}, {v, 0.0});
+  };
+  EXPECT_TRUE(law(way * 1.001));
+  EXPECT_FALSE(law(way * 0.999));
+  const auto back = plan_speed(std::vector<SegmentLimits>{{way * 0.999, 1.0, 100.0, j}}, {0.0, v});
+  EXPECT_FALSE(back);
+  const std::vector<SegmentLimits> slow = {{1.0, 0.99 * v, 100.0, j}};
+  EXPECT_FALSE(plan_speed(slow, {v, 0.0}));
+  EXPECT_FALSE(plan_speed_through(slow, v, 0.5));
+}
+
+// A place on an even stretch costs nothing.
+TEST(TimeLaw, PassesAPlaceAtTheSpeedOfTheStretch) {
+  const std::vector<SegmentLimits> even = {{0.1, 0.1, 10.0, 100.0}, {0.3, 0.1, 10.0, 100.0}};
+  const auto law = plan_speed_through(even, 0.0, 0.1);
+  ASSERT_TRUE(law);
+  EXPECT_EQ(law->speed, 0.1);
+  EXPECT_NEAR(law->before.duration + law->behind.duration, plan_speed(even).duration, 1e-12);
+  EXPECT_EQ(law->behind.phases.front().s, 0.0);
+  EXPECT_EQ(law->behind.phases.front().v, 0.1);
+}
+
+// A slow stretch d behind the place is met: v is the largest with (v + w)/2 2 sqrt((v - w)/j) <= d.
+TEST(TimeLaw, PassesAPlaceNoFasterThanItCanBrake) {
+  const double w = 0.01, d = 1e-3, j = 100.0;
+  const std::vector<SegmentLimits> stretches = {
+      {0.1, 0.5, 100.0, j}, {0.1 + d, 0.5, 100.0, j}, {0.2, w, 100.0, j}};
+  const auto law = plan_speed_through(stretches, 0.0, 0.1);
+  ASSERT_TRUE(law);
+  const double v = law->speed;
+  EXPECT_GT(v, w);
+  EXPECT_NEAR((v + w) * std::sqrt((v - w) / j), d, 1e-5 * d);
+  const State end = state(law->before, law->before.duration);
+  EXPECT_NEAR(end.s, 0.1, 1e-15);
+  EXPECT_NEAR(end.v, v, 1e-9);
+  EXPECT_NEAR(state(law->behind, law->behind.duration).s, 0.1, 1e-15);
+}
+
 }  // namespace
 }  // namespace servomill::controllers::time_law_test
