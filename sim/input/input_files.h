@@ -14,6 +14,9 @@
 
 namespace servomill::sim::input {
 
+/// Place of the program of a result file, beside its resolved document.
+inline constexpr const char* kStoredProgram = "/inputs/program";
+
 /// Reads every file once and keeps it, however often it is asked for, so that what happens to a
 /// file during a sweep does not matter. Beyond some bytes those asked for least recently are
 /// forgotten; they are read again, and refused if they have changed. For any number of threads.
@@ -24,6 +27,7 @@ class InputFiles {
 
   /// Takes a text for the file of that name, which need not be on a disk. Before it is asked for.
   void provide(const std::string& path, std::string text);
+  bool is_provided(const std::string& path) const { return provided_.contains(path); }
 
   /// @param at    where the file was named; without a file: the complaint stands in `path`
   /// @param what  "program", "machine": for the message

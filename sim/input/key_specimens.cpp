@@ -15,7 +15,6 @@ structural_mode = [{ direction = [1.0, 0.0, 1.0], stiffness = 5e7, frequency_Hz 
 [machine.nc]
 Kv = 50.0
 spindle = { acceleration_rpm_per_s = 1500.0, Kv = 30.0, velocity_feed_forward = 0.5 }
-
 [machine.axis.X]
 drive = "two_mass"
 lead_mm = 20.0
@@ -125,6 +124,7 @@ ZC = { gain_um_per_rad_s2 = 0.1, along = "Z", slope_um_per_rad_s2_per_m = 0.1 }
 [program]
 file = "first.ngc"
 text = "M2\n"
+text_checksum = "f8ed25696332cceb"
 subroutines = { NAME = "O<NAME> sub\nO<NAME> endsub\n" }
 parameters = { "#101" = 1.0 }
 work_offset = { X_mm = 0.0 }

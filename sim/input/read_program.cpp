@@ -13,6 +13,7 @@
 #include "controllers/gcode/called_subroutines.h"
 #include "controllers/gcode/reader.h"
 #include "controllers/siemens/siemens.h"
+#include "plant/vocabulary/checksum.h"
 #include "sim/input/read_cutter.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/scenario_document.h"
@@ -55,21 +56,36 @@ void read_subroutines(const std::shared_ptr<const std::string>& text, const Plac
   }
 }
 
+void read_stored_subroutines(config::Reader& table, model::ProgramSpec& program) {
+  if (!table.has("subroutines")) return;
+  config::Reader texts = table.table("subroutines");
+  for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
+}
+
+// A resolved document has the checksum of a long program.
+bool is_stored_beside(config::Reader& table) {
+  return table.has("text_checksum") && !is_outdated_copy(table, "file", "text_checksum");
+}
+
 // The text of the program, from its file or as a resolved document holds it.
 void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& program) {
   program.file = table.text("file");
   if (table.has("text") && !is_outdated_copy(table, "file", "text")) {
     program.shared_text = std::make_shared<const std::string>(table.text("text"));
-    if (table.has("subroutines")) {
-      config::Reader texts = table.table("subroutines");
-      for (const std::string& name : texts.keys()) program.subroutines[name] = texts.text(name);
-    }
+    read_stored_subroutines(table, program);
+  } else if (is_stored_beside(table) && files.is_provided(kStoredProgram)) {
+    program.shared_text = files.text(kStoredProgram, table.place("file"), "program");
+    read_stored_subroutines(table, program);
   } else if (!program.file.empty()) {
     for (const char* stored : {"text", "subroutines"}) table.raw(stored);
     const Place at = table.place("file");
     program.file = beside(at, program.file);
     program.shared_text = files.text(program.file, at, "program");
     read_subroutines(program.shared_text, at, files, program);
+  }
+  if (is_stored_beside(table) && table.text("text_checksum") != checksum_text(program.text())) {
+    table.fault("text_checksum",
+                fmt::format("differs from that of {}: the program has changed", program.file));
   }
   if (table.is("file", config::Value::Type::text) && table.text("file").empty()) {
     table.fault("file", "must not be empty");
@@ -80,7 +96,7 @@ void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& pro
 // The program of tests.
 void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
                     config::Reader& table, model::ProgramSpec& program) {
-  for (const char* const key : {"file", "text", "subroutines"}) {
+  for (const char* const key : {"file", "text", "text_checksum", "subroutines"}) {
     if (table.raw(key) != nullptr) table.fault(key, "has no effect: [[test]] writes the program");
   }
   program.file = "[[test]]";
@@ -147,6 +163,10 @@ std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fal
     }
   }
   return out;
+}
+
+std::string checksum_text(std::string_view program) {
+  return fmt::format("{:016x}", crc64(program));
 }
 
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <set>
+#include <string>
+#include <string_view>
 
 #include "plant/vocabulary/axes.h"
 #include "sim/config/reader.h"
@@ -18,6 +20,9 @@ namespace servomill::sim::input {
 /// @throws InputError if a file cannot be read or its text cannot be stored in a result file
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,
                                 InputFiles& files, const model::MachineTests& tests);
+
+/// CRC-64 of a program, as a resolved document has it of a long one: 16 hexadecimal digits.
+std::string checksum_text(std::string_view program);
 
 /// Program words such as X_mm = 1.5.
 /// @param layout  of the machine; empty where that could not be read: any words are then taken

@@ -106,12 +106,19 @@ class ScenarioReader {
     return value;
   }
 
-  // { program = { text = "..." }, part = { ... } }: a resolved document needs no other file.
+  // { program = { text = "..." }, part = { ... } }: a resolved document needs no other file but a
+  // long program.
   config::Value with_contents_of_files() const {
     config::Value program;
     program.key = "program";
     // the program of [[test]] follows from its keys
-    if (out_.tests.empty()) program.children.push_back(text_value("text", out_.program.text()));
+    const std::string& code = out_.program.text();
+    constexpr std::size_t kLongest = 1'000'000;  // bytes
+    if (out_.tests.empty() && code.size() <= kLongest) {
+      program.children.push_back(text_value("text", code));
+    } else if (out_.tests.empty()) {
+      program.children.push_back(text_value("text_checksum", checksum_text(code)));
+    }
     if (!out_.program.subroutines.empty()) {
       config::Value subroutines;
       subroutines.key = "subroutines";
@@ -325,8 +332,10 @@ model::Scenario read_scenario(const std::string& path, const std::vector<std::st
   return ScenarioSource(path, changes).at();
 }
 
-model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name) {
+model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,
+                                       std::optional<std::string> program) {
   InputFiles files;
+  if (program) files.provide(kStoredProgram, *std::move(program));
   return read_document(with_machine(config::Document::from_text(resolved, name), {}, files), name,
                        files);
 }

@@ -1,6 +1,7 @@
 /// Reads scenarios and machine files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,11 @@ class InputFiles;
 model::Scenario read_scenario(const std::string& path,
                               const std::vector<std::string>& changes = {});
 
-/// The same from a resolved document (as stored in a result file), program text included.
-model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name);
+/// The same from a resolved document and the program beside it (as stored in a result file). Short
+/// programs are part of the document as well, of long ones it has the checksum.
+/// @param program  none: a long program is read from its file
+model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,
+                                       std::optional<std::string> program = {});
 
 /// Common part of both: reads the document with the machine in it (sim/input/scenario_document.h).
 /// @param files  where the program is looked for

@@ -53,11 +53,11 @@ constexpr KeyHelp kScenario[] = {
     {"", "sweep", "keys that vary over the points of a sweep"},
     {"program", "file", "part program; relative to this file"},
     {"program", "text", "text of the program, in self-contained files"},
+    {"program", "text_checksum", "checksum of a long program, in the inputs of result files"},
     {"program", "subroutines", "texts of its subroutines, in self-contained files"},
     {"program", "reader", "control whose rules apply to the program; linuxcnc is strict"},
     {"program", "decimal_point",
-     "meaning of lengths without a decimal point: calculator (X1000 = 1000 mm) or increments (1 "
-     "mm)"},
+     "lengths without a decimal point: calculator (X1000 = 1000 mm) or increments (1 mm)"},
     {"program", "ignore_codes",
      "M codes of the machine builder without effect on motion; default: those of the machine"},
     {"program", "first_feed", "feed of G1, G2 and G3 before the first F"},

@@ -186,6 +186,22 @@ Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
   return dataset;
 }
 
+void Hdf5Group::write_text(const std::string& name, const std::string& text) {
+  constexpr std::size_t kLongest = 1'000'000;  // bytes of an attribute
+  constexpr hsize_t kChunk = 1U << 20U;
+  if (text.size() <= kLongest) return attribute(name, text);
+  const Hdf5Lock lock;
+  Layout layout{.type = H5T_C_S1,
+                .space = list_space(text.size()),
+                .values = text.data(),
+                .value_type = H5T_C_S1};
+  H5Pset_chunk(layout.creation.get(), 1, &kChunk);
+  H5Pset_deflate(layout.creation.get(), 1);
+  Hdf5Dataset dataset = create(name, layout, {"1", name});
+  dataset.attribute("_Encoding", "utf-8");
+  dataset.make_scale(name);
+}
+
 void Hdf5Group::scalar(const std::string& name, double value, const Meaning& meaning) {
   const Hdf5Lock lock;
   create(name,

@@ -55,6 +55,10 @@ class Hdf5Group : public Hdf5Object {
   Hdf5Dataset labels(const std::string& name, std::string_view letters,
                      const std::string& long_name);
 
+  /// A text: an attribute or, of more than a megabyte, a list of characters of that name, which is
+  /// compressed and need not be held twice.
+  void write_text(const std::string& name, const std::string& text);
+
   /// One value.
   void scalar(const std::string& name, double value, const Meaning& meaning);
 

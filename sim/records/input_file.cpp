@@ -187,8 +187,21 @@ Meaning InputFile::meaning(const std::string& dataset) const {
   return {std::move(units), std::move(long_name)};
 }
 
+std::string InputFile::long_text(const std::string& dataset) const {
+  const auto size = shape(dataset);
+  if (size.size() != 1 || holds_numbers(dataset)) fail(fmt::format("'{}' is not a text", dataset));
+  const Hdf5Handle id = open(dataset);
+  std::string out(size[0], '\0');
+  if (H5Dread(id.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
+    fail(fmt::format("'{}' cannot be read: {}", dataset, hdf5_reason()));
+  }
+  return out;
+}
+
 std::string InputFile::text(const std::string& object, const std::string& name) const {
   const Hdf5Lock lock;
+  const std::string dataset = object + "/" + name;
+  if (!has_attribute(object, name) && has(dataset)) return long_text(dataset);
   const Hdf5Handle attribute = open_attribute(object, name);
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {

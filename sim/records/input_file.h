@@ -39,6 +39,7 @@ class InputFile {
                                  std::size_t count) const;
 
   bool has_attribute(const std::string& object, const std::string& name) const;
+  /// An attribute, or the list of characters that a long text is.
   std::string text(const std::string& object, const std::string& name) const;
   /// Unit of a dataset and its long name without it.
   Meaning meaning(const std::string& dataset) const;
@@ -49,6 +50,7 @@ class InputFile {
   [[noreturn]] void fail(const std::string& message) const;
   std::vector<std::string> children(const std::string& group, bool groups) const;
   Hdf5Handle open(const std::string& object) const;
+  std::string long_text(const std::string& dataset) const;
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
 
   std::string path_;

@@ -205,7 +205,7 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std
   records::make_nexus_group(inputs, "NXcollection");
   inputs.attribute("scenario", scenario.text);
   inputs.attribute("machine", scenario.machine_text);
-  inputs.attribute("program", scenario.program.text());
+  inputs.write_text("program", scenario.program.text());
   inputs.attribute("resolved", scenario.resolved);
 }
 
@@ -255,7 +255,7 @@ void RunStore::add(const CaseOutput& one) {
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", static_cast<std::int64_t>(one.blocks));
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
-  if (!one.program.empty()) group.attribute("program", one.program);
+  if (!one.program.empty()) group.write_text("program", one.program);
   if (!one.result.left_out.empty()) {
     group.attribute("rows_left_out", fmt::format("{}", fmt::join(one.result.left_out, "\n")));
   }
@@ -289,8 +289,8 @@ StoredRun read_run(const std::string& path) {
   StoredRun run;
   run.scenario_name = file.text("/", "scenario");
   run.title = file.text("/", "title");
-  const model::Scenario scenario =
-      input::read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
+  const model::Scenario scenario = input::read_resolved_scenario(
+      file.text("/inputs", "resolved"), path + ":/inputs", file.text("/inputs", "program"));
   run.quantities = scenario.quantities;
   for (const std::string& name : file.groups("/cases")) {
     const std::string group = "/cases/" + name;

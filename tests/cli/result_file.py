@@ -5,6 +5,7 @@ result_file.py SERVOMILL
 """
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -54,6 +55,28 @@ class ResultFile(unittest.TestCase):
             for key, name in (("scenario", "scenario.toml"), ("machine", "machine.toml"), ("program", "part.ngc")):
                 with open(os.path.join(HERE, "gallery", name), encoding="utf-8") as text:
                     self.assertEqual(file["inputs"].attrs[key], text.read(), key)
+
+    def test_a_long_program_is_kept_once_and_compressed(self):
+        folder = pathlib.Path(self.folder.name, "long")
+        shutil.copytree(os.path.join(HERE, "gallery"), folder)
+        program = folder / "part.ngc"
+        program.write_text(program.read_text(encoding="utf-8") + "(a comment behind the end: \u00e4)\n" * 50_000, encoding="utf-8")
+        text = program.read_text(encoding="utf-8")
+        path = folder / "long.h5"
+        subprocess.run([SERVOMILL, "run", folder / "scenario.toml", "-o", path], capture_output=True, check=True)
+        self.assertLess(path.stat().st_size, os.path.getsize(self.path) + 100_000)
+        with h5py.File(path, "r") as file:
+            self.assertEqual(file["inputs/program"][()].tobytes().decode(), text)
+            self.assertNotIn("program", file["inputs"].attrs)
+            self.assertIn('text_checksum = "', file["inputs"].attrs["resolved"])
+        program.unlink()
+        self.assertEqual(self.compare(str(path)), (0, ""))
+        with h5py.File(path, "r+") as file:
+            of_another = file["inputs"].attrs["resolved"].replace('text_checksum = "', 'text_checksum = "0')
+            file["inputs"].attrs["resolved"] = of_another
+        status, message = self.compare(str(path))
+        self.assertEqual(status, 2)
+        self.assertRegex(message, r'program\.text_checksum = "0[0-9a-f]{16}"; differs from that of part\.ngc: the program has changed')
 
     def test_xarray_knows_the_dimensions(self):
         with xarray.open_dataset(self.path, group=SERVO, engine="h5netcdf") as data:

@@ -87,8 +87,8 @@ void refuse_compensated(const sim::model::Scenario& scenario, const std::string&
 HeatReadings readings_of_day(const std::string& path, const Options& options) {
   const sim::records::InputFile file(path);
   const std::string name = case_of(file, options);
-  const sim::model::Scenario scenario =
-      sim::input::read_resolved_scenario(file.text("/inputs", "resolved"), path + ":/inputs");
+  const sim::model::Scenario scenario = sim::input::read_resolved_scenario(
+      file.text("/inputs", "resolved"), path + ":/inputs", file.text("/inputs", "program"));
   refuse_compensated(scenario, name, path);
   const auto day = sim::run::read_day(file, "/cases/" + name + "/day");
   HeatReadings out{path, day->sensors, {}};
