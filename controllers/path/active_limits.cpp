@@ -166,9 +166,9 @@ void for_each_stretch(const MoveRange& moves, const Trajectory& trajectory,
                       const JointLimits& limits, const PathOptions& options,
                       const std::function<void(const MotionStretch&)>& take) {
   StretchWalk walk(moves, trajectory, limits, options, take);
-  for (const Chain& chain : trajectory.chains()) {
+  for (std::size_t n = 0; n < trajectory.chains(); ++n) {
     throw_if_interrupted();
-    walk.walk(chain);
+    walk.walk(*trajectory.chain(n));
   }
 }
 

@@ -16,7 +16,6 @@ namespace servomill::controllers {
 struct ChainSpeeds {
   struct Span : Trajectory::Chain::Span {
     std::uint32_t feed = 0;  // index into feeds
-    bool rapid = false;
   };
   std::vector<Span> spans;
   std::vector<FeedLimit> feeds;

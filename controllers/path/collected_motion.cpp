@@ -60,11 +60,14 @@ void CollectedMotion::start_at(const Joints& u) {
   shares.clear();
 }
 
-Span CollectedMotion::begin_span(std::size_t move, bool rapid) const {
+Span CollectedMotion::begin_span(const Move& move, std::size_t index) const {
   Span span;
-  span.move = static_cast<std::uint32_t>(move);
+  span.move = static_cast<std::uint32_t>(index);
   span.first = last_vertex();
-  span.rapid = rapid;
+  span.line = move.line;
+  span.s_begin = move.s_begin;
+  span.s_end = move.s_end;
+  span.rapid = move.kind == MoveKind::rapid;
   return span;
 }
 
@@ -76,12 +79,12 @@ void CollectedMotion::end_part(Span span, double from, double to, double time) {
   shares.push_back({from, to});
 }
 
-void CollectedMotion::end_at(const PathVertex& end, std::size_t move, bool rapid) {
+void CollectedMotion::end_at(const PathVertex& end, Span last) {
   if (speeds.spans.empty()) {
-    Span span = begin_span(move, rapid);
-    span.first = 0;
-    span.feed = speeds.index_of(FeedLimit{});
-    speeds.spans.push_back(span);
+    last.first = 0;
+    last.share = Trajectory::Chain::kWhole;
+    last.feed = speeds.index_of(FeedLimit{});
+    speeds.spans.push_back(last);
   }
   vertices.push_back(end);
   speeds.spans.back().last = last_vertex();

@@ -25,13 +25,15 @@ struct CollectedMotion {
   const Joints& last_u() const { return vertices.u(vertices.size() - 1); }
 
   /// A span of a move from the last vertex on.
-  ChainSpeeds::Span begin_span(std::size_t move, bool rapid) const;
+  /// @param index  of the move
+  ChainSpeeds::Span begin_span(const Move& move, std::size_t index) const;
   /// Ends a span of a part of its move at the last vertex.
   /// @param time  s, least; 0: none is given
   void end_part(ChainSpeeds::Span span, double from, double to, double time);
 
   /// Leads a move on to an end just behind the last vertex.
-  void end_at(const PathVertex& end, std::size_t move, bool rapid);
+  /// @param last  span of the move if there is none yet
+  void end_at(const PathVertex& end, ChainSpeeds::Span last);
 
   /// The chord of the second half in whose middle the path is divided at the least cost: the
   /// longest whose neighbours turn the least. None where splines leave no chord.

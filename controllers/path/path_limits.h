@@ -27,6 +27,7 @@ struct PathOptions {
   double spindle_acceleration = std::numeric_limits<double>::infinity();  // rad/s2, under G33
   double block_time = 0.0;      // s, least time of a block: what the NC needs to prepare it
   std::size_t stretch = 32768;  // vertices, above which a motion is planned in stretches
+  std::size_t plans_in_memory = 32'000'000;  // bytes; what goes beyond is read when it is due
 };
 
 }  // namespace servomill::controllers

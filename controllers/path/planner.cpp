@@ -12,6 +12,7 @@
 #include "controllers/path/curve_points.h"
 #include "controllers/path/motion_stretches.h"
 #include "controllers/path/path_leg.h"
+#include "controllers/path/stored_chain.h"
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/interrupt.h"
@@ -36,6 +37,7 @@ class Planner {
         limits_{limits.v.cwiseProduct(scale_), limits.a.cwiseProduct(scale_),
                 limits.j.cwiseProduct(scale_)},
         rules_(limits_, options),
+        store_(options.plans_in_memory),
         stretches_(limits_, options) {
     assert(options.tolerance > 0.0 && options.exact_tolerance > 0.0);
     assert(options.rotary_tolerance > 0.0 && options.rotary_radius > 0.0);
@@ -48,12 +50,10 @@ class Planner {
   }
 
   Trajectory run(const MoveRange& moves) {
-    out_.moves_.reserve(moves.size());
     std::size_t next = 0;
     for (const Move& move : moves) {
       throw_if_interrupted();
       const std::size_t i = next++;
-      out_.moves_.push_back({move.s_begin, move.s_end, move.line, move.kind == MoveKind::rapid});
       switch (move.kind) {
         case MoveKind::spline:
           add_spline(move, i);
@@ -121,7 +121,7 @@ class Planner {
     leg.feed = rules_.speed_along(leg, move);
     leg.acceleration_share = rules_.acceleration_share(leg, move);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
-    ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
+    ChainSpeeds::Span span = motion_.begin_span(move, index);
     span.feed = motion_.speeds.index_of(rules_.feed_limit(move, leg));
     if (arc) {
       const auto begin = end_of_circle(*arc, step, 0.0);
@@ -133,7 +133,7 @@ class Planner {
     }
     span.last = motion_.last_vertex();
     if (span.last > span.first) motion_.speeds.spans.push_back(span);
-    last_move_ = index;
+    last_span_ = motion_.begin_span(move, index);
     u_ = u_end;
     Q_ = Q_end;
     words_ = move.end_machine;
@@ -167,7 +167,7 @@ class Planner {
     join_curve(index, last_end_ && goes_on(*last_end_, {begin.tangent, begin.curvature}));
     double from = 0.0;
     for (const CurvePoint& point : points_of(curve, leg.tolerance)) {
-      ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
+      ChainSpeeds::Span span = motion_.begin_span(move, index);
       span.feed = feed;
       add_point(with_linear(u_, point.p), move, 0.0, point.is_inside ? arc_index_ : -1, true);
       if (skipped_) continue;
@@ -175,7 +175,7 @@ class Planner {
       from = point.share;
     }
     if (from > 0.0) motion_.shares.back().to = 1.0;
-    last_move_ = index;
+    last_span_ = motion_.begin_span(move, index);
     Q_ = layout_.joints(move.end_machine);
     u_ = scaled(Q_);
     words_ = move.end_machine;
@@ -198,7 +198,7 @@ class Planner {
     double from = 0.0;
     for (const JointChord& chord : chords) {
       const bool inner = &chord != &chords.back();
-      ChainSpeeds::Span span = motion_.begin_span(index, leg.rapid);
+      ChainSpeeds::Span span = motion_.begin_span(move, index);
       span.feed = motion_.speeds.index_of(FeedLimit{});
       const double chord_time = time * (chord.fraction - from);
       add_chord(chord, chord_time, inner ? static_cast<int>(index) : -1);
@@ -207,7 +207,7 @@ class Planner {
       from = chord.fraction;
     }
     if (from > 0.0) motion_.shares.back().to = 1.0;
-    last_move_ = index;
+    last_span_ = motion_.begin_span(move, index);
     Q_ = chords.back().end;
     u_ = scaled(Q_);
     words_ = layout_.words(Q_);
@@ -292,7 +292,7 @@ class Planner {
     finish_chain();
     Chain chain;
     chain.duration = move.value;
-    chain.spans.push_back({static_cast<std::uint32_t>(index)});
+    chain.spans.push_back(motion_.begin_span(move, index));
     append(std::move(chain), Q_);
   }
 
@@ -328,13 +328,14 @@ class Planner {
     restart();
   }
 
-  // Begins where the chain before ends.
   void append(Chain chain, const Joints& end) {
     chain.t = t_;
     chain.begin = out_.end_;
     chain.end = out_.end_ = end;
     t_ += chain.duration;
-    out_.chains_.push_back(std::move(chain));
+    if (out_.chains_.empty()) out_.first_ = chain.spans.front();
+    out_.last_ = chain.spans.back();
+    out_.chains_.push_back(store_.keep(std::move(chain)));
   }
 
   // A motion of many vertices goes on in a stretch of its own.
@@ -363,8 +364,7 @@ class Planner {
   void reach_end() {
     if ((u_ - motion_.last_u()).norm() <= kMinChain) return;
     const double speed = motion_.vertices.speed(motion_.last_vertex());
-    motion_.end_at({u_, options_.tolerance, options_.rotary_tolerance, speed, -1}, last_move_,
-                   last_->rapid);
+    motion_.end_at({u_, options_.tolerance, options_.rotary_tolerance, speed, -1}, last_span_);
   }
 
   const JointLayout& layout_;
@@ -375,6 +375,7 @@ class Planner {
   LegRules rules_;
   Trajectory out_;
   ChainMemory memory_;
+  ChainStore store_;
   MotionStretches stretches_;
   Joints seam_ = Joints::Zero();  // m, rad; where the stretch that waits ends
   std::size_t longest_ = 0;       // vertices of a stretch
@@ -387,7 +388,7 @@ class Planner {
   int arc_index_ = -1;                // of the circle that is being followed
   CollectedMotion motion_;
   std::optional<Leg> last_;
-  std::size_t last_move_ = 0;
+  ChainSpeeds::Span last_span_;
   bool skipped_ = false;  // the last point was too close to the one before
 };
 

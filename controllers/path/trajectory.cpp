@@ -2,34 +2,64 @@
 
 #include <algorithm>
 
+#include "controllers/path/stored_chain.h"
+
 namespace servomill::controllers {
 
-Trajectory::Sample Trajectory::rest(const Joints& Q, std::size_t move, bool at_end) const {
-  Sample out;
+namespace {
+
+Trajectory::Sample rest(const Joints& Q) {
+  Trajectory::Sample out;
   out.Q_ref = Q;
   out.dQ_ref = out.ddQ_ref = out.dddQ_ref = Joints::Zero();
-  if (move >= moves_.size()) return out;
-  const MoveInfo& info = moves_[move];
-  out.s = at_end ? info.s_end : info.s_begin;
-  out.line = info.line;
-  out.move = move;
-  out.rapid = info.rapid;
   return out;
 }
 
-Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
-  if (chains_.empty()) return rest(start_, 0, false);
-  if (t <= 0.0) return rest(start_, chains_.front().spans.front().move, false);
-  if (t >= duration_) return rest(end_, chains_.back().spans.back().move, true);
-  if (c.chain >= chains_.size() || t < chains_[c.chain].t) c = {};
-  while (c.chain + 1 < chains_.size() && t >= chains_[c.chain + 1].t) c = {c.chain + 1, 0, 0, 0};
+Trajectory::Sample rest(const Joints& Q, const Trajectory::Chain::Span& at, double s) {
+  Trajectory::Sample out = rest(Q);
+  out.s = s;
+  out.line = at.line;
+  out.move = at.move;
+  out.rapid = at.rapid;
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const Trajectory::Chain> Trajectory::chain(std::size_t index) const {
+  const Chain& chain = chains_[index];
+  if (chain.stored != nullptr) return chain.stored->read();
+  return {std::shared_ptr<void>(), &chain};
+}
+
+const Trajectory::Chain& Trajectory::read(Cursor& c) const {
   const Chain& chain = chains_[c.chain];
-  if (chain.plan == nullptr) return rest(chain.begin, chain.spans.front().move, false);
+  if (chain.stored == nullptr) return chain;
+  if (c.read == nullptr || c.read_chain != c.chain) {
+    c.read = chain.stored->read();
+    c.read_chain = c.chain;
+  }
+  return *c.read;
+}
+
+Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
+  if (chains_.empty()) return rest(start_);
+  if (t <= 0.0) return rest(start_, first_, first_.s_begin);
+  if (t >= duration_) return rest(end_, last_, last_.s_end);
+  if (c.chain >= chains_.size() || t < chains_[c.chain].t) c = {};
+  while (c.chain + 1 < chains_.size() && t >= chains_[c.chain + 1].t) {
+    ++c.chain;
+    c.phase = c.piece = c.span = 0;
+  }
+  const Chain& chain = read(c);
+  if (chain.plan == nullptr) {
+    return rest(chain.begin, chain.spans.front(), chain.spans.front().s_begin);
+  }
 
   // position on the path
   const double time = t - chain.t;
   const std::vector<Phase>& phases = chain.plan->law.phases;
-  if (time < phases[c.phase].t) c = {c.chain, 0, 0, 0};
+  if (time < phases[c.phase].t) c.phase = c.piece = c.span = 0;
   while (c.phase + 1 < phases.size() && time >= phases[c.phase + 1].t) ++c.phase;
   const Phase& p = phases[c.phase];
   const Phase::State now = p.at(time);
@@ -46,7 +76,6 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   while (c.span > 0 && s < chain.begin_of(chain.spans[c.span])) --c.span;
   while (c.span + 1 < chain.spans.size() && s >= chain.end_of(chain.spans[c.span])) ++c.span;
   const Chain::Span& span = chain.spans[c.span];
-  const MoveInfo& info = moves_[span.move];
 
   Sample out;
   out.Q_ref = q.c0 + y * (q.c1 + y * (q.c2 / 2.0 + q.c3 * (y / 6.0)));
@@ -60,10 +89,10 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   const double x = std::clamp((s - s_begin) / (s_end - s_begin), 0.0, 1.0);
   const auto [from, to] = chain.share_of(span);
   const double f = from + x * (to - from);
-  out.s = info.s_begin + f * (info.s_end - info.s_begin);
-  out.line = info.line;
+  out.s = span.s_begin + f * (span.s_end - span.s_begin);
+  out.line = span.line;
   out.move = span.move;
-  out.rapid = info.rapid;
+  out.rapid = span.rapid;
   return out;
 }
 

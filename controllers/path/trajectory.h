@@ -15,6 +15,8 @@
 
 namespace servomill::controllers {
 
+class StoredChain;
+
 /// A planned program. Immutable; any number of readers, each with its own cursor.
 class Trajectory {
  public:
@@ -26,9 +28,13 @@ class Trajectory {
     bool rapid = false;
   };
 
+  struct Chain;
+
   /// Place of the last sample; makes forward reading O(1). Value-initialised: at the beginning.
   struct Cursor {
     std::size_t chain = 0, phase = 0, piece = 0, span = 0;
+    std::shared_ptr<const Chain> read = {};  // of a long program: the chain, from the disk
+    std::size_t read_chain = 0;              // its index
   };
 
   double duration() const { return duration_; }  ///< s
@@ -36,7 +42,8 @@ class Trajectory {
   const Joints& end() const { return end_; }
 
   /// Reference at time t (s). Before 0 it stands at the start, after the end at the end.
-  /// Neither allocates nor throws; reading backwards costs a search from the begin.
+  /// Neither allocates nor throws but where the next stretch of a long program comes from the disk;
+  /// reading backwards costs a search from the begin.
   Sample at(double t, Cursor& cursor) const;
 
   /// A part of the motion from rest to rest, a stretch of a long one (motion_stretches.h), or a
@@ -46,6 +53,9 @@ class Trajectory {
       std::uint32_t move = 0;
       std::uint32_t first = 0, last = 0;  // vertices of the path
       std::uint32_t share = kWhole;       // of the move: index into shares
+      int line = 0;
+      double s_begin = 0.0, s_end = 0.0;  // m, of the move on the path of the original program
+      bool rapid = false;
     };
     struct Share {
       double from = 0.0, to = 1.0;
@@ -62,6 +72,7 @@ class Trajectory {
     std::vector<Span> spans;
     std::vector<Share> shares;
     Joints begin, end;
+    std::shared_ptr<const StoredChain> stored;  // plan, spans and shares, if they are not here
 
     double begin_of(const Span& span) const { return plan->path.s[span.first]; }  // m
     double end_of(const Span& span) const { return plan->path.s[span.last]; }     // m
@@ -69,22 +80,19 @@ class Trajectory {
       return span.share == kWhole ? Share{} : shares[span.share];
     }
   };
-  const std::vector<Chain>& chains() const { return chains_; }
+  std::size_t chains() const { return chains_.size(); }
+  /// Complete; valid as long as both this and the pointer live.
+  std::shared_ptr<const Chain> chain(std::size_t index) const;
   double rotary_radius() const { return rotary_radius_; }
 
  private:
   friend class Planner;
-  struct MoveInfo {
-    double s_begin = 0.0, s_end = 0.0;
-    int line = 0;
-    bool rapid = false;
-  };
-  Sample rest(const Joints& Q, std::size_t move, bool at_end) const;
+  const Chain& read(Cursor& c) const;
 
   Joints start_ = Joints::Zero(), end_ = Joints::Zero();
   double duration_ = 0.0, rotary_radius_ = 1.0;
   std::vector<Chain> chains_;
-  std::vector<MoveInfo> moves_;
+  Chain::Span first_, last_;  // of all chains
 };
 
 /// Plans the motion of a program: the joint targets are `layout.joints(move.end_machine)` or, of

@@ -1,6 +1,9 @@
 #include "plant/vocabulary/move_list.h"
 
 #include <bit>
+#include <utility>
+
+#include "plant/vocabulary/scratch_file.h"
 
 namespace servomill {
 namespace {
@@ -94,9 +97,17 @@ MoveList::Words MoveList::words_of(const Move& given) {
   return words;
 }
 
-const std::vector<std::uint64_t>& MoveList::chunk_of(std::size_t index) const {
-  const std::size_t chunk = index / kChunk;
-  return chunk < chunks_.size() ? chunks_[chunk] : open_;
+bool MoveList::is_in_file(std::size_t chunk) const {
+  return chunk < chunks_.size() && chunks_[chunk].words.empty() && chunks_[chunk].size > 0;
+}
+
+const std::vector<std::uint64_t>& MoveList::words_in_memory(std::size_t chunk) const {
+  return chunk < chunks_.size() ? chunks_[chunk].words : open_;
+}
+
+void MoveList::read_words(std::size_t chunk, std::vector<std::uint64_t>& words) const {
+  words.resize(chunks_[chunk].size);
+  file_->read(chunks_[chunk].place, bytes_of(words));
 }
 
 void MoveList::push_back(const Move& move) {
@@ -119,7 +130,16 @@ void MoveList::push_back(const Move& move) {
 
 // Exactly as large as it is.
 void MoveList::close_chunk() {
-  chunks_.emplace_back(open_.begin(), open_.end());
+  Chunk& chunk = chunks_.emplace_back();
+  chunk.size = static_cast<std::uint32_t>(open_.size());
+  const std::size_t bytes = open_.size() * sizeof(open_[0]);
+  if (bytes_in_memory_ + bytes <= kMaxInMemory) {
+    bytes_in_memory_ += bytes;
+    chunk.words.assign(open_.begin(), open_.end());
+  } else {
+    if (file_ == nullptr) file_ = std::make_shared<ScratchFile>("", "moves of the program");
+    chunk.place = file_->append(bytes_of(std::as_const(open_)));
+  }
   open_.clear();
 }
 
@@ -153,8 +173,10 @@ MoveList::Iterator& MoveList::Iterator::operator++() {
     Move first;
     Indices none;
     visit(first, none, Writer{words_.data()});
+    is_read_ = list_->is_in_file(index_ / kChunk);
+    if (is_read_) list_->read_words(index_ / kChunk, read_);
   }
-  const std::vector<std::uint64_t>& from = list_->chunk_of(index_);
+  const auto& from = is_read_ ? read_ : list_->words_in_memory(index_ / kChunk);
   predict(words_);
   for (std::uint32_t mask = list_->masks_[index_]; mask != 0; mask &= mask - 1) {
     words_[static_cast<std::size_t>(std::countr_zero(mask))] = from[at_++];

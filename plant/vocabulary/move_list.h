@@ -15,15 +15,21 @@
 
 namespace servomill {
 
+class ScratchFile;
+
 /// Moves in their order, each held as what differs from the one before: a straight block of three
-/// axes takes about 60 bytes, a Move takes 320. What is read from it is what was put in, bit for
-/// bit.
+/// axes takes about 60 bytes, a Move takes 320. Of a long list what goes beyond some megabytes is
+/// on the disk. What is read from it is what was put in, bit for bit.
 class MoveList {
  public:
   MoveList() = default;
   MoveList(std::span<const Move> moves);                                    // NOLINT: they are one
   MoveList(const std::vector<Move>& moves) : MoveList(std::span(moves)) {}  // NOLINT
 
+  /// Bytes of moves in memory.
+  static constexpr std::size_t kMaxInMemory = 32'000'000;
+
+  /// @throws SystemError if the disk is full
   void push_back(const Move& move);
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
@@ -42,13 +48,23 @@ class MoveList {
   // So many moves are held together; the first of them by what differs from a Move{}.
   static constexpr std::size_t kChunk = 256;
 
+  struct Chunk {
+    std::vector<std::uint64_t> words;  // empty: in the file
+    std::uint64_t place = 0;
+    std::uint32_t size = 0;
+  };
+
   Words words_of(const Move& move);
-  const std::vector<std::uint64_t>& chunk_of(std::size_t index) const;
+  bool is_in_file(std::size_t chunk) const;
+  const std::vector<std::uint64_t>& words_in_memory(std::size_t chunk) const;
+  void read_words(std::size_t chunk, std::vector<std::uint64_t>& words) const;
   void close_chunk();
 
-  std::vector<std::uint32_t> masks_;                // words of each move that differ
-  std::vector<std::vector<std::uint64_t>> chunks_;  // those words
-  std::vector<std::uint64_t> open_;                 // of the chunk that is being filled
+  std::vector<std::uint32_t> masks_;  // words of each move that differ
+  std::vector<Chunk> chunks_;         // those words
+  std::vector<std::uint64_t> open_;   // of the chunk that is being filled
+  std::size_t bytes_in_memory_ = 0;
+  std::shared_ptr<ScratchFile> file_;  // of the chunks beyond
   std::vector<std::shared_ptr<const WorkPlane>> planes_ = {nullptr};
   std::vector<std::shared_ptr<const Spline>> splines_ = {nullptr};
   std::vector<std::string> texts_ = {""};
@@ -77,8 +93,9 @@ class MoveList::Iterator {
  private:
   const MoveList* list_;
   std::size_t index_ = 0, at_ = 0;  // of the next move; of its words in the chunk
-  bool is_at_end_ = false;
+  bool is_at_end_ = false, is_read_ = false;
   Words words_{};
+  std::vector<std::uint64_t> read_;  // of a chunk in the file
   Move move_;
 };
 

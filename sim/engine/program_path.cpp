@@ -149,14 +149,14 @@ void ProgramPath::set_tool_axes(Piece& piece, const Move& move) const {
   piece.k_end = move.tool_axis;
 }
 
-std::vector<std::size_t> ProgramPath::pieces_of(const MoveRange& moves) const {
+ProgramPath::Indices ProgramPath::pieces_of(const MoveRange& moves) const {
   const auto holds = [this](std::size_t piece, const Move& move) {
     const Held& p = pieces_[piece];
     return p.line == move.line && s_begin_of(piece) <= move.s_begin && move.s_end <= p.s_end;
   };
-  std::vector<std::size_t> out;
+  Indices out;
   out.reserve(moves.size());
-  std::size_t piece = 0;
+  std::uint32_t piece = 0;
   for (const Move& move : moves) {
     while (is_motion(move.kind) && !holds(piece, move)) {
       if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -47,10 +48,12 @@ class ProgramPath {
     Eigen::Vector3d k_begin = Eigen::Vector3d::UnitZ(), k_end = Eigen::Vector3d::UnitZ();
   };
 
+  using Indices = std::vector<std::uint32_t>;  // of pieces
+
   /// Index of the piece that each of these moves belongs to.
   /// @param moves  those of the program, or what a strategy made of them: lines and arc lengths
   ///               carried over, in order. What moves nothing belongs to the piece before
-  std::vector<std::size_t> pieces_of(const MoveRange& moves) const;
+  Indices pieces_of(const MoveRange& moves) const;
 
   Piece piece(std::size_t index) const;
   int line(std::size_t index) const { return pieces_[index].line; }
@@ -121,7 +124,8 @@ class ProgramPath {
 
   std::shared_ptr<const controllers::ToolCentrePoint> machine_;
   std::vector<Held> pieces_;
-  std::vector<Eigen::Vector3d> rotary_ends_;  // A B C; blocks in a row mostly have the same
+  // A B C; blocks in a row mostly have the same. Where they do not a vector would grow by copies
+  std::deque<Eigen::Vector3d> rotary_ends_;
   std::vector<Setting> settings_;
   std::vector<Curved> curved_;
   std::vector<std::string> sections_ = {""};

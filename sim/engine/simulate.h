@@ -49,7 +49,7 @@ struct CaseInputs {
   bool program_displaces_rotary = false;  // the NC runs another program than `path` also there
   // of which is recorded what they cannot correct
   std::vector<const strategies::Strategy*> recorded_corrections = {};
-  std::vector<std::size_t> pieces = {};   // of `path`, for each move that the NC runs
+  ProgramPath::Indices pieces = {};       // of `path`, for each move that the NC runs
   const CuttingTable* cutting = nullptr;  // along `path`; nullptr: in air
   const EngagedTeeth* teeth = nullptr;    // of `cutting`; nullptr: the average force acts
   // cuts beside `cutting`; nullptr: the depth of cut is the nominal one

@@ -13,9 +13,10 @@ std::size_t weight_of(const MoveList& moves) { return moves.size() + 1; }
 // An arc is one move and hundreds of phases and pieces.
 std::size_t weight_of(const PlannedMotion& motion) {
   std::size_t weight = weight_of(*motion.moves);
-  for (const auto& chain : motion.trajectory.chains()) {
-    if (chain.plan == nullptr) continue;
-    weight += chain.plan->law.phases.size() + chain.plan->path.pieces.size();
+  for (std::size_t n = 0; n < motion.trajectory.chains(); ++n) {
+    const auto chain = motion.trajectory.chain(n);
+    if (chain->plan == nullptr) continue;
+    weight += chain->plan->law.phases.size() + chain->plan->path.pieces.size();
   }
   return weight;
 }
@@ -216,13 +217,14 @@ void add(system::MemoKey& key, const controllers::JointLimits& limits) {
 void add(system::MemoKey& key, const controllers::PathOptions& options) {
   const auto& [tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius,
                feed_override, rapid_override, tolerance_share, spindle_acceleration, block_time,
-               stretch] = options;
+               stretch, plans_in_memory] = options;
   for (const double value :
        {tolerance, exact_tolerance, exact_corner, rotary_tolerance, rotary_radius, feed_override,
         rapid_override, tolerance_share, spindle_acceleration, block_time}) {
     key.add(value);
   }
   key.add(stretch);
+  key.add(plans_in_memory);
 }
 
 void add_linear_axis(system::MemoKey& key, const model::MachineSettings& linear, int joint) {

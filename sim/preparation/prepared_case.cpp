@@ -239,7 +239,7 @@ double PreparedCase::recorded_duration() const {
   const double whole = duration() + p.scenario.settle_time;
   const engine::RecordingWindows windows(p.scenario.record.windows, p.program->path);
   if (!windows.limited()) return whole;
-  const std::vector<std::size_t> pieces = p.program->path.pieces_of(*p.motion->moves);
+  const engine::ProgramPath::Indices pieces = p.program->path.pieces_of(*p.motion->moves);
   const double looks = std::clamp(whole / kStep, 1.0, kMaxLooks);
   controllers::Trajectory::Cursor cursor{};
   double inside = 0.0;
@@ -353,7 +353,7 @@ std::map<std::string, std::vector<Eigen::Vector3d>> PreparedCase::nominal_positi
     of_section.push_back(sections.contains(name) ? &positions[name] : nullptr);
   }
   controllers::Trajectory::Cursor cursor{};
-  const std::vector<std::size_t> pieces = path.pieces_of(*p.motion->moves);
+  const engine::ProgramPath::Indices pieces = path.pieces_of(*p.motion->moves);
   for (std::size_t n = 0; static_cast<double>(n) * period <= trajectory.duration(); ++n) {
     const auto now = trajectory.at(static_cast<double>(n) * period, cursor);
     const std::size_t piece = pieces[now.move];

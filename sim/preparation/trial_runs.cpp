@@ -76,7 +76,7 @@ void CaseTrials::find_wanted(double delay) {
   const controllers::Trajectory& trajectory = setting_.motion.trajectory;
   const PlannedMotion& wanted = setting_.original != nullptr ? *setting_.original : setting_.motion;
   const engine::ProgramPath& path = setting_.program.path;
-  const std::vector<std::size_t> pieces = path.pieces_of(*wanted.moves);
+  const engine::ProgramPath::Indices pieces = path.pieces_of(*wanted.moves);
   strategies::PathTimes of_wanted{times_->h, {}, 1};
   controllers::Trajectory::Cursor cursor{}, found{}, sampled{};
   if (setting_.original != nullptr) {

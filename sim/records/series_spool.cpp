@@ -1,15 +1,8 @@
 #include "sim/records/series_spool.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
-#include <cstring>
 #include <utility>
-
-#include "sim/system/system_error.h"
 
 namespace servomill::sim::records {
 namespace {
@@ -20,55 +13,7 @@ std::vector<Storage> storage_of_columns(const std::vector<Signal>& signals) {
   return out;
 }
 
-int open_without_name(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor >= 0) return descriptor;
-  std::string name = folder + "/servomill-XXXXXX";  // where the file system knows no such files
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
-
 }  // namespace
-
-ScratchFile::ScratchFile(std::string folder)
-    : folder_(std::move(folder)), descriptor_(open_without_name(folder_)) {
-  if (descriptor_ < 0) {
-    throw system::SystemError(folder_, "recorded signals cannot be stored there",
-                              std::strerror(errno));
-  }
-}
-
-ScratchFile::~ScratchFile() { ::close(descriptor_); }
-
-std::uint64_t ScratchFile::append(std::span<const std::uint8_t> bytes) {
-  const std::uint64_t place = size_;
-  while (!bytes.empty()) {
-    const ssize_t done =
-        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) {
-      throw system::SystemError(folder_, "recorded signals cannot be written",
-                                std::strerror(errno));
-    }
-    size_ += static_cast<std::uint64_t>(done);
-    bytes = bytes.subspan(static_cast<std::size_t>(done));
-  }
-  return place;
-}
-
-void ScratchFile::read(std::uint64_t place, std::span<std::uint8_t> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t done =
-        ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) {
-      throw system::SystemError(folder_, "recorded signals cannot be read", std::strerror(errno));
-    }
-    place += static_cast<std::uint64_t>(done);
-    bytes = bytes.subspan(static_cast<std::size_t>(done));
-  }
-}
 
 std::size_t even_chunk_rows(std::size_t rows) {
   constexpr std::size_t kMaxRows = 16384;
@@ -79,7 +24,7 @@ std::size_t even_chunk_rows(std::size_t rows) {
 SeriesSpool::SeriesSpool(const std::vector<Signal>& signals, SpoolFormat format)
     : format_(std::move(format)),
       storage_(storage_of_columns(signals)),
-      file_(format_.folder),
+      file_(format_.folder, "recorded signals"),
       encoder_(format_.compression) {
   filling_.reserve(format_.chunk_rows * storage_.size());
 }

@@ -7,32 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/scratch_file.h"
 #include "sim/records/chunk_decoder.h"
 #include "sim/records/chunk_encoder.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim::records {
-
-/// A file without a name, which goes with the process however that ends.
-class ScratchFile {
- public:
-  /// @param folder  where it takes room; must allow files
-  /// @throws SystemError, as all members
-  explicit ScratchFile(std::string folder);
-  ~ScratchFile();
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
-  std::uint64_t size() const { return size_; }
-  /// Returns the place where the bytes begin.
-  std::uint64_t append(std::span<const std::uint8_t> bytes);
-  void read(std::uint64_t place, std::span<std::uint8_t> bytes) const;
-
- private:
-  std::string folder_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0;
-};
 
 /// How a spool keeps its rows.
 struct SpoolFormat {

@@ -47,7 +47,7 @@ std::size_t SignalStore::add(std::span<const double> values, std::size_t chunk_r
     p.left_in_memory -= chunk.size;
     chunk.bytes = p.encoded;
   } else {
-    if (!p.file) p.file.emplace(p.folder);
+    if (!p.file) p.file.emplace(p.folder, "recorded signals");
     chunk.place = p.file->append(p.encoded);
   }
   p.chunks.push_back(std::move(chunk));

@@ -1,19 +1,10 @@
-/// The system failed: a disk is full, a folder cannot be written. Nobody wrote anything wrong.
+/// SystemError by the name that the rooms of sim use.
 #pragma once
 
-#include <stdexcept>
-#include <string>
-#include <string_view>
+#include "plant/vocabulary/system_error.h"
 
 namespace servomill::sim::system {
 
-/// what() is "PATH: error: ACTION: REASON", such as "out.h5.partial: error: cannot be written: No
-/// space left on device".
-class SystemError : public std::runtime_error {
- public:
-  SystemError(std::string_view path, std::string_view action, std::string_view reason)
-      : std::runtime_error(
-            std::string(path).append(": error: ").append(action).append(": ").append(reason)) {}
-};
+using servomill::SystemError;
 
 }  // namespace servomill::sim::system

@@ -112,14 +112,16 @@ int run(const char* file, double tolerance) {
   watch.lap();
   const Trajectory path = plan(moves, kLayout, Joints::Zero(), machine_limits());
   const double planning = watch.lap();
-  fmt::print("{} moves, {} chains\n", moves.size(), path.chains().size());
+  fmt::print("{} moves, {} chains\n", moves.size(), path.chains());
   fmt::print("interpreted in {:.2f} s, planned in {:.2f} s\n", reading, planning);
   fmt::print("motion {:.3f} min, programmed feed alone {:.3f} min\n", path.duration() / minute,
              programmed / minute);
   fmt::print("peak memory {:.0f} MB with the moves, {:.0f} MB with the plan\n", before,
              peak_megabytes());
   std::size_t pieces = 0, phases = 0;
-  for (const auto& chain : path.chains()) {
+  for (std::size_t n = 0; n < path.chains(); ++n) {
+    const auto held = path.chain(n);
+    const Trajectory::Chain& chain = *held;
     if (chain.plan == nullptr) continue;
     pieces += chain.plan->path.pieces.size();
     phases += chain.plan->law.phases.size();

@@ -40,10 +40,11 @@ void expect_same_bits(const Joints& a, const Joints& b) {
 
 TEST(RepeatedParts, HaveTheBitsOfOnePart) {
   const Trajectory one = parts(1).plan(), many = parts(20).plan();
-  const std::size_t each = one.chains().size();
-  ASSERT_EQ(many.chains().size(), 20 * each);
-  for (std::size_t n = 0; n < many.chains().size(); ++n) {
-    const Trajectory::Chain &mine = many.chains()[n], &alone = one.chains()[n % each];
+  const std::size_t each = one.chains();
+  ASSERT_EQ(many.chains(), 20 * each);
+  for (std::size_t n = 0; n < many.chains(); ++n) {
+    const auto one_of_many = many.chain(n), of_one = one.chain(n % each);
+    const Trajectory::Chain &mine = *one_of_many, &alone = *of_one;
     EXPECT_TRUE(has_same_bits(mine.duration, alone.duration));
     ASSERT_EQ(mine.plan == nullptr, alone.plan == nullptr);
     if (mine.plan == nullptr) continue;
@@ -66,10 +67,12 @@ TEST(RepeatedParts, HaveTheBitsOfOnePart) {
 TEST(RepeatedParts, ArePlannedTwice) {
   const Trajectory many = parts(20).plan();
   std::set<const void*> plans;
-  for (const Trajectory::Chain& chain : many.chains()) {
+  for (std::size_t n = 0; n < many.chains(); ++n) {
+    const auto held = many.chain(n);
+    const Trajectory::Chain& chain = *held;
     if (chain.plan != nullptr) plans.insert(chain.plan.get());
   }
-  const std::size_t of_one = parts(1).plan().chains().size() - 1;  // without its dwell
+  const std::size_t of_one = parts(1).plan().chains() - 1;  // without its dwell
   EXPECT_EQ(plans.size(), 2 * of_one);
 }
 
@@ -91,10 +94,10 @@ TEST(MotionsThatDiffer, HavePlansOfTheirOwn) {
   Program program;
   for (const double feed : {0.05, 0.05, 0.05, 0.06, 0.06, 0.06}) add_part(program, feed);
   const Trajectory path = program.plan();
-  const std::size_t each = path.chains().size() / 6;
-  EXPECT_EQ(path.chains()[each].plan, path.chains()[2 * each].plan);
-  EXPECT_NE(path.chains()[2 * each].plan, path.chains()[3 * each].plan);
-  EXPECT_GT(path.chains()[2 * each].duration, path.chains()[5 * each].duration);
+  const std::size_t each = path.chains() / 6;
+  EXPECT_EQ(path.chain(each)->plan, path.chain(2 * each)->plan);
+  EXPECT_NE(path.chain(2 * each)->plan, path.chain(3 * each)->plan);
+  EXPECT_GT(path.chain(2 * each)->duration, path.chain(5 * each)->duration);
 }
 
 // Memory of 900 parts more: moves and spans, not paths and laws.

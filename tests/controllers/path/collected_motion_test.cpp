@@ -19,14 +19,14 @@ void add(CollectedMotion& motion, const Joints& u, int arc = -1) {
 CollectedMotion two_moves() {
   CollectedMotion motion;
   motion.start_at(at(0.0));
-  ChainSpeeds::Span span = motion.begin_span(0, false);
+  ChainSpeeds::Span span = motion.begin_span(Move{}, 0);
   span.feed = motion.speeds.index_of({.linear = 0.1});
   add(motion, at(1e-3));
   span.last = motion.last_vertex();
   motion.speeds.spans.push_back(span);
   double from = 0.0;
   for (const double to : {0.25, 0.75, 1.0}) {
-    span = motion.begin_span(1, false);
+    span = motion.begin_span(Move{}, 1);
     span.feed = motion.speeds.index_of({.linear = 0.2});
     add(motion, at(1e-3 + 4e-3 * to));
     motion.end_part(span, from, to, 2.0 * (to - from));

@@ -291,7 +291,9 @@ double joint_bound(const Trajectory::Chain& chain, const JointLimits& limits) {
 double time_bound(const Trajectory& trajectory, const std::vector<Move>& moves,
                   const JointLimits& limits, const PathOptions& options) {
   double time = 0.0;
-  for (const Trajectory::Chain& chain : trajectory.chains()) {
+  for (std::size_t n = 0; n < trajectory.chains(); ++n) {
+    const auto held = trajectory.chain(n);
+    const Trajectory::Chain& chain = *held;
     time += chain.plan == nullptr ? chain.duration
                                   : std::max(joint_bound(chain, limits),
                                              chain_bound(stations(chain, moves, limits, options,

@@ -168,7 +168,9 @@ TEST(RandomPrograms, KeepEveryLimitInStretches) {
     const Trajectory path = program.plan(options);
     expect_laws(program, path, extremes(program, path, limits, options));
     Trajectory::Cursor one, other;
-    for (const Trajectory::Chain& chain : path.chains()) {
+    for (std::size_t n = 0; n < path.chains(); ++n) {
+      const auto held = path.chain(n);
+      const Trajectory::Chain& chain = *held;
       if (chain.t == 0.0) continue;
       const auto before = path.at(std::nextafter(chain.t, 0.0), one), at = path.at(chain.t, other);
       EXPECT_LE((at.Q_ref - before.Q_ref).norm(), 1e-12);

@@ -145,7 +145,7 @@ TEST(SplinePath, ACircleIsThatOfG3) {
   };
   each_sample(of_splines, 1000, [&](const auto& x) { EXPECT_LT(radial(x), kExact) << x.s; });
   each_sample(of_arc, 1000, [&](const auto& x) { EXPECT_LT(radial(x), kEndOfArc) << x.s; });
-  EXPECT_EQ(of_splines.chains().size(), 1U);
+  EXPECT_EQ(of_splines.chains(), 1U);
   EXPECT_NEAR(of_splines.duration(), of_arc.duration(), 0.005 * of_arc.duration());
   EXPECT_LE(of_splines.duration(), of_arc.duration());
 }
@@ -158,7 +158,7 @@ TEST(SplinePath, GoesOnFromArcsAndToThemOnTheSameCircle) {
                  {1.0, std::sqrt(0.5), 1.0});
   program.arc({-kRadius, 0, 0}, {0, 0, 0}, 2, 1, kFeed);
   const Trajectory path = program.plan();
-  EXPECT_EQ(path.chains().size(), 1U);
+  EXPECT_EQ(path.chains(), 1U);
   each_sample(path, 1000, [&](const auto& x) {
     const double radial = std::abs((place(x) - Vector3d(-kRadius, 0, 0)).norm() - kRadius);
     EXPECT_LT(radial, x.s < 5e-3 || x.s > 0.12 ? 0.4e-6 : 0.2e-6) << x.s;
@@ -171,7 +171,7 @@ TEST(SplinePath, IsJoinedToLinesWithoutAStop) {
   program.spline(4, {{0.04, 0.0}, {0.06, 0.01}, {0.06, 0.02}}, 0.1);
   program.line(0.06, 0.05, 0, 0.1);
   const Trajectory path = program.plan();
-  ASSERT_EQ(path.chains().size(), 1U);
+  ASSERT_EQ(path.chains(), 1U);
   const SplineCurve& curve = program.moves()[1].spline->curve;
   double slowest = 1.0, worst = 0.0;
   each_sample(path, 2000, [&](const auto& x) {

@@ -48,10 +48,11 @@ TEST(SynchronisedMotion, GoesFromRestToRestWithTheAccelerationOfTheSpindle) {
   PathOptions options;
   options.spindle_acceleration = kAcceleration;
   const Trajectory path = planned(tapping(), options);
-  ASSERT_EQ(path.chains().size(), 4U);  // rapid, in, out, feed
+  ASSERT_EQ(path.chains(), 4U);  // rapid, in, out, feed
   const double v = kSpeed, a = way_acceleration(), j = machine_limits().j[2];
   for (const std::size_t i : {1U, 2U}) {
-    const auto& chain = path.chains()[i];
+    const auto held = path.chain(i);
+    const Trajectory::Chain& chain = *held;
     EXPECT_NEAR(chain.duration, 20 * mm / v + v / a + a / j, kRounding);
     EXPECT_NEAR(largest_acceleration(path, chain.t, chain.t + chain.duration), a, 1e-6);
   }
@@ -60,7 +61,7 @@ TEST(SynchronisedMotion, GoesFromRestToRestWithTheAccelerationOfTheSpindle) {
 TEST(SynchronisedMotion, TakesTheAccelerationOfTheAxesWhereTheSpindleIsQuicker) {
   const Trajectory path = planned(tapping(), {});
   const double v = kSpeed, j = machine_limits().j[2];
-  EXPECT_NEAR(path.chains()[1].duration, 20 * mm / v + 2.0 * std::sqrt(v / j), kRounding);
+  EXPECT_NEAR(path.chain(1)->duration, 20 * mm / v + 2.0 * std::sqrt(v / j), kRounding);
 }
 
 TEST(SynchronisedMotion, IsAsQuickWithALeadOfTheOtherSign) {
@@ -74,8 +75,8 @@ TEST(SynchronisedMotion, KeepsItsFeedUnderAFeedOverride) {
   PathOptions slow;
   slow.feed_override = 0.5;
   const Trajectory half = planned(tapping(), slow), whole = planned(tapping(), {});
-  EXPECT_EQ(half.chains()[1].duration, whole.chains()[1].duration);
-  EXPECT_GT(half.chains()[3].duration, 1.5 * whole.chains()[3].duration);
+  EXPECT_EQ(half.chain(1)->duration, whole.chain(1)->duration);
+  EXPECT_GT(half.chain(3)->duration, 1.5 * whole.chain(3)->duration);
 }
 
 TEST(SynchronisedMotion, OfRepeatedTapsIsThatOfTheFirst) {
@@ -88,10 +89,10 @@ TEST(SynchronisedMotion, OfRepeatedTapsIsThatOfTheFirst) {
   options.spindle_acceleration = kAcceleration;
   moves.erase(moves.begin() + 3);  // the feed between them
   const Trajectory path = planned(moves, options);
-  EXPECT_EQ(path.chains()[1].duration, path.chains()[3].duration);
+  EXPECT_EQ(path.chain(1)->duration, path.chain(3)->duration);
   // the same way without the spindle is planned anew
   moves[3].synchronised = Synchronised::no;
-  EXPECT_LT(planned(moves, options).chains()[3].duration, path.chains()[1].duration);
+  EXPECT_LT(planned(moves, options).chain(3)->duration, path.chain(1)->duration);
 }
 
 }  // namespace

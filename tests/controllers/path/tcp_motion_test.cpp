@@ -253,7 +253,9 @@ TEST(TiltedPlane, ASquareLiesInThePlaneWithExactCorners) {
       EXPECT_LT(edge, T) << name << " line " << now.line;
     });
     // corners are ends of chains, where the machine stands
-    for (const auto& chain : p.trajectory.chains()) {
+    for (std::size_t n = 0; n < p.trajectory.chains(); ++n) {
+      const auto held = p.trajectory.chain(n);
+      const Trajectory::Chain& chain = *held;
       const Vector3d q = R.transpose() * (machine.pose(chain.end).p_WT - origin);
       const Vector3d corners[] = {{30, 0, 0}, {30, 30, 0}, {0, 30, 0}, {0, 0, 0}};
       for (std::size_t i = 0; i < 4; ++i) {

@@ -149,5 +149,37 @@ TEST(MoveList, TakesSixtyBytesForALineOfThreeAxes) {
   EXPECT_LE(static_cast<double>(bytes_in_use - before) / kLines, 66.0);
 }
 
+// Some 70 MB of moves.
+TEST(MoveList, IsOnTheDiskBeyondSomeMegabytes) {
+  constexpr std::size_t kLines = 1'200'000;
+  const auto set = [](Move& move, std::size_t n) {
+    move.line = static_cast<int>(n) + 1;
+    for (int i = 0; i < 3; ++i)
+      move.end[i] = move.end_machine[i] = 0.1 * static_cast<double>(n) + i;
+    move.s_begin = move.s_end;
+    move.s_end += 1.0;
+  };
+  const std::size_t before = bytes_in_use;
+  MoveList list;
+  Move move;
+  for (std::size_t n = 0; n < kLines; ++n) {
+    set(move, n);
+    list.push_back(move);
+  }
+  EXPECT_LE(bytes_in_use - before, MoveList::kMaxInMemory + 8 * kLines);
+  const MoveList copy = list;
+  Move expected;
+  std::size_t n = 0, wrong = 0;
+  for (const Move& read : copy) {
+    set(expected, n++);
+    const bool is_same = read.line == expected.line && read.end == expected.end &&
+                         read.end_machine == expected.end_machine && read.s_end == expected.s_end;
+    wrong += is_same ? 0 : 1;
+  }
+  EXPECT_EQ(n, kLines);
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(list[kLines - 300].line, static_cast<int>(kLines) - 299);
+}
+
 }  // namespace
 }  // namespace servomill::move_list_test

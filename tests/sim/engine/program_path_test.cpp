@@ -78,7 +78,7 @@ TEST(ProgramPath, NamesTheSectionsOfTheProgram) {
   EXPECT_EQ(path.piece(3).section, 1);
 }
 
-using Pieces = std::vector<std::size_t>;
+using Pieces = ProgramPath::Indices;
 
 // Messages belong to the piece before; a line on which only C turns is found though s stands.
 TEST(ProgramPath, FindsThePieceOfEveryMove) {

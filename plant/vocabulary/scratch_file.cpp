@@ -1,0 +1,73 @@
+#include "plant/vocabulary/scratch_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "plant/vocabulary/system_error.h"
+
+namespace servomill {
+namespace {
+
+int open_without_name(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (descriptor >= 0) return descriptor;
+  std::string name = folder + "/servomill-XXXXXX";  // where the file system knows no such files
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+}  // namespace
+
+ScratchFile::ScratchFile(std::string folder, std::string contents)
+    : folder_(folder.empty() ? std::filesystem::temp_directory_path().string() : std::move(folder)),
+      contents_(std::move(contents)),
+      descriptor_(open_without_name(folder_)) {
+  if (descriptor_ < 0) {
+    throw SystemError(folder_, contents_ + " cannot be stored there", std::strerror(errno));
+  }
+}
+
+ScratchFile::~ScratchFile() { ::close(descriptor_); }
+
+std::uint64_t ScratchFile::size() const {
+  const std::scoped_lock lock(mutex_);
+  return size_;
+}
+
+std::uint64_t ScratchFile::append(std::span<const std::uint8_t> bytes) {
+  const std::scoped_lock lock(mutex_);
+  const std::uint64_t place = size_;
+  while (!bytes.empty()) {
+    const ssize_t done =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) {
+      throw SystemError(folder_, contents_ + " cannot be written", std::strerror(errno));
+    }
+    size_ += static_cast<std::uint64_t>(done);
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+  return place;
+}
+
+void ScratchFile::read(std::uint64_t place, std::span<std::uint8_t> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t done =
+        ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) {
+      throw SystemError(folder_, contents_ + " cannot be read", std::strerror(errno));
+    }
+    place += static_cast<std::uint64_t>(done);
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+}
+
+}  // namespace servomill
