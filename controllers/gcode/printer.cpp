@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -36,11 +37,25 @@ std::string work_system_code(int system) {
   return system <= 6 ? fmt::format("G{}", 53 + system) : fmt::format("G59.{}", system - 6);
 }
 
-std::string path_code(const Move& move) {
+// significant_text() of a number that mostly is the one before.
+class RepeatedNumber {
+ public:
+  const std::string& text(double x) {
+    if (!(x == x_)) text_ = significant_text(x);
+    x_ = x;
+    return text_;
+  }
+
+ private:
+  double x_ = std::numeric_limits<double>::quiet_NaN();
+  std::string text_;
+};
+
+std::string path_code(const Move& move, RepeatedNumber& tolerance) {
   if (move.path_mode == PathMode::exact_path) return "G61";
   if (move.path_mode == PathMode::exact_stop) return "G61.1";
   if (move.path_tolerance == 0.0) return "G64";
-  return fmt::format("G64 P{}", significant_text(move.path_tolerance / mm));
+  return fmt::format("G64 P{}", tolerance.text(move.path_tolerance / mm));
 }
 
 class Printer {
@@ -147,7 +162,7 @@ class Printer {
   // Prints the modes of motion: work system, tool offset, path control.
   void print_modes(const Move& move) {
     print_offsets(move);
-    change(path_, path_code(move), false);
+    change(path_, path_code(move, path_tolerance_), false);
   }
   void print_offsets(const Move& move) {
     change(work_, work_system_code(move.work_offset), true);
@@ -273,7 +288,7 @@ class Printer {
   }
 
   std::string feed_word(double feed) {
-    const std::string F = significant_text(feed);
+    const std::string& F = feed_.text(feed);
     if (feed_mode_ != "G93" && F == F_) return {};
     F_ = F;
     return " F" + F;
@@ -362,6 +377,7 @@ class Printer {
   AxisWords before_ = AxisWords::Zero();  // end of the move before
   AxisWords machine_before_;              // end of the motion before, in the machine
   std::optional<Steps> steps_;            // what was printed for it; nullopt: name all axes
+  RepeatedNumber path_tolerance_, feed_;
   std::string work_, tool_, path_, plane_ = "G17", feed_mode_ = "G94", F_, S_ = "0";
   int direction_ = 0;
   int coolant_ = 0;
