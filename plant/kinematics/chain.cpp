@@ -187,9 +187,13 @@ LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_W
     tip = turned(*a, m, tip - a->centre) + a->centre;
     for (int i = 0; i < kLinearJoints; ++i) J.col(i) = turned(*a, m, J.col(i));
   }
-  // The second round removes rounding.
   LinearJoints out{Q_rotary, 0.0};
   const Eigen::Vector3d way = p_WT - tip;
+  if (J.isIdentity(0.0) && way.allFinite()) {  // as solved below: no axis is turned or missing
+    out.Q.head<kLinearJoints>() = way + Eigen::Vector3d::Zero();  // no negative zeros
+    return out;
+  }
+  // The second round removes rounding.
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   for (int round = 0; round < 2; ++round) {
     const LeastSquares step = least_squares(J, way - J * q);

@@ -1,6 +1,7 @@
 // Faults of axes: the functions of ServoAxes that tell why the NC stops a machine.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "plant/vocabulary/units.h"
@@ -29,6 +30,13 @@ std::string overspeed(std::string_view name, const plant::Encoder& encoder, doub
 }
 
 }  // namespace
+
+bool ServoAxes::within_limits() const {
+  if (always_checked_ || beyond_limits_) return false;
+  return std::none_of(in_sub_steps_.begin(), in_sub_steps_.end(), [this](std::size_t l) {
+    return plant::DriveBank::unresolved(state_, l) > 0;
+  });
+}
 
 std::optional<ServoAxes::Fault> ServoAxes::supervise(std::size_t run) {
   for (const int j : joints_) {

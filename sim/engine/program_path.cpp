@@ -209,26 +209,34 @@ Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layou
   return machine_->joints(words.head<3>(), Q, p.p_ST).value_or(Q_near);
 }
 
-double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) const {
-  const bool is_tip = setting_of(pieces_[index]).is_tip;
-  const auto to_curve = [&](std::size_t i, const MoveCurve& curve) {
-    if (setting_of(pieces_[i]).is_tip != is_tip) return std::numeric_limits<double>::infinity();
+// Distance of a point from one piece, in its coordinates, and the length of the piece (m).
+// @param least  a distance known already: a curve that lies farther away is not looked at
+double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index, double least,
+                             double& length) const {
+  const auto from = [&](const MoveCurve& curve) {
+    length = curve.length();
     return (curve.at(curve.closest(point)).head<3>() - point).norm();
   };
-  double best = to_curve(index, curve_of(index));
+  const std::uint32_t curved = pieces_[index].curved;
+  if (curved == kStraight) return from(curve_of(index));
+  const Curved& here = curved_[curved];
+  length = here.curve.length();
+  const double at_least = (point - here.middle).norm() - here.reach;
+  return at_least > least ? at_least : from(here.curve);
+}
+
+double ProgramPath::distance(const Eigen::Vector3d& point, std::size_t index) const {
+  double gone = 0.0, length = 0.0;
+  double best = distance(point, index, std::numeric_limits<double>::infinity(), length);
   const double reach = best + kSearchMargin;
-  double gone = 0.0;
-  for (std::size_t i = index; i + 1 < pieces_.size() && gone < reach; ++i) {
-    const MoveCurve curve = curve_of(i + 1);
-    best = std::min(best, to_curve(i + 1, curve));
-    gone += curve.length();
-  }
+  const auto look_at = [&](std::size_t i) {
+    const double there = distance(point, i, best, length);
+    if (is_tip(i) == is_tip(index)) best = std::min(best, there);
+    gone += length;
+  };
+  for (std::size_t i = index; i + 1 < pieces_.size() && gone < reach; ++i) look_at(i + 1);
   gone = 0.0;
-  for (std::size_t i = index; i > 0 && gone < reach; --i) {
-    const MoveCurve curve = curve_of(i - 1);
-    best = std::min(best, to_curve(i - 1, curve));
-    gone += curve.length();
-  }
+  for (std::size_t i = index; i > 0 && gone < reach; --i) look_at(i - 1);
   return best;
 }
 

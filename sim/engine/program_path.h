@@ -61,6 +61,9 @@ class ProgramPath {
   int tool_offset(std::size_t index) const { return setting_of(pieces_[index]).tool_offset; }
   bool is_rapid(std::size_t index) const { return setting_of(pieces_[index]).rapid; }
   int section(std::size_t index) const { return setting_of(pieces_[index]).section; }
+  bool is_tip(std::size_t index) const { return setting_of(pieces_[index]).is_tip; }
+  /// True of a piece in which s stands.
+  bool stands(std::size_t index) const { return pieces_[index].s_end == s_begin_of(index); }
   std::size_t size() const { return pieces_.size(); }
 
   /// Programmed position at arc length s within that piece (6; m, rad).
@@ -99,7 +102,10 @@ class ProgramPath {
     double s_begin = 0.0;  // m
     bool is_great_circle = false;
     Eigen::Vector3d k_begin = Eigen::Vector3d::UnitZ(), k_end = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d middle = curve.at(0.5).head<3>();  // of a ball that holds the curve
+    double reach = kReach * curve.length();            // m, its radius
   };
+  static constexpr double kReach = 0.6;  // half, and more than the halves of a spiral differ by
   static constexpr std::uint32_t kStraight = 0xffffffff;
   struct Held {           // a piece
     Eigen::Vector3d end;  // X Y Z
@@ -117,6 +123,7 @@ class ProgramPath {
   double s_begin_of(std::size_t index) const;
   const Setting& setting_of(const Held& held) const { return settings_[held.setting]; }
   MoveCurve curve_of(std::size_t index) const;
+  double distance(const Eigen::Vector3d& p, std::size_t index, double least, double& length) const;
   AxisWords begin_of(const Piece& piece, const Piece* before, AxisWords at) const;
   void set_tool_axes(Piece& piece, const Move& move) const;
   double fraction(const Piece& piece, double s, const JointLayout& layout,

@@ -104,7 +104,8 @@ void ServoAxes::describe(std::size_t l) {
                                   supervision.encoder_difference < controllers::kNoLimit ||
                                   machine.marks[j].has_value());
 
-  always_checked_ |= always_checked_lanes_.back() || !params_[l].is_linear();
+  always_checked_ |= always_checked_lanes_.back();
+  if (!params_[l].is_linear()) in_sub_steps_.push_back(l);
   if (!machine.motor[j].is_plain() || !machine.screw[j].is_zero()) own_motor_reading_.push_back(l);
   if (!machine.scale[j].is_plain()) own_scale_reading_.push_back(l);
   if (machine.marks[j]) marked_.push_back(l);

@@ -164,7 +164,7 @@ class ServoAxes {
   };
   std::optional<Fault> supervise(std::size_t run = 0);
   /// After the position loops: supervise() has nothing to say of any run.
-  bool within_limits() const { return !always_checked_ && !beyond_limits_; }
+  bool within_limits() const;
 
   /// Visits what of one axis of the first run changes with time, as double&: drive, loops, reading.
   /// States that cannot move (no integral part, no current lag, ...) are left out.
@@ -326,8 +326,9 @@ class ServoAxes {
   std::vector<Functions> functions_;  // by lane
   // lanes that need more than the kernel does
   std::vector<bool> always_checked_lanes_;  // by supervision
-  bool always_checked_ = false;             // of some lane the kernel cannot tell that all is well
-  bool beyond_limits_ = false;              // some lane is beyond a limit
+  std::vector<std::size_t> in_sub_steps_;   // lanes; a drive may fail to resolve them
+  // of some lane: the kernel cannot tell that all is well; it is beyond a limit
+  bool always_checked_ = false, beyond_limits_ = false;
   std::vector<std::size_t> own_motor_reading_, own_scale_reading_, marked_, with_backlash_,
       with_friction_;
   const ServoKernel& kernel_;

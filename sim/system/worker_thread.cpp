@@ -49,7 +49,8 @@ void WorkerThread::work(const std::stop_token& stop) {
 }
 
 unsigned thread_count(unsigned wanted) {
-  return wanted != 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+  static const unsigned kCores = std::max(1U, std::thread::hardware_concurrency());  // reads files
+  return wanted != 0 ? wanted : kCores;
 }
 
 void for_each_index(std::size_t count, unsigned threads,
