@@ -10,12 +10,23 @@
 namespace servomill::sim::evaluation {
 namespace {
 
-template <double metrology::CircularTurn::*kValue>
-QuantityValue of_turn(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
-  const auto* turn = one.circles.evaluated(spec.sections[0]);
-  if (turn == nullptr) return {};
-  return {*turn->evaluated.*kValue / um};
+QuantityValue circular_error(const model::QuantitySpec& spec, CaseEvaluation& one,
+                             const CaseData*) {
+  const auto width = one.circles.zone_width(spec.sections[0]);
+  if (!width) return {};
+  return {*width / um};
 }
+
+template <double (*kValue)(const metrology::RadialRange&)>
+QuantityValue of_range(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
+  const auto* range = one.circles.range(spec.sections[0]);
+  if (range == nullptr) return {};
+  return {kValue(*range) / um};
+}
+
+double width_of(const metrology::RadialRange& range) { return range.width(); }
+double largest_of(const metrology::RadialRange& range) { return range.largest; }
+double smallest_of(const metrology::RadialRange& range) { return range.smallest; }
 
 template <double metrology::BidirectionalCircle::*kValue>
 QuantityValue of_both(const model::QuantitySpec& spec, CaseEvaluation& one, const CaseData*) {
@@ -45,12 +56,12 @@ constexpr QuantityEntry kQuantities[] = {
      .help = "ISO 230-4 G: smallest radial separation of two concentric circles around the true "
              "path",
      .circles = 1,
-     .evaluate = of_turn<&metrology::CircularTurn::G>},
+     .evaluate = circular_error},
     {.name = "circular_error_least_squares",
      .unit = "um",
      .help = "G about the least-squares centre: range of the radial deviation",
      .circles = 1,
-     .evaluate = of_turn<&metrology::CircularTurn::G_least_squares>},
+     .evaluate = of_range<width_of>},
     {.name = "bidirectional_circular_error",
      .unit = "um",
      .help = "ISO 230-4 G(b): smallest radial separation of two concentric circles around the "
@@ -62,13 +73,13 @@ constexpr QuantityEntry kQuantities[] = {
      .help = "ISO 230-4 F max: largest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_turn<&metrology::CircularTurn::F_max>},
+     .evaluate = of_range<largest_of>},
     {.name = "radial_error_min",
      .unit = "um",
      .help = "ISO 230-4 F min: smallest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_turn<&metrology::CircularTurn::F_min>},
+     .evaluate = of_range<smallest_of>},
     {.name = "mean_bidirectional_radial_error",
      .unit = "um",
      .help = "ISO 230-4 D: nominal radius minus that of the least-squares circle of both "
@@ -118,8 +129,26 @@ std::optional<CircularQuantities::Turn>& CircularQuantities::turn(const std::str
 const CircularQuantities::Turn* CircularQuantities::evaluated(const std::string& section) {
   std::optional<Turn>& one = turn(section);
   if (!one) return nullptr;
-  if (!one->evaluated) one->evaluated = metrology::evaluate_turn(one->path, one->circle.nominal);
+  if (!one->evaluated) {
+    one->evaluated = metrology::evaluate_about_least_squares(one->path, one->circle.nominal);
+  }
   return &*one;
+}
+
+const metrology::RadialRange* CircularQuantities::range(const std::string& section) {
+  std::optional<Turn>& one = turn(section);
+  if (!one) return nullptr;
+  if (!one->range) {
+    one->range = metrology::range_about_least_squares(one->path, one->circle.nominal);
+  }
+  return &*one->range;
+}
+
+std::optional<double> CircularQuantities::zone_width(const std::string& section) {
+  std::optional<Turn>& one = turn(section);
+  if (!one) return std::nullopt;
+  if (!one->zone_width) one->zone_width = metrology::minimum_zone(one->path).width();
+  return one->zone_width;
 }
 
 const metrology::BidirectionalCircle* CircularQuantities::both(

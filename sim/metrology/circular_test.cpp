@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
@@ -35,20 +36,15 @@ struct Travel {
 
 Travel travel_of(Points2 points, const Vector2d& centre) {
   Travel travel;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const double step = wrapped(angle_of(points[i] - centre) - angle_of(points[i - 1] - centre));
+  if (points.empty()) return travel;
+  double before = angle_of(points.front() - centre);
+  for (const Vector2d& p : points.subspan(1)) {
+    const double angle = angle_of(p - centre), step = wrapped(angle - before);
     travel.turned += step;
     travel.longest = std::max(travel.longest, std::abs(step));
+    before = angle;
   }
   return travel;
-}
-
-// (largest, smallest) of the curve
-std::pair<double, double> range_of(const std::vector<RadialError>& curve) {
-  const auto [low, high] =
-      std::minmax_element(curve.begin(), curve.end(),
-                          [](const RadialError& a, const RadialError& b) { return a.dr < b.dr; });
-  return {high->dr, low->dr};
 }
 
 // Two parallel lines, dr = level + slope phi + (step where phi > 0), through the arcs about a
@@ -95,6 +91,21 @@ Reversal reversal_at(double theta, int axis, Sense sense, const std::vector<Radi
 }
 
 }  // namespace
+
+RadialRange radial_range(Points2 points, const Circle& circle) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  RadialRange range{-kInfinite, kInfinite};
+  for (const Vector2d& p : points) {
+    const double dr = (p - circle.centre).norm() - circle.radius;
+    range.largest = std::max(range.largest, dr);
+    range.smallest = std::min(range.smallest, dr);
+  }
+  return range;
+}
+
+RadialRange range_about_least_squares(Points2 points, const Circle& nominal) {
+  return radial_range(points, {least_squares_circle(points).centre, nominal.radius});
+}
 
 std::vector<RadialError> radial_error(Points2 points, const Circle& circle) {
   std::vector<RadialError> curve;
@@ -147,17 +158,25 @@ Sense sense_of(Points2 points, const Circle& nominal) {
 }
 
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal) {
+  CircularTurn turn{evaluate_about_least_squares(points, nominal), minimum_zone(points)};
+  turn.G = turn.minimum_zone.width();
+  return turn;
+}
+
+LeastSquaresTurn evaluate_about_least_squares(Points2 points, const Circle& nominal) {
   assert(!why_no_turn(points, nominal, kWidestSpacing));
-  CircularTurn turn;
+  LeastSquaresTurn turn;
   turn.sense =
       travel_of(points, nominal.centre).turned > 0.0 ? Sense::counter_clockwise : Sense::clockwise;
   turn.least_squares = least_squares_circle(points);
-  turn.minimum_zone = minimum_zone(points);
-  turn.G = turn.minimum_zone.width();
-  const auto curve = radial_error(points, {turn.least_squares.centre, nominal.radius});
-  std::tie(turn.F_max, turn.F_min) = range_of(curve);
-  turn.G_least_squares = turn.F_max - turn.F_min;
-  std::tie(turn.F_max_set_up, turn.F_min_set_up) = range_of(radial_error(points, nominal));
+  const Circle about{turn.least_squares.centre, nominal.radius};
+  const RadialRange range = radial_range(points, about), set_up = radial_range(points, nominal);
+  turn.F_max = range.largest;
+  turn.F_min = range.smallest;
+  turn.G_least_squares = range.width();
+  turn.F_max_set_up = set_up.largest;
+  turn.F_min_set_up = set_up.smallest;
+  const auto curve = radial_error(points, about);
   for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
     turn.reversals[quadrant] = reversal_at(static_cast<double>(quadrant) * kTurn / 4.0,
                                            static_cast<int>(quadrant % 2), turn.sense, curve);

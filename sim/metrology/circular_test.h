@@ -46,17 +46,21 @@ struct Reversal {
   double step = 0.0;         // of the line, behind minus before
 };
 
-/// One turn.
-struct CircularTurn {
+/// One turn about its least-squares circle.
+struct LeastSquaresTurn {
   Sense sense = Sense::counter_clockwise;
   Circle least_squares;
-  RingZone minimum_zone;
-  double G = 0.0;                   // circular error: width of the minimum zone
   double G_least_squares = 0.0;     // range of the radial deviation about the least-squares centre
   double F_max = 0.0, F_min = 0.0;  // radial deviation from the nominal radius, about that centre
   double F_max_set_up = 0.0, F_min_set_up = 0.0;  // the same about the nominal centre
   std::array<Reversal, 4> reversals;              // at 0, 90, 180, 270 deg
   double squareness = 0.0;                        // rad; (D45 - D135) / (2 R), see squareness_of
+};
+
+/// One turn.
+struct CircularTurn : LeastSquaresTurn {
+  RingZone minimum_zone;
+  double G = 0.0;  // circular error: width of the minimum zone
 };
 
 /// Two turns about one nominal circle.
@@ -68,6 +72,15 @@ struct BidirectionalCircle {
   double D = 0.0;
   double squareness = 0.0;  // rad; mean of both directions, free of what follows the direction
 };
+
+/// Largest and smallest radial deviation of some points from a circle.
+struct RadialRange {
+  double largest = 0.0, smallest = 0.0;
+  double width() const { return largest - smallest; }
+};
+RadialRange radial_range(Points2 points, const Circle& circle);
+/// About the least-squares centre, from the nominal radius: LeastSquaresTurn::F_max and F_min.
+RadialRange range_about_least_squares(Points2 points, const Circle& nominal);
 
 /// Deviation from a circle over the angle, in the order of the points.
 std::vector<RadialError> radial_error(Points2 points, const Circle& circle);
@@ -91,6 +104,9 @@ std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal,
 /// @pre why_no_turn(points, nominal, kWidestSpacing) is nullopt
 Sense sense_of(Points2 points, const Circle& nominal);
 
+/// All of a turn but its minimum zone, which takes the longest to find.
+/// @pre why_no_turn(points, nominal, kWidestSpacing) is nullopt
+LeastSquaresTurn evaluate_about_least_squares(Points2 points, const Circle& nominal);
 /// @pre why_no_turn(points, nominal, kWidestSpacing) is nullopt
 CircularTurn evaluate_turn(Points2 points, const Circle& nominal);
 
