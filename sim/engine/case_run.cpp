@@ -45,15 +45,15 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
       recorded_(references.of(in.reference, setpoint_.delay())),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows),
+                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows, in.outputs),
       travel_(in.machine_errors, Joints::Zero()),
-      last_ticks_(in.machine.joints()),
       structure_(structure_of(in.machine, schedule)),
       on_bed_(stands_on_bed(in.machine)),
       demands_(demand_meter(in)),
       by_loops_(position_gains(nc_), nc_.periods.seconds(nc_.periods.position)) {
   end_ =
       static_cast<Tick>(std::ceil((in.reference.duration() + in.settle_time) / nc_.periods.base));
+  if (in.outputs.last_ticks) last_ticks_.emplace(in.machine.joints());
   recorder_.expect(static_cast<std::size_t>(end_ / in.record_period + 1));
   if (in.machine.heat) {
     heat_ = std::make_unique<HeatRun>(in.machine, *in.component_errors, in.known_heat);
@@ -71,10 +71,11 @@ bool CaseRun::command_axes(Tick n) {
   const auto& reference = reference_.at(t);
   set_ = setpoint_.advance(reference, t, axes_.Q_fb(run_));
   if (in_.feedback) feedback_.set_reference(run_, set_, reference.s);
-  last_ticks_.keep(nc_.periods.seconds(n), set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_),
-                   axes_.current(run_));
+  if (last_ticks_) {
+    last_ticks_->keep(t, set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_), axes_.current(run_));
+  }
   axes_.follow(set_, run_);
-  note_demands(t);
+  if (in_.outputs.demands) note_demands(t);
   if (cut_) apply_cutting_force(n);
   if (cut_ && !cut_->fault().empty()) return stop_with(cut_->fault(), t);
   if (heat_ && n > 0 && !heat(n)) return false;
@@ -133,21 +134,26 @@ void CaseRun::record(Tick n) {
   now.s = reference.s;
   now.piece = in_.pieces[reference.move];
   now.Q_ref = reference.Q_ref;
-  now.Q_cmd = set_.Q_cmd;
-  now.Q_fb = axes_.Q_fb(run_);
-  now.Q_meas = axes_.Q_meas(run_);
   now.Q_true = axes_.Q_true(run_);
-  now.dQ_true = axes_.dQ_true(run_);
-  now.current = axes_.current(run_);
-  for (const int j : axes_.joints()) {
-    now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
-  }
+  if (recorder_.wants_axes()) note_axes(now);
   if (cut_) cut_->note(now);
   if (structure_) {
     now.inertial_deflection = inertial_deflection();
   }
   if (on_bed_) now.bed = axes_.bed(run_).head<kLinearJoints>();
   recorder_.record(now, travel_.at(now.Q_true));
+}
+
+// Notes what is recorded of the axes and their loops.
+void CaseRun::note_axes(Snapshot& now) const {
+  now.Q_cmd = set_.Q_cmd;
+  now.Q_fb = axes_.Q_fb(run_);
+  now.Q_meas = axes_.Q_meas(run_);
+  now.dQ_true = axes_.dQ_true(run_);
+  now.current = axes_.current(run_);
+  for (const int j : axes_.joints()) {
+    now.torque[j] = in_.machine.drives[static_cast<std::size_t>(j)].Kt * now.current[j];
+  }
 }
 
 // Deflection of the structure under acceleration of the axes (3; m).
@@ -179,7 +185,9 @@ CaseResult CaseRun::finish(Tick n) {
   result_.demands = demands_.demands();
   if (heat_) std::move(*heat_).take_courses(result_);
   if (cut_) result_.off_path = cut_->off_path();
-  if (!result_.outcome.finished) result_.last_ticks = last_ticks_.series(in_.machine.chain.layout);
+  if (last_ticks_ && !result_.outcome.finished) {
+    result_.last_ticks = last_ticks_->series(in_.machine.chain.layout);
+  }
   return std::move(result_);
 }
 

@@ -61,6 +61,7 @@ class CaseRun {
  private:
   Joints lagging_offset() const;
   void note_demands(double t);
+  void note_axes(Snapshot& now) const;
   void apply_cutting_force(Tick n);
   Eigen::Vector3d inertial_deflection() const;
   bool heat(Tick n);
@@ -77,7 +78,7 @@ class CaseRun {
   Reference &reference_, &recorded_;
   Recorder recorder_;
   TravelDirections travel_;
-  LastTicks last_ticks_;
+  std::optional<LastTicks> last_ticks_;
   std::optional<CutAlongPath> cut_;
   std::optional<plant::InertialDeflection> structure_;
   bool on_bed_;

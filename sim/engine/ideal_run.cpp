@@ -12,7 +12,7 @@ IdealRun::IdealRun(CaseInputs& in)
       feedback_(in.feedback ? in.feedback->feedback(model_period_of(in)) : nullptr),
       recorder_(in.machine, in.machine_errors, in.imposed, in.path, in.tips, in.format,
                 in.program_displaces_rotary, in.recorded_corrections, in.cutting != nullptr,
-                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows),
+                in.keeping, in.teeth != nullptr, in.records_orientation, in.windows, in.outputs),
       travel_(in.machine_errors, Joints::Zero()),
       motion_(periods_.seconds(periods_.position)),
       demands_(periods_.seconds(periods_.position)) {
@@ -61,7 +61,7 @@ CaseResult IdealRun::run(const StopFlag& stop, std::atomic<float>& progress) {
     if (cut_ && !cut(n, set, in_.path.line(in_.pieces[sample.move]), result.outcome)) break;
     if (heat_ && n > 0 && !heat(sample, result.outcome)) break;
     const Joints Q_true = Q_true_of(set);
-    demands_.add(t, set.Q_ref, Q_true - set.Q_ref);
+    if (in_.outputs.demands) demands_.add(t, set.Q_ref, Q_true - set.Q_ref);
     travel_.go_to(Q_true);
     if (structure_ && n > 0) bend(Q_true);
     if (n % in_.record_period == 0) record(n, set, Q_true);

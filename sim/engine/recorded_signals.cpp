@@ -26,6 +26,22 @@ std::string letters(const model::MachineSettings& machine, int from, int to) {
   return out;
 }
 
+// Signals of the axes and their loops, one for the linear and one for the rotary ones.
+struct AxisSignal {
+  const char *name, *unit_linear, *unit_rotary, *about;
+};
+constexpr AxisSignal kAxisSignals[] = {
+    {"ref", "mm", "deg", "interpolated position"},
+    {"cmd", "mm", "deg", "setpoint after corrections"},
+    {"fb", "mm", "deg", "position feedback, virtual displacement included"},
+    {"meas", "mm", "deg", "reading of the scale"},
+    {"true", "mm", "deg", "position of the slide or table"},
+    {"following_error", "um", "deg", "setpoint minus position feedback"},
+    {"velocity", "mm/s", "deg/s", "velocity of the slide or table"},
+    {"current", "A", "A", "torque-forming current"},
+    {"torque", "N m", "N m", "motor torque"},
+};
+
 const Signal kToolSignals[] = {
     {"tool_position_nominal", "mm",
      "tool centre point of the ideal machine on the programmed path, in the workpiece", "XYZ",
@@ -126,6 +142,18 @@ void add_tool_signals(SignalParts parts, std::vector<Signal>& all) {
 
 }  // namespace
 
+bool is_of_every_row(std::string_view signal) {
+  const auto all = {"time", "s", "line", "section", "rapid"};
+  return std::find(all.begin(), all.end(), signal) != all.end();
+}
+
+bool wants_axis_signals(const RunOutputs& outputs) {
+  return std::any_of(std::begin(kAxisSignals), std::end(kAxisSignals), [&](const auto& signal) {
+    return outputs.wants(signal.name + std::string("_linear")) ||
+           outputs.wants(signal.name + std::string("_rotary"));
+  });
+}
+
 bool stands_on_bed(const model::MachineSettings& machine) {
   return std::any_of(machine.drives.begin(), machine.drives.end(),
                      [](const plant::FeedDriveParams& drive) { return drive.on_bed(); });
@@ -141,22 +169,15 @@ std::vector<Signal> recorded_signals(const model::MachineSettings& machine, Sign
       whole_numbers("section", "section of the original program, index into attribute sections"),
       whole_numbers("rapid", "1 while a rapid move is interpolated"),
   };
-  const auto per_axis = [&](const std::string& name, const char* unit_linear,
-                            const char* unit_rotary, const std::string& what) {
-    if (!linear.empty())
-      all.push_back({name + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
-    if (!rotary.empty())
-      all.push_back({name + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
-  };
-  per_axis("ref", "mm", "deg", "interpolated position");
-  per_axis("cmd", "mm", "deg", "setpoint after corrections");
-  per_axis("fb", "mm", "deg", "position feedback, virtual displacement included");
-  per_axis("meas", "mm", "deg", "reading of the scale");
-  per_axis("true", "mm", "deg", "position of the slide or table");
-  per_axis("following_error", "um", "deg", "setpoint minus position feedback");
-  per_axis("velocity", "mm/s", "deg/s", "velocity of the slide or table");
-  per_axis("current", "A", "A", "torque-forming current");
-  per_axis("torque", "N m", "N m", "motor torque");
+  for (const auto& [name, unit_linear, unit_rotary, about] : kAxisSignals) {
+    const std::string signal = name, what = about;
+    if (!linear.empty()) {
+      all.push_back({signal + "_linear", unit_linear, what + ", linear axes", linear, kLinear});
+    }
+    if (!rotary.empty()) {
+      all.push_back({signal + "_rotary", unit_rotary, what + ", rotary axes", rotary, kRotary});
+    }
+  }
   if (parts.imposed) {
     all.push_back({"imposed_linear", "um",
                    "displacement required by the imposed errors at the programmed position", linear,

@@ -1,8 +1,10 @@
 /// Signals of the recording of a case: names, units, what they say and to what they are rounded.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
+#include "sim/engine/run_outputs.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/series.h"
@@ -19,6 +21,11 @@ struct SignalParts {
   bool oriented = false;       // direction of the tool across its axis
   bool windows = false;        // number of the window, and rows around it
 };
+
+/// True of those by which rows are found: every recording has them.
+bool is_of_every_row(std::string_view signal);
+/// True if a signal of the axes and their loops is asked for.
+bool wants_axis_signals(const RunOutputs& outputs);
 
 /// True if the bed of the machine moves under some axis.
 bool stands_on_bed(const model::MachineSettings& machine);

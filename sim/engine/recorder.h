@@ -1,5 +1,4 @@
-/// Turns what a case knows at a record instant into a row of signals (the edge: SI becomes mm, deg,
-/// um here and nowhere else).
+/// Records what a case knows at its record instants.
 #pragma once
 
 #include <map>
@@ -9,7 +8,10 @@
 
 #include "plant/geometry/volumetric.h"
 #include "sim/engine/program_path.h"
+#include "sim/engine/recorded_rows.h"
 #include "sim/engine/recording_windows.h"
+#include "sim/engine/run_outputs.h"
+#include "sim/engine/snapshot.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
@@ -19,31 +21,9 @@
 
 namespace servomill::sim::engine {
 
-/// Everything that is recorded of one instant, SI.
-struct Snapshot {
-  double time = 0.0;
-  double s = 0.0;
-  std::size_t piece = 0;           // of the programmed path
-  Joints Q_ref = Joints::Zero();   // interpolated
-  Joints Q_cmd = Joints::Zero();   // after setpoint corrections
-  Joints Q_fb = Joints::Zero();    // what the NC reads (virtual encoder)
-  Joints Q_meas = Joints::Zero();  // what the scale says
-  Joints Q_true = Joints::Zero();
-  Joints dQ_true = Joints::Zero();
-  Joints current = Joints::Zero();
-  Joints torque = Joints::Zero();
-  Eigen::Vector3d cutting_force = Eigen::Vector3d::Zero();  // N, on the cutter, in W
-  Eigen::Vector3d deflection = Eigen::Vector3d::Zero();     // m, of the structure in linear axes
-  double spindle_angle = 0.0;                               // rad, where teeth cut
-  // m, the same by acceleration
-  Eigen::Vector3d inertial_deflection = Eigen::Vector3d::Zero();
-  Eigen::Vector3d bed = Eigen::Vector3d::Zero();  // m, displacement of the machine bed
-  // set by the Recorder: number of the window, and 1 in it, 0 in rows around it
-  double window = 0.0, in_window = 1.0;
-};
-
-/// Whoever records only copies a Snapshot. Rows are made from blocks of them in a thread of the
-/// recorder, so it waits only if that is slower than the simulation.
+/// Whoever records only copies a Snapshot. Rows are made from blocks of them, in a thread of the
+/// recorder unless its outputs say otherwise: then it waits only if that is slower than the
+/// simulation.
 class Recorder {
  public:
   /// All arguments must outlive it.
@@ -57,16 +37,19 @@ class Recorder {
   /// @param oriented  the direction of the tool across its axis is recorded
   /// @param windows  rows outside are left out but for the first and the last row of the case and
   ///                 those that enclose a window: what is interpolated inside it is complete
+  /// @param outputs  signals that are recorded. @pre all, of rows that are thinned or have windows
   Recorder(const model::MachineSettings& machine, const plant::VolumetricModel& machine_errors,
            const plant::VolumetricModel* imposed, const ProgramPath& path,
            const std::map<int, Eigen::Vector3d>& tips, const model::RecordFormat& format = {},
            bool rotary_displaced = false, std::vector<const strategies::Strategy*> correcting = {},
            bool cuts = false, records::RowKeeping keeping = {}, bool teeth = false,
-           bool oriented = false, RecordingWindows windows = {});
+           bool oriented = false, RecordingWindows windows = {}, const RunOutputs& outputs = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// False if of a Snapshot only Q_ref and Q_true are recorded, and what gives way.
+  bool wants_axes() const { return wants_axes_; }
   /// From the next row on, the machine has these errors, and its bodies these temperatures (K).
   void use(std::shared_ptr<const plant::VolumetricModel> machine_errors,
            std::vector<double> temperatures);
@@ -80,15 +63,15 @@ class Recorder {
   const std::vector<std::size_t>& left_out() const { return left_out_; }
 
  private:
-  class Rows;
   struct Block;
   void add(const Snapshot& now, std::span<const double> directions, bool inside = true);
   void add_held();
   void count_outside(std::size_t piece);
   void hand_over();
+  std::size_t block_rows() const;
   void make_rows(const Block& block);
 
-  std::unique_ptr<Rows> rows_;
+  RecordedRows rows_;
   struct Block {
     std::vector<Snapshot> snapshots;
     std::vector<double> directions;  // of each snapshot, one behind the other
@@ -99,6 +82,7 @@ class Recorder {
   Block working_;  // what the thread turns into rows
   const ProgramPath& path_;
   const RecordingWindows windows_;
+  const bool wants_axes_, makes_rows_beside_;
   Block held_;  // the row before this one, if it lies outside and has not been recorded
   bool was_inside_ = true, has_gap_ = false;
   double window_ = 0.0;

@@ -16,6 +16,7 @@
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
 #include "sim/engine/recording_windows.h"
+#include "sim/engine/run_outputs.h"
 #include "sim/model/machine.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
@@ -66,6 +67,7 @@ struct CaseInputs {
   bool records_orientation = false;  // of the tool about its axis
   RecordingWindows windows = {};
   std::string stops_with = {};  // why the case stops where it begins; empty: it does not
+  RunOutputs outputs = {};
 };
 
 /// True if two cases can run in lockstep: the same axes, moved at the same instants. Everything

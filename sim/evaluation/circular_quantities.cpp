@@ -50,61 +50,72 @@ QuantityValue larger_at_reversal(const model::QuantitySpec& spec, CaseEvaluation
   return {larger / um};
 }
 
+constexpr std::string_view kPositions[] = {"tool_position_nominal", "tool_position_true"};
+
 constexpr QuantityEntry kQuantities[] = {
     {.name = "circular_error",
      .unit = "um",
      .help = "ISO 230-4 G: smallest radial separation of two concentric circles around the true "
              "path",
      .circles = 1,
-     .evaluate = circular_error},
+     .evaluate = circular_error,
+     .reads = kPositions},
     {.name = "circular_error_least_squares",
      .unit = "um",
      .help = "G about the least-squares centre: range of the radial deviation",
      .circles = 1,
-     .evaluate = of_range<width_of>},
+     .evaluate = of_range<width_of>,
+     .reads = kPositions},
     {.name = "bidirectional_circular_error",
      .unit = "um",
      .help = "ISO 230-4 G(b): smallest radial separation of two concentric circles around the "
              "paths of both directions",
      .circles = 2,
-     .evaluate = of_both<&metrology::BidirectionalCircle::G_b>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::G_b>,
+     .reads = kPositions},
     {.name = "radial_error_max",
      .unit = "um",
      .help = "ISO 230-4 F max: largest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_range<largest_of>},
+     .evaluate = of_range<largest_of>,
+     .reads = kPositions},
     {.name = "radial_error_min",
      .unit = "um",
      .help = "ISO 230-4 F min: smallest deviation from the nominal radius, about the least-squares "
              "centre",
      .circles = 1,
-     .evaluate = of_range<smallest_of>},
+     .evaluate = of_range<smallest_of>,
+     .reads = kPositions},
     {.name = "mean_bidirectional_radial_error",
      .unit = "um",
      .help = "ISO 230-4 D: nominal radius minus that of the least-squares circle of both "
              "directions",
      .circles = 2,
-     .evaluate = of_both<&metrology::BidirectionalCircle::D>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::D>,
+     .reads = kPositions},
     {.name = "reversal_spike",
      .unit = "um",
      .help =
          "larger of the two excursions at the reversals of the axis on a circle; outward positive",
      .axes = "XYZ",
      .circles = 1,
-     .evaluate = larger_at_reversal<&metrology::Reversal::spike>},
+     .evaluate = larger_at_reversal<&metrology::Reversal::spike>,
+     .reads = kPositions},
     {.name = "reversal_step",
      .unit = "um",
      .help = "larger of the two radius steps at the reversals of the axis on a circle",
      .axes = "XYZ",
      .circles = 1,
-     .evaluate = larger_at_reversal<&metrology::Reversal::step>},
+     .evaluate = larger_at_reversal<&metrology::Reversal::step>,
+     .reads = kPositions},
     {.name = "circle_squareness",
      .unit = "urad",
      .help = "(D45 - D135) / (2 R) of a circle, mean of both directions; positive: less than 90 "
              "deg",
      .circles = 2,
-     .evaluate = of_both<&metrology::BidirectionalCircle::squareness>},
+     .evaluate = of_both<&metrology::BidirectionalCircle::squareness>,
+     .reads = kPositions},
 };
 
 }  // namespace

@@ -29,6 +29,7 @@ QuantityValue demand(const model::QuantitySpec& spec, CaseEvaluation& one, const
                  [](const AxisDemand& of) { return 100.0 * of.motion[kOrder].share(); });
 }
 
+constexpr std::span<const std::string_view> kNoSignals = {};
 constexpr std::string_view kLinearAxes = "XYZ", kAllAxes = "XYZABC";
 
 constexpr QuantityEntry kQuantities[] = {
@@ -37,28 +38,36 @@ constexpr QuantityEntry kQuantities[] = {
      .help = "largest offset that all strategies together add to the path of an axis, whole run",
      .axes = kLinearAxes,
      .evaluate = axis_offset,
-     .is_of_program = true},
+     .is_of_program = true,
+     .reads = kNoSignals,
+     .reads_demands = true},
     {.name = "velocity_demand",
      .unit = "%",
      .help = "largest velocity of path and offset together, as a fraction of the limit of the "
              "axis, whole run",
      .axes = kAllAxes,
      .evaluate = demand<0>,
-     .is_of_program = true},
+     .is_of_program = true,
+     .reads = kNoSignals,
+     .reads_demands = true},
     {.name = "acceleration_demand",
      .unit = "%",
      .help = "largest acceleration of path and offset together, as a fraction of the limit of the "
              "axis, whole run",
      .axes = kAllAxes,
      .evaluate = demand<1>,
-     .is_of_program = true},
+     .is_of_program = true,
+     .reads = kNoSignals,
+     .reads_demands = true},
     {.name = "jerk_demand",
      .unit = "%",
      .help = "largest jerk of path and offset together, as a fraction of the limit of the axis, "
              "whole run",
      .axes = kAllAxes,
      .evaluate = demand<2>,
-     .is_of_program = true},
+     .is_of_program = true,
+     .reads = kNoSignals,
+     .reads_demands = true},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -64,6 +65,10 @@ struct QuantityEntry {
   QuantityValue (*evaluate)(const model::QuantitySpec& spec, CaseEvaluation& one,
                             const CaseData* base) = nullptr;
   bool is_of_program = false;  // known of a case that stopped, too
+  /// Recorded signals that `evaluate` reads beside time, s, line, section and rapid; none: any.
+  /// Points of a sweep record no others.
+  std::optional<std::span<const std::string_view>> reads = {};
+  bool reads_demands = false;  // CaseData::demands
 
   // for budgets and convergence
   /// Signed value in `unit`, sample by sample: PathSignal. nullptr: it has none

@@ -1,5 +1,9 @@
 #include "sim/records/series.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace servomill::sim::records {
@@ -37,6 +41,9 @@ double* Series::add_rows(std::size_t count) {
 const Signal* Series::find(std::string_view name) const {
   for (const Signal& channel : signals_) {
     if (channel.name == name) return &channel;
+  }
+  if (std::find(left_out_.begin(), left_out_.end(), name) != left_out_.end()) {
+    throw std::logic_error(fmt::format("{} was not recorded, as nobody asked for it", name));
   }
   return nullptr;
 }

@@ -68,6 +68,9 @@ class Series {
   double* add_row() { return add_rows(1); }
   void assign(std::vector<double> data) { data_ = std::move(data); }
 
+  /// Signals of a recording that nobody asked for: whoever looks for one throws std::logic_error.
+  void leave_out(std::vector<std::string> names) { left_out_ = std::move(names); }
+
   const Signal* find(std::string_view name) const;
   /// Position in a row of channel `name`, column `label` ('\0' for a scalar), or nullopt.
   std::optional<std::size_t> column(std::string_view name, char label = '\0') const;
@@ -88,6 +91,7 @@ class Series {
   double at_other_page(std::size_t row_index, std::size_t column_index) const;
 
   std::vector<Signal> signals_;
+  std::vector<std::string> left_out_;
   std::size_t width_ = 0;
   std::vector<double> data_;
   std::shared_ptr<const ColumnPages> pages_;

@@ -12,6 +12,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/engine/simulate.h"
+#include "sim/evaluation/outputs_read.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepare_cases.h"
 #include "sim/run/test_comparison.h"
@@ -46,6 +47,7 @@ struct Point {
   std::exception_ptr error;
   std::size_t left = 0;      // of the cases, to be run
   bool interrupted = false;  // half a point is none
+  engine::RunOutputs outputs = {};
 
   double rows() const {
     double sum = 0.0;
@@ -57,12 +59,34 @@ struct Point {
   }
 };
 
-Point prepared(const model::Scenario& scenario, preparation::PreparationCache* cache) {
-  Point point{&scenario, {}, {}, {}, nullptr, 0, false};
+// Outputs of the runs of a point that will be read.
+engine::RunOutputs outputs_of(const model::Scenario& scenario, Keep keep) {
+  engine::RunOutputs outputs;
+  const bool reads_quantities_only =
+      scenario.tests.empty() && scenario.probes.empty() && !scenario.day;
+  if (keep == Keep::comparison && reads_quantities_only) {
+    outputs = evaluation::outputs_read_by(scenario.quantities);
+  }
+  outputs.makes_rows_beside = false;
+  return outputs;
+}
+
+engine::CaseInputs inputs_of(const Point& point, std::size_t number) {
+  engine::CaseInputs inputs = point.cases[number].inputs();
+  inputs.outputs = point.outputs;
+  // rows that are left out are chosen by other signals
+  if (inputs.keeping.thinning || inputs.windows.limited()) inputs.outputs.signals.reset();
+  return inputs;
+}
+
+Point prepared(const model::Scenario& scenario, const BatchControl& control) {
+  Point point{&scenario, {}, {}, {}, nullptr, 0, false, outputs_of(scenario, control.keep)};
   try {
-    point.cases = preparation::prepare_cases(scenario, cache);
+    point.cases = preparation::prepare_cases(scenario, control.cache);
     point.inputs.reserve(point.cases.size());
-    for (const preparation::PreparedCase& one : point.cases) point.inputs.push_back(one.inputs());
+    for (std::size_t k = 0; k < point.cases.size(); ++k) {
+      point.inputs.push_back(inputs_of(point, k));
+    }
     point.results.resize(point.cases.size());
     point.left = point.cases.size();
   } catch (const Interrupted&) {
@@ -129,7 +153,7 @@ void simulate_group(std::span<const Run> group, const engine::StopFlag& stop,
     }
     // whose fault it was shows when each runs alone, with state of its own
     for (const Run& run : group) {
-      run.point->inputs[run.number].emplace(run.point->cases[run.number].inputs());
+      run.point->inputs[run.number].emplace(inputs_of(*run.point, run.number));
       simulate_group({&run, 1}, stop, progress, cache);
     }
   }
@@ -199,7 +223,7 @@ void run_batch(std::span<const model::Scenario> points, const engine::StopFlag& 
     const std::size_t first = next;
     std::vector<Point> together;
     for (double rows = 0.0; next < points.size() && rows < control.rows; ++next) {
-      together.push_back(prepared(points[next], control.cache));
+      together.push_back(prepared(points[next], control));
       rows += together.back().rows();
     }
     std::vector<bool> reported(together.size(), false);

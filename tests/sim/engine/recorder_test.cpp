@@ -39,9 +39,10 @@ class Recording : public testing::Test {
     }
   }
   records::Series record(const model::RecordFormat& format = {},
-                         const records::RowKeeping& keeping = {}) const {
+                         const records::RowKeeping& keeping = {},
+                         const RunOutputs& outputs = {}) const {
     Recorder recorder(scenario_.machine, truth_, nullptr, path_, tips_, format, false, {}, false,
-                      keeping);
+                      keeping, false, false, {}, outputs);
     recorder.expect(kRows);
     for (const Snapshot& now : snapshots_) recorder.record(now);
     return recorder.take();
@@ -81,6 +82,37 @@ TEST_F(Recording, HasARowForEverySnapshotInOrder) {
     EXPECT_EQ(series.at(n, x), now.Q_true[0] / mm);
     EXPECT_EQ(series.at(n, error), (now.Q_cmd[1] - now.Q_fb[1]) / um);
     EXPECT_EQ(series.at(n, current), now.current[2]);
+  }
+}
+
+TEST_F(Recording, OfSomeSignalsHasTheirBits) {
+  const records::Series whole = record();
+  const records::Series some = record(
+      {}, {}, {.signals = {{"contour_error", "velocity_linear"}}, .makes_rows_beside = false});
+  std::vector<std::string> names;
+  for (const records::Signal& signal : some.signals()) {
+    names.push_back(signal.name);
+    const records::Signal& same = *whole.find(signal.name);
+    ASSERT_EQ(signal.columns(), same.columns());
+    for (std::size_t n = 0; n < kRows; ++n) {
+      for (std::size_t c = 0; c < signal.columns(); ++c) {
+        ASSERT_EQ(some.at(n, signal.offset + c), whole.at(n, same.offset + c)) << signal.name;
+      }
+    }
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"time", "s", "line", "section", "rapid",
+                                             "velocity_linear", "contour_error"}));
+}
+
+// A value that is missing must not look like one that no machine has.
+TEST_F(Recording, OfSomeSignalsRefusesToLookForTheOthers) {
+  const records::Series some = record({}, {}, {.signals = {{"contour_error"}}});
+  EXPECT_EQ(some.column("no_such_signal"), std::nullopt);
+  try {
+    some.column("true_linear", 'X');
+    FAIL();
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(), "true_linear was not recorded, as nobody asked for it");
   }
 }
 
