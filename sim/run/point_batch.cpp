@@ -15,6 +15,7 @@
 #include "sim/evaluation/outputs_read.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepare_cases.h"
+#include "sim/run/run_identity.h"
 #include "sim/run/test_comparison.h"
 #include "sim/system/memory_limit.h"
 
@@ -101,28 +102,44 @@ Point prepared(const model::Scenario& scenario, const BatchControl& control) {
 struct Run {
   Point* point;
   std::size_t number;
+  std::vector<Run> same = {};  // cases of later points that would be the same run
+  std::exception_ptr error = nullptr;
 
   engine::CaseInputs& inputs() const { return *point->inputs[number]; }
 };
+
+// The runs of some points, each once: with those that are the same as an earlier one.
+std::vector<Run> runs_of(std::span<Point> points) {
+  std::vector<Run> runs;
+  std::vector<RunIdentity> identities;
+  for (Point& point : points) {
+    for (std::size_t number = 0; !point.error && number < point.inputs.size(); ++number) {
+      Run run{&point, number};
+      RunIdentity identity(point.cases[number], run.inputs(), number);
+      const auto known = std::find_if(identities.begin(), identities.end(),
+                                      [&](const auto& one) { return one.is_same_as(identity); });
+      if (known != identities.end()) {
+        runs[static_cast<std::size_t>(known - identities.begin())].same.push_back(std::move(run));
+        continue;
+      }
+      runs.push_back(std::move(run));
+      identities.push_back(std::move(identity));
+    }
+  }
+  return runs;
+}
 
 // Runs that share lanes, at most eight; point after point, so that runs of one program and feed are
 // neighbours: they share its interpolation and end together. In an order in which the first points
 // are done with first.
 std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
   std::vector<std::vector<Run>> groups;
-  for (Point& point : points) {
-    for (std::size_t number = 0; !point.error && number < point.inputs.size(); ++number) {
-      const Run run{&point, number};
-      const auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-        return group.size() < kLaneWidth &&
-               engine::share_lanes(group.front().inputs(), run.inputs());
-      });
-      if (open == groups.end()) {
-        groups.push_back({run});
-      } else {
-        open->push_back(run);
-      }
-    }
+  for (Run& run : runs_of(points)) {
+    auto open = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return group.size() < kLaneWidth && engine::share_lanes(group.front().inputs(), run.inputs());
+    });
+    if (open == groups.end()) open = groups.insert(groups.end(), std::vector<Run>());
+    open->push_back(std::move(run));
   }
   const auto last_point = [](const std::vector<Run>& group) {
     return std::max_element(group.begin(), group.end(),
@@ -134,7 +151,7 @@ std::vector<std::vector<Run>> groups_of(std::span<Point> points) {
   return groups;
 }
 
-void simulate_group(std::span<const Run> group, const engine::StopFlag& stop,
+void simulate_group(std::span<Run> group, const engine::StopFlag& stop,
                     std::atomic<float>& progress, preparation::PreparationCache* cache) {
   std::vector<engine::CaseInputs*> together;
   for (const Run& run : group) together.push_back(&run.inputs());
@@ -145,17 +162,32 @@ void simulate_group(std::span<const Run> group, const engine::StopFlag& stop,
       group[k].point->results[group[k].number] = std::move(results[k]);
     }
   } catch (const Interrupted&) {
-    for (const Run& run : group) run.point->interrupted = true;
+    for (const Run& run : group) run.point->results[run.number].outcome.interrupted = true;
   } catch (...) {
     if (group.size() == 1) {
-      group.front().point->error = std::current_exception();
+      group.front().error = std::current_exception();
       return;
     }
     // whose fault it was shows when each runs alone, with state of its own
-    for (const Run& run : group) {
+    for (Run& run : group) {
       run.point->inputs[run.number].emplace(inputs_of(*run.point, run.number));
       simulate_group({&run, 1}, stop, progress, cache);
     }
+  }
+}
+
+// A run has ended: so have those that would be the same.
+void end_run(const Run& run) {
+  const engine::CaseResult& result = run.point->results[run.number];
+  const auto end_at = [&](Point& point) {
+    if (run.error) point.error = run.error;
+    point.interrupted |= result.outcome.interrupted;
+    --point.left;
+  };
+  end_at(*run.point);
+  for (const Run& other : run.same) {
+    other.point->results[other.number] = result;
+    end_at(*other.point);
   }
 }
 
@@ -239,14 +271,10 @@ void run_batch(std::span<const model::Scenario> points, const engine::StopFlag& 
     };
     tell_ended();  // what cannot be run
     std::atomic<float> share = 0.0F;
-    const auto groups = groups_of(together);
+    auto groups = groups_of(together);
     for (std::size_t g = 0; g < groups.size() && !stop; ++g) {
       simulate_group(groups[g], stop, share, control.cache);
-      for (const Run& run : groups[g]) {
-        --run.point->left;
-        const engine::CaseResult& result = run.point->results[run.number];
-        run.point->interrupted |= result.outcome.interrupted;
-      }
+      for (const Run& run : groups[g]) end_run(run);
       tell_ended();
       progress = (static_cast<float>(first) + static_cast<float>(together.size()) *
                                                   static_cast<float>(g + 1) /

@@ -1,0 +1,46 @@
+/// Runs of several points that are the same: those of cases which a sweep does not change.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servomill::strategies {
+class Strategy;
+}  // namespace servomill::strategies
+namespace servomill::sim::engine {
+struct CaseInputs;
+}  // namespace servomill::sim::engine
+namespace servomill::sim::preparation {
+class PreparedCase;
+}  // namespace servomill::sim::preparation
+
+namespace servomill::sim::run {
+
+/// All that a run depends on: what was prepared for it, by its place in memory, and the document
+/// of its scenario but for the other cases, the quantities and the errors. (Of the errors it sees
+/// what was prepared.)
+class RunIdentity {
+ public:
+  /// @param prepared  must outlive this, and have been prepared with the cache of those compared
+  /// @param inputs    of the run; only looked at
+  /// @param number    of the case in its scenario, from 0
+  RunIdentity(const preparation::PreparedCase& prepared, const engine::CaseInputs& inputs,
+              std::size_t number);
+
+  /// True only if both have the same result, bit for bit.
+  bool is_same_as(const RunIdentity& other) const;
+
+ private:
+  bool is_comparable_ = false;  // false if it depends on more than this knows
+  std::vector<const void*> prepared_;
+  std::string document_;
+};
+
+/// A document without its tables `errors`, `quantity` and `sweep`, and of `case` with one only;
+/// empty if it has not `cases` of these, or a text of several lines, which may look like a header.
+/// @param toml  as config::to_toml writes it
+std::string document_of_run(std::string_view toml, std::size_t number, std::size_t cases);
+
+}  // namespace servomill::sim::run
