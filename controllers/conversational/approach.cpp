@@ -59,9 +59,9 @@ std::pair<Run, Positioning> Translator::read_run(const HeidenhainBlock& block, R
   Positioning p = read_positioning(words, name);
   words.refuse_rest(name);
   const bool is_line = kind == Run::Kind::LT || kind == Run::Kind::LN;
-  if (is_line && run.length == 0.0) fail(fmt::format("{} without LEN", name));
-  if (!is_line && run.radius == 0.0) fail(fmt::format("{} without R", name));
-  if (kind == Run::Kind::CT && run.angle == 0.0) fail(fmt::format("{} without CCA", name));
+  if (is_line && run.length == 0.0) fail(fmt::format("{} requires LEN", name));
+  if (!is_line && run.radius == 0.0) fail(fmt::format("{} requires R", name));
+  if (kind == Run::Kind::CT && run.angle == 0.0) fail(fmt::format("{} requires CCA", name));
   return {std::move(run), std::move(p)};
 }
 
@@ -72,12 +72,12 @@ void Translator::approach(const HeidenhainBlock& block) {
   if (kind.kind == Run::Kind::LCT && run.radius < 0.0) fail(fmt::format("{}: R must be > 0", name));
   require_arc(p);
   if (!p.side || *p.side == 0) {
-    fail(fmt::format("{} without RL or RR", name));
+    fail(fmt::format("{} requires RL or RR", name));
   }
-  if (side_ != 0) fail(fmt::format("{} with RL or RR active; program R0 first", name));
+  if (side_ != 0) fail(fmt::format("{} requires R0; cancel RL or RR first", name));
   if (kind.is_polar) {
-    if (!p.polar_radius && !p.polar_angle) fail(fmt::format("{} without PR and PA", name));
-    if (pole_normal_ != 2) fail(fmt::format("{} in a plane with Z", name));
+    if (!p.polar_radius && !p.polar_angle) fail(fmt::format("{} requires PR or PA", name));
+    if (pole_normal_ != 2) fail(fmt::format("{} requires a pole (CC) in the XY plane", name));
     set_program_point(p, 2, *polar_point(p, 2));
   }
   const auto start = work_point(2);
@@ -95,7 +95,7 @@ void Translator::approach(const HeidenhainBlock& block) {
   bool is_incremental = false;
   const Values end = ends(p, is_incremental);
   if (is_incremental)
-    fail(fmt::format("{}: an incremental coordinate from an unknown position", name));
+    fail(fmt::format("{}: the position is unknown here; program absolute coordinates", name));
   if (end[2]) run.depth = *end[2] + delta_length_;
   for (std::size_t i = 0; i < end.size(); ++i) {
     if (end[i]) work_[i] = end[i];
@@ -111,8 +111,8 @@ void Translator::depart(const HeidenhainBlock& block) {
   auto [run, p] = read_run(block, kind.kind, name);
   if (p.target[2]) {
     fail(
-        fmt::format("{} with Z: some controls move Z during the departure, others after it; "
-                    "program Z in the next block",
+        fmt::format("{} with Z: controls differ, some move Z during the departure, others after "
+                    "it; program Z in the next block",
                     name));
   }
   require_arc(p);

@@ -27,17 +27,17 @@ constexpr auto kRefusals = std::to_array<Refusal>({
     {3, 6,
      "pockets, slots and contour cycles are not supported; have the CAM system output the moves",
      Survey::called},
-    {12, 12, "write CALL PGM"},
-    {13, 13, "orientation of the spindle"},
+    {12, 12, "use CALL PGM"},
+    {13, 13, "spindle orientation"},
     {14, 14, "SL cycles are not supported; have the CAM system output the moves", Survey::data},
     {15, 16, "SL cycles are not supported; have the CAM system output the moves", Survey::called},
-    {18, 18, "thread cutting needs a spindle under position control; use cycle 207"},
+    {18, 18, "thread cutting requires a position-controlled spindle; use cycle 207"},
     {20, 20, "SL cycles are not supported; have the CAM system output the moves", Survey::data},
     {21, 25, "SL cycles are not supported; have the CAM system output the moves", Survey::called},
     {27, 30, "cylinder surfaces and digitized data are not supported", Survey::called},
-    {39, 39, "cylinder surfaces are not supported", Survey::called},
+    {39, 39, "cylinder surface transformation is not supported", Survey::called},
     {204, 204,
-     "back boring: no manual found gives the feed of the tool displacement; program the moves",
+     "back boring: the feed rate of the disengaging move is undocumented; program the moves",
      Survey::called},
     {208, 208,
      "bore milling: the approach path to the wall is internal to the control; program it with CC "
@@ -112,7 +112,7 @@ void Translator::define_cycle(const HeidenhainBlock& block) {
                         words.subspan(3));
   }
   if (*number == kApplicationTuning) {
-    return warn_once("cycle 392", "CYCL DEF 392: adapts the drives to the load; ignored");
+    return warn_once("cycle 392", "CYCL DEF 392 is ignored: it adapts the drives to the load");
   }
   if (*step >= 0) {
     return define_old_cycle(static_cast<int>(*number), static_cast<int>(*step), block);
@@ -162,7 +162,7 @@ void Translator::survey_probe(const HeidenhainBlock& block) {
   forget_probed(block.words);
   for (int number = 115; number <= 166; ++number) {
     if (number > 119 && number < 150) continue;
-    parameters_.forget({'Q', number}, "is measured by TCH PROBE");
+    parameters_.forget({'Q', number}, "was measured by TCH PROBE");
   }
   require_no_compensation("TCH PROBE");
   leave_positions_unknown("TCH PROBE", "the measured values are unknown");
@@ -176,7 +176,7 @@ void Translator::forget_probed(std::span<const HeidenhainWord> words) {
     const auto first = word.address == "Q" ? integer_of(word.rest) : std::nullopt;
     if (!first) continue;
     for (long number = *first; number < *first + kResults; ++number) {
-      parameters_.forget({'Q', static_cast<int>(number)}, "is measured by TCH PROBE");
+      parameters_.forget({'Q', static_cast<int>(number)}, "was measured by TCH PROBE");
     }
   }
 }
@@ -198,7 +198,7 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   }
   if (open_cycle_ != number) {
     fail(all[2].place,
-         fmt::format("CYCL DEF {0}.{1} without CYCL DEF {0}.0 before it", number, step));
+         fmt::format("CYCL DEF {0}.{1} requires CYCL DEF {0}.0 before it", number, step));
   }
   Words words(rest);
   switch (number) {
@@ -231,13 +231,13 @@ void Translator::define_old_cycle(int number, int step, const HeidenhainBlock& b
   const std::size_t next = cycle_->values.size() + 1;
   if (static_cast<std::size_t>(step) != next) {
     fail(all[2].place,
-         fmt::format("CYCL DEF {0}.{1} where CYCL DEF {0}.{2} is next", number, step, next));
+         fmt::format("CYCL DEF {0}.{1}: expected CYCL DEF {0}.{2}", number, step, next));
   }
   if (!text) fail(fmt::format("cycle {}: expected a number", number));
   std::string number_text = *text;
   if (rest.back().address == "F") number_text = rest.back().rest;
   if (number_text == "MAX") {
-    fail(fmt::format("cycle {}: F MAX is not allowed for drilling", number));
+    fail(fmt::format("cycle {}: FMAX is not allowed as drilling feed rate", number));
   }
   cycle_->values.push_back(value(operand_of(number_text, rest.back().place)));
 }
@@ -253,7 +253,9 @@ void Translator::call_cycle(const HeidenhainBlock& block) {
   begin_functions(p);
   if (has_position) {
     if (p.target[2]) {
-      fail("CYCL CALL POS with Z moves the surface; use Q203 and CYCL CALL POS with X and Y");
+      fail(
+          "CYCL CALL POS with Z shifts the surface, which is not supported; use Q203 and CYCL CALL "
+          "POS with X and Y");
     }
     move_straight(p);
   }

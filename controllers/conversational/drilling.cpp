@@ -22,7 +22,8 @@ struct Translator::Hole {
 double Translator::q(int number) const { return parameters_.get({'Q', number}, place_); }
 
 Feed Translator::cycle_feed(double per_minute) const {
-  if (!(per_minute > 0.0)) fail(fmt::format("the cycle feed is F{:g}; must be > 0", per_minute));
+  if (!(per_minute > 0.0))
+    fail(fmt::format("feed rate of the cycle F{:g}; must be > 0", per_minute));
   if (per_minute >= 99999.0) return {};  // FMAX
   return {Feed::Kind::per_minute, per_minute * (is_inch_ ? 2.54 : 1.0)};
 }
@@ -36,7 +37,7 @@ void Translator::cycle_move(const Feed& feed, double Z) {
 }
 
 void Translator::cycle_dwell(double seconds) {
-  if (seconds < 0.0) fail(fmt::format("a dwell of {:g} s", seconds));
+  if (seconds < 0.0) fail(fmt::format("dwell time {:g} s; must be >= 0", seconds));
   if (seconds > 0.0) note("G4 " + word('P', seconds));
 }
 
@@ -67,11 +68,11 @@ void Translator::drill() {
                      cycle_->number, cycle_->value_count));
   }
   require_no_compensation("a drilling cycle");
-  if (is_tcp_) fail("a drilling cycle with M128; end it with M129");
+  if (is_tcp_) fail("a drilling cycle is not allowed with M128; cancel it with M129");
   if (!cycle_->why_unknown.empty()) {
     return leave_positions_unknown(fmt::format("CYCL DEF {}", cycle_->number), cycle_->why_unknown);
   }
-  if (frame_.scale != 1.0) fail("a drilling cycle while cycle 11 is active");
+  if (frame_.scale != 1.0) fail("a drilling cycle is not supported while cycle 11 is active");
   last_element_.reset();
   run_drilling_cycle();
   was_rapid_ = true;
@@ -85,7 +86,7 @@ void Translator::leave_moves_out(const std::string& whose, std::string line) {
 // The call of a cycle that a survey cannot follow. Surveys take the second home of G30 for a
 // position that is not known.
 void Translator::leave_positions_unknown(const std::string& whose, const std::string& why) {
-  warn_once(whose, fmt::format("{}: {}; extent and cycle time are without its moves", whose, why));
+  warn_once(whose, fmt::format("{}: {}; extent and cycle time exclude its moves", whose, why));
   leave_moves_out(whose, "G91 G30 X0 Y0 Z0");
   note("G90");
   forget_linear_positions();
@@ -163,8 +164,9 @@ void Translator::tap_old(bool is_rigid) {
     fail(fmt::format("cycle {} starts at the current Z, which is unknown here; program Z first",
                      number));
   }
-  if (!speed_ || *speed_ == 0.0) fail("tapping: no S since the last TOOL CALL");
-  if (!is_rigid && spindle_ == 0) fail("cycle 2: M3 or M4 must be active");
+  if (!speed_ || *speed_ == 0.0)
+    fail("tapping requires S; none programmed since the last TOOL CALL");
+  if (!is_rigid && spindle_ == 0) fail("cycle 2 requires M3 or M4");
   const std::vector<double>& values = cycle_->values;
   const double start = frame_.to_program(2, *work_[2]);
   const double depth = values[1] * unit();
@@ -225,14 +227,14 @@ void Translator::ream_201() {
 void Translator::bore_202() {
   if (q(214) != 0.0) {
     const std::string why =
-        "cycle 202 with Q214: the feed of the disengaging move is unknown; set Q214=0, or program "
-        "the moves";
+        "cycle 202 with Q214: the feed rate of the disengaging move is unknown; set Q214=0, or "
+        "program the moves";
     if (!setup_.accepts_unknown_positions) fail(why);
-    warn_once("Q214", why + "; extent and cycle time are without it");
+    warn_once("Q214", why + "; extent and cycle time exclude it");
     leave_moves_out("CYCL DEF 202", "G90");
   }
   warn_once("cycle 202",
-            "CYCL DEF 202: the spindle orientation at the bottom is ignored: no effect on motion");
+            "CYCL DEF 202: the spindle orientation at the bottom is ignored; no effect on motion");
   ream_201();
 }
 
@@ -248,8 +250,8 @@ void Translator::drill_203() {
   if (!(peck > 0.0)) fail("Q202 must be > 0");
   if (breaks > 0.0 && !parameters_.find({'Q', 256})) {
     fail(
-        "cycle 203 with Q213 and without Q256: older controls retract by 0.2 mm, newer by Q256; "
-        "write Q256");
+        "cycle 203 with Q213 requires Q256: without it older controls retract by 0.2 mm, newer "
+        "ones by Q256");
   }
   const double back = breaks > 0.0 ? q(256) * unit() : 0.0;
   cycle_move({}, h.clearance);
@@ -284,9 +286,7 @@ void Translator::peck_205() {
   double peck = q(202) * unit();
   if (!(peck > 0.0)) fail("Q202 must be > 0");
   if (q(258) != q(259))
-    fail(
-        "cycle 205 with Q258 and Q259 that differ: no manual found describes the transition "
-        "between them");
+    fail("cycle 205: Q258 and Q259 must be equal: the transition between them is undocumented");
   if (parameters_.find({'Q', 379}).value_or(0.0) != 0.0)
     fail("cycle 205 with Q379 (recessed starting point) is not supported");
   const double above = q(258) * unit(), step = q(257) * unit(), back = q(256) * unit();
@@ -318,11 +318,12 @@ void Translator::peck_205() {
 // the pitch Q239.
 void Translator::tap(bool is_rigid) {
   const Hole h = hole();
-  if (!speed_ || *speed_ == 0.0) fail("tapping: no S since the last TOOL CALL");
+  if (!speed_ || *speed_ == 0.0)
+    fail("tapping requires S; none programmed since the last TOOL CALL");
   const double pitch = is_rigid ? q(239) * unit() : 0.0;
   if (is_rigid && pitch == 0.0) fail("Q239 must not be 0");
   const bool is_left = is_rigid ? pitch < 0.0 : spindle_ < 0;
-  if (!is_rigid && spindle_ == 0) fail("cycle 206: M3 or M4 must be active");
+  if (!is_rigid && spindle_ == 0) fail("cycle 206 requires M3 or M4");
   const Feed feed =
       is_rigid ? Feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_} : cycle_feed(q(206));
   cycle_move({}, h.clearance);
@@ -345,12 +346,13 @@ void Translator::tap(bool is_rigid) {
 // moves from memory.
 void Translator::tap_209() {
   const Hole h = hole();
-  if (!speed_ || *speed_ == 0.0) fail("tapping: no S since the last TOOL CALL");
+  if (!speed_ || *speed_ == 0.0)
+    fail("tapping requires S; none programmed since the last TOOL CALL");
   const double pitch = q(239) * unit(), step = q(257) * unit(), back = q(256) * std::abs(pitch);
   if (pitch == 0.0) fail("Q239 must not be 0");
   if (step < 0.0 || back < 0.0) fail("Q257 and Q256 must be >= 0");
   if (parameters_.find({'Q', 403}).value_or(1.0) != 1.0) {
-    fail("cycle 209 with Q403 (another retraction speed) is not supported; set Q403=1");
+    fail("cycle 209 with Q403 (different retraction speed) is not supported; set Q403=1");
   }
   const std::string in = pitch < 0.0 ? "M4" : "M3", out = pitch < 0.0 ? "M3" : "M4";
   const Feed feed{Feed::Kind::per_minute, std::abs(pitch) * *speed_};

@@ -22,7 +22,7 @@ int Translator::whole(double value, int most, const Place& place, std::string_vi
 
 void Translator::go_to(const std::string& label) {
   const BlockMark* mark = program().find_label(label);
-  if (mark == nullptr) fail(fmt::format("there is no LBL {} in the program", label));
+  if (mark == nullptr) fail(fmt::format("LBL {} is not defined in the program", label));
   run_.count_jump(place_);
   program().go_to(*mark);
 }
@@ -39,7 +39,7 @@ void Translator::label(const HeidenhainBlock& block) {
 
 void Translator::call(const HeidenhainBlock& block) {
   const std::span<const HeidenhainWord> words(block.words);
-  if (words.size() < 3) fail("CALL LBL or CALL PGM must name the label or program to call");
+  if (words.size() < 3) fail("CALL requires LBL with a label or PGM with a program name");
   if (words[1].text == "PGM") return call_program(words.subspan(2));
   if (words[1].text != "LBL") fail(words[1].place, "expected CALL LBL or CALL PGM");
   // a name in quotation marks may hold blanks
@@ -91,9 +91,9 @@ void Translator::call_program(std::span<const HeidenhainWord> words) {
   std::optional<ProgramText> text;
   if (setup_.subroutine_file) text = setup_.subroutine_file(name);
   if (!text) {
-    fail(words.front().place,
-         fmt::format("CALL PGM {0}: no file {0}.H next to the program or in the folders of --subs",
-                     name));
+    fail(words.front().place, fmt::format("CALL PGM {0}: file {0}.H found neither next to the "
+                                          "program nor in the folders of --subs",
+                                          name));
   }
   require_no_compensation("CALL PGM");
   const std::size_t called = file_of_program(*text, name, words.front().place);
@@ -121,7 +121,8 @@ std::size_t Translator::file_of_program(ProgramText& text, const std::string& na
   const bool begins = begin && begin->words.size() > 2 && begin->words[0].text == "BEGIN";
   if (!begins) fail(place, fmt::format("{} does not begin with BEGIN PGM", name));
   if ((begin->words.back().text == "INCH") != is_inch_) {
-    fail(place, fmt::format("CALL PGM {}: the called program uses the other unit", name));
+    fail(place,
+         fmt::format("CALL PGM {}: the called program must have the same unit (MM, INCH)", name));
   }
   files_.push_back(std::move(file));
   return files_.size() - 1;
@@ -145,11 +146,13 @@ void Translator::assign_words(Words& words) {
     const auto name = q_name_at(word->text, length);
     if (!name || equals != length) {
       if (name || word->address == "Q")
-        fail(word->place, fmt::format("'{}' assigns nothing", word->text));
-      if (is_behind_name && word->address.size() <= 2 && !word->rest.empty()) {
         fail(word->place,
-             fmt::format("'{}' in a cycle definition; program it in a block of its own",
-                         word->text));
+             fmt::format("'{}' has no value; write it with '=' and a number", word->text));
+      if (is_behind_name && word->address.size() <= 2 && !word->rest.empty()) {
+        fail(
+            word->place,
+            fmt::format("'{}' is not allowed in a cycle definition; program it in a separate block",
+                        word->text));
       }
       continue;  // the name of the cycle
     }
@@ -157,7 +160,7 @@ void Translator::assign_words(Words& words) {
     std::string text = word->text.substr(equals + 1);
     if (text.empty()) {
       const HeidenhainWord* more = words.take_next();
-      if (more == nullptr) fail(word->place, fmt::format("'{}' without a number", word->text));
+      if (more == nullptr) fail(word->place, fmt::format("'{}' requires a number", word->text));
       text = more->text;
     }
     const auto feed = feed_of_name(text, word->place);
@@ -207,17 +210,17 @@ bool Translator::run_function(const HeidenhainBlock& block) {
     if (jump.is_taken) go_to(jump.label);
     return true;
   }
-  if (*number == 14) fail("FN 14: the program stops here with its error message");
+  if (*number == 14) fail("FN 14: the program stops here with an error message");
   if (*number == 18 || *number == 28) return read_of_control(static_cast<int>(*number), rest);
   constexpr std::array kWithoutMotion = {15, 16, 19, 20, 26, 27, 38};
   if (std::find(kWithoutMotion.begin(), kWithoutMotion.end(), *number) != kWithoutMotion.end()) {
     warn_once(fmt::format("FN {}", *number),
-              fmt::format("FN {}: ignored: no effect on motion", *number));
+              fmt::format("FN {} is ignored: no effect on motion", *number));
     return true;
   }
   fail(
-      fmt::format("FN {}: writes data of the control or its PLC with unknown effect; remove the "
-                  "block if it causes no motion",
+      fmt::format("FN {} writes data of the control or PLC, with unknown effect; remove the block "
+                  "if it causes no motion",
                   *number));
 }
 
@@ -238,8 +241,9 @@ bool Translator::read_of_control(int number, std::span<const HeidenhainWord> res
     assign(*name, setup_.parameters.at(to_string(*name)));
   } else {
     parameters_.forget(
-        *name, fmt::format("was read from the control (FN {}: {}; --parameter {}=NUMBER gives it)",
-                           number, text, to_string(*name)));
+        *name,
+        fmt::format("was read from the control (FN {}: {}; set it with --parameter {}=NUMBER)",
+                    number, text, to_string(*name)));
   }
   warn_once(fmt::format("FN {} {}", number, to_string(*name)),
             is_given ? fmt::format("FN {}: {} set by --parameter", number, to_string(*name))

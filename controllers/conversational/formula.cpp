@@ -102,7 +102,7 @@ double function_value(std::string_view name, double x, const Place& place) {
   if (name == "ABS") return std::abs(x);
   if (name == "FRAC") return x - std::trunc(x);
   // SGN 0 is 1 (iTNC 530 (60642x-04) ISO p. 304), 0 on later controls (M)
-  if (x == 0.0) refuse("1 on an iTNC 530, 0 on a TNC 640; compare with FN 9 to FN 12");
+  if (x == 0.0) refuse("1 on an iTNC 530, 0 on a TNC 640; use FN 9 to FN 12 for the comparison");
   return x > 0.0 ? 1.0 : -1.0;
 }
 
@@ -185,7 +185,7 @@ class Parser {
   }
 
   static double remainder(double a, double b, const Token& sign) {
-    if (a < 0.0 || b <= 0.0) fail(sign, "of a negative number is described in no manual found");
+    if (a < 0.0 || b <= 0.0) fail(sign, "the remainder for negative numbers is undocumented");
     return std::fmod(a, b);
   }
 
@@ -195,10 +195,10 @@ class Parser {
     if (next().text != "^") return base;
     const Token sign = take();
     if (is_signed)
-      fail(sign, "after a sign: no manual found gives the order of evaluation; use parentheses");
+      fail(sign, "a power after a sign: the order of evaluation is undocumented; use parentheses");
     const double value = std::pow(base, factor());
-    if (next().text == "^") fail(next(), "two powers in a row; use parentheses");
-    if (!std::isfinite(value)) fail(sign, "the power is not a number");
+    if (next().text == "^") fail(next(), "two consecutive powers; use parentheses");
+    if (!std::isfinite(value)) fail(sign, "the result is not a finite number");
     return value;
   }
 
@@ -239,7 +239,7 @@ void refuse_rounding(double a, double b, const Place& place) {
     return;
   }
   throw InputError(place, fmt::format("{0:.15g} and {1:.15g} differ only by rounding, which "
-                                      "depends on the control; compare with a margin",
+                                      "depends on the control; compare with a tolerance",
                                       a, b));
 }
 

@@ -43,7 +43,7 @@ constexpr auto kFunctions = std::to_array<Function>({
     {101, Effect::none, "change to a replacement tool"},
     {102, Effect::none, "change to a replacement tool"},
     {103, Effect::feed, "the plunging feed factor is not supported; program F"},
-    {104, Effect::refused, "the manually set datum is not in the program"},
+    {104, Effect::refused, "the manually set datum is unknown"},
     {105, Effect::none, "selection of the Kv factor"},
     {106, Effect::none, "selection of the Kv factor"},
     {107, Effect::none, "error message for oversized replacement tools"},
@@ -57,7 +57,7 @@ constexpr auto kFunctions = std::to_array<Function>({
     {115, Effect::none, "end of M114"},
     {116, Effect::feed, "feed of rotary axes in mm/min is not supported; use M117"},
     {117, Effect::start, ""},
-    {118, Effect::none, "superimposed handwheel"},
+    {118, Effect::none, "handwheel superimposition"},
     {120, Effect::none, "look-ahead of radius compensation"},
     {124, Effect::refused, "omitting points on short lines is not supported"},
     {126, Effect::start, ""},
@@ -65,11 +65,10 @@ constexpr auto kFunctions = std::to_array<Function>({
     {128, Effect::start, ""},
     {129, Effect::start, ""},
     {130, Effect::refused,
-     "points in the untilted coordinate system are not supported; PLANE RESET first"},
+     "points in the untilted coordinate system are not supported; program PLANE RESET first"},
     {134, Effect::none, "exact stop at transitions with rotary axes"},
     {135, Effect::none, "end of M134"},
-    {136, Effect::feed,
-     "F in micrometres per revolution on a TNC 426, in mm per revolution on an iTNC 530; use FU"},
+    {136, Effect::feed, "F is in um/rev on a TNC 426, in mm/rev on an iTNC 530; use FU"},
     {137, Effect::start, ""},
     {138, Effect::refused, "the selection of tilting axes is not supported"},
     {140, Effect::start, ""},
@@ -95,10 +94,10 @@ void Translator::begin_functions(const Positioning& p) {
   for (const auto& [m, place] : p.functions) {
     const Function* function = find_function(m);
     if (function == nullptr || function->effect == Effect::none) {
-      warn_once(fmt::format("M{}", m), fmt::format("M{}: {}; ignored: no effect on motion", m,
+      warn_once(fmt::format("M{}", m), fmt::format("M{} is ignored: {}; no effect on motion", m,
                                                    function != nullptr ? function->text
-                                                   : m < 90 ? "a function of the machine builder"
-                                                            : "not known"));
+                                                   : m < 90            ? "machine-builder function"
+                                                                       : "unknown"));
       if (function == nullptr && m >= 90) {
         fail(place, fmt::format("M{}: unknown function", m));
       }
@@ -120,7 +119,8 @@ void Translator::start_function(int m, const Place& place) {
     case 4:
     case 13:
     case 14: {
-      if (!speed_) fail(place, fmt::format("M{}: no S since the last TOOL CALL", m));
+      if (!speed_)
+        fail(place, fmt::format("M{} requires S; none programmed since the last TOOL CALL", m));
       spindle_ = m % 10 == 3 ? 1 : -1;
       note(spindle_ > 0 ? "M3" : "M4");
       if (m > 10) note("M8");

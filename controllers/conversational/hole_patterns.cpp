@@ -22,12 +22,12 @@ Point in_direction(double degrees) { return {std::cos(degrees * deg), std::sin(d
 void Translator::call_hole_pattern(bool is_circle) {
   const int number = is_circle ? 220 : 221;
   if (!cycle_ || cycle_->number < 200 || cycle_->number == 247) {
-    fail(fmt::format("CYCL DEF {} needs a drilling cycle from 200 on before it", number));
+    fail(fmt::format("CYCL DEF {} requires a preceding drilling cycle (200 or higher)", number));
   }
   if (is_circle && parameters_.find({'Q', 365}).value_or(0.0) != 0.0) {
     fail(
-        "cycle 220 with Q365 (from hole to hole on the circle): no manual found gives the feed; "
-        "set Q365=0");
+        "cycle 220 with Q365 (travel along the pitch circle): the feed rate is undocumented; set "
+        "Q365=0");
   }
   drill_points(is_circle ? points_on_circle() : points_on_lines());
 }
@@ -78,8 +78,8 @@ void Translator::drill_points(const std::vector<Point>& points) {
   if (between != 0.0 && between != 1.0) fail(fmt::format("Q301={:g}; must be 0 or 1", between));
   if (between == 0.0 && second > clearance) {
     fail(
-        "Q301=0 with a second set-up clearance: no manual found gives the height after the last "
-        "hole; set Q301=1, or Q204=0");
+        "Q301=0 with a second set-up clearance: the height after the last hole is undocumented; "
+        "set Q301=1, or Q204=0");
   }
   is_modal_call_ = false;
   cycle_move({}, second);

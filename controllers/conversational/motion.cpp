@@ -25,7 +25,7 @@ void Translator::line(const HeidenhainBlock& block) {
   const Positioning p = read_positioning(words, "L");
   words.refuse_rest("L");
   if (p.direction || p.polar_angle || p.polar_radius)
-    fail("L with DR, PR or PA; use LP with PR and PA");
+    fail("L does not accept DR, PR or PA; use LP with PR and PA");
   begin_functions(p);
   set_side(p);
   move_straight(p);
@@ -34,7 +34,7 @@ void Translator::line(const HeidenhainBlock& block) {
 
 void Translator::set_side(const Positioning& p) {
   if (!p.side) return;
-  if (*p.side != 0 && is_tcp_) fail("RL and RR with M128; end it with M129");
+  if (*p.side != 0 && is_tcp_) fail("RL and RR are not allowed with M128; cancel it with M129");
   side_ = *p.side;
 }
 
@@ -42,19 +42,20 @@ void Translator::move_straight(const Positioning& p) {
   if (p.retract) return retract(p);
   if (p.is_retract_to_limit) return retract_to_limit(p);
   if (!p.has_target()) {
-    if (p.has(91)) fail("M91 without a coordinate");
+    if (p.has(91)) fail("M91 requires a coordinate");
     if (p.feed && p.feed->kind == Feed::Kind::per_minute) feed_ = p.feed->value;
     return;
   }
   if (p.has(91)) return move_to_machine(p);
   if (p.has(92)) return move_to_reference(p);
   if (moves_rotary(p) && turn_to_plane(p)) return;
-  if (moves_rotary(p) && plane_) fail("a rotary axis in a tilted plane; PLANE RESET first");
+  if (moves_rotary(p) && plane_)
+    fail("rotary axes cannot be programmed in a tilted plane; program PLANE RESET first");
   const Feed feed = feed_of(p);
   if (moves_rotary(p) && !is_rotary_only(p) && !is_tcp_ && feed.kind == Feed::Kind::per_minute) {
     warn_once("mixed feed",
-              "F of a block with linear and rotary axes: taken as the feed of the linear axes; on "
-              "some machines it is the feed of all axes combined");
+              "F in a block with linear and rotary axes: treated as the feed rate of the linear "
+              "axes; on some machines it applies to all axes combined");
   }
   Motion motion = motion_of(p);
   motion.feed = feed;
@@ -86,7 +87,7 @@ Motion Translator::motion_of(const Positioning& p) {
 
 double Translator::tool_radius(const Place& place) const {
   const ToolEntry* tool = setup_.tools.find(tool_);
-  if (!has_tool_call_ && tool_ == 0) fail(place, "RL and RR before the first TOOL CALL");
+  if (!has_tool_call_ && tool_ == 0) fail(place, "RL and RR require a preceding TOOL CALL");
   if (tool == nullptr) {
     fail(place, fmt::format("RL and RR: the radius of tool {} is unknown; pass a tool table with "
                             "--tools",
@@ -94,7 +95,7 @@ double Translator::tool_radius(const Place& place) const {
   }
   if (tools_without_radius_.contains(tool_)) {
     fail(place,
-         fmt::format("RL and RR: TOOL DEF {} has no R, so the radius is unknown; write it", tool_));
+         fmt::format("RL and RR: TOOL DEF {} has no R, so the radius is unknown; add R", tool_));
   }
   return tool->diameter / 2.0 / mm + delta_radius_;
 }
@@ -129,8 +130,8 @@ void Translator::store_end(const Motion& motion) {
 void Translator::end_compensation(bool names_both) {
   if (!names_both && !survey_knows_no_radius()) {
     fail(
-        "the block that cancels RL or RR must program both axes of the plane: no manual found "
-        "specifies the other one");
+        "the block after R0 must program both axes of the plane: the position of the other axis is "
+        "undocumented");
   }
   is_beside_ = false;
 }
@@ -146,9 +147,9 @@ void Translator::add(Motion motion) {
   const bool names_second = motion.words[axes[1]].has_value();
   const bool in_plane = names_first || names_second;
   if (side_ != 0 && in_plane) {
-    if (motion.normal != 2) fail("RL and RR in a plane with Z");
+    if (motion.normal != 2) fail("RL and RR are supported in the XY plane only");
     motion.radius = survey_knows_no_radius() ? 0.0 : tool_radius(place_);
-    if (motion.radius < 0.0) fail("RL and RR: the radius of the tool with DR is negative");
+    if (motion.radius < 0.0) fail("RL and RR: the tool radius including DR is negative");
   }
   if (side_ == 0 && path_.is_compensating()) is_beside_ = true;
   if (is_beside_ && side_ == 0 && in_plane) end_compensation(names_first && names_second);
@@ -166,8 +167,9 @@ void Translator::add(Motion motion) {
 // act on them.
 void Translator::move_to_machine(const Positioning& p) {
   require_no_compensation("M91");
-  if (is_tcp_) fail("M91 with M128; end it with M129: [530] p. 290");
-  if (plane_) fail("M91 in a tilted plane; PLANE RESET first: TNC 407 manual, M91");
+  // [530] p. 290 (M128), TNC 407 manual, M91 (tilted plane)
+  if (is_tcp_) fail("M91 is not allowed with M128; cancel it with M129");
+  if (plane_) fail("M91 is not allowed in a tilted plane; program PLANE RESET first");
   Motion motion;
   motion.place = place_;
   motion.is_machine = true;
@@ -175,7 +177,7 @@ void Translator::move_to_machine(const Positioning& p) {
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
     if (!p.target[i]) continue;
     const auto& target = *p.target[i];
-    if (target.is_increment) fail(target.value.place, "M91 with an incremental coordinate");
+    if (target.is_increment) fail(target.value.place, "M91 requires absolute coordinates");
     motion.words[i] = i < 3 ? length(target.value) : value(target.value);
   }
   path_.add(motion);
@@ -191,7 +193,8 @@ void Translator::move_to_machine(const Positioning& p) {
 // 530: MP960; from memory). Surveys take the second home of G30, which is not known either.
 void Translator::move_to_reference(const Positioning& p) {
   require_no_compensation("M92");
-  if (is_tcp_ || plane_) fail("M92 with M128 or in a tilted plane; cancel them first");
+  if (is_tcp_ || plane_)
+    fail("M92 is not supported with M128 or in a tilted plane; cancel them first");
   const std::string why = "M92: the machine builder's reference point is unknown; use M91";
   if (!setup_.accepts_unknown_positions) fail(why);
   feed_of(p);
@@ -200,7 +203,7 @@ void Translator::move_to_reference(const Positioning& p) {
   for (std::size_t i = 0; i < work_.size(); ++i) {
     if (!p.target[i]) continue;
     if (p.target[i]->is_increment)
-      fail(p.target[i]->value.place, "M92 with an incremental coordinate");
+      fail(p.target[i]->value.place, "M92 requires absolute coordinates");
     axes += fmt::format(" {}0", letter(kAllAxes[i]));
     work_[i].reset();
   }
@@ -211,13 +214,16 @@ void Translator::move_to_reference(const Positioning& p) {
 
 // M140 MB: along the tool axis.
 void Translator::retract(const Positioning& p) {
-  if (p.has_target()) fail("M140 with coordinates; program them in a separate block");
-  if (is_tcp_) fail("M140 with M128: the direction is that of the inclined tool; program L");
+  if (p.has_target()) fail("M140 does not accept coordinates; program them in a separate block");
+  if (is_tcp_)
+    fail(
+        "M140 with M128 is not supported: the retraction follows the inclined tool axis; program "
+        "L");
   if (plane_ && !is_tool_in_plane_) {
     if (can_leave_plane_unknown()) return forget_linear_positions();
     fail(
-        "MB in a plane with STAY, before the rotary axes turn to it: along the tool, or along Z of "
-        "the plane; turn them first, or program L");
+        "MB after PLANE ... STAY, before the rotary axes are positioned: the direction is "
+        "undetermined (tool axis or Z of the plane); position them first, or program L");
   }
   Motion motion;
   motion.place = place_;
@@ -230,11 +236,11 @@ void Translator::retract(const Positioning& p) {
 // M140 MB MAX: along the tool axis to the end of travel, at rapid where the block has no F. Where
 // the machine is unknown, surveys take the stored position of G28 for a position that is not known.
 void Translator::retract_to_limit(const Positioning& p) {
-  if (p.has_target()) fail("M140 with coordinates; program them in a separate block");
+  if (p.has_target()) fail("M140 does not accept coordinates; program them in a separate block");
   if (is_tcp_ || plane_) {
     fail(
-        "M140 MB MAX with M128 or in a tilted plane: the direction is that of the inclined tool; "
-        "cancel them first, or give MB a number");
+        "M140 MB MAX with M128 or in a tilted plane is not supported: the retraction follows the "
+        "inclined tool axis; cancel them first, or program MB with a number");
   }
   require_no_compensation("M140 MB MAX");
   std::optional<double> end;
@@ -267,7 +273,7 @@ void Translator::retract_to_limit(const Positioning& p) {
 // PR and PA about the pole, in program coordinates; a coordinate left out keeps its value.
 // Increments count from the position: [530] p. 231.
 std::optional<Point> Translator::polar_point(const Positioning& p, int normal) const {
-  if (!pole_) fail("no CC before the polar coordinates, or its coordinate system has changed");
+  if (!pole_) fail("polar coordinates require a preceding CC in the same coordinate system");
   const auto now = program_point(normal);
   const bool needs_now = !p.polar_radius || !p.polar_angle || p.polar_radius->is_increment ||
                          p.polar_angle->is_increment;
@@ -290,10 +296,10 @@ void Translator::polar_line(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(1));
   Positioning p = read_positioning(words, "LP");
   words.refuse_rest("LP");
-  if (!p.polar_radius && !p.polar_angle) fail("LP without PR and PA");
-  if (p.has(91)) fail("LP with M91");
+  if (!p.polar_radius && !p.polar_angle) fail("LP requires PR or PA");
+  if (p.has(91)) fail("LP does not accept M91");
   const auto axes = plane_axes(pole_normal_);
-  if (p.target[axes[0]] || p.target[axes[1]]) fail("LP with an axis of the plane of CC");
+  if (p.target[axes[0]] || p.target[axes[1]]) fail("LP does not accept axes of the plane of CC");
   begin_functions(p);
   set_side(p);
   set_program_point(p, pole_normal_, *polar_point(p, pole_normal_));
@@ -310,10 +316,10 @@ void Translator::round_or_chamfer(const HeidenhainBlock& block, bool is_rounding
   auto size = words.take_number(name);
   if (!size && is_rounding) size = words.take_number("R");
   if (!size && !is_rounding) size = words.take_number("L");
-  if (!size) fail(fmt::format("{} without a {}", name, is_rounding ? "radius" : "length"));
+  if (!size) fail(fmt::format("{} requires a {}", name, is_rounding ? "radius" : "length"));
   const Positioning p = read_positioning(words, name);
   words.refuse_rest(name);
-  if (p.has_target()) fail(fmt::format("{} with a coordinate", name));
+  if (p.has_target()) fail(fmt::format("{} does not accept coordinates", name));
   const double written = length(*size) * frame_.scale;
   if (!(written > 0.0)) fail(fmt::format("{}: must be > 0", name));
   std::optional<Feed> feed = p.feed;

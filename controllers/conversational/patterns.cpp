@@ -47,7 +47,7 @@ double Translator::pattern_number(Words& words, std::string_view name, double un
                                   std::optional<double> otherwise) const {
   const auto operand = words.take_number(name);
   if (operand) return value(*operand) * unit;
-  if (!otherwise) fail(fmt::format("PATTERN DEF without {}", name));
+  if (!otherwise) fail(fmt::format("PATTERN DEF requires {}", name));
   return *otherwise;
 }
 
@@ -68,7 +68,7 @@ void Translator::define_pattern(const HeidenhainBlock& block) {
     one.refuse_rest("PATTERN DEF");
     begin = end;
   }
-  if (pattern_.empty()) fail("PATTERN DEF without a pattern");
+  if (pattern_.empty()) fail("PATTERN DEF requires at least one pattern");
 }
 
 void Translator::add_pattern(const std::string& kind, Words& words) {
@@ -111,7 +111,7 @@ void Translator::add_circle(Words& words, const Point& centre, double surface, b
   if (!is_full) {
     const auto given = words.take_number("STEP");
     const auto last = words.take_number("STOP");
-    if (given.has_value() == last.has_value()) fail("PITCHCIRC takes STEP or STOP");
+    if (given.has_value() == last.has_value()) fail("PITCHCIRC requires either STEP or STOP");
     step = given ? value(*given) : count > 1 ? (value(*last) - first) / (count - 1) : 0.0;
   }
   for (int i = 0; i < count; ++i) {
@@ -122,12 +122,12 @@ void Translator::add_circle(Words& words, const Point& centre, double surface, b
 // CYCL CALL PAT FMAX M3; without F at the last one.
 void Translator::call_pattern(Words& words) {
   if (pattern_.empty()) {
-    fail("CYCL CALL PAT without PATTERN DEF: a table of points is not in the program");
+    fail("CYCL CALL PAT requires PATTERN DEF: point tables are not supported");
   }
   const Positioning p = read_positioning(words, "CYCL CALL PAT");
   words.refuse_rest("CYCL CALL PAT");
-  if (p.has_target()) fail("CYCL CALL PAT takes no coordinates");
-  if (!cycle_ || cycle_->number == 1) fail("CYCL CALL PAT needs a cycle from 200 on");
+  if (p.has_target()) fail("CYCL CALL PAT does not accept coordinates");
+  if (!cycle_ || cycle_->number == 1) fail("CYCL CALL PAT requires a cycle 200 or higher");
   begin_functions(p);
   is_modal_call_ = false;
   const auto height = work_[2];

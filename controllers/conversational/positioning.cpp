@@ -51,7 +51,7 @@ bool Translator::read_word(Words& words, Positioning& p, std::string_view block)
   } else {
     const bool is_parallel = address == "U" || address == "V" || address == "W";
     if (block == "L" && is_parallel) {
-      fail(place, fmt::format("'{}': there are no axes U, V, W", text));
+      fail(place, fmt::format("'{}': axes U, V and W are not supported", text));
     }
     return false;
   }
@@ -84,7 +84,8 @@ bool Translator::read_side(Words& words, Positioning& p) {
   const bool is_side = text == "R0" || text == "RL" || text == "RR";
   const bool is_direction = text == "DR+" || text == "DR-";
   if (!is_side && !is_direction) return false;
-  if (is_side && p.side) fail(word.place, fmt::format("'{}': a second radius compensation", text));
+  if (is_side && p.side)
+    fail(word.place, fmt::format("'{}': radius compensation appears twice in the block", text));
   if (is_side) p.side = text == "R0" ? 0 : text == "RL" ? 1 : -1;
   if (is_direction) p.direction = text.back() == '+' ? 1 : -1;
   words.take(text);
@@ -105,7 +106,7 @@ bool Translator::read_function(Words& words, Positioning& p) {
                             (words.take("MB") != nullptr && words.take("MAX") != nullptr);
     if (p.is_retract_to_limit) return true;
     const auto retract = words.take_number("MB");
-    if (!retract) fail(place, "M140 needs MB with a number");
+    if (!retract) fail(place, "M140 requires MB with a number");
     p.retract = length(*retract);
   }
   return true;
@@ -114,7 +115,7 @@ bool Translator::read_function(Words& words, Positioning& p) {
 // mm/min; in programs in INCH tenths of an inch per minute (TNC 7 user's manual, Cutting data).
 double Translator::feed_per_minute(const Operand& operand) const {
   const double F = value(operand);
-  if (!(F > 0.0)) fail(operand.place, fmt::format("F{:g}: a feed must be > 0", F));
+  if (!(F > 0.0)) fail(operand.place, fmt::format("F{:g}: the feed rate must be > 0", F));
   return F * (is_inch_ ? 2.54 : 1.0);
 }
 
@@ -122,7 +123,7 @@ bool Translator::read_feed(Words& words, Positioning& p) {
   const HeidenhainWord* word = words.peek();
   const Place place = word->place;
   const std::string text = word->text, address = word->address;
-  if (p.feed) fail(place, fmt::format("'{}': a second feed in the block", text));
+  if (p.feed) fail(place, fmt::format("'{}': the feed rate appears twice in the block", text));
   if (text == "FMAX") {
     words.take_next();
     p.feed = Feed{};
@@ -134,28 +135,29 @@ bool Translator::read_feed(Words& words, Positioning& p) {
     p.feed = Feed{Feed::Kind::per_minute, feed_per_minute(*words.take_number("F"))};
   } else if (address == "FT") {
     const double time = value(*words.take_number("FT"));
-    if (!(time > 0.0)) fail(place, fmt::format("'{}': a time must be > 0", text));
+    if (!(time > 0.0)) fail(place, fmt::format("'{}': the time must be > 0", text));
     p.feed = Feed{Feed::Kind::time, time};
   } else if (address == "FU") {
-    if (!speed_) fail(place, "FU: no S since the last TOOL CALL");
+    if (!speed_) fail(place, "FU requires S; none programmed since the last TOOL CALL");
     p.feed = Feed{Feed::Kind::per_minute, length(*words.take_number("FU")) * *speed_};
   } else {
-    fail(place, fmt::format("'{}': this feed is not supported; program F in mm/min", text));
+    fail(place,
+         fmt::format("'{}': this type of feed rate is not supported; program F in mm/min", text));
   }
   return true;
 }
 
 // From here on a survey knows no feeds.
 void Translator::forget_feeds(const std::string& why) {
-  warn_once("feeds " + why, why + "; the cycle time stays unknown");
+  warn_once("feeds " + why, why + "; the cycle time is unknown");
   are_feeds_unknown_ = true;
 }
 
 Feed Translator::modal_feed() {
-  const std::string why = "no F in the block, and none is active";
+  const std::string why = "no feed rate is active; program F";
   if (!feed_ && !setup_.accepts_unknown_feeds) fail(why);
   if (!feed_) {
-    warn_once("feed", why + "; the cycle time stays unknown");
+    warn_once("feed", why + "; the cycle time is unknown");
     return {Feed::Kind::unknown};
   }
   return {Feed::Kind::per_minute, *feed_};
@@ -181,7 +183,8 @@ std::optional<Point> Translator::program_point(int normal) const {
   if (!work) return std::nullopt;
   if (normal == 2) return frame_.to_program(*work);
   const auto axes = plane_axes(normal);
-  if (frame_.couples_plane()) fail("a circle in a plane with Z while cycle 10 is active");
+  if (frame_.couples_plane())
+    fail("a circle in a plane with Z is not supported while cycle 10 is active");
   return Point(frame_.to_program(axes[0], work->x()), frame_.to_program(axes[1], work->y()));
 }
 
@@ -289,7 +292,7 @@ double Translator::rotary_end(std::size_t axis, double program, const Place& pla
              letter_of(axis), way, shorter,
              is_shorter_path_
                  ? "M126 acts only on axes without travel limits; pass the machine with --machine"
-                 : "this depends on the machine (MP7682); program M126 or M127"));
+                 : "the direction depends on the machine (MP7682); program M126 or M127"));
   }
   if (std::abs(std::abs(shorter) - kHalfTurn) < 1e-6) {
     fail(place, fmt::format("{} would rotate by 180 degrees: the direction is undetermined",

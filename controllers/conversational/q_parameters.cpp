@@ -35,13 +35,12 @@ double QParameters::get(const QName& name, const Place& place) const {
   if (const auto value = find(name)) return *value;
   const auto unknown = unknown_.find({name.kind, name.number});
   if (unknown != unknown_.end()) {
-    throw InputError(place, fmt::format("{} {}, which is unknown here; assign it in the program",
+    throw InputError(place, fmt::format("{} {} and is unknown here; assign it in the program",
                                         to_string(name), unknown->second));
   }
-  throw InputError(place,
-                   fmt::format("{0} has no value here: the control would use the value left by an "
-                               "earlier program; assign it, or pass --parameter {0}=NUMBER",
-                               to_string(name)));
+  throw InputError(place, fmt::format("{0} is not defined: the control would use the value from an "
+                                      "earlier program; assign it, or pass --parameter {0}=NUMBER",
+                                      to_string(name)));
 }
 
 }  // namespace servomill::controllers::conversational

@@ -44,12 +44,13 @@ void Translator::function_block(Words& words) {
   const bool has_other_path = is_on_axes || is_vector;
   if (!is_known || (has_other_path && !setup_.accepts_unknown_positions)) {
     fail(
-        "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS, which is M128, RESET TCPM and DWELL "
+        "FUNCTION: only TCPM F TCP AXIS POS PATHCTRL AXIS (same as M128), RESET TCPM and DWELL "
         "TIME are supported");
   }
   words.refuse_rest("FUNCTION TCPM");
   if (has_other_path) {
-    forget_feeds("FUNCTION TCPM with F CONT or PATHCTRL VECTOR: only the ends of moves are known");
+    forget_feeds(
+        "FUNCTION TCPM with F CONT or PATHCTRL VECTOR: only the end points of moves are known");
   }
   tcp_control(true);
 }
@@ -79,7 +80,7 @@ void Translator::plane(const HeidenhainBlock& block) {
   constexpr std::array<std::string_view, 3> kNames = {"SPA", "SPB", "SPC"};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto angle = words.take_number(kNames[i]);
-    if (!angle) fail(fmt::format("PLANE SPATIAL without {}", kNames[i]));
+    if (!angle) fail(fmt::format("PLANE SPATIAL requires {}", kNames[i]));
     angles[i] = value(*angle);
   }
   tilt(angles, behaviour(), words);
@@ -92,7 +93,7 @@ void Translator::retract_before_plane(Words& words, const std::string& behaviour
   const HeidenhainWord* mb = words.take("MB");
   const bool is_to_limit =
       mb != nullptr ? words.take("MAX") != nullptr : words.take("MBMAX") != nullptr;
-  if (mb != nullptr && !is_to_limit) fail(mb->place, "'MB' without a number or MAX");
+  if (mb != nullptr && !is_to_limit) fail(mb->place, "'MB' requires a number or MAX");
   p.is_retract_to_limit = is_to_limit;
   if (const auto MB = is_to_limit ? std::nullopt : words.take_number("MB")) p.retract = length(*MB);
   while (words.peek() != nullptr && words.peek()->address.starts_with('F')) read_feed(words, p);
@@ -107,13 +108,15 @@ void Translator::retract_before_plane(Words& words, const std::string& behaviour
 int Translator::plane_options(Words& words) {
   const int seq = words.take("SEQ+") != nullptr ? 1 : words.take("SEQ-") != nullptr ? -1 : 0;
   if (words.take("SYM+") != nullptr || words.take("SYM-") != nullptr) {
-    fail("PLANE: SYM selects a solution by a machine-specific rule; use SEQ+, SEQ- or neither");
+    fail(
+        "PLANE: SYM selects a solution by a machine-specific rule and is not supported; use SEQ+, "
+        "SEQ- or neither");
   }
   if (words.take("TABLE") != nullptr || words.take("COORD") != nullptr) {
     if (words.take("ROT") == nullptr) fail("PLANE: ROT must follow TABLE and COORD");
-    warn_once(
-        "TABLE ROT",
-        "PLANE: TABLE ROT and COORD ROT are ignored; they matter only where a table axis is free");
+    warn_once("TABLE ROT",
+              "PLANE: TABLE ROT and COORD ROT are ignored; they matter only with a free rotary "
+              "table axis");
   }
   return seq;
 }
@@ -126,9 +129,9 @@ bool Translator::can_leave_plane_unknown() const {
 // A plane of unknown tilt: surveys leave out what moves in it.
 void Translator::survey_plane(const std::string& what) {
   require_no_compensation("PLANE");
-  if (is_tcp_) fail("PLANE with M128; end it with M129");
+  if (is_tcp_) fail("PLANE is not allowed with M128; cancel it with M129");
   warn_once("plane",
-            what + ": the tilt is not read; moves in the plane are left out of the extent");
+            what + ": the tilt is not evaluated; moves in the plane are excluded from the extent");
   if (plane_) reset_plane("STAY");
   path_.flush();
   plane_turn_.clear();
@@ -139,7 +142,7 @@ void Translator::survey_plane(const std::string& what) {
   lines_.put({plane_line_, place_, {true, false, {}}});
   enter_plane({90.0, 0.0, 0.0});
   for (const int number : {120, 121, 122}) {
-    parameters_.forget({'Q', number}, "is the angle of a rotary axis after PLANE");
+    parameters_.forget({'Q', number}, "is the rotary axis angle of PLANE");
   }
   for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
 }
@@ -155,20 +158,20 @@ void Translator::enter_plane(const std::array<double, 3>& angles) {
 void Translator::tilt(const std::array<double, 3>& angles, const std::string& behaviour,
                       Words& words) {
   require_no_compensation("PLANE");
-  if (is_tcp_) fail("PLANE with M128; end it with M129");
-  if (behaviour.empty()) fail("PLANE SPATIAL needs STAY, TURN or MOVE");
+  if (is_tcp_) fail("PLANE is not allowed with M128; cancel it with M129");
+  if (behaviour.empty()) fail("PLANE SPATIAL requires STAY, TURN or MOVE");
   if (behaviour == "MOVE") {
     const std::string why =
         "PLANE ... MOVE: the compensating movement of the linear axes is not supported; use TURN";
     if (!can_leave_plane_unknown()) fail(why);
-    warn_once("MOVE", why + "; left out of the extent");
+    warn_once("MOVE", why + "; excluded from the extent");
   }
   const int seq = plane_options(words);
   retract_before_plane(words, behaviour);
   words.refuse_rest("PLANE SPATIAL");
   if (!frame_.is_plain() &&
       (frame_.rotation != 0.0 || frame_.is_any_mirrored() || frame_.scale != 1.0)) {
-    fail("PLANE while cycle 8, 10 or 11 is active; define them after it");
+    fail("PLANE is not allowed while cycle 8, 10 or 11 is active; define them after PLANE");
   }
   if (setup_.tools.find(tool_) == nullptr) {
     const std::string why = fmt::format(
@@ -205,7 +208,7 @@ std::string Translator::turn_of_plane(const Eigen::Matrix3d& R, int seq) {
     if (is_level) {
       parameters_.set({'Q', number}, 0.0);
     } else {
-      parameters_.forget({'Q', number}, "is the angle of a rotary axis after PLANE");
+      parameters_.forget({'Q', number}, "is the rotary axis angle of PLANE");
     }
   }
   if (seq == 0 || is_level || !setup_.machine) return {};
@@ -233,7 +236,7 @@ std::string Translator::turn_of_plane(const Eigen::Matrix3d& R, int seq) {
     return text;
   }
   fail(fmt::format(
-      "PLANE: no position of the rotary axes within their travel has {} {} 0, as {} requires",
+      "PLANE: no rotary axis position within the travel limits has {} {} 0, as {} requires",
       chain.layout.letter_of(principal), seq > 0 ? ">=" : "<=", seq > 0 ? "SEQ+" : "SEQ-"));
 }
 
@@ -249,7 +252,8 @@ bool Translator::turn_to_plane(const Positioning& p) {
   }
   if (!is_turn) return false;
   if (p.feed && p.feed->kind != Feed::Kind::rapid) {
-    warn_once("turn", "the rotary axes are positioned to the plane with F: taken as FMAX");
+    warn_once("turn",
+              "F in the block that positions the rotary axes to the plane: treated as FMAX");
   }
   path_.flush();
   if (plane_turn_.empty()) {
@@ -282,13 +286,14 @@ void Translator::reset_plane(const std::string& behaviour) {
     // nothing is tilted: rotary axes go to zero
     if (!setup_.machine && rotary_axes_are_at_zero()) {
       return warn_once("PLANE RESET",
-                       "PLANE RESET TURN or MOVE: takes the rotary axes to zero, where they are "
-                       "taken to be: no line before it turns one");
+                       "PLANE RESET TURN or MOVE moves the rotary axes to zero; they are assumed "
+                       "to be there: no preceding block moves them");
     }
   } else {
     if (!frame_.is_plain()) {
       fail(
-          "PLANE RESET while a cycle 7, 8, 10 or 11 of the tilted plane is active; reset it first");
+          "PLANE RESET is not allowed while cycle 7, 8, 10 or 11 is active in the tilted plane; "
+          "reset it first");
     }
     path_.flush();
     lines_.put("G69", place_);
@@ -299,8 +304,8 @@ void Translator::reset_plane(const std::string& behaviour) {
   const bool turns = behaviour == "TURN" || behaviour == "MOVE";
   if (turns && can_leave_plane_unknown()) {
     warn_once("PLANE RESET",
-              "PLANE RESET TURN or MOVE: takes the rotary axes to zero; which ones depends on the "
-              "machine, which --machine gives");
+              "PLANE RESET TURN or MOVE moves the rotary axes of the machine to zero, which is "
+              "unknown here; pass it with --machine");
     for (std::size_t i = 3; i < work_.size(); ++i) work_[i] = frame_.shift[i];
     return forget_linear_positions();
   }

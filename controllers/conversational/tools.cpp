@@ -19,16 +19,16 @@ int Translator::named_tool(Words& words) {
     name += " " + words.take_next()->text;
   }
   if (!setup_.tools.empty()) {
-    fail(place,
-         "a tool called by name: only the control's own tool table has names; use the tool number");
+    fail(place, "tool names are not supported with --tools; use the tool number");
   }
   const auto [found, is_new] =
       tool_names_.try_emplace(name, kFirst + static_cast<int>(tool_names_.size()));
   if (is_new) {
-    warn_once(name,
-              fmt::format(
-                  "TOOL CALL {}: taken as tool {} of unknown length, since no tool table is given",
-                  name, found->second));
+    warn_once(
+        name,
+        fmt::format(
+            "TOOL CALL {}: treated as tool {} of unknown length; pass a tool table with --tools",
+            name, found->second));
   }
   return found->second;
 }
@@ -47,14 +47,14 @@ void Translator::call_tool(const HeidenhainBlock& block) {
       const double written = value(operand_of(word->text, at));
       words.take_next();
       if (written != std::floor(written)) {
-        fail(at, "an indexed tool (5.1): this tool table has integer numbers only");
+        fail(at, "indexed tools (5.1) are not supported; the tool number must be an integer");
       }
       number = whole(written, 32767, at, "TOOL CALL");
     }
   }
   for (const char* axis : {"X", "Y", "U", "V", "W"}) {
     if (words.take(axis) != nullptr) {
-      fail(fmt::format("tool axis {}: only Z is supported", axis));
+      fail(fmt::format("tool axis {} is not supported; only Z", axis));
     }
   }
   words.take("Z");
@@ -76,8 +76,10 @@ void Translator::call_tool(const HeidenhainBlock& block) {
   if (DR2()) warn_once("DR2", "DR2 is ignored");
   words.refuse_rest("TOOL CALL");
   require_no_compensation("TOOL CALL");
-  if (number && is_tcp_) fail("TOOL CALL with M128; end it with M129: [530] p. 290");
-  if (number && plane_) fail("TOOL CALL in a tilted plane; PLANE RESET first");
+  if (number && is_tcp_)
+    fail("TOOL CALL is not allowed with M128; cancel it with M129");  // [530] p. 290
+  if (number && plane_)
+    fail("TOOL CALL is not supported in a tilted plane; program PLANE RESET first");
   path_.flush();
   if (number) change_tool(*number);
   if (S) {
@@ -109,7 +111,7 @@ void Translator::change_tool(int number) {
   lines_.put(is_known ? fmt::format("G43 H{}", number) : "G49", place_);
   if (number == 0 || is_known || !setup_.tools.empty()) return;
   warn_once("length", fmt::format("TOOL CALL {0}: the length of tool {0} is unknown, so machine Z "
-                                  "is taken as the tip position; pass a tool table with --tools",
+                                  "is treated as the TCP position; pass a tool table with --tools",
                                   number));
 }
 
@@ -117,7 +119,7 @@ void Translator::change_tool(int number) {
 void Translator::define_tool(const HeidenhainBlock& block) {
   Words words(std::span(block.words).subspan(2));
   const HeidenhainWord* first = words.take_next();
-  if (first == nullptr) fail("TOOL DEF without a number");
+  if (first == nullptr) fail("TOOL DEF requires a tool number");
   if (first->text.front() == '"') return;
   const int number =
       whole(value(operand_of(first->text, first->place)), 32767, first->place, "TOOL DEF");
@@ -125,14 +127,14 @@ void Translator::define_tool(const HeidenhainBlock& block) {
   const auto R = words.take_number("R");
   if (words.take_number("F")) {
     warn_once("TOOL DEF F",
-              "F of TOOL DEF is ignored, since no manual found describes it; the next feed move "
-              "must program F");
+              "F in TOOL DEF is undocumented and ignored; the next feed move must program F");
     feed_.reset();
   }
   words.refuse_rest("TOOL DEF");
   if (!L && !R) return;
   const ToolEntry* tool = setup_.tools.entry_of(number);
-  if (tool == nullptr) fail("TOOL DEF with Q parameters; write numbers, or pass --tools");
+  if (tool == nullptr)
+    fail("TOOL DEF with Q parameters is not supported; write numbers, or pass --tools");
   if (!R && tool->diameter == 0.0) tools_without_radius_.insert(number);
   constexpr double kSame = 1e-6;  // mm
   const bool differs = (L && std::abs(length(*L) - tool->offset[2] / mm) > kSame) ||
@@ -140,7 +142,7 @@ void Translator::define_tool(const HeidenhainBlock& block) {
   if (!differs) return;
   fail(
       fmt::format("TOOL DEF {}: the tool table has L{:g} R{:g}; a control with a tool table uses "
-                  "those values, one without uses the block; remove one of them",
+                  "these values, one without uses the block; remove one of them",
                   number, tool->offset[2] / mm, tool->diameter / 2.0 / mm));
 }
 

@@ -23,7 +23,8 @@ std::optional<std::size_t> axis_of_word(const HeidenhainWord& word, bool& is_inc
 }  // namespace
 
 void Translator::require_no_compensation(std::string_view what) {
-  if (side_ != 0) fail(fmt::format("{} with RL or RR active; program a block with R0 first", what));
+  if (side_ != 0)
+    fail(fmt::format("{} is not allowed with RL or RR active; program R0 first", what));
 }
 
 void Translator::set_frame(const Frame& frame) {
@@ -44,8 +45,8 @@ void Translator::datum_shift(const Cycle&, std::span<const HeidenhainWord> words
     const auto axis = axis_of_word(word, is_increment);
     if (!axis) {
       if (word.text.front() == '#')
-        fail(word.place, "a line of a datum table, which is not in the program");
-      fail(word.place, fmt::format("'{}': expected an axis with its shift", word.text));
+        fail(word.place, "datum tables are not supported; program the shift");
+      fail(word.place, fmt::format("'{}': expected an axis and its shift", word.text));
     }
     const double written = value(operand_of(word.rest, word.place)) * (*axis < 3 ? unit() : 1.0);
     frame.shift[*axis] = (is_increment ? frame.shift[*axis] : 0.0) + written;
@@ -55,8 +56,8 @@ void Translator::datum_shift(const Cycle&, std::span<const HeidenhainWord> words
       std::any_of(frame.shift.begin(), frame.shift.end(), [](double one) { return one != 0.0; });
   if (is_shifted && (frame.rotation != 0.0 || frame.is_any_mirrored() || frame.scale != 1.0)) {
     fail(
-        "cycle 7 while cycle 8, 10 or 11 is active: whether the shift is transformed depends on "
-        "the order; reset that cycle, shift, and define it again");
+        "cycle 7 while cycle 8, 10 or 11 is active: the effect depends on the order; reset that "
+        "cycle, program the shift, and define the cycle again");
   }
   set_frame(frame);
 }
@@ -86,7 +87,7 @@ void Translator::mirror(std::span<const HeidenhainWord> words) {
       frame.is_mirrored[static_cast<std::size_t>(index_of(*axis))] = true;
     }
   }
-  if (frame.is_mirrored[2]) fail("cycle 8 of Z, the tool axis");
+  if (frame.is_mirrored[2]) fail("cycle 8: mirroring of the tool axis Z is not supported");
   set_frame(frame);
 }
 
@@ -140,10 +141,9 @@ void Translator::working_plane(Words& words) {
       continue;
     }
     if (can_leave_plane_unknown()) return survey_plane("cycle 19 with angles");
-    fail(angle->place,
-         fmt::format("cycle 19 with {}: a spatial angle, or the position of a rotary axis, by a "
-                     "machine parameter (MP7500); use PLANE SPATIAL",
-                     axis));
+    fail(angle->place, fmt::format("cycle 19 with {}: a spatial angle or a rotary axis position, "
+                                   "depending on MP7500; use PLANE SPATIAL",
+                                   axis));
   }
   while (words.peek() != nullptr &&
          (words.peek()->address == "F" || words.peek()->address == "ABST" ||
@@ -159,8 +159,8 @@ void Translator::require_rotary_zero(const Operand& zero) {
   const bool may_turn = plane_ ? *plane_ != std::array<double, 3>{} : !rotary_axes_are_at_zero();
   if (!may_turn) return;
   const std::string why =
-      "cycle 19 with angles of 0 while rotary axes are not at zero: some machines take them there, "
-      "others leave them; end the tilting without angles, and program L";
+      "cycle 19 with angles of 0 while rotary axes are not at zero: some machines move them there, "
+      "others do not; program cycle 19 without angles, then L";
   if (!can_leave_plane_unknown()) fail(zero.place, why);
   warn_once("cycle 19", why);
   for (std::size_t i = 3; i < work_.size(); ++i) work_[i].reset();
@@ -169,24 +169,27 @@ void Translator::require_rotary_zero(const Operand& zero) {
 // Presets 1 to 9 are the work systems G54 to G59.3.
 void Translator::set_preset(double number) {
   if (!(number >= 0.0 && number <= 9.0 && number == std::floor(number))) {
-    fail(fmt::format("preset {:g}: only presets 1 to 9 are supported, as G54 to G59.3", number));
+    fail(fmt::format("preset {:g}: only presets 1 to 9 are supported, mapped to G54 to G59.3",
+                     number));
   }
   const bool is_manual = number == 0.0;
   if (is_manual ? names_preset_ : names_manual_datum_) {
     fail(
-        "preset 0, the manually set datum, beside other presets: the program does not say where "
-        "they lie to each other; use presets 1 to 9");
+        "preset 0, the manually set datum, together with other presets: the offset between them is "
+        "unknown; use presets 1 to 9");
   }
   (is_manual ? names_manual_datum_ : names_preset_) = true;
   if (is_manual) {
-    warn_once("preset 0", fmt::format("preset 0, the manually set datum: taken as preset {}, which "
-                                      "is in force at the start",
-                                      setup_.work_system));
+    warn_once(
+        "preset 0",
+        fmt::format(
+            "preset 0, the manually set datum: treated as preset {}, which is active at the start",
+            setup_.work_system));
   }
   const int preset = is_manual ? setup_.work_system : static_cast<int>(number);
   if (preset == preset_) return;
   require_no_compensation("cycle 247");
-  if (plane_ || is_tcp_) fail("cycle 247 with PLANE or M128 active");
+  if (plane_ || is_tcp_) fail("cycle 247 is not supported with PLANE or M128 active");
   preset_ = preset;
   note(preset <= 6 ? fmt::format("G{}", 53 + preset) : fmt::format("G59.{}", preset - 6));
   forget_linear_positions();
@@ -202,13 +205,12 @@ void Translator::forget_linear_positions() {
 // Positions stay where nothing is turned.
 void Translator::tcp_control(bool is_on) {
   if (is_on == is_tcp_) return;
-  require_no_compensation("M128 and M129");
-  if (is_on && plane_) fail("M128 in a tilted plane");
-  if (is_on && delta_length_ != 0.0) fail("M128 with DL in TOOL CALL; enter it in the tool table");
+  require_no_compensation("M128 or M129");
+  if (is_on && plane_) fail("M128 is not supported in a tilted plane; program PLANE RESET first");
+  if (is_on && delta_length_ != 0.0)
+    fail("M128 with DL in TOOL CALL is not supported; enter the length in the tool table");
   if (is_on && !has_tool_call_)
-    fail(
-        "M128 before the first TOOL CALL: the length of the tool is unknown; call the tool in the "
-        "spindle before");
+    fail("M128 requires a preceding TOOL CALL: the tool length is unknown");
   is_tcp_ = is_on;
   path_.flush();
   lines_.put(fmt::format("{} H{}", is_on ? "G43.4" : "G43", tool_), place_);

@@ -37,7 +37,7 @@ constexpr auto kRefusals = std::to_array<Refusal>({
      "M128"},
     {"SPL", "splines are not supported; post-process to lines"},
     {"TCH", "touch probe cycles are not supported: the measured values are unknown"},
-    {"SEL", "SEL selects a table or contour that is not in the program; use CALL PGM or cycle 7"},
+    {"SEL", "SEL selects a table or contour outside the program; use CALL PGM or cycle 7"},
     {"DECLARE", "string and contour declarations are not supported"},
     {"QS", "string parameters are not supported"},
     {"PATTERN", "PATTERN must be followed by DEF"},
@@ -86,7 +86,7 @@ void Translator::run_block() {
   place_ = block->place;
   run_.count_block(place_);
   if (block->is_continued_comment) {
-    warn_once("comment", "a comment that ends with '~': the next line is taken as part of it");
+    warn_once("comment", "a comment that ends with '~': the next line is treated as part of it");
   }
   if (block->words.empty() || (block->is_optional && setup_.block_delete)) return;
   execute(*block);
@@ -103,14 +103,15 @@ void Translator::begin_program() {
               fmt::format("{} lines before BEGIN PGM are ignored", program().lines_before_begin()));
   }
   if (program().has_numbers_with_N()) {
-    warn_once("N", "block numbers with N: accepted, although controls write them without N");
+    warn_once("N", "block numbers with N are accepted, although controls write them without N");
   }
   if (program().has_bracket_comments()) {
-    warn_once("bracket", "words in brackets at the end of a block: a comment; controls take ';'");
+    warn_once("bracket",
+              "words in brackets at the end of a block are treated as a comment; controls use ';'");
   }
   if (!block || !is_program_word(*block, "BEGIN")) {
     fail({program().file(), block ? block->place.line : 1, 1},
-         "a conversational program starts with BEGIN PGM");
+         "a conversational program must start with BEGIN PGM");
   }
   place_ = block->place;
   const std::string& last = block->words.back().text;
@@ -118,7 +119,7 @@ void Translator::begin_program() {
   is_inch_ = last == "INCH";
   parameters_.set({'Q', 113}, is_inch_ ? 1.0 : 0.0);
   if (is_inch_) {
-    warn_once("inch", "F of a program in INCH: taken as tenths of an inch per minute");
+    warn_once("inch", "F in a program in INCH: treated as tenths of an inch per minute");
   }
   lines_.put("G17 G21 G40 G49 G80 G90 G91.1 G94", place_);
 }
@@ -128,7 +129,7 @@ void Translator::end_of_file(const Place& place) {
     const Return& back = returns_.back();
     fail(place, back.is_program
                     ? std::string("END PGM is missing")
-                    : fmt::format("LBL 0 is missing: the program ends in LBL {}", back.name));
+                    : fmt::format("LBL 0 is missing: the program ends within LBL {}", back.name));
   }
   fail(place, "END PGM is missing");
 }
@@ -149,7 +150,7 @@ void Translator::execute(const HeidenhainBlock& block) {
     run_.end();
     return;
   }
-  if (is_program_word(block, "BEGIN")) fail("a second BEGIN PGM");
+  if (is_program_word(block, "BEGIN")) fail("BEGIN PGM appears twice");
   if (block.words.front().text != "CYCL") open_cycle_ = -1;
   const std::string& first = block.words.front().text;
   if (first == "L") return line(block);
@@ -206,7 +207,7 @@ void Translator::refuse_unknown(const HeidenhainBlock& block) const {
   for (const Refusal& refusal : kRefusals) {
     if (first.text == refusal.name || first.address == refusal.name) {
       const char* skip =
-          block.is_optional ? "; --block-delete leaves out lines that start with '/'" : "";
+          block.is_optional ? "; --block-delete skips lines that start with '/'" : "";
       fail(first.place, fmt::format("{}: {}{}", refusal.name, refusal.why, skip));
     }
   }

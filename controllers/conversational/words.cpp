@@ -124,7 +124,7 @@ std::optional<Operand> Words::take_number(std::string_view address) {
   for (std::size_t i = 0; i < words_.size(); ++i) {
     if (taken_[i] || words_[i].address != address) continue;
     if (words_[i].rest.empty()) {
-      throw InputError(words_[i].place, fmt::format("'{}' without a number", words_[i].text));
+      throw InputError(words_[i].place, fmt::format("'{}' requires a number", words_[i].text));
     }
     taken_[i] = true;
     return operand_of(words_[i].rest, words_[i].place);
@@ -150,7 +150,7 @@ const HeidenhainWord* Words::peek() const {
 
 void Words::refuse_rest(std::string_view block) const {
   if (const HeidenhainWord* word = peek()) {
-    throw InputError(word->place, fmt::format("'{}': not a word of {}", word->text, block));
+    throw InputError(word->place, fmt::format("'{}' is not a word of {}", word->text, block));
   }
 }
 

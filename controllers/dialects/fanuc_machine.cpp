@@ -58,11 +58,13 @@ bool FanucMachine::run(const FanucBlock& block) {
   set_spindle();
   if (const FanucWord* T = word('T')) {
     selected_ = integer('T', 99999999);
-    if (names_axis()) fail(T->column, "T with a motion: their order is up to the machine builder");
+    if (names_axis())
+      fail(T->column, "T and a motion in one block: their order is defined by the machine builder");
   }
   if (M_.tenths >= 0) {
     if (names_axis() || code(Group::one_shot) == 40) {
-      fail(M_.column, "M with a motion or a dwell: their order is up to the machine builder");
+      fail(M_.column,
+           "M and a motion or dwell in one block: their order is defined by the machine builder");
     }
     set_length();
     run_M();
@@ -110,7 +112,7 @@ void FanucMachine::run_M() {
 }
 
 void FanucMachine::run_spindle(int M) {
-  if (M != 5 && !speed_) fail(M_.column, fmt::format("M{} while S is unknown", M));
+  if (M != 5 && !speed_) fail(M_.column, fmt::format("M{} requires a known S", M));
   direction_ = M == 3 ? 1 : M == 5 ? 0 : rules_.M4_is_counter_clockwise ? -1 : 1;
   MachineAction out = action(ActionKind::spindle);
   out.direction = *direction_;
@@ -133,7 +135,7 @@ void FanucMachine::forget_positions() { position_ = {}; }
 // A macro of the machine builder moves axes and changes modes. The unit, rotation, scaling, mirror
 // images and shifts are taken to stay: no source was found for a macro that changes them.
 void FanucMachine::change_tool() {
-  if (!selected_) fail(M_.column, "M6 while T is unknown");
+  if (!selected_) fail(M_.column, "M6 requires a known T");
   tool_ = selected_;
   if (rules_.tool_change_forgets_positions) forget_positions();
   if (rules_.tool_change_forgets_modes) {

@@ -69,8 +69,8 @@ void FanucMachine::read_codes() {
     check_function(found->tenths, one.column);
     Code& place = codes_[static_cast<std::size_t>(found->group)];
     if (place.tenths >= 0) {
-      fail(one.column, fmt::format("{} and {} of one group in a block", code_text(place.tenths),
-                                   code_text(found->tenths)));
+      fail(one.column, fmt::format("{} and {} in one block (same modal group)",
+                                   code_text(place.tenths), code_text(found->tenths)));
     }
     place = {found->tenths, one.column};
   }
@@ -84,7 +84,8 @@ void FanucMachine::check_function(int tenths, int column) const {
                                            {970, settings_.has_surface_speed}};
   for (const auto& [code, is_there] : optional) {
     if (code != tenths || is_there) continue;
-    fail(column, fmt::format("{} is an alarm on a control without the option", code_text(code)));
+    fail(column,
+         fmt::format("{} causes an alarm on a control without this option", code_text(code)));
   }
 }
 
@@ -99,11 +100,11 @@ bool FanucMachine::is_switch() const {
 // of two controls that follow them, GSK 980MDc p. 61 and Mitsubishi M700V p. 531).
 void FanucMachine::run_switch() {
   if (block_->words.front().letter != 'G')
-    fail("G5.1, G50.1, G52 and G92.1 must come first in their block");
+    fail("G5.1, G50.1, G52 and G92.1 must be first in the block");
   if (has(Group::contour)) return;
   const int one_shot = code(Group::one_shot);
   if (one_shot == 921 && length_.mode == FanucLength::Mode::on) {
-    fail("G92.1 while a tool length is active cancels it");
+    fail("G92.1 cancels the active tool length");
   }
   auto& is_off = has(Group::mirror) ? modes_.is_mirror_off
                  : one_shot == 520  ? modes_.is_local_off
@@ -112,7 +113,7 @@ void FanucMachine::run_switch() {
     const FanucWord* one = word(letter(axis));
     if (one == nullptr) continue;
     if (one->mantissa != 0 && !has(Group::mirror)) {
-      fail(one->column, fmt::format("G52 and G92.1 with values other than 0 are not supported"));
+      fail(one->column, fmt::format("G52 and G92.1 are supported with values of 0 only"));
     }
     is_off[static_cast<std::size_t>(index_of(axis))] = true;
   }
@@ -142,7 +143,8 @@ void FanucMachine::check_words() const {
     if (one.letter == 'P') is_taken = code(Group::one_shot) == 40 || code(Group::one_shot) == 300;
     if (one.letter == 'Q' || one.letter == 'R') is_taken = has(Group::contour);
     if (!is_taken) {
-      fail(one.column, fmt::format("{} belongs to no supported code of the block", one.letter));
+      fail(one.column,
+           fmt::format("{} is not used by any supported code of the block", one.letter));
     }
   }
 }
@@ -180,7 +182,7 @@ void FanucMachine::set_unit() {
   }
   const double unit = code(Group::unit) == 200 ? rules_.inch_in_mm * mm : mm;
   if (modes_.unit && *modes_.unit != unit) {
-    fail(at, "a switch between G20 and G21 changes work offsets and compensation values");
+    fail(at, "switching between G20 and G21 changes work offsets and compensation values");
   }
   modes_.unit = unit;
 }
@@ -198,14 +200,14 @@ void FanucMachine::set_cancels() {
 void FanucMachine::set_feed() {
   const FanucWord* F = word('F');
   if (F == nullptr) return;
-  if (!modes_.feed_mode) fail(F->column, "F while none of G93, G94 and G95 is active");
-  if (!modes_.unit) fail(F->column, "F while neither G20 nor G21 is active");
+  if (!modes_.feed_mode) fail(F->column, "F requires an active G93, G94 or G95");
+  if (!modes_.unit) fail(F->column, "F requires an active G20 or G21");
   const bool is_metric_minute =
       *modes_.feed_mode == FeedMode::units_per_minute && *modes_.unit == mm;
   if (F->is_integer() && !is_metric_minute) {
-    fail(F->column, "F without a decimal point: its increment depends on parameters");
+    fail(F->column, "F requires a decimal point: its increment depends on parameters");
   }
-  if (F->mantissa <= 0) fail(F->column, "F must be above 0");
+  if (F->mantissa <= 0) fail(F->column, "F must be > 0");
   feed_ = F->value();
 }
 
@@ -213,9 +215,9 @@ void FanucMachine::set_spindle() {
   const FanucWord* S = word('S');
   if (S == nullptr) return;
   if (!S->is_integer()) fail(S->column, "S must be an integer");
-  if (S->mantissa < 0) fail(S->column, "S must not be negative");
+  if (S->mantissa < 0) fail(S->column, "S must be >= 0");
   if (!modes_.is_surface_speed_off) {
-    fail(S->column, "S while G97 is not known to be active: under G96 it is a cutting speed");
+    fail(S->column, "S requires G97: with G96 it is a cutting speed");
   }
   speed_ = S->value() * rpm;
   const bool switches = M_.tenths >= 3 && M_.tenths <= 5;
@@ -239,7 +241,7 @@ int FanucMachine::integer(char letter, int max) const {
 // (M), so that they are refused.
 double FanucMachine::dimension(const FanucWord& word, bool is_linear) const {
   if (is_linear && !modes_.unit) {
-    fail(word.column, fmt::format("{} while neither G20 nor G21 is active", word.letter));
+    fail(word.column, fmt::format("{} requires an active G20 or G21", word.letter));
   }
   const double unit = is_linear ? *modes_.unit : deg;
   const bool is_inch = is_linear && unit != mm;
@@ -272,19 +274,19 @@ void FanucMachine::set_length() {
   const FanucWord* H = word('H');
   if (!has(Group::length)) {
     if (H == nullptr) return;
-    if (length_.mode != FanucLength::Mode::on) fail(H->column, "H while G43 is not active");
+    if (length_.mode != FanucLength::Mode::on) fail(H->column, "H requires an active G43");
     change_length(FanucLength::Mode::on, length_.sign, integer('H', 999), H->column);
     return;
   }
   const int at = column(Group::length);
   if (code(Group::length) == 490) {
-    if (H != nullptr) fail(H->column, "H in a block with G49");
+    if (H != nullptr) fail(H->column, "H is not allowed in a block with G49");
     return change_length(FanucLength::Mode::off, 1.0, 0, at);
   }
-  if (H == nullptr) fail(at, "G43 without H");
+  if (H == nullptr) fail(at, "G43 requires H");
   if (settings_.TLB && modes_.normal_axis != 2) {
     fail(at,
-         "G43 outside G17: where No. 5001#1 (TLB) is 1 the length applies to another axis than Z");
+         "G43 requires G17: with No. 5001#1 (TLB) = 1 the length applies to an axis other than Z");
   }
   const double sign = (code(Group::length) == 430 ? 1.0 : -1.0) * rules_.G43_sign;
   change_length(FanucLength::Mode::on, sign, integer('H', 999), at);
@@ -297,27 +299,28 @@ void FanucMachine::change_length(FanucLength::Mode mode, double sign, int number
   const int one_shot = code(Group::one_shot);
   const bool is_machine = one_shot == 530 || one_shot == 280 || one_shot == 300;
   if (is_machine && mode == FanucLength::Mode::on) {
-    fail(column, "a tool length in a block with G53, G28 or G30");
+    fail(column, "a tool length is not allowed in a block with G53, G28 or G30");
   }
   if (word('Z') != nullptr) {
     if (is_machine) return;
-    if (!modes_.is_incremental) fail(column, "neither G90 nor G91 is active");
+    if (!modes_.is_incremental) fail(column, "G90 or G91 must be active");
     if (*modes_.is_incremental)
       fail(column, "a change of the tool length under G91 depends on No. 5006#6 (TOS)");
     return;
   }
-  if (is_machine) fail(column, "G49 with G53, G28 or G30, but without Z");
+  if (is_machine) fail(column, "G49 with G53, G28 or G30 requires Z");
   const bool moves =
       mode == FanucLength::Mode::on ? rules_.G43_alone_moves_Z : rules_.G49_alone_moves_Z;
   if (before == after || settings_.TOS || !moves) return;
   if (!before) {
     fail(column,
-         "moves Z by the change of the tool length where No. 5006#6 (TOS) is 0, and the previous "
+         "moves Z by the change of the tool length with No. 5006#6 (TOS) = 0, and the previous "
          "length is unknown");
   }
-  if (names_axis()) fail(column, "a change of the tool length in a block that moves other axes");
+  if (names_axis())
+    fail(column, "a change of the tool length is not allowed in a block that moves other axes");
   if (!modes_.motion || *modes_.motion > 1)
-    fail(column, "a change of the tool length without G0 or G1");
+    fail(column, "a change of the tool length requires G0 or G1");
   check_modes_of_motion();
   MachineAction out = action(*modes_.motion == 0 ? ActionKind::rapid : ActionKind::feed);
   out.is_commanded[2] = true;
@@ -337,7 +340,7 @@ void FanucMachine::suspend_length() {
 // Length with which an absolute Z is reached.
 double FanucMachine::acting_length(int column) {
   if (length_.mode == FanucLength::Mode::unknown) {
-    fail(column, "Z while none of G43, G44 and G49 is known to be active");
+    fail(column, "Z requires an active G43, G44 or G49");
   }
   const bool returns = settings_.EVO || !rules_.length_returns_only_with_EVO;
   if (length_.is_suspended && returns) {

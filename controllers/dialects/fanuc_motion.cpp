@@ -25,7 +25,7 @@ bool FanucMachine::has_centre() const {
 
 void FanucMachine::check_modes_of_motion() const {
   const auto need = [&](bool is_known, std::string_view what) {
-    if (!is_known) fail(fmt::format("moves while {} is not known to be active", what));
+    if (!is_known) fail(fmt::format("a motion requires an active {}", what));
   };
   need(modes_.motion.has_value(), "G0, G1, G2 or G3");
   need(modes_.is_incremental.has_value(), "G90 or G91");
@@ -37,7 +37,7 @@ void FanucMachine::check_modes_of_motion() const {
   for (const Axis axis : kAllAxes) {
     if (!is_linear(axis) && word(letter(axis)) == nullptr) continue;
     if (modes_.is_mirror_off[static_cast<std::size_t>(index_of(axis))]) continue;
-    fail(fmt::format("moves while G51.1 may mirror {}; cancel it with G50.1 {}0.", letter(axis),
+    fail(fmt::format("G51.1 may be active in {}; cancel it with G50.1 {}0.", letter(axis),
                      letter(axis)));
   }
 }
@@ -46,7 +46,7 @@ double FanucMachine::required(int axis, int column, const char* reason) const {
   const auto& known = position_[static_cast<std::size_t>(axis)];
   if (!known) {
     fail(column,
-         fmt::format("{} needs the position of {}, which is unknown", reason, "XYZABC"[axis]));
+         fmt::format("{} requires the position of {}, which is unknown", reason, "XYZABC"[axis]));
   }
   return *known;
 }
@@ -56,17 +56,17 @@ void FanucMachine::run_dwell() {
   const FanucWord* X = word('X');
   const FanucWord* P = word('P');
   const int at = column(Group::one_shot);
-  if ((X == nullptr) == (P == nullptr)) fail(at, "G4 needs either X or P");
+  if ((X == nullptr) == (P == nullptr)) fail(at, "G4 requires either X or P");
   for (const FanucWord& one : block_->words) {
     const bool is_own = one.letter == 'G' || one.letter == 'X' || one.letter == 'P';
-    if (!is_own) fail(one.column, fmt::format("{} in a block with G4", one.letter));
+    if (!is_own) fail(one.column, fmt::format("{} is not allowed in a block with G4", one.letter));
   }
   if (!modes_.feed_mode || *modes_.feed_mode == FeedMode::units_per_revolution) {
-    fail(at, "G4 while neither G93 nor G94 is in force depends on No. 3405#1 (DWL)");
+    fail(at, "G4 requires G93 or G94: otherwise it depends on No. 3405#1 (DWL)");
   }
   const FanucWord& one = X != nullptr ? *X : *P;
   if (P != nullptr && !P->is_integer()) fail(P->column, "P must be an integer");
-  if (one.mantissa < 0) fail(one.column, "a dwell must not be negative");
+  if (one.mantissa < 0) fail(one.column, "the dwell time must be >= 0");
   const double increment = rules_.dwell_P_in_increments / (settings_.is_IS_C ? 10.0 : 1.0);
   MachineAction out = action(ActionKind::dwell);
   out.value = one.is_integer() ? one.value() * increment : one.value() * rules_.dwell_X_in_s;
@@ -76,10 +76,10 @@ void FanucMachine::run_dwell() {
 // G53: a rapid, absolute, for one block (B-63844EN/02 p. 204 for the tool length; the rest M).
 void FanucMachine::run_machine_position() {
   const int at = column(Group::one_shot);
-  if (!names_axis()) fail(at, "G53 without an axis");
+  if (!names_axis()) fail(at, "G53 requires an axis");
   check_modes_of_motion();
-  if (*modes_.is_incremental) fail(at, "G53 under G91 has no effect");
-  if (*modes_.motion != 0) fail(at, "G53 while G0 is not active");
+  if (*modes_.is_incremental) fail(at, "G53 has no effect with G91");
+  if (*modes_.motion != 0) fail(at, "G53 requires an active G0");
   MachineAction out = action(ActionKind::rapid);
   out.is_machine_position = true;
   out.is_straight = settings_.LRP;
@@ -102,7 +102,7 @@ void FanucMachine::run_machine_position() {
 // G28, G30: through an intermediate point to the reference position.
 void FanucMachine::run_reference_return() {
   const int at = column(Group::one_shot);
-  if (!names_axis()) fail(at, "G28 and G30 need an axis");
+  if (!names_axis()) fail(at, "G28 and G30 require an axis");
   check_modes_of_motion();
   MachineAction through = action(ActionKind::rapid);
   through.is_straight = settings_.LRP;
@@ -130,11 +130,12 @@ void FanucMachine::run_reference_return() {
 // 15i/150i-MA, Programming, p. 564). One-shot; the axes rest where the signal stopped them.
 void FanucMachine::run_skip() {
   const int at = column(Group::one_shot);
-  if (!names_axis()) fail(at, "G31 without an axis");
-  if (has(Group::length)) fail(at, "a change of the tool length in a block with G31");
+  if (!names_axis()) fail(at, "G31 requires an axis");
+  if (has(Group::length))
+    fail(at, "a change of the tool length is not allowed in a block with G31");
   check_modes_of_motion();
   if (modes_.feed_mode != FeedMode::units_per_minute) {
-    fail(at, "G31 while G94 is not known to be in force");
+    fail(at, "G31 requires an active G94");
   }
   MachineAction out = action(ActionKind::probe);
   set_target(out);
@@ -152,11 +153,12 @@ double FanucMachine::target(int axis, const FanucWord& word) {
   const double value = dimension(word, is_linear);
   if (*modes_.is_incremental) {
     if (axis == 2 && length_.is_suspended) {
-      fail(word.column, "an incremental Z after the tool length was cancelled by G53, G28 or G30");
+      fail(word.column,
+           "an incremental Z is not allowed after G53, G28 or G30 has cancelled the tool length");
     }
     return required(axis, word.column, "an incremental move") + value;
   }
-  if (!modes_.work_system) fail(word.column, "moves while none of G54 ... G59 is active");
+  if (!modes_.work_system) fail(word.column, "a motion requires an active G54 ... G59");
   const auto& offset = setup_.work_offset[static_cast<std::size_t>(*modes_.work_system - 1)];
   if (!offset) {
     fail(word.column, fmt::format("work offset G{} is unknown", 53 + *modes_.work_system));
@@ -166,8 +168,7 @@ double FanucMachine::target(int axis, const FanucWord& word) {
                                          {modes_.is_shift_off[k], 92}};
   for (const auto& [is_off, code] : shifts) {
     if (is_off) continue;
-    fail(word.column,
-         fmt::format("moves {} while a shift by G{} may be active", word.letter, code));
+    fail(word.column, fmt::format("{} moves, and a shift by G{} may be active", word.letter, code));
   }
   if (!is_linear) return within_a_turn(axis, (*offset)[axis] + value, (*offset)[axis], word.column);
   return (*offset)[axis] + value + (axis == 2 ? acting_length(word.column) : 0.0);
@@ -189,7 +190,7 @@ double FanucMachine::within_a_turn(int axis, double machine, double offset, int 
   if (std::abs(std::abs(way) - 0.5 * kTurn) < 1e-9) {
     fail(column,
          fmt::format(
-             "moves {} by half a turn: the direction is undetermined where No. 1008#0 (ROA) is 1",
+             "{} moves by 180 degrees: the direction is undetermined with No. 1008#0 (ROA) = 1",
              "XYZABC"[axis]));
   }
   return *before + way;
@@ -212,8 +213,8 @@ void FanucMachine::run_motion() {
   check_modes_of_motion();
   if (settings_.TLB && length_.mode == FanucLength::Mode::on && modes_.normal_axis != 2) {
     fail(
-        "moves outside G17 with a tool length: no manual found says whether it follows the plane "
-        "where No. 5001#1 (TLB) is 1");
+        "a motion outside G17 with a tool length: it is undocumented whether the length follows "
+        "the plane with No. 5001#1 (TLB) = 1");
   }
   const int motion = *modes_.motion;
   MachineAction out = action(motion == 0   ? ActionKind::rapid
@@ -228,10 +229,10 @@ void FanucMachine::run_motion() {
 }
 
 void FanucMachine::set_arc(MachineAction& out) const {
-  if (!modes_.normal_axis) fail("an arc while none of G17, G18 and G19 is active");
+  if (!modes_.normal_axis) fail("an arc requires an active G17, G18 or G19");
   const int normal = *modes_.normal_axis;
   const int a = (normal + 1) % 3, b = (normal + 2) % 3;
-  if (!has_centre()) fail("an arc without I, J or K");
+  if (!has_centre()) fail("an arc requires I, J or K");
   required(a, 1, "an arc");
   required(b, 1, "an arc");
   const Eigen::Vector3d begin = place_of(position_), end = place_of(out.end);
@@ -250,7 +251,7 @@ void FanucMachine::set_arc(MachineAction& out) const {
   }
   for (const Axis axis : {Axis::A, Axis::B, Axis::C}) {
     const FanucWord* one = word(letter(axis));
-    if (one != nullptr) fail(one->column, "a rotary axis in an arc");
+    if (one != nullptr) fail(one->column, "rotary axes are not allowed in an arc");
   }
   if (const auto fault = arc_fault(begin, end, out.centre, normal)) fail(*fault);
   out.normal_axis = normal;
@@ -260,14 +261,14 @@ void FanucMachine::set_arc(MachineAction& out) const {
 }
 
 void FanucMachine::set_action_feed(MachineAction& out) const {
-  if (!modes_.feed_mode) fail("feeds while none of G93, G94 and G95 is active");
+  if (!modes_.feed_mode) fail("a feed motion requires an active G93, G94 or G95");
   out.feed_mode = *modes_.feed_mode;
   const bool is_inverse = out.feed_mode == FeedMode::inverse_time;
-  if (is_inverse && word('F') == nullptr) fail("a block under G93 needs F");
-  if (!feed_) fail("feeds while F is unknown");
+  if (is_inverse && word('F') == nullptr) fail("G93 requires F in every block");
+  if (!feed_) fail("a feed motion requires a known F");
   if (is_inverse) {
     // for arcs the manuals divide by the radius, not by the length (M)
-    if (out.kind == ActionKind::arc) fail("an arc under G93");
+    if (out.kind == ActionKind::arc) fail("an arc is not supported with G93");
     out.feed = rules_.inverse_time_is_per_minute ? *feed_ / minute : *feed_;
     return;
   }
@@ -277,7 +278,7 @@ void FanucMachine::set_action_feed(MachineAction& out) const {
     (i <= kZ ? moves_linear : moves_rotary) = true;
   }
   if (moves_linear && moves_rotary) {
-    fail("linear and rotary axes together have a common feed only under G93");
+    fail("linear and rotary axes in one block require G93");
   }
   const bool is_linear_feed = moves_linear || out.kind == ActionKind::arc || !moves_rotary;
   const double unit = is_linear_feed ? *modes_.unit : deg;

@@ -96,8 +96,8 @@ FanucBlock FanucLexer::split(std::string_view line) {
       ++i;
     } else if (c == '(') {
       const std::size_t end = line.find_first_of("()", i + 1);
-      if (end == std::string_view::npos) fail(i, "a comment without ')'");
-      if (line[end] == '(') fail(end, "a comment inside a comment");
+      if (end == std::string_view::npos) fail(i, "a comment is not closed; ')' is missing");
+      if (line[end] == '(') fail(end, "comment within a comment");
       i = end + 1;
     } else if (c == '/' && is_first) {
       block.has_slash = true;
@@ -141,7 +141,7 @@ FanucWord FanucLexer::word(std::string_view line, std::size_t& i) const {
     out.mantissa = 10 * out.mantissa + (line[i] - '0');
     out.decimals += out.has_point ? 1 : 0;
   }
-  if (digits == 0) fail(i, fmt::format("{} without a number", out.letter));
+  if (digits == 0) fail(i, fmt::format("{} requires a number", out.letter));
   if (is_negative) out.mantissa = -out.mantissa;
   return out;
 }
@@ -164,7 +164,7 @@ void FanucLexer::keep(FanucBlock& block, const FanucWord& word) {
     return;
   }
   if (word.letter != 'G' && word.letter != 'M' && block.find(word.letter) != nullptr) {
-    fail(i, fmt::format("{} twice in a block", word.letter));
+    fail(i, fmt::format("{} appears twice in the block", word.letter));
   }
   block.words.push_back(word);
 }

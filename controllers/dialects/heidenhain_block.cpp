@@ -163,8 +163,7 @@ std::optional<HeidenhainBlock> HeidenhainBlocks::next() {
   const bool is_comment = line.has_comment && has_head_only(block);
   while (line.is_continued) {
     if (is_comment && !continues_comments_) {
-      throw InputError(block.place,
-                       "a comment that ends with '~': it may continue in the next line");
+      throw InputError(block.place, "a comment that ends with '~' may continue on the next line");
     }
     if (rest_.empty()) {
       throw InputError({file_, line_, 0}, "'~' continues the block, but no line follows");
@@ -182,7 +181,8 @@ std::optional<HeidenhainBlock> HeidenhainBlocks::next() {
 
 double heidenhain_number(const HeidenhainWord& word, std::string_view digits,
                          const HeidenhainFormat& format) {
-  if (digits.empty()) throw InputError(word.place, fmt::format("'{}' without a number", word.text));
+  if (digits.empty())
+    throw InputError(word.place, fmt::format("'{}' requires a number", word.text));
   if (digits.find('Q') != std::string_view::npos) {
     throw InputError(word.place, fmt::format("'{}': Q parameters are not covered by the "
                                              "verification",

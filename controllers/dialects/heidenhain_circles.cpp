@@ -39,7 +39,7 @@ void Control::run_pole(const HeidenhainBlock& block) {
   Positioning p = read_words(block, 1);
   if (p.feed_word != Positioning::FeedWord::none || p.functions_count > 0 || p.direction ||
       p.radius_angle) {
-    fail(place_, "CC needs two coordinates, or none");
+    fail(place_, "CC requires two coordinates, or none");
   }
   State::Pole pole;
   KnownPosition at = state_.position;
@@ -48,7 +48,7 @@ void Control::run_pole(const HeidenhainBlock& block) {
     for (int axis = 0; axis < kAxisWords; ++axis) {
       if (p.target[static_cast<std::size_t>(axis)].word) count += axis < 3 ? 1 : 3;
     }
-    if (count != 2) fail(place_, "CC needs two of X, Y, Z, or no coordinate");
+    if (count != 2) fail(place_, "CC requires two of X, Y, Z, or no coordinate");
     pole.normal = !p.target[0].word ? 0 : !p.target[1].word ? 1 : 2;
     require_arc_frame(p);
     for (auto& target : p.target) {
@@ -75,17 +75,19 @@ void Control::require_arc_frame(const Positioning& p) const {
   require_frame(place_, false);
   const bool is_in_xy = !p.target[2].word;
   if (!is_in_xy && (plane_rotation() != 0.0 || is_mirrored(0) || is_mirrored(1))) {
-    fail(place_, "a circle in a plane with Z while the coordinates are rotated or mirrored");
+    fail(place_,
+         "a circle in a plane with Z is not covered while the coordinates are rotated or mirrored");
   }
 }
 
 Point Control::start_on_plane() const {
-  if (!state_.pole) fail(place_, "no CC before the circle, or its reference has changed");
+  if (!state_.pole) fail(place_, "a circle requires a preceding CC with the same reference");
   const auto axes = plane_axes(state_.pole->normal);
   const auto& first = state_.position[axes[0]];
   const auto& second = state_.position[axes[1]];
-  if (!first || !second) fail(place_, "the circle starts at an unknown position");
-  if (radius(state_.pole->at, {*first, *second}) < um) fail(place_, "the circle starts at CC");
+  if (!first || !second) fail(place_, "the start position of the circle is unknown here");
+  if (radius(state_.pole->at, {*first, *second}) < um)
+    fail(place_, "the circle starts at its centre (CC)");
   return {*first, *second};
 }
 
@@ -101,9 +103,8 @@ double Control::sweep_to(const Point& start, const Point& end, int direction) co
   const double size = std::abs(sweep);
   if (size < kSmallestSweep || kFullTurn - size < kSmallestSweep) {
     fail(place_,
-         fmt::format(
-             "an arc of {:.5f} degrees: rounding decides between a full circle and no motion",
-             size / deg));
+         fmt::format("arc of {:.5f} degrees: rounding decides between a full circle and no motion",
+                     size / deg));
   }
   return sweep;
 }
@@ -113,7 +114,9 @@ void Control::move_on_arc(const Positioning& p, KnownPosition end, double sweep)
   if (p.feed_word == FeedWord::fmax) fail(place_, "FMAX on a circle is not covered");
   for (int axis = 3; axis < kAxisWords; ++axis) {
     const HeidenhainWord* word = p.target[static_cast<std::size_t>(axis)].word;
-    if (word) fail(word->place, fmt::format("'{}': a rotary axis on a circle", word->text));
+    if (word)
+      fail(word->place,
+           fmt::format("'{}': a rotary axis is not allowed in a circle block", word->text));
   }
   const State::Pole& pole = *state_.pole;
   const auto axes = plane_axes(pole.normal);
@@ -139,10 +142,11 @@ void Control::check_ends(const Point& start, const Point& end) const {
 // C X+45 Y+25 DR+: about CC, from the position programmed last. Equal ends make a full circle.
 void Control::run_circle(const HeidenhainBlock& block) {
   const Positioning p = read_words(block, 1);
-  if (p.radius_angle) fail(place_, "C with a polar angle; use CP");
-  if (!p.direction) fail(place_, "C without DR: the direction of rotation is undetermined");
-  if (!p.has_target()) fail(place_, "C without coordinates");
-  if (p.has_m(91) || p.is_retract) fail(place_, "M91 or M140 on a circle");
+  if (p.radius_angle) fail(place_, "C does not accept a polar angle; use CP");
+  if (!p.direction)
+    fail(place_, "C requires DR: the direction of rotation is undetermined without it");
+  if (!p.has_target()) fail(place_, "C requires coordinates");
+  if (p.has_m(91) || p.is_retract) fail(place_, "M91 and M140 are not allowed in a circle block");
   act_at_start(p);
   require_radius_off(p, block);
   require_arc_frame(p);
@@ -151,7 +155,8 @@ void Control::run_circle(const HeidenhainBlock& block) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (p.target[i].word && i != axes[0] && i != axes[1]) {
       fail(p.target[i].word->place,
-           fmt::format("'{}': not in the plane of CC; a helix needs CP", p.target[i].word->text));
+           fmt::format("'{}' is not in the plane of CC; a helix requires CP",
+                       p.target[i].word->text));
     }
   }
   KnownPosition end = targets(p);
@@ -174,7 +179,7 @@ double Control::helix_sweep(const Positioning& p, double start_angle) const {
   if (is_reversed && rules_.mirror_reverses_arcs) direction = -direction;
   if (p.is_angle_increment) {
     if (*p.radius_angle == 0.0 || (*p.radius_angle > 0.0) != (*p.direction > 0)) {
-      fail(place_, "the signs of IPA and DR differ, or IPA is 0");
+      fail(place_, "IPA and DR must have the same sign, and IPA must not be 0");
     }
     double angle = std::abs(*p.radius_angle);
     if (!rules_.ipa_counts_revolutions) angle = std::fmod(angle, kFullTurn);
@@ -186,7 +191,7 @@ double Control::helix_sweep(const Positioning& p, double start_angle) const {
   if (state_.pole->normal == 1 && !rules_.zx_angle_starts_at_z) to = kFullTurn / 4.0 - to;
   double sweep = std::remainder(to - start_angle, kFullTurn);
   if (std::abs(sweep) < kSmallestSweep) {
-    fail(place_, "CP PA ends at its start: a full circle or no motion");
+    fail(place_, "CP PA: start and end coincide: a full circle or no motion");
   }
   if (direction * sweep < 0.0) sweep += direction * kFullTurn;
   return sweep;
@@ -195,9 +200,10 @@ double Control::helix_sweep(const Positioning& p, double start_angle) const {
 // CP IPA-1800 IZ+5 DR-: a circle or helix about CC, with the radius of its start. [430] p. 153
 void Control::run_helix(const HeidenhainBlock& block) {
   const Positioning p = read_words(block, 1);
-  if (!p.radius_angle) fail(place_, "CP without PA or IPA");
-  if (!p.direction) fail(place_, "CP without DR: the direction of rotation is undetermined");
-  if (p.has_m(91) || p.is_retract) fail(place_, "M91 or M140 on a circle");
+  if (!p.radius_angle) fail(place_, "CP requires PA or IPA");
+  if (!p.direction)
+    fail(place_, "CP requires DR: the direction of rotation is undetermined without it");
+  if (p.has_m(91) || p.is_retract) fail(place_, "M91 and M140 are not allowed in a circle block");
   act_at_start(p);
   require_radius_off(p, block);
   require_frame(place_, false);
@@ -206,7 +212,8 @@ void Control::run_helix(const HeidenhainBlock& block) {
   const auto axes = plane_axes(pole.normal);
   for (const std::size_t axis : axes) {
     const HeidenhainWord* word = p.target[axis].word;
-    if (word) fail(word->place, fmt::format("'{}': CP takes an angle for this axis", word->text));
+    if (word)
+      fail(word->place, fmt::format("'{}': CP requires an angle for this axis", word->text));
   }
   const double start_angle = angle_at(pole.at, start);
   const double sweep = helix_sweep(p, start_angle);

@@ -102,7 +102,7 @@ void Control::run(const HeidenhainBlock& block) {
     cycle_.reset();
   }
   if (first.text == "TCH") return run_probe(block);
-  if (open_probe_) fail(place_, "TCH PROBE 0.0 without its block TCH PROBE 0.1");
+  if (open_probe_) fail(place_, "TCH PROBE 0.0 requires a following TCH PROBE 0.1");
   if (first.text == "FN" && prints_to_file(block)) return;
   if (first.text == "L") return run_line(block, 1);
   if (first.text == "CC") return run_pole(block);
@@ -140,7 +140,7 @@ double Control::coordinate(const HeidenhainWord& word, int axis) const {
 void Control::read_coordinate(const HeidenhainWord& word, Positioning& p) const {
   bool is_increment = false;
   const auto axis = axis_of_address(word.address, is_increment);
-  if (!axis) fail(word.place, fmt::format("'{}': not a word of this block", word.text));
+  if (!axis) fail(word.place, fmt::format("'{}' is not a word of this block", word.text));
   Positioning::Target& target = p.target[static_cast<std::size_t>(*axis)];
   if (target.word) {
     fail(word.place, fmt::format("'{}': {} appears twice in the block", word.text,
@@ -153,7 +153,7 @@ void Control::read_coordinate(const HeidenhainWord& word, Positioning& p) const 
 void Control::read_feed(const Words& words, std::size_t& at, Positioning& p) const {
   const HeidenhainWord& word = words[at];
   if (p.feed_word != Positioning::FeedWord::none) {
-    fail(word.place, fmt::format("'{}': a second feed in the block", word.text));
+    fail(word.place, fmt::format("'{}': the feed rate appears twice in the block", word.text));
   }
   const bool is_split_max =
       word.text == "F" && at + 1 < words.size() && words[at + 1].text == "MAX";
@@ -173,14 +173,15 @@ void Control::read_feed(const Words& words, std::size_t& at, Positioning& p) con
     fail(word.place, fmt::format("'{}': this feed is not covered by the verification", word.text));
   }
   p.feed = heidenhain_number(word, word.rest, kFeed);
-  if (!(p.feed > 0.0)) fail(word.place, fmt::format("'{}': a feed must be > 0", word.text));
+  if (!(p.feed > 0.0)) fail(word.place, fmt::format("'{}': the feed rate must be > 0", word.text));
 }
 
 void Control::read_function(const Words& words, std::size_t& at, Positioning& p) const {
   const HeidenhainWord& word = words[at];
   const double number = heidenhain_number(word, word.rest, {999.0, 0, false});
   if (p.functions_count == 2) {
-    fail(word.place, fmt::format("'{}': a third M function in the block", word.text));
+    fail(word.place,
+         fmt::format("'{}': at most two M functions are allowed in the block", word.text));
   }
   p.functions[p.functions_count] = &word;
   p.m[p.functions_count++] = static_cast<int>(number);

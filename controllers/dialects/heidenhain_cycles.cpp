@@ -39,7 +39,7 @@ double cycle_value(const std::vector<HeidenhainWord>& words, std::string_view ad
   const bool is_split = words.size() == 5 && words[3].text == address;
   const bool is_one = words.size() == 4 && words[3].address == address;
   if (!is_split && !is_one) {
-    throw InputError(place, fmt::format("the cycle needs {} and a value", address));
+    throw InputError(place, fmt::format("the cycle requires {} and a value", address));
   }
   const HeidenhainWord& word = words.back();
   return heidenhain_number(word, is_split ? word.text : word.rest, format);
@@ -59,7 +59,7 @@ void Control::define_cycle(const HeidenhainBlock& block) {
     fail(place_, "CYCL: only CYCL DEF with a number is covered by the verification");
   }
   const auto word = parse_cycle(words[2].text);
-  if (!word) fail(words[2].place, fmt::format("'{}' is not the number of a cycle", words[2].text));
+  if (!word) fail(words[2].place, fmt::format("'{}' is not a cycle number", words[2].text));
   const bool is_known = std::find(kCycles.begin(), kCycles.end(), word->cycle) != kCycles.end();
   if (word->cycle == 247 && word->index < 0) {
     finish(place_);
@@ -98,7 +98,7 @@ void Control::continue_cycle(int cycle, int index, const HeidenhainBlock& block)
 // Cycle 7, TRANS DATUM AXIS: counted from the preset, or from the shift before where incremental.
 // Together with cycles 8 and 10 the order of definition matters, which is not covered.
 void Control::shift_datum(const Words& words, std::size_t first) {
-  if (words.size() <= first) fail(place_, "a datum shift without an axis");
+  if (words.size() <= first) fail(place_, "a datum shift requires an axis");
   for (std::size_t at = first; at < words.size(); ++at) {
     const HeidenhainWord& word = words[at];
     if (word.text.front() == '#') {
@@ -110,7 +110,8 @@ void Control::shift_datum(const Words& words, std::size_t first) {
       if (!p.target[i].word) continue;
       double value = p.target[i].value * (rules_.shift_adds ? 1.0 : -1.0);
       if (p.target[i].is_increment || !rules_.shift_replaces_shift) {
-        if (!state_.shift[i]) fail(word.place, "an incremental shift of one that is unknown");
+        if (!state_.shift[i])
+          fail(word.place, "an incremental shift requires a known previous shift");
         value += *state_.shift[i];
       }
       const bool is_changed = is_mirrored(0) || is_mirrored(1) || state_.rotation.value_or(0) != 0;
@@ -161,7 +162,7 @@ void Control::scale(const Words& words, const Place& place) {
   const double factor = cycle_value(words, "SCL", {99.999999, 6, true}, place);
   if (factor != 1.0) {
     fail(words.back().place,
-         "cycle 11 with a factor other than 1: which axes it acts on depends on MP7410");
+         "cycle 11 with a factor other than 1 is not covered: the scaled axes depend on MP7410");
   }
   state_.is_scaled = false;
 }
@@ -169,7 +170,7 @@ void Control::scale(const Words& words, const Place& place) {
 // CYCL DEF 26.1 X 1 Y 1: a factor of 1 ends the scaling of the same axis (TNC 620 cycle programming
 // p. 256).
 void Control::scale_axes(const Words& words) {
-  if (words.size() <= 3) fail(place_, "cycle 26 without an axis");
+  if (words.size() <= 3) fail(place_, "cycle 26 requires an axis");
   for (std::size_t at = 3; at < words.size(); ++at) {
     const HeidenhainWord& word = words[at];
     const std::size_t axis = std::string_view("XYZ").find(word.address);
@@ -190,7 +191,7 @@ void Control::tilt(const Words& words) {
   require_tilting(place_, "cycle 19");
   if (words.size() == 3) {
     if (!state_.has_tilt_angles_zero) {
-      fail(place_, "cycle 19 without angles before its angles have been set to 0");
+      fail(place_, "cycle 19 without angles requires cycle 19 with angles of 0 first");
     }
     state_.is_tilted = false;
     return;
@@ -212,10 +213,10 @@ void Control::tilt(const Words& words) {
 
 // CYCL DEF 9.1 DWELL 1.5, in seconds; the name depends on the language of the control.
 void Control::dwell(const Words& words, const Place& place) {
-  if (words.size() < 4) fail(place, "cycle 9 without a time");
+  if (words.size() < 4) fail(place, "cycle 9 requires a time");
   const HeidenhainWord& word = words.back();
   const double time = heidenhain_number(word, word.rest, {3600.0, 3, true});
-  if (time < 0.0) fail(word.place, fmt::format("'{}': a time must be >= 0", word.text));
+  if (time < 0.0) fail(word.place, fmt::format("'{}': the time must be >= 0", word.text));
   emit(ActionKind::dwell, place).value = time * (rules_.dwell_is_in_seconds ? 1.0 : ms);
 }
 
@@ -228,9 +229,9 @@ void Control::set_tolerance(int index, const Words& words) {
     return;
   }
   if (words.size() != 4 || words[3].address != "T")
-    fail(place_, "cycle 32 takes T and a tolerance");
+    fail(place_, "cycle 32 requires T and a tolerance");
   const double value = heidenhain_number(words[3], words[3].rest, {99999.9999, 5, false}) * unit();
-  if (!(value > 0.0)) fail(words[3].place, "cycle 32 with a tolerance of 0");
+  if (!(value > 0.0)) fail(words[3].place, "cycle 32: the tolerance must not be 0");
   state_.is_path_mode_known = true;
   state_.path_tolerance = value;
 }
@@ -240,7 +241,7 @@ void Control::set_tolerance(int index, const Words& words) {
 void Control::select_preset(const Words& words, const Place& place) {
   const HeidenhainWord& word = words.back();
   if (words.size() < 4 || word.address != "Q" || word.rest.rfind("339=", 0) != 0) {
-    fail(place, "cycle 247 takes Q339 and the number of a preset");
+    fail(place, "cycle 247 requires Q339 and a preset number");
   }
   const std::string digits = word.rest.substr(4);
   const double number = heidenhain_number(word, digits, {99999.0, 0, true});

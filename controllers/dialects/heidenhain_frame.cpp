@@ -45,10 +45,10 @@ void Control::require_frame(const Place& place, bool is_machine_position) const 
   }
   const bool is_changed = is_mirrored(0) || is_mirrored(1) || *s.rotation != 0.0;
   if (is_machine_position && is_changed) {
-    fail(place, "M91 while cycle 8 or 10 is active: no manual found describes its effect");
+    fail(place, "M91 while cycle 8 or 10 is active: the effect is undocumented");
   }
   if (!is_machine_position && !s.tool) {
-    fail(place, "no TOOL CALL yet: the axis and the length of the tool are unknown");
+    fail(place, "a preceding TOOL CALL is required: the tool axis and length are unknown");
   }
 }
 
@@ -108,14 +108,14 @@ double Control::on_shorter_path(double from, double to, const Place& place) cons
   if (std::abs(way) < kHalfTurn - 1e-9 || !settings_.is_rotary_display_reduced) return to;
   if (!settings_.is_shorter_path_usual && !state_.is_shorter_path && rules_.unknown_is_refused) {
     fail(place,
-         "a rotary axis would move 180 degrees or more, and M126 may be active from the previous "
-         "program: program M127 or M126 first");
+         "a rotary axis would rotate by 180 degrees or more, and M126 may be active from the "
+         "previous program: program M127 or M126 first");
   }
   const bool is_shorter = settings_.is_shorter_path_usual || state_.is_shorter_path.value_or(false);
   if (!is_shorter || !rules_.m126_takes_shorter_path) return to;
   const double shorter = std::remainder(way, 2.0 * kHalfTurn);
   if (std::abs(std::abs(shorter) - kHalfTurn) < 1e-9) {
-    fail(place, "a rotary axis would move 180 degrees: the direction is undetermined");
+    fail(place, "a rotary axis would rotate by 180 degrees: the direction is undetermined");
   }
   return from + shorter;
 }

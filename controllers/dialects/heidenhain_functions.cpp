@@ -39,12 +39,10 @@ void Control::check_functions(const Positioning& p) const {
     const Place& place = p.functions[i]->place;
     const int m = p.m[i];
     if (m == 140) continue;
-    if (m == 7) fail(place, "M7: its meaning is up to the machine builder");
+    if (m == 7) fail(place, "M7 is defined by the machine builder");
     if (m == 92)
-      fail(place,
-           "M92: the builder's reference point is unknown; M91 counts from the "
-           "machine datum");
-    if (m == 128) fail(place, "M128: motion of the tool tip is not covered by the verification");
+      fail(place, "M92: the machine builder's reference point is unknown; use M91 (machine datum)");
+    if (m == 128) fail(place, "M128: TCP control is not covered by the verification");
     if (!find_function(m)) {
       fail(place, fmt::format("M{}: not covered by the verification", m));
     }
@@ -131,7 +129,8 @@ void Control::act_on_mode(int m, const HeidenhainWord& word) {
 
 void Control::turn_spindle(int direction, const HeidenhainWord& word) {
   if (direction != 0 && !state_.speed) {
-    fail(word.place, fmt::format("{}: no S since the last TOOL CALL", word.text));
+    fail(word.place,
+         fmt::format("{} requires S; none programmed since the last TOOL CALL", word.text));
   }
   state_.direction = direction;
   MachineAction& action = emit(ActionKind::spindle, word.place);

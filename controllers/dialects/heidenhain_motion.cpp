@@ -55,9 +55,9 @@ double Control::effective_feed(const Positioning& p) {
     state_.feed = state_.tool_call_feed;
   }
   if (!state_.feed && state_.has_block_feed) {
-    fail(place_, "no F in the block; no manual found says how long FT and FU stay active");
+    fail(place_, "no F in the block: it is undocumented how long FT and FU remain active");
   }
-  if (!state_.feed) fail(place_, "no F in the block, and none is active");
+  if (!state_.feed) fail(place_, "no feed rate is active; program F");
   const double feed = *state_.feed;
   if (!rules_.f_is_modal) state_.feed.reset();
   return feed;
@@ -72,12 +72,12 @@ double Control::feed_per_minute(double feed, const MachineAction& action,
   const Travel travel = travel_of(action, state_.position, end);
   if (!travel.is_rotary) return feed * length / minute;
   if (state_.is_rotary_feed_in_mm.value_or(rules_.unknown_is_refused)) {
-    fail(place_, "F moves a rotary axis, and M116 may be active: program M117 first");
+    fail(place_, "F for a rotary axis, and M116 may be active: program M117 first");
   }
   if (!travel.is_linear) return feed * deg_per_min;
   if (!travel.is_known) {
     fail(place_,
-         "F moves linear and rotary axes from an unknown position: the feed is undetermined");
+         "F for linear and rotary axes from an unknown position: the feed rate is undetermined");
   }
   if (!settings_.is_feed_of_all_axes) return feed * length / minute;
   const double path = std::hypot(travel.linear / mm, travel.rotary / deg);
@@ -106,10 +106,10 @@ void Control::set_feed(const Positioning& p, MachineAction& action, const KnownP
   }
   const Travel travel = travel_of(action, state_.position, end);
   if (travel.is_rotary) {
-    fail(place_, "feed per revolution of a rotary axis: no manual found gives its unit");
+    fail(place_, "feed per revolution of a rotary axis: the unit is undocumented");
   }
   if (!is_fu && is_inch_) {
-    fail(place_, "M136 in a program in INCH: no manual found gives the unit of F");
+    fail(place_, "M136 in a program in INCH: the unit of F is undocumented");
   }
   action.feed_mode = FeedMode::units_per_revolution;
   const double unit_of_f = is_fu ? unit() : settings_.is_m136_in_micrometres ? um : mm;
@@ -142,7 +142,7 @@ KnownPosition Control::machine_targets(const Positioning& p) const {
     const auto i = static_cast<std::size_t>(axis);
     const Positioning::Target& target = p.target[i];
     if (!target.word) continue;
-    if (target.is_increment) fail(target.word->place, "M91 with an incremental coordinate");
+    if (target.is_increment) fail(target.word->place, "M91 requires absolute coordinates");
     double to = target.value;
     const bool is_rotary = axis > index_of(Axis::Z);
     if (is_rotary && end[i]) to = on_shorter_path(*end[i], to, target.word->place);
@@ -181,7 +181,7 @@ void Control::move_straight(const Positioning& p) {
 void Control::run_line(const HeidenhainBlock& block, std::size_t first) {
   using FeedWord = Positioning::FeedWord;
   const Positioning p = read_words(block, first);
-  if (p.radius_angle || p.direction) fail(place_, "PA, IPA or DR in a straight line");
+  if (p.radius_angle || p.direction) fail(place_, "a straight line does not accept PA, IPA or DR");
   act_at_start(p);
   require_radius_off(p, block);
   if (p.is_retract) {
@@ -189,23 +189,23 @@ void Control::run_line(const HeidenhainBlock& block, std::size_t first) {
   } else if (p.has_target()) {
     move_straight(p);
   } else if (p.has_m(91)) {
-    fail(place_, "M91 without a coordinate");
+    fail(place_, "M91 requires a coordinate");
   } else if (p.feed_word == FeedWord::f) {
     state_.feed = p.feed;
   } else if (p.feed_word != FeedWord::none && p.feed_word != FeedWord::fmax) {
-    fail(place_, "a feed for this block, but no coordinate");
+    fail(place_, "a feed rate for this block requires a coordinate");
   }
   act_at_end(p);
 }
 
 // M140 MB MAX: to the limit of travel along the tool axis, at rapid where no F is given. M
 void Control::retract(const Positioning& p) {
-  if (p.has_target()) fail(place_, "M140 with coordinates: the order is not covered");
+  if (p.has_target()) fail(place_, "M140 with coordinates is not covered by the verification");
   if (p.feed_word != Positioning::FeedWord::none && p.feed_word != Positioning::FeedWord::fmax) {
     fail(place_, "M140 with a feed is not covered by the verification");
   }
   require_frame(place_, true);
-  if (!state_.tool) fail(place_, "M140: no TOOL CALL yet, the tool axis is unknown");
+  if (!state_.tool) fail(place_, "M140 requires a preceding TOOL CALL: the tool axis is unknown");
   state_.position[2].reset();
   MachineAction& action = emit(ActionKind::rapid, place_);
   action.is_commanded[2] = true;

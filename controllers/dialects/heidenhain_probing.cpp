@@ -11,7 +11,7 @@ namespace servomill::controllers::heidenhain {
 
 void Control::run_probe(const HeidenhainBlock& block) {
   const Words& words = block.words;
-  if (words.size() < 4 || words[1].text != "PROBE") fail(place_, "TCH takes PROBE and a cycle");
+  if (words.size() < 4 || words[1].text != "PROBE") fail(place_, "TCH requires PROBE and a cycle");
   if (words[2].text == "0.0") return begin_probing(words);
   if (words[2].text == "0.1") return probe(words);
   fail(words[2].place,
@@ -20,31 +20,32 @@ void Control::run_probe(const HeidenhainBlock& block) {
 
 // TCH PROBE 0.0 REF. PLANE Q5 X-
 void Control::begin_probing(const Words& words) {
-  if (open_probe_) fail(place_, "TCH PROBE 0.0 twice");
+  if (open_probe_) fail(place_, "TCH PROBE 0.0 appears twice");
   const bool is_whole = words.size() == 7 && words[5].address == "Q" && words[6].text.size() == 2;
-  if (!is_whole) fail(place_, "TCH PROBE 0.0 takes REF. PLANE, a parameter and a direction");
+  if (!is_whole) fail(place_, "TCH PROBE 0.0 requires REF. PLANE, a parameter and a direction");
   const std::size_t axis = std::string_view("XYZ").find(words[6].text[0]);
   const char sign = words[6].text[1];
   if (axis == std::string_view::npos || (sign != '+' && sign != '-')) {
-    fail(words[6].place, fmt::format("'{}': a direction such as X- is expected", words[6].text));
+    fail(words[6].place, fmt::format("'{}': expected a direction such as X-", words[6].text));
   }
   open_probe_ = OpenProbe{static_cast<int>(axis), sign == '+' ? 1 : -1};
 }
 
 // TCH PROBE 0.1 X+5 Y+0 Z-5
 void Control::probe(const Words& words) {
-  if (!open_probe_) fail(place_, "TCH PROBE 0.1 without TCH PROBE 0.0");
+  if (!open_probe_) fail(place_, "TCH PROBE 0.1 requires a preceding TCH PROBE 0.0");
   const OpenProbe open = *open_probe_;
   open_probe_.reset();
   Positioning p;
   for (std::size_t at = 3; at < words.size(); ++at) read_coordinate(words[at], p);
   for (std::size_t i = 0; i < 3; ++i) {
     if (!p.target[i].word || p.target[i].is_increment) {
-      fail(place_, "TCH PROBE 0.1 takes X, Y and Z, absolute");
+      fail(place_, "TCH PROBE 0.1 requires X, Y and Z, absolute");
     }
   }
-  if (state_.is_radius_off != true) fail(place_, "TCH PROBE while R0 is not known to be in force");
-  if (!state_.tool) fail(place_, "TCH PROBE: no TOOL CALL yet, the tool axis is unknown");
+  if (state_.is_radius_off != true) fail(place_, "TCH PROBE requires an active R0");
+  if (!state_.tool)
+    fail(place_, "TCH PROBE requires a preceding TOOL CALL: the tool axis is unknown");
   require_frame(place_, false);
   p.feed_word = Positioning::FeedWord::fmax;
   move_to(p, targets(p), new_motion(ActionKind::feed));

@@ -22,8 +22,9 @@ ProgramFrame read_frame(const HeidenhainBlock& block, std::string_view keyword) 
     throw InputError(block.place, fmt::format("expected {} PGM name MM (or INCH)", keyword));
   }
   if (words.size() != 4 || (words[3].text != "MM" && words[3].text != "INCH")) {
-    throw InputError(block.place,
-                     fmt::format("{} PGM needs a name without spaces, then MM or INCH", keyword));
+    throw InputError(
+        block.place,
+        fmt::format("{} PGM requires a name without spaces, then MM or INCH", keyword));
   }
   return {words[2].text, words[3].text == "INCH"};
 }
@@ -31,12 +32,13 @@ ProgramFrame read_frame(const HeidenhainBlock& block, std::string_view keyword) 
 void check_end(const HeidenhainBlock& block, const ProgramFrame& begin) {
   const ProgramFrame end = read_frame(block, "END");
   if (end.name != begin.name) {
-    throw InputError(block.words[2].place,
-                     fmt::format("END PGM {}: the program starts as {}", end.name, begin.name));
+    throw InputError(
+        block.words[2].place,
+        fmt::format("END PGM {}: the name must match BEGIN PGM {}", end.name, begin.name));
   }
   if (end.is_inch != begin.is_inch) {
     throw InputError(block.words[3].place,
-                     fmt::format("END PGM in {}: the program starts in {}",
+                     fmt::format("END PGM in {}: the unit must match BEGIN PGM ({})",
                                  end.is_inch ? "INCH" : "MM", begin.is_inch ? "INCH" : "MM"));
   }
 }
@@ -48,7 +50,7 @@ void check_number(const HeidenhainBlock& block, bool is_numbered, long expected)
   }
   if (!is_numbered && block.number) {
     throw InputError(block.place,
-                     fmt::format("block number {}: BEGIN PGM has none", *block.number));
+                     fmt::format("block number {}: BEGIN PGM has no block number", *block.number));
   }
   if (is_numbered && *block.number != expected) {
     throw InputError(block.place,
@@ -107,7 +109,7 @@ std::vector<MachineAction> read_heidenhain(std::string_view text, const std::str
                                            const HeidenhainRules& rules) {
   HeidenhainBlocks blocks(text, file);
   std::optional<HeidenhainBlock> block = blocks.next();
-  if (!block) throw InputError({file, 1, 1}, "no block; a program starts with BEGIN PGM");
+  if (!block) throw InputError({file, 1, 1}, "the program is empty; it must start with BEGIN PGM");
   const ProgramFrame begin = read_frame(*block, "BEGIN");
   const bool is_numbered = block->number.has_value();
   check_number(*block, is_numbered, 0);
@@ -124,12 +126,12 @@ std::vector<MachineAction> read_heidenhain(std::string_view text, const std::str
                          "machine");
       }
       if (const auto after = blocks.next()) {
-        throw InputError(after->place, "a block after END PGM");
+        throw InputError(after->place, "no block is allowed after END PGM");
       }
       return control.take_actions();
     }
     if (block->words.empty() || (block->is_optional && setup.skips_blocks)) continue;
-    if (control.is_at_end()) throw InputError(block->place, "a block after M2 or M30");
+    if (control.is_at_end()) throw InputError(block->place, "no block is allowed after M2 or M30");
     control.run(*block);
   }
   throw InputError({file, blocks.line(), 0}, fmt::format("END PGM {} is missing", begin.name));

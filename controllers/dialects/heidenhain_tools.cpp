@@ -31,14 +31,13 @@ void read_word(const HeidenhainWord& word, ToolCall& call) {
   if (word.text == "Z") {
     call.has_axis = true;
   } else if (word.text == "X" || word.text == "Y") {
-    throw InputError(word.place,
-                     fmt::format("TOOL CALL: tool axis {}; the tool axis is Z", word.text));
+    throw InputError(word.place, fmt::format("TOOL CALL: tool axis {}; must be Z", word.text));
   } else if (word.address == "S") {
     call.speed = heidenhain_number(word, word.rest, kSpeed) * rpm;
   } else if (word.address == "F") {
     call.feed = heidenhain_number(word, word.rest, kFeed);
     if (!(*call.feed > 0.0)) {
-      throw InputError(word.place, fmt::format("'{}': a feed must be > 0", word.text));
+      throw InputError(word.place, fmt::format("'{}': the feed rate must be > 0", word.text));
     }
   } else if (word.address == "DL") {
     call.delta_length = heidenhain_number(word, word.rest, kDelta);
@@ -88,7 +87,7 @@ void Control::call_tool(const HeidenhainBlock& block) {
   const ToolCall call = read_call(block);
   if (!call.number) {
     if (call.delta_length || call.has_delta_radius)
-      fail(place_, "TOOL CALL: DL, DR without a tool");
+      fail(place_, "TOOL CALL: DL and DR require a tool");
     if (call.feed) state_.feed = state_.tool_call_feed = call.feed;
     if (!call.speed) return;
     state_.speed = call.speed;
@@ -98,7 +97,7 @@ void Control::call_tool(const HeidenhainBlock& block) {
     action.value = *call.speed;
     return;
   }
-  if (!call.has_axis) fail(place_, "TOOL CALL without the tool axis Z");
+  if (!call.has_axis) fail(place_, "TOOL CALL requires the tool axis Z");
   if (!state_.is_tcp_control || !state_.is_tilted) {
     fail(place_,
          fmt::format("{} may be active from the previous program: program {} before TOOL CALL",

@@ -26,7 +26,7 @@ void refuse_through_point(const SiemensState& state, const SiemensBlock& block,
                           const SiemensContext& context) {
   if (!block.has_through()) return;
   context.fail(block.line, block.column,
-               fmt::format("I1, J1 and K1 are for CIP; G{} is active", *state.motion));
+               fmt::format("I1, J1 and K1 require CIP; G{} is active", *state.motion));
 }
 
 void SiemensArc::fail(int column, std::string message) const {
@@ -64,10 +64,10 @@ void SiemensArc::check_centre_words() {
     fail(along_normal->column,
          fmt::format("{} is not in the plane of the arc", "IJK"[normal_axis_]));
   }
-  if (block_.CR && block_.has_centre()) fail(block_.CR->column, "CR and a centre in one block");
-  if (!block_.CR && !block_.has_centre()) fail("the arc has neither a centre nor CR");
+  if (block_.CR && block_.has_centre()) fail(block_.CR->column, "CR is not allowed with a centre");
+  if (!block_.CR && !block_.has_centre()) fail("an arc requires a centre or CR");
   if (frame_.rotation() != 0.0 && normal_axis_ != 2) {
-    fail("an arc outside the XY plane under a rotated work offset is not supported");
+    fail("an arc outside the XY plane with a rotated work offset is not supported");
   }
   if (context_.rules.length_needs_a_line) refuse_new_length(normal_axis_);
 }
@@ -83,13 +83,13 @@ void SiemensArc::refuse_rotary_axes() const {
 // [P] p. 198 allows I1, J1 and K1 to be omitted only where their value is 0.
 void SiemensArc::check_through_words() const {
   if (frame_.is_of_machine()) fail("SUPA with CIP is not supported");
-  if (frame_.rotation() != 0.0) fail("CIP under a rotated work offset is not supported");
+  if (frame_.rotation() != 0.0) fail("CIP with a rotated work offset is not supported");
   if (block_.has_centre() || block_.CR || block_.TURN) {
-    fail("I, J, K, CR and TURN are for G2 and G3; CIP is active");
+    fail("I, J, K, CR and TURN require G2 or G3; CIP is active");
   }
   refuse_rotary_axes();
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!block_.through[i]) fail(fmt::format("CIP without {}1", "IJK"[i]));
+    if (!block_.through[i]) fail(fmt::format("CIP requires {}1", "IJK"[i]));
   }
   if (context_.rules.length_needs_a_line) refuse_new_length(-1);
 }
@@ -102,7 +102,7 @@ void SiemensArc::refuse_new_length(int still) const {
     const double length = frame_.length(a);
     const std::optional<double>& before = state_.length_shift[place_of(a)];
     if (before ? *before != length : length != 0.0) {
-      fail(fmt::format("the tool length changes in {}: it acts with G0 or G1 only",
+      fail(fmt::format("the tool length changes in {}; this requires G0 or G1",
                        siemens_axis_letter(a)));
     }
   }
@@ -112,7 +112,7 @@ Eigen::Vector2d SiemensArc::start_in_plane() const {
   const std::optional<double> u = frame_.program(state_.position, u_);
   const std::optional<double> v = frame_.program(state_.position, v_);
   if (!u || !v)
-    fail(fmt::format("the arc starts at an unknown position of {}",
+    fail(fmt::format("the start position of the arc in {} is unknown",
                      siemens_axis_letter(u ? v_ : u_)));
   return {*u, *v};
 }
@@ -154,14 +154,14 @@ void SiemensArc::read_through_point(MachineAction& out) {
   for (int a = 0; a < 3; ++a) {
     const std::optional<double> known = frame_.program(state_.position, a);
     if (!known)
-      fail(fmt::format("the arc starts at an unknown position of {}", siemens_axis_letter(a)));
+      fail(fmt::format("the start position of the arc in {} is unknown", siemens_axis_letter(a)));
     start[a] = *known;
     if (!target_.is_used[place_of(a)]) target_.add_start(a);
     end[a] = target_.words[a];
   }
   const Eigen::Vector3d through = through_point(start);
   const Eigen::Vector3d p = through - start, q = end - start, normal = p.cross(q);
-  if (q.norm() < kSamePoint) fail("CIP with equal start and end: the circle is undetermined");
+  if (q.norm() < kSamePoint) fail("CIP: start and end coincide: the circle is undetermined");
   if (normal.norm() < kCollinear * p.norm() * q.norm()) {
     fail("the three points of CIP are collinear");
   }
@@ -169,7 +169,7 @@ void SiemensArc::read_through_point(MachineAction& out) {
   u_ = (normal_axis_ + 1) % 3;
   v_ = (normal_axis_ + 2) % 3;
   if (std::max(std::abs(p[normal_axis_]), std::abs(q[normal_axis_])) > kMaxTilt + 1e-12) {
-    fail("CIP in a plane that is not spanned by two axes is not supported");
+    fail("CIP in a plane not spanned by two axes is not supported");
   }
   const Eigen::Vector3d centre =
       start + (p.squaredNorm() * q.cross(normal) + q.squaredNorm() * normal.cross(p)) /
@@ -202,7 +202,7 @@ Eigen::Vector2d SiemensArc::centre_of_radius(const Eigen::Vector2d& start,
   const Eigen::Vector2d chord = end - start;
   const double d = chord.norm();
   if (d < kSamePoint)
-    fail(block_.CR->column, "CR with equal start and end: the circle is undetermined");
+    fail(block_.CR->column, "CR: start and end coincide: the circle is undetermined");
   if (std::abs(r) < 0.5 * d - kMaxRadiusDifference) {
     fail(block_.CR->column,
          fmt::format("CR = {}: start and end are {:.6g} mm apart", block_.CR->value, d / mm));

@@ -92,23 +92,23 @@ constexpr std::pair<std::string_view, std::string_view> kNotRead[] = {
     {"AROT", "rotates the programmable frame"},
     {"ASCALE", "scales the programmable frame"},
     {"AMIRROR", "mirrors the programmable frame"},
-    {"G110", "sets a pole of polar coordinates"},
-    {"G111", "sets a pole of polar coordinates"},
-    {"G112", "sets a pole of polar coordinates"},
+    {"G110", "sets a pole for polar coordinates"},
+    {"G111", "sets a pole for polar coordinates"},
+    {"G112", "sets a pole for polar coordinates"},
     {"AP", "is a polar angle"},
     {"RP", "is a polar radius"},
     {"CT", "is an arc tangential to the preceding element"},
     {"AR", "is the angle of an arc"},
-    {"DIAMON", "makes X a diameter"},
-    {"DIAM90", "makes X a diameter"},
+    {"DIAMON", "activates diameter programming"},
+    {"DIAM90", "activates diameter programming"},
     {"COMPON", "replaces lines by splines"},
     {"COMPCAD", "replaces lines by splines"},
     {"COMPCURV", "replaces lines by splines"},
     {"COMPSURF", "replaces lines by splines"},
-    {"G643", "rounds corners by tolerances of single axes"},
-    {"G644", "rounds corners by tolerances of single axes"},
-    {"G645", "rounds corners by tolerances of single axes"},
-    {"FGROUP", "redefines the axes that F counts"},
+    {"G643", "smooths corners with axis tolerances"},
+    {"G644", "smooths corners with axis tolerances"},
+    {"G645", "smooths corners with axis tolerances"},
+    {"FGROUP", "redefines the axes that F refers to"},
     {"RET", "ends a subprogram"},
     {"CALL", "calls a subprogram"},
     {"MCALL", "calls a subprogram"},
@@ -150,7 +150,7 @@ class BlockBuilder {
     if (word.form == SiemensForm::bare) return put_code(word, word.name);
     if (word.name == "T") return put_tool(word);
     if (word.form == SiemensForm::text) {
-      fail(word.column, fmt::format("{}=\"...\": only T has a name", word.name));
+      fail(word.column, fmt::format("{}=\"...\": only T accepts a name", word.name));
     }
     if (word.name == "M") return put_M(word);
     put_address(word);
@@ -167,8 +167,7 @@ class BlockBuilder {
     std::optional<SiemensCode>& place = block_.codes[static_cast<std::size_t>(*group)];
     const std::string_view shown = entry != std::end(kCodes) ? entry->name : "G505...G599";
     if (place && *group != SiemensGroup::without_effect) {
-      fail(word.column,
-           fmt::format("{} and {} in one block: they are of one group", place->name, name));
+      fail(word.column, fmt::format("{} and {} in one block (same G group)", place->name, name));
     }
     place = SiemensCode{shown, number, word.column};
   }
@@ -178,7 +177,7 @@ class BlockBuilder {
     for (const auto& [known, does] : kNotRead) {
       if (known == name) fail(word.column, fmt::format("{} {}; it is not supported", name, does));
     }
-    if (word.name == "G") fail(word.column, fmt::format("{} is not read", name));
+    if (word.name == "G") fail(word.column, fmt::format("{} is not supported", name));
     std::vector<std::string_view> names;
     for (const CodeEntry& code : kCodes) names.push_back(code.name);
     for (const auto& entry : kNotRead) names.push_back(entry.first);
@@ -188,7 +187,7 @@ class BlockBuilder {
     }
     const std::string_view near = word.name.size() > 1 ? nearest_name(name, names) : "";
     if (near == name) fail(word.column, fmt::format("{} does not have this form", name));
-    fail(word.column, fmt::format("{} is not read{}", name,
+    fail(word.column, fmt::format("{} is not supported{}", name,
                                   near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
   }
 
@@ -211,18 +210,17 @@ class BlockBuilder {
     const auto result = std::from_chars(word.text.data(), end, number);
     if (word.form != SiemensForm::text || result.ec != std::errc() || result.ptr != end ||
         number < 0 || number > 32000) {
-      fail(word.column,
-           fmt::format("T=\"{}\": only names that are numbers have a tool length here", word.text));
+      fail(word.column, fmt::format("T=\"{}\": only numeric tool names are supported", word.text));
     }
     block_.T = SiemensTool{number, word.column};
   }
 
   void put_M(const SiemensWord& word) {
-    if (word.form != SiemensForm::number) fail(word.column, "M needs a number");
+    if (word.form != SiemensForm::number) fail(word.column, "M requires a number");
     const int number = whole(word, 0, 999);
     if (std::find(std::begin(kMFunctions), std::end(kMFunctions), number) ==
         std::end(kMFunctions)) {
-      fail(word.column, fmt::format("M{} is not read", number));
+      fail(word.column, fmt::format("M{} is not supported", number));
     }
     block_.M.push_back({word.value, word.form, word.column});
   }
@@ -246,7 +244,8 @@ class BlockBuilder {
       return put_once(word, block_.through[static_cast<std::size_t>(word.name[0] - 'I')]);
     }
     if (word.form != SiemensForm::number) {
-      fail(word.column, fmt::format("{}: AC(...) and IC(...) are for axes and I J K", word.name));
+      fail(word.column,
+           fmt::format("{}: AC(...) and IC(...) are allowed for axes and I J K only", word.name));
     }
     const std::pair<std::string_view, std::optional<SiemensNumber>*> numbers[] = {
         {"F", &block_.F},       {"S", &block_.S},       {"CR", &block_.CR},
@@ -287,7 +286,7 @@ class BlockBuilder {
       const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
       if (result.ec != std::errc() || result.ptr != text.data() + text.size() ||
           !std::isfinite(value)) {
-        fail(word.column, fmt::format("CYCLE832({}): its parameters are numbers", word.text));
+        fail(word.column, fmt::format("CYCLE832({}): the parameters must be numbers", word.text));
       }
       numbers.push_back(value);
       rest.remove_prefix(std::min(comma + 1, rest.size()));

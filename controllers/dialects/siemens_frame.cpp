@@ -32,7 +32,7 @@ void SiemensFrame::read_offset() {
   if (!state_.is_frame_clear) {
     fail("a programmable frame may be active; clear it with TRANS in a separate block");
   }
-  if (!state_.work_offset) fail("no work offset is programmed; any may be active");
+  if (!state_.work_offset) fail("no work offset is programmed; the active one is unknown");
   const int number = *state_.work_offset;
   if (number < 1 || number > kLastOffset) {
     fail(fmt::format("{}: the values of this work offset are unknown", name_of(number)));
@@ -63,7 +63,7 @@ int SiemensFrame::length_axis() const {
 double SiemensFrame::length(int axis) const {
   if (!is_linear(kAllAxes[static_cast<std::size_t>(axis)]) || axis != length_axis()) return 0.0;
   if (!state_.D) {
-    fail(fmt::format("{} needs a tool length, and D is unknown here",
+    fail(fmt::format("{} requires a tool length, but D is unknown here",
                      letter(kAllAxes[static_cast<std::size_t>(axis)])));
   }
   if (!state_.tool) fail(fmt::format("D{}: the tool in the spindle is unknown", *state_.D));

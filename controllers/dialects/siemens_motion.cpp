@@ -19,7 +19,7 @@ void check_modes(const SiemensState& state, const SiemensBlock& block,
   const auto fail = [&](int column, std::string message) {
     context.fail(block.line, column, std::move(message));
   };
-  if (!state.motion) fail(block.column, "positions without an active G0, G1, G2 or G3");
+  if (!state.motion) fail(block.column, "positions require an active G0, G1, G2 or G3");
   if (!state.is_cutter_off) {
     fail(block.column, "cutter radius compensation may be active; cancel it with G40");
   }
@@ -71,7 +71,7 @@ class Motion {
 
   void check_line_words() const {
     if (block_.has_centre() || block_.CR || block_.TURN) {
-      fail(fmt::format("I, J, K, CR and TURN are for G2 and G3; G{} is active", *state_.motion));
+      fail(fmt::format("I, J, K, CR and TURN require G2 or G3; G{} is active", *state_.motion));
     }
     refuse_through_point(state_, block_, context_);
   }
@@ -81,9 +81,10 @@ class Motion {
   // stopped them.
   void measure() {
     if (block_.MEAS->value != 1.0) {
-      fail(block_.MEAS->column, "only MEAS=1, the rising edge of probe 1, is read");
+      fail(block_.MEAS->column, "only MEAS=1, the rising edge of probe 1, is supported");
     }
-    if (out_.kind != ActionKind::feed) fail(block_.MEAS->column, "MEAS is read in blocks with G1");
+    if (out_.kind != ActionKind::feed)
+      fail(block_.MEAS->column, "MEAS is supported in blocks with G1 only");
     out_.kind = ActionKind::probe;
     if (!context_.rules.MEAS_forgets_positions) return;
     for (int a = 0; a < kAxisWords; ++a) {
@@ -138,7 +139,7 @@ class Motion {
 
   void set_feed() {
     if (!state_.feed_mode) fail("G93, G94 or G95 is unknown");
-    if (!state_.F) fail("no feed is programmed since G93, G94 or G95");
+    if (!state_.F) fail("no feed rate has been programmed since G93, G94 or G95");
     out_.feed_mode = *state_.feed_mode;
     if (out_.feed_mode == FeedMode::inverse_time) {
       out_.feed = *state_.F / minute;
@@ -151,7 +152,8 @@ class Motion {
         std::any_of(moves_.begin() + 3, moves_.end(), [](bool b) { return b; });
     if (moves_linear && moves_rotary) {
       fail(
-          "linear and rotary axes together: settings determine which of them F refers to; use G93");
+          "linear and rotary axes in one block: settings determine which of them F refers to; use "
+          "G93");
     }
     const bool has_linear =
         std::any_of(target_.is_used.begin(), target_.is_used.begin() + 3, [](bool b) { return b; });
@@ -163,7 +165,7 @@ class Motion {
   double unit_of_feed() const {
     if (!state_.units) fail("the unit system is unknown; program G710 or G700");
     if (!state_.units->is_of_feed && context_.rules.G71_leaves_F) {
-      fail("with G70 and G71 F is in the basic unit of the control; use G700 or G710");
+      fail("with G70 and G71, F is in the basic unit of the control; use G700 or G710");
     }
     return state_.units->length;
   }

@@ -74,7 +74,7 @@ class Reader {
     if (words.is_skippable && context_.setup.skips_blocks) return;
     carry_wrong_rules();
     check_block();
-    if (block_.MEAS && !block_.moves()) fail(block_.MEAS->column, "MEAS without an axis");
+    if (block_.MEAS && !block_.moves()) fail(block_.MEAS->column, "MEAS requires an axis");
     set_modes();
     set_numbers();
     if (block_.has(SiemensGroup::dwell)) return dwell();
@@ -108,16 +108,16 @@ class Reader {
     for (const SiemensGroup group : {SiemensGroup::frame, SiemensGroup::transformation}) {
       if (block_.has(group) && block_.words > 1) {
         fail(block_.code(group)->column,
-             fmt::format("{} needs a separate block", block_.code(group)->name));
+             fmt::format("{} must be in a separate block", block_.code(group)->name));
       }
     }
     if (block_.smoothing && block_.words > 1) {
-      fail(block_.smoothing->column, "CYCLE832 needs a separate block");
+      fail(block_.smoothing->column, "CYCLE832 must be in a separate block");
     }
     if (block_.has(SiemensGroup::dwell)) {
       const bool has_one = block_.F.has_value() != block_.S.has_value();
       if (!has_one || block_.words != 2) {
-        fail("G4 needs a separate block, with F in seconds or S in revolutions");
+        fail("G4 must be in a separate block, with F in seconds or S in revolutions");
       }
     }
     check_M();
@@ -135,24 +135,24 @@ class Reader {
     };
     if (of_group({0, 1, 2, 17, 30}) > 1 || of_group({3, 4, 5}) > 1 || of_group({7, 8, 9}) > 1 ||
         of_group({6}) > 1) {
-      fail(block_.M.back().column, "two M functions of one group in one block");
+      fail(block_.M.back().column, "two M functions of the same group in one block");
     }
     const bool has_T = block_.T || has_M(6);
     if (has_T && block_.words > (block_.T ? 1 : 0) + (has_M(6) ? 1 : 0) + (block_.D ? 1 : 0)) {
-      fail("a tool change needs a separate block, with T, M6 and D only");
+      fail("a tool change must be in a separate block, with T, M6 and D only");
     }
     if (!block_.moves()) return;
     for (const SiemensNumber& M : block_.M) {
       if (!is_stop(static_cast<int>(M.value)) && !is_end(static_cast<int>(M.value))) {
         fail(M.column, fmt::format("M{} in a block with a motion: the machine builder defines "
-                                   "whether it acts before or after",
+                                   "whether it acts before or after the motion",
                                    M.value));
       }
     }
     if (block_.S) {
       fail(block_.S->column,
            "S in a block with a motion: the machine builder defines whether it acts before or "
-           "after");
+           "after the motion");
     }
   }
 
@@ -234,13 +234,12 @@ class Reader {
       seconds = block_.F->value;
     } else {
       if (!state_.S || *state_.S == 0.0 || !state_.direction || *state_.direction == 0) {
-        fail(block_.S->column,
-             "G4 S counts revolutions, and the spindle is not known to be running");
+        fail(block_.S->column, "G4 S is in spindle revolutions and requires a running spindle");
       }
       seconds = block_.S->value * minute / *state_.S;
     }
     if (!(seconds >= 0.0 && seconds <= kLongestDwell)) {
-      fail(fmt::format("a dwell of {:g} s; must be from 0 to {:g} s", seconds, kLongestDwell));
+      fail(fmt::format("dwell time {:g} s; must be from 0 to {:g} s", seconds, kLongestDwell));
     }
     add(ActionKind::dwell).value = seconds;
   }
@@ -250,10 +249,11 @@ class Reader {
     const bool changes_here = context_.settings.T_changes_tool ? block_.T.has_value() : is_M6;
     if (block_.D && !is_M6 && !context_.settings.T_changes_tool) {
       fail(block_.D->column,
-           "D with T and without M6: it is unknown whether it applies to the old or the new tool");
+           "D with T but without M6: it is undetermined whether it applies to the old or the new "
+           "tool");
     }
     if (block_.T) state_.selected = block_.T->number;
-    if (is_M6 && !state_.selected) fail("M6 without T: the tool is unknown");
+    if (is_M6 && !state_.selected) fail("M6 requires T: the tool is unknown");
     if (changes_here) put_tool_in();
     if (changes_here || is_M6) forget_after_change();
     if (changes_here) add(ActionKind::tool).number = *state_.tool;
@@ -281,7 +281,7 @@ class Reader {
       // G96 would make it a cutting speed, and it is of the group of G93, G94 and G95.
       if (!state_.feed_mode)
         fail(block_.S->column,
-             "S needs an active G93, G94 or G95: with G96 it is not a spindle speed");
+             "S requires an active G93, G94 or G95: with G96 it is not a spindle speed");
       state_.S = block_.S->value;
     }
     if (has_switch) {
@@ -289,7 +289,7 @@ class Reader {
     } else if (!block_.S || state_.direction.value_or(0) == 0) {
       return;
     }
-    if (*state_.direction != 0 && !state_.S) fail("the spindle starts with an unknown S");
+    if (*state_.direction != 0 && !state_.S) fail("the spindle starts, but S is unknown");
     MachineAction& action = add(ActionKind::spindle);
     action.direction = *state_.direction;
     action.value = action.direction == 0 ? 0.0 : *state_.S * rpm;

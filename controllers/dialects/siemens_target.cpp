@@ -53,11 +53,11 @@ double SiemensTarget::angle_of(int a, SiemensForm form, double value) const {
 bool SiemensTarget::is_incremental(const SiemensNumber& word, char name) const {
   bool incremental = word.form == SiemensForm::incremental;
   if (word.form == SiemensForm::number) {
-    if (!state_.is_incremental) fail(word.column, "neither G90 nor G91 is known to be active");
+    if (!state_.is_incremental) fail(word.column, "G90 or G91 must be active");
     incremental = *state_.is_incremental;
   }
   if (incremental && frame_.is_of_machine()) {
-    fail(word.column, fmt::format("{}: SUPA needs absolute positions", name));
+    fail(word.column, fmt::format("{}: SUPA requires absolute positions", name));
   }
   return incremental;
 }
@@ -67,13 +67,13 @@ bool SiemensTarget::is_incremental(const SiemensNumber& word, char name) const {
 double SiemensTarget::start_of_increment(int a, int column) const {
   const std::optional<double> start = frame_.program(state_.position, a);
   if (!start)
-    fail(column, fmt::format("an incremental coordinate from an unknown position of {}",
+    fail(column, fmt::format("an incremental coordinate requires a known position of {}",
                              siemens_axis_letter(a)));
   const bool is_same = state_.frame_shift[place_of(a)] == frame_.offset(a) &&
                        state_.length_shift[place_of(a)] == frame_.length(a);
   if (!is_same && context_.rules.increment_needs_same_offset) {
-    fail(column, fmt::format("an increment of {} after a new work offset or tool length: settings "
-                             "determine whether the change is included",
+    fail(column, fmt::format("an increment of {} after a change of work offset or tool length: "
+                             "settings determine whether it includes the change",
                              siemens_axis_letter(a)));
   }
   return *start;

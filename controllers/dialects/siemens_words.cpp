@@ -62,9 +62,8 @@ class LineReader {
     out.is_skippable = true;
     if (at_end() || !is_digit(now())) return;
     if (now() != '0') {
-      fail(at,
-           fmt::format("/{}: skip level {} has its own switch; only the switch of / is supported",
-                       now(), now()));
+      fail(at, fmt::format("/{}: skip level {} has its own switch; only that of / is supported",
+                           now(), now()));
     }
     ++at_;
     if (!at_end() && is_digit(now())) fail(at, "skip levels are /0 ... /9");
@@ -146,7 +145,7 @@ class LineReader {
     skip_blanks();
     if (is_now('"')) {
       const std::size_t close = line_.find('"', at_ + 1);
-      if (close == std::string_view::npos) fail(at_, "the string has no closing quote");
+      if (close == std::string_view::npos) fail(at_, "the string is not closed; '\"' is missing");
       word.form = SiemensForm::text;
       word.text = line_.substr(at_ + 1, close - at_ - 1);
       at_ = close + 1;
@@ -171,13 +170,13 @@ class LineReader {
            fmt::format("{}={}: only numbers, AC(...) and IC(...) are supported", word.name, name));
     }
     skip_blanks();
-    if (!is_now('(')) fail(at_, fmt::format("{} needs a number in parentheses", name));
+    if (!is_now('(')) fail(at_, fmt::format("{} requires a number in parentheses", name));
     ++at_;
     skip_blanks();
     word.form = name == "AC" ? SiemensForm::absolute : SiemensForm::incremental;
     word.value = read_number(name);
     skip_blanks();
-    if (!is_now(')')) fail(at_, fmt::format("{}(...) holds one number", name));
+    if (!is_now(')')) fail(at_, fmt::format("{}(...) must contain one number", name));
     ++at_;
   }
 
@@ -191,7 +190,7 @@ class LineReader {
       has_digit = has_digit || is_digit(now());
       has_point = has_point || now() == '.';
     }
-    if (!has_digit) fail(begin, fmt::format("{} needs a number", name));
+    if (!has_digit) fail(begin, fmt::format("{} requires a number", name));
     double value = 0.0;
     const char* first = line_.data() + begin + (has_plus ? 1 : 0);
     const auto result = std::from_chars(first, line_.data() + at_, value);

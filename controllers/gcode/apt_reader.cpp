@@ -40,10 +40,11 @@ class AptReader : ClReader {
     }
     for (const auto& [word, skipped] : skipped_) {
       const int more = skipped.times - 1;
-      warn(skipped.first, fmt::format("{} is ignored{}", word,
-                                      more == 0   ? ""
-                                      : more == 1 ? ", here and once more"
-                                                  : fmt::format(", here and {} more times", more)));
+      warn(skipped.first,
+           fmt::format("{} is ignored{}", word,
+                       more == 0   ? ""
+                       : more == 1 ? ", here and in one other line"
+                                   : fmt::format(", here and in {} other lines", more)));
     }
     return finish();
   }
@@ -180,7 +181,7 @@ class AptReader : ClReader {
   }
 
   void go_to(Spot at, const Words& words) {
-    need(at, words.size() == 3 || words.size() == 6, "GOTO needs x,y,z or x,y,z,i,j,k");
+    need(at, words.size() == 3 || words.size() == 6, "GOTO requires x,y,z or x,y,z,i,j,k");
     std::array<double, 6> values{};
     for (std::size_t i = 0; i < words.size(); ++i) values[i] = number(words[i]);
     if (words.size() == 6) axis_ = unit_axis({values[3], values[4], values[5]}, words[3].spot());
@@ -194,7 +195,7 @@ class AptReader : ClReader {
 
   double feed_at(Spot at) const {
     if (!per_revolution_) return feed_;
-    need(at, spindle_ > 0.0, "a feed per revolution needs a spindle speed (SPINDL)");
+    need(at, spindle_ > 0.0, "a feed per revolution requires a spindle speed (SPINDL)");
     return feed_ * spindle_;
   }
 
@@ -220,7 +221,7 @@ class AptReader : ClReader {
         if (unit.length == 0.0) unit.length = unit_;
       } else if (!value) {
         value = number(word);
-        need(word.spot(), *value > 0.0, "a feed must be > 0");
+        need(word.spot(), *value > 0.0, "the feed rate must be > 0");
       } else {
         std::array<std::string_view, kUnits.size()> names;
         std::transform(kUnits.begin(), kUnits.end(), names.begin(),
@@ -229,7 +230,7 @@ class AptReader : ClReader {
                                       fmt::join(names, ", ")));
       }
     }
-    need(at, value.has_value(), "FEDRAT needs a number");
+    need(at, value.has_value(), "FEDRAT requires a number");
     per_revolution_ = unit.per_revolution;
     feed_ = *value * unit.length / (per_revolution_ ? kRevolution : minute);
   }
@@ -246,12 +247,12 @@ class AptReader : ClReader {
     } else if (name == "INCH" || name == "INCHES") {
       unit_ = inch;
     } else {
-      fail(at, "UNITS needs MM or INCH");
+      fail(at, "UNITS requires MM or INCH");
     }
   }
 
   void spindle(Spot at, const Words& words) {
-    need(at, !words.empty(), "SPINDL needs a speed, ON or OFF");
+    need(at, !words.empty(), "SPINDL requires a speed, ON or OFF");
     int direction = direction_;
     for (const PlacedText& word : words) {
       if (is(word, "OFF")) {
@@ -260,7 +261,8 @@ class AptReader : ClReader {
         direction = is(word, "CLW") ? 1 : -1;
         direction_ = direction;
       } else if (is(word, "SFM") || is(word, "SMM")) {
-        fail(word.spot(), "a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
+        fail(word.spot(),
+             "a cutting speed (SFM, SMM) is not supported; program the spindle speed in RPM");
       } else if (const auto value = signed_number_in(word.text)) {
         need(word.spot(), *value > 0.0, "the spindle speed must be > 0");
         spindle_ = *value * rpm;
@@ -268,14 +270,14 @@ class AptReader : ClReader {
         unknown_minor("SPINDL", word);
       }
     }
-    need(at, direction == 0 || spindle_ > 0.0, "SPINDL needs a speed");
+    need(at, direction == 0 || spindle_ > 0.0, "SPINDL requires a speed");
     ClRecord& record = add(MoveKind::spindle, at);
     record.value = spindle_;
     record.direction = direction;
   }
 
   void coolant(Spot at, const Words& words) {
-    need(at, !words.empty(), "COOLNT needs ON, FLOOD, MIST or OFF");
+    need(at, !words.empty(), "COOLNT requires ON, FLOOD, MIST or OFF");
     for (const PlacedText& word : words) {
       int number = 0;
       if (is(word, "ON") || is(word, "FLOOD")) {
@@ -292,7 +294,7 @@ class AptReader : ClReader {
 
   void load_tool(Spot at, const Words& words) {
     constexpr double kMaxTools = 99999.0;
-    need(at, !words.empty(), "LOADTL needs a tool number");
+    need(at, !words.empty(), "LOADTL requires a tool number");
     const double tool = number(words[0]);
     need(words[0].spot(), tool == std::floor(tool) && tool >= 1.0 && tool <= kMaxTools,
          "the tool number must be an integer >= 1 and <= 99999");
@@ -301,7 +303,7 @@ class AptReader : ClReader {
   }
 
   void delay(Spot at, const Words& words) {
-    need(at, words.size() == 1, "DELAY needs a time in seconds");
+    need(at, words.size() == 1, "DELAY requires a time in seconds");
     const double time = number(words[0]);
     need(words[0].spot(), time >= 0.0, "DELAY must be >= 0");
     add(MoveKind::dwell, at).value = time;

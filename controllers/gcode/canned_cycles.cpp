@@ -87,6 +87,8 @@ constexpr bool is_pecking(int tenths) { return tenths == 730 || tenths == 830; }
 
 }  // namespace
 
+// Steps of one hole, in the order of LinuxCNC 2.9 (canned cycles); `clear` is the level of G98 or
+// G99.
 std::vector<CycleStep> cycle_steps(int tenths, const CycleHole& hole) {
   Steps steps(hole);
   switch (tenths) {
@@ -159,17 +161,20 @@ void Interpreter::Machine::check_cycle() const {
     }
   }
   if (state_.feed_mode == FeedMode::inverse_time) {
-    fail(chosen.column, fmt::format("{} under G93; a cycle needs G94 or G95", name));
+    fail(chosen.column, fmt::format("{} with G93; a cycle requires G94 or G95", name));
   }
   if (state_.feed_linear == 0.0) {
     fail(chosen.column, zero_feed(name));
   }
   if (state_.tool_control == ToolControl::tool_axis) {
-    fail(chosen.column, fmt::format("{} under G43.5; use G43.4 or G68.2", name));
+    fail(chosen.column, fmt::format("{} is not supported with G43.5; use G43.4 or G68.2", name));
   }
   if (state_.is_uvw_plane) {
-    fail(chosen.column,
-         fmt::format("{} in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or G19", name));
+    fail(
+        chosen.column,
+        fmt::format(
+            "{} is not supported in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or G19",
+            name));
   }
 }
 
@@ -177,9 +182,9 @@ double Interpreter::Machine::cycle_word(char letter, double kept, bool goes_on) 
   if (request().has(letter)) return request()[letter];
   const Request::Chosen& chosen = request().motion;
   if (!goes_on) {
-    fail(chosen.column,
-         fmt::format("{} needs {}; no earlier {} has set it", code_name('G', chosen.code->tenths),
-                     letter, code_name('G', chosen.code->tenths)));
+    fail(chosen.column, fmt::format("{} requires {}, which no earlier {} has set",
+                                    code_name('G', chosen.code->tenths), letter,
+                                    code_name('G', chosen.code->tenths)));
   }
   return kept;
 }
@@ -191,14 +196,14 @@ void Interpreter::Machine::check_cycle_spindle() const {
   if (!is_tapping(code) && code != 860 && code != 870 && code != 880) return;
   if (state_.spindle_direction == 0) {
     fail(chosen.column,
-         fmt::format("{} with the spindle stopped; start it with {}", code_name('G', code),
+         fmt::format("{} requires a running spindle; start it with {}", code_name('G', code),
                      code == 840   ? "M3"
                      : code == 740 ? "M4"
                                    : "M3 or M4"));
   }
   if (state_.spindle_direction != wanted) {
     fail(chosen.column,
-         fmt::format("{} with the spindle running {}; it needs {}", code_name('G', code),
+         fmt::format("{} with the spindle running {}; it requires {}", code_name('G', code),
                      wanted > 0 ? "counter-clockwise (M4)" : "clockwise (M3)",
                      wanted > 0 ? "M3" : "M4"));
   }
@@ -246,8 +251,8 @@ void Interpreter::Machine::require_known_level() {
   if (!state_.is_height_unknown) return;
   if (state_.is_incremental || !state_.retracts_to_r) {
     fail(request().motion.column,
-         "the cycle starts at a Z that depends on the unknown tool length; program Z first, or "
-         "pass a tool table with --tools");
+         "the start Z of the cycle depends on the unknown tool length; program Z first, or pass a "
+         "tool table with --tools");
   }
   state_.is_height_unknown = false;
 }
@@ -270,8 +275,8 @@ int Interpreter::Machine::cycle_repeats(const CycleHole& hole) const {
   const double steps = (3.0 + cycle_step_count(code, hole)) * repeats;
   if (steps > kMaxSteps) {
     fail(cycle_column(repeats > 1 ? 'L' : 'Q'),
-         fmt::format("{} would make {:.0f} moves; must be <= {:.0f}", code_name('G', code), steps,
-                     kMaxSteps));
+         fmt::format("{} would generate {:.0f} moves; must be <= {:.0f}", code_name('G', code),
+                     steps, kMaxSteps));
   }
   return repeats;
 }
@@ -321,7 +326,7 @@ AxisWords Interpreter::Machine::confused_tap(const AxisWords& end) {
   out[second] = n == 0 ? end[first] : end[n];
   out[n] = n == 0 ? end[second] : end[first];
   const std::string message =
-      fmt::format("{} outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17",
+      fmt::format("{} outside G17 swaps coordinates, as in LinuxCNC 2.9; use G17 for tapping",
                   code_name('G', request().motion_code()));
   const bool is_said = !warnings_.empty() && warnings_.back().place.line == line() &&
                        warnings_.back().message == message;

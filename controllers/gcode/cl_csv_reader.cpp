@@ -96,7 +96,7 @@ class CsvReader : ClReader {
       if (columns_[c].value == 3) axis = cells[c].spot();
       if (columns_[c].value == kFeed) feed = cells[c].spot();
     }
-    if (feed.line > 0 && !(values[kFeed] > 0.0)) fail(feed, "a feed must be > 0");
+    if (feed.line > 0 && !(values[kFeed] > 0.0)) fail(feed, "the feed rate must be > 0");
     ClRecord record;
     record.line = at.line;
     record.P.p_WT = {values[0], values[1], values[2]};

@@ -60,11 +60,11 @@ double ClReader::number(const PlacedText& word) const {
 Eigen::Vector3d ClReader::unit_axis(const Eigen::Vector3d& k, Spot spot) {
   const double length = k.norm();
   if (!(length > kNoDirection)) {
-    fail(spot, fmt::format("tool axis ({:g}, {:g}, {:g}) has no direction", k[0], k[1], k[2]));
+    fail(spot, fmt::format("tool axis ({:g}, {:g}, {:g}) has zero length", k[0], k[1], k[2]));
   }
   if (!std::isfinite(length)) fail(spot, "tool axis is too long");
   if (std::abs(length - 1.0) > kAxisLengthTolerance) {
-    warn(spot, fmt::format("tool axis has length {:.6g}; taken as a unit vector", length));
+    warn(spot, fmt::format("tool axis has length {:.6g}; normalised to a unit vector", length));
   }
   return k / length;
 }

@@ -27,8 +27,9 @@ void Interpreter::Machine::refuse_code(Group group) const {
   const Request::Chosen& chosen = request().of(group);
   if (chosen.code == nullptr) return;
   const char letter = group >= Group::m_input_output ? 'M' : 'G';
-  fail(chosen.column, fmt::format("{} with cutter compensation active; G40 first",
-                                  code_name(letter, chosen.code->tenths)));
+  fail(chosen.column,
+       fmt::format("{} is not allowed with cutter compensation active; program G40 first",
+                   code_name(letter, chosen.code->tenths)));
 }
 
 void Interpreter::Machine::refuse_codes_under_compensation() {
@@ -51,7 +52,8 @@ void Interpreter::Machine::refuse_codes_under_compensation() {
   const int motion_code = request().motion_code();
   if (motion_code > 30) {
     fail(request().motion.column,
-         fmt::format("{} with cutter compensation active; G40 first", code_name('G', motion_code)));
+         fmt::format("{} is not allowed with cutter compensation active; program G40 first",
+                     code_name('G', motion_code)));
   }
 }
 
@@ -60,13 +62,15 @@ void Interpreter::Machine::start_compensation() {
   const std::string name = code_name('G', chosen.code->tenths);
   Compensation& compensation = state_.compensation;
   if (state_.normal_axis == 0) {
-    fail(chosen.column, fmt::format("{} in the YZ plane; must be in G17 or G18", name));
+    fail(chosen.column, fmt::format("{} is not allowed in the YZ plane; use G17 or G18", name));
   }
   if (compensation.is_on) {
-    fail(chosen.column, fmt::format("{} with cutter compensation active; G40 first", name));
+    fail(chosen.column,
+         fmt::format("{} is not allowed with cutter compensation active; program G40 first", name));
   }
   if (state_.tool_control != ToolControl::none) {
-    fail(chosen.column, fmt::format("{} under tool-centre-point control; G49 first", name));
+    fail(chosen.column,
+         fmt::format("{} is not allowed under TCP control; program G49 first", name));
   }
   const double diameter = compensation_diameter();
   const bool is_left = chosen.code->tenths < 420;
@@ -90,12 +94,11 @@ int Interpreter::Machine::compensating_tool() const {
 void Interpreter::Machine::warn_without_diameter(int column, const std::string& name) {
   const int number = compensating_tool();
   state_.compensation.is_radius_unknown = number > 0 && setup_.tools.entry_of(number) == nullptr;
-  warn(column,
-       state_.compensation.is_radius_unknown
-           ? fmt::format("{}: the diameter of tool {} is unknown; the programmed path is read, not "
-                         "that of the tool; pass a tool table with --tools",
-                         name, number)
-           : fmt::format("{}: the tool has no diameter; nothing is compensated", name));
+  warn(column, state_.compensation.is_radius_unknown
+                   ? fmt::format("{}: the diameter of tool {} is unknown; the programmed path is "
+                                 "used without compensation; pass a tool table with --tools",
+                                 name, number)
+                   : fmt::format("{}: the tool diameter is 0; the path is not compensated", name));
 }
 
 // Diameter of the tool, m; negative: on the other side of the path.
@@ -104,13 +107,14 @@ double Interpreter::Machine::compensation_diameter() const {
   const std::string name = code_name('G', chosen.code->tenths);
   if (chosen.code->tenths % 10 == 1) {
     if (!request().has('D'))
-      fail(chosen.column, fmt::format("{} needs a D word (diameter of the tool)", name));
+      fail(chosen.column, fmt::format("{} requires a D word (tool diameter)", name));
     if (request().has('L')) {
       const int column = request().word('L').column;
       if (state_.normal_axis == 2)
-        fail(column, fmt::format("L with {} in the XY plane; it is the orientation of a turning "
-                                 "tool, which needs G18",
-                                 name));
+        fail(column,
+             fmt::format(
+                 "L with {} in the XY plane; L, the orientation of a turning tool, requires G18",
+                 name));
       refuse_turning_tool(column, integer('L'));
     }
     return request()['D'] * state_.unit;
@@ -137,7 +141,7 @@ void Interpreter::Machine::refuse_turning_tool(int column, int orientation) cons
   if (orientation == 0 || orientation == 9) return;
   fail(column,
        fmt::format(
-           "turning tool of orientation {}; cutter compensation takes round tools only (0 or 9)",
+           "turning tool of orientation {}; cutter compensation supports round tools only (0 or 9)",
            orientation));
 }
 
@@ -231,12 +235,12 @@ void Interpreter::Machine::tell_of_entry(const PlaneMove& path, const Corner& fo
   constexpr double kSame = 1e-6;  // m
   constexpr std::string_view kText = "the entry of cutter compensation follows LinuxCNC";
   if (distance < kSame || !noted_.insert(std::string(kText)).second) return;
-  warn(
-      request().motion.column,
-      fmt::format("{}: the tool ends line {} {:.4f} mm away from where Fanuc and Haas end it, next "
-                  "to the start of the next move (or within two moves: parameter 5003, setting "
-                  "43); an entry followed by a move in the same direction is the same for all",
-                  kText, compensation.queue.front().move.line, distance / mm));
+  warn(request().motion.column,
+       fmt::format(
+           "{}: the tool ends line {} {:.4f} mm away from its end point on Fanuc and Haas, which "
+           "is normal to the start of the next move (or within two moves: parameter 5003, setting "
+           "43); an entry followed by a move in the same direction is identical on all",
+           kText, compensation.queue.front().move.line, distance / mm));
 }
 
 // Around a convex corner, which is of no length in the program. Rotary axes turn here, the axis

@@ -86,9 +86,9 @@ void Interpreter::Machine::count_jump() {
   const bool is_endless =
       ++flow_.jumps > setup_.most_jumps || flow_.lines > kLinesOfATurn * setup_.most_jumps;
   if (!is_endless) return;
-  fail(block_.o_word.column,
-       fmt::format("{} loop iterations and subroutine calls, {} lines; the program looks endless",
-                   flow_.jumps, flow_.lines));
+  fail(block_.o_word.column, fmt::format("{} loop iterations and subroutine calls, {} lines; the "
+                                         "program appears to loop endlessly",
+                                         flow_.jumps, flow_.lines));
 }
 
 Label& Interpreter::Machine::new_label(const std::string& name, Flow flow) {
@@ -182,7 +182,7 @@ void Interpreter::Machine::keep_result(const OWord& o) {
 // As LinuxCNC: a definition that is passed over leaves its result, too.
 void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& o) {
   if (flow_.calls.empty()) {
-    if (!flow_.defining) fail(o.column, fmt::format("no subroutine O<{}> starts here", name));
+    if (!flow_.defining) fail(o.column, fmt::format("subroutine O<{}> has not started", name));
     const Forgiving forgiving(parameters_);
     keep_result(o);
     if (o.flow != Flow::endsub) return;
@@ -192,8 +192,8 @@ void Interpreter::Machine::end_subroutine(const std::string& name, const OWord& 
   }
   const bool by_m98 = flow_.calls.back().flow == Flow::m98;
   if (by_m98 != (o.flow == Flow::m99)) {
-    fail(o.column, by_m98 ? "a subprogram that M98 calls ends with M99"
-                          : "a subroutine ends with ENDSUB or RETURN, not with M99");
+    fail(o.column, by_m98 ? "a subprogram called by M98 must end with M99"
+                          : "a subroutine must end with ENDSUB or RETURN, not with M99");
   }
   keep_result(o);
   if (o.flow == Flow::endsub) flow_.skip_to.reset();
@@ -237,13 +237,12 @@ namespace {
 
 std::string word_behind_call(char letter) {
   if (letter == 'Q') {
-    return "Q with M98: without effect (LinuxCNC), or the block where the subprogram begins "
-           "(Fanuc); remove it, or choose with --reader linuxcnc";
+    return "Q with M98: no effect (LinuxCNC), or the block where the subprogram starts (Fanuc); "
+           "remove it, or choose with --reader linuxcnc";
   }
   return fmt::format(
-      "{} behind M98: without effect (LinuxCNC), or read before the call (Fanuc, Haas); write it "
-      "in "
-      "a block of its own, or choose with --reader linuxcnc",
+      "{} after M98: no effect (LinuxCNC), or executed before the call (Fanuc, Haas); program it "
+      "in a separate block, or choose with --reader linuxcnc",
       letter);
 }
 
@@ -255,7 +254,7 @@ void Interpreter::Machine::call_subprogram(const std::string& name, const OWord&
   if (o.has_value) {
     const double L = flow_value(o);
     if (!(std::abs(L - std::round(L)) <= kIntegerTol) || L < -kIntegerTol || L > 1e9) {
-      fail(o.value_column, fmt::format("L{}; must be an integer, not negative", L));
+      fail(o.value_column, fmt::format("L{}; must be an integer >= 0", L));
     }
     if (turns == 0) turns = std::lround(L);
     if (turns == 0) return;

@@ -302,7 +302,7 @@ void Interpreter::Machine::override_switches() {
 void Interpreter::Machine::output() {
   const auto& code = request().of(Group::m_input_output);
   if (request().has('P')) return;
-  fail(code.column, fmt::format("{} needs a P word (number of the output)",
+  fail(code.column, fmt::format("{} requires a P word (output number)",
                                 code_name('M', request().code(Group::m_input_output))));
 }
 

@@ -61,10 +61,10 @@ void Interpreter::Machine::note_other_arithmetic() {
     const bool is_given = assigned_.contains(number) || setup_.stored.contains(number) ||
                           setup_.parameters.contains(fmt::format("#{}", number));
     if (is_given) continue;
-    note(op.column, fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, so that "
-                                "its word is omitted (Fanuc, Haas); choose with --reader "
-                                "linuxcnc, fanuc or haas",
-                                number));
+    note(op.column,
+         fmt::format("#{} is read before it is set: 0 (LinuxCNC), or vacant, so that its word is "
+                     "ignored (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas",
+                     number));
   }
 }
 
@@ -73,7 +73,7 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
   const long first = number < kMachine ? kEnd : number < kCurrent ? kMachine : kCurrent;
   const long axis = number - first;
   if (axis >= kAxisWords) {
-    why = "there is no such axis";
+    why = "the axis does not exist";
     return std::nullopt;
   }
   const Axis one = axis_at(static_cast<int>(axis));
@@ -83,7 +83,7 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
     return std::nullopt;
   }
   if (first != kEnd && state_.compensation.is_on) {
-    why = "cutter compensation is active: it is not known yet; G40 first";
+    why = "it is unknown with cutter compensation active; program G40 first";
     return std::nullopt;
   }
   if (first == kMachine && !is_offset_known(parameters_, setup_.stored, state_.work_system)) {
@@ -91,7 +91,7 @@ std::optional<double> Interpreter::Machine::macro_position(long number, std::str
     return std::nullopt;
   }
   if (first == kCurrent && state_.tool_offset != AxisWords::Zero()) {
-    why = "whether it includes the tool length differs between controls; read #5001 and up";
+    why = "controls differ in whether it includes the tool length; use #5001 and up";
     return std::nullopt;
   }
   const AxisWords at = first == kMachine ? machine_now(0) : state_.programmed();
@@ -126,7 +126,7 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
   if (number == 4001 && state_.motion <= 30) return code(state_.motion / 10);
   if (number == 4001 && state_.motion == 800) {
     why =
-        "no G0, G1, G2 or G3 precedes it: the active one is a control setting (Fanuc, parameter "
+        "no G0, G1, G2 or G3 precedes it: the active one depends on the control (Fanuc, parameter "
         "3402#0); program one";
   }
   if (number >= 4002 && number <= 4009 && number != 4004) return code(setting_mode(number));
@@ -136,9 +136,9 @@ std::optional<double> Interpreter::Machine::macro_mode(long number, std::string&
   const bool is_work_system = (number == 4014 && is_fanuc) || (number == 4012 && is_haas);
   if (is_work_system && state_.work_system <= 6) return code(53 + state_.work_system);
   if (!is_work_system && (number == 4012 || number == 4014)) {
-    why = "the work system is #4014 (Fanuc) or #4012 (Haas); choose with --reader fanuc or haas";
+    why = "the work offset is #4014 (Fanuc) or #4012 (Haas); choose with --reader fanuc or haas";
   }
-  if (why.empty()) why = "it is not tracked here";
+  if (why.empty()) why = "it is not simulated";
   return std::nullopt;
 }
 

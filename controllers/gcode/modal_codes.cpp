@@ -12,12 +12,12 @@ namespace servomill::controllers {
 void Interpreter::Machine::dwell() {
   if (request().code(Group::g_non_modal) != 40) return;
   const int column = request().of(Group::g_non_modal).column;
-  if (!request().has('P')) fail(column, "G4 needs a P word (seconds)");
+  if (!request().has('P')) fail(column, "G4 requires a P word (seconds)");
   const double P = request()['P'];
   if (P < 0.0) fail_at('P', fmt::format("G4 P{}; must be >= 0", P));
   const int motion_code = request().code(Group::g_motion);
   if (motion_code == 20 || motion_code == 30) {
-    fail(column, "G4 and an arc in one block: both use the P word");
+    fail(column, "G4 and an arc are not allowed in one block: both use the P word");
   }
   emit(MoveKind::dwell).value = has_unknown_dwell() ? kUnknownValue : P;
 }
@@ -60,12 +60,13 @@ void Interpreter::Machine::tool_length() {
   const ToolEntry* at_start = tools_at_start_.find(state_.tool_offset_number);
   if (state_.controls_tip() && at_start != nullptr &&
       at_start->offset != tool_named('H', state_.tool_offset_number).offset) {
-    fail(column, fmt::format("{}: G10 has changed T{}; tool-centre-point control and tilted planes "
-                             "need the offset from the tool table",
+    fail(column, fmt::format("{}: G10 has changed T{}; TCP control and tilted planes require the "
+                             "offset of the tool table",
                              code_name('G', code), state_.tool_offset_number));
   }
   if (state_.plane && state_.tool_offset_number == kOtherToolOffset) {
-    fail(column, fmt::format("{} in a tilted work plane; use G43 H", code_name('G', code)));
+    fail(column, fmt::format("{} is not supported in a tilted work plane; use G43 H",
+                             code_name('G', code)));
   }
   const bool is_same = state_.is_length_unknown && before_.is_length_unknown &&
                        state_.tool_offset_number == before_.tool_offset_number;
@@ -85,7 +86,8 @@ bool Interpreter::Machine::is_unknown_length(bool is_added, int number, int colu
 // G43 and G43.2
 void Interpreter::Machine::set_table_offset(bool is_added) {
   const bool has_H = request().has('H');
-  if (is_added && !has_H) fail(request().of(Group::g_tool_length).column, "G43.2 needs an H word");
+  if (is_added && !has_H)
+    fail(request().of(Group::g_tool_length).column, "G43.2 requires an H word");
   int number = has_H ? integer('H') : state_.tool;
   if (number == 0) number = state_.tool;
   if (is_unknown_length(is_added, number, request().of(Group::g_tool_length).column)) {
@@ -129,7 +131,7 @@ void Interpreter::Machine::path_control() {
   for (const char word : {'P', 'Q'}) {
     const double value = request()[word];
     if (value < 0.0) {
-      warn(request().word(word).column, fmt::format("G64 {}{} counts as 0", word, value));
+      warn(request().word(word).column, fmt::format("G64 {}{} is treated as 0", word, value));
     }
   }
   state_.path_tolerance = std::max(request()['P'], 0.0) * state_.unit;
@@ -148,12 +150,11 @@ void Interpreter::Machine::stop() {
   const int code = request().code(Group::m_stop);
   if (code < 0) return;
   if (code == 990 && !flow_.calls.empty()) {
-    fail(request().of(Group::m_stop).column, "M99 of a subprogram must stand alone in its block");
+    fail(request().of(Group::m_stop).column, "M99 of a subprogram must be in a separate block");
   }
   if (code == 990 && setup_.reader != Reader::linuxcnc) {
-    warn(
-        request().of(Group::m_stop).column,
-        "M99 in a program that none calls: read as its end; a control begins it anew, without end");
+    warn(request().of(Group::m_stop).column,
+         "M99 in a main program: treated as program end; a control repeats the program endlessly");
   }
   if (code == 20 || code == 300 || code == 990) {
     refuse_inside_nurbs(request().of(Group::m_stop).column, code_name('M', code));

@@ -151,15 +151,15 @@ struct Refusal {
 };
 
 constexpr auto kGRefusals = std::to_array<Refusal>({
-    {70, 80, "diameter and radius mode are for turning; this is a milling simulator"},
-    {700, 722, "turning cycles are for lathes; this is a milling simulator"},
-    {760, 760, "threading is for lathes; this is a milling simulator"},
+    {70, 80, "diameter and radius mode are for turning; only milling is supported"},
+    {700, 722, "turning cycles are for lathes; only milling is supported"},
+    {760, 760, "threading is for lathes; only milling is supported"},
     {960, 960, "constant surface speed is for turning; program the speed with G97 S"},
 });
 
 constexpr auto kMRefusals = std::to_array<Refusal>({
     {190, 190, "the spindle angle is not simulated, so it cannot be oriented"},
-    {610, 610, "renames the tool in the spindle by hand; use T and M6"},
+    {610, 610, "sets the number of the tool in the spindle manually; use T and M6"},
     {660, 660, "waits for an input of the control, which is not simulated"},
     {670, 680, "sets analog outputs of the control, which are not simulated"},
 });

@@ -37,7 +37,7 @@ void Interpreter::Machine::motion() {
   if (std::max(code, explicit_code) >= 0 && !is_canned_cycle(code)) state_.cycle.has_level = false;
   if (request().code(Group::g_non_modal) == 530) {
     const int column = request().of(Group::g_non_modal).column;
-    if (code != 0 && code != 10) fail(column, "G53 needs G0 or G1");
+    if (code != 0 && code != 10) fail(column, "G53 requires G0 or G1");
     if (state_.is_incremental) fail(column, "G53 with G91; machine coordinates are absolute");
   }
   if (code >= 0 && state_.controls_tip()) refuse_rotary_words();
@@ -58,7 +58,7 @@ void Interpreter::Machine::move_as(int code, int motion_before) {
 AxisWords Interpreter::Machine::programmed_end() const {
   if (request().code(Group::g_non_modal) == 530) {
     if (request().has_polar()) {
-      fail(request().of(Group::g_non_modal).column, "G53 with polar coordinates");
+      fail(request().of(Group::g_non_modal).column, "G53 is not allowed with polar coordinates");
     }
     return machine_end();
   }
@@ -74,10 +74,11 @@ AxisWords Interpreter::Machine::programmed_end() const {
 Eigen::Vector2d Interpreter::Machine::polar_end(const Eigen::Vector2d& begin) const {
   const char first = request().has('@') ? '@' : '^';
   if (state_.normal_axis != 2 || state_.is_uvw_plane) {
-    fail_at(first, "polar coordinates outside of G17");
+    fail_at(first, "polar coordinates require G17");
   }
   for (const char word : {'X', 'Y'}) {
-    if (request().has(word)) fail_at(word, fmt::format("{} word with polar coordinates", word));
+    if (request().has(word))
+      fail_at(word, fmt::format("{} word is not allowed with polar coordinates", word));
   }
   const double kept = state_.is_incremental ? 1.0 : 0.0;
   double radius = begin.norm();
@@ -101,7 +102,7 @@ AxisWords Interpreter::Machine::machine_end() const {
 }
 
 std::string Interpreter::Machine::zero_feed(const std::string& code) const {
-  return fmt::format("{} with zero feed; {}", code,
+  return fmt::format("{} with zero feed rate; {}", code,
                      noted_.contains("F0") ? "F0 is active, F must be > 0" : "no F is active");
 }
 
@@ -109,7 +110,7 @@ void Interpreter::Machine::require_feed(const Request::Chosen& chosen) const {
   const auto name = [&] { return code_name('G', chosen.code->tenths); };
   if (state_.feed_mode == FeedMode::inverse_time) {
     if (!request().has('F')) {
-      fail(chosen.column, fmt::format("{} without F; G93 needs one in every block", name()));
+      fail(chosen.column, fmt::format("{} without F; G93 requires F in every block", name()));
     }
   } else if (state_.feed_linear == 0.0) {
     fail(chosen.column, zero_feed(name()));
@@ -141,8 +142,8 @@ void Interpreter::Machine::note_unit_of_control() {
     if (!has_axis(i) || axis_word(i) == 0.0) continue;
     if (!noted_.insert("unit").second) return;
     return warn(request().word(letter(axis_at(i))).column,
-                "a length before any G20 or G21: read in millimetres; controls keep the unit that "
-                "they are set to; program G20 or G21");
+                "a length before G20 or G21: read in millimetres; controls use the unit set last; "
+                "program G20 or G21");
   }
 }
 
@@ -156,11 +157,12 @@ void Interpreter::Machine::note_of_long_turn(const AxisWords& begin, const AxisW
     if (!has_axis(i) || angle < kHalf + kRounding) continue;
     const char axis = letter(axis_at(i));
     if (!noted_.insert(fmt::format("long turn of {}", axis)).second) return;
-    return warn(request().word(axis).column,
-                fmt::format("{} turns by {:.6g} degrees: read as the difference of the angles "
-                            "(LinuxCNC); an axis that rolls over (Fanuc, parameter 1008) takes the "
-                            "short way",
-                            axis, angle / deg));
+    return warn(
+        request().word(axis).column,
+        fmt::format(
+            "{} rotates by {:.6g} degrees: read as the difference of the angles (LinuxCNC); a "
+            "rollover axis (Fanuc, parameter 1008) takes the shorter direction",
+            axis, angle / deg));
   }
 }
 
@@ -218,7 +220,7 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
     }
     if (!has_axis(first) && !has_axis(second) && !request().has_polar()) {
       fail(chosen.column,
-           fmt::format("{} with R needs {} or {}", name(), "XYZ"[first], "XYZ"[second]));
+           fmt::format("{} with R requires {} or {}", name(), "XYZ"[first], "XYZ"[second]));
     }
     return radius_format(start, end, request()['R'] * state_.unit, clockwise, tolerance);
   }
@@ -227,13 +229,14 @@ ArcCentre Interpreter::Machine::arc_centre(const Eigen::Vector2d& start, const E
             fmt::format("{} in an arc of the {}{} plane", normal, "XYZ"[first], "XYZ"[second]));
   }
   if (!has_centre) {
-    fail(chosen.column, fmt::format("{} needs R, {} or {}", name(), letters[0], letters[1]));
+    fail(chosen.column, fmt::format("{} requires R, {} or {}", name(), letters[0], letters[1]));
   }
   Eigen::Vector2d centre(request()[letters[0]] * state_.unit, request()[letters[1]] * state_.unit);
   if (!state_.is_centre_absolute) return checked_centre(start, end, start + centre, tolerance);
   for (const char c : letters) {
     if (!request().has(c)) {
-      fail(chosen.column, fmt::format("{} needs {}: with G90.1 the centre is absolute", name(), c));
+      fail(chosen.column,
+           fmt::format("{} requires {}: with G90.1 the centre is absolute", name(), c));
     }
   }
   return checked_centre(start, end, centre, tolerance);
@@ -258,13 +261,13 @@ ArcCentre Interpreter::Machine::checked_centre(const Eigen::Vector2d& start,
     if (centre_format(start, end, centre + sign * start, tolerance).fault.empty()) {
       found.fault += state_.is_centre_absolute
                          ? "; as distances from the start (G91.1) I, J and K fit"
-                         : "; as positions of the centre I, J and K fit: if they are meant so, "
-                           "program G90.1 at the start";
+                         : "; as absolute centre (G90.1) I, J and K fit: if intended, program "
+                           "G90.1 at the start";
     } else if (!state_.is_centre_absolute &&
                centre_format(start, end, 2.0 * start - centre, tolerance).fault.empty()) {
       found.fault +=
-          "; with their signs changed I, J and K fit: the post-processor writes the way from the "
-          "centre to the start, but must write that from the start to the centre";
+          "; with opposite signs I, J and K fit: the post-processor outputs the vector from the "
+          "centre to the start, but must output that from the start to the centre";
     }
     return found;
   }
@@ -281,12 +284,14 @@ void Interpreter::Machine::arc() {
   }
   if (state_.tool_control == ToolControl::tool_axis) {
     fail(request().motion.column,
-         fmt::format("{} under G43.5, where I J K are the tool axis; use G1 or G43.4",
-                     code_name('G', request().motion_code())));
+         fmt::format(
+             "{} is not supported with G43.5, where I J K are the tool axis; use G1 or G43.4",
+             code_name('G', request().motion_code())));
   }
   if (state_.is_uvw_plane) {
-    fail(request().motion.column, fmt::format("{} in a plane of U, V and W (G17.1 G18.1 G19.1)",
-                                              code_name('G', request().motion_code())));
+    fail(request().motion.column,
+         fmt::format("{} is not supported in a plane of U, V and W (G17.1 G18.1 G19.1)",
+                     code_name('G', request().motion_code())));
   }
   const bool clockwise = request().motion_code() == 20;
   const int turns = arc_turns(clockwise);

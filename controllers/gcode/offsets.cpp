@@ -43,7 +43,7 @@ void Interpreter::Machine::non_modal() {
 
 void Interpreter::Machine::set_offsets() {
   const int column = request().of(Group::g_non_modal).column;
-  if (!request().has('L')) fail(column, "G10 needs an L word (L0 L1 L2 L10 L11 L20)");
+  if (!request().has('L')) fail(column, "G10 requires an L word (L0 L1 L2 L10 L11 L20)");
   const int L = integer('L');
   if (L == 0) return reload_tools();
   if (L == 1 || L == 10 || L == 11) return set_tool(L);
@@ -51,9 +51,10 @@ void Interpreter::Machine::set_offsets() {
     fail_at('L', fmt::format("G10 L{}; must be L0, L1, L2, L10, L11 or L20", L));
   }
   for (const char word : {'I', 'J', 'Q'}) {
-    if (request().has(word)) fail_at(word, fmt::format("{} word with G10 L{}", word, L));
+    if (request().has(word))
+      fail_at(word, fmt::format("{} word is not allowed with G10 L{}", word, L));
   }
-  if (!request().has('P')) fail(column, fmt::format("G10 L{} needs a P word (0 ... 9)", L));
+  if (!request().has('P')) fail(column, fmt::format("G10 L{} requires a P word (0 ... 9)", L));
   const int P = integer('P');
   if (P < 0 || P > kWorkSystems) fail_at('P', fmt::format("G10 L{} P{}; must be in 0 ... 9", L, P));
   const int system = P == 0 ? state_.work_system : P;
@@ -71,7 +72,8 @@ void Interpreter::Machine::set_work_offset(int system) {
 
 // The offset that makes the present position read as the words say.
 void Interpreter::Machine::set_current_position(int system) {
-  if (request().has('R')) fail_at('R', "R word with G10 L20; only G10 L2 sets a rotation");
+  if (request().has('R'))
+    fail_at('R', "R word is not allowed with G10 L20; only G10 L2 sets a rotation");
   if (state_.is_height_unknown && has_axis(2)) fail_at('Z', std::string(kUnknownHeight));
   ModalState other = state_;
   for (int i = 0; i < kAxisWords; ++i) {
@@ -135,7 +137,7 @@ void Interpreter::Machine::store_shift() {
 void Interpreter::Machine::shift_position(bool is_g52) {
   if (!has_any_axis()) {
     fail(request().of(Group::g_non_modal).column,
-         fmt::format("{} needs an axis word", is_g52 ? "G52" : "G92"));
+         fmt::format("{} requires an axis word", is_g52 ? "G52" : "G92"));
   }
   if (state_.is_height_unknown && has_axis(2)) fail_at('Z', std::string(kUnknownHeight));
   for (int i = 0; i < kAxisWords; ++i) {

@@ -114,14 +114,13 @@ std::string other_blocks(std::string_view line) {
   line = line.substr(0, last + 1);
   if (line.front() == '$' && line.back() == '%') {
     return fmt::format(
-        "'{}' begins a program of Okuma; programs in G-code of other controls are "
-        "read here: let the post-processor write for Fanuc or LinuxCNC",
+        "'{}' starts an Okuma program, which is not supported; post-process for Fanuc or LinuxCNC",
         line);
   }
   const bool has_word = line.size() > 2 && line.find_first_of("GXYZMTN%") != line.npos;
   if (line.back() == '*' && has_word && line.find_first_of("[(;#") == line.npos) {
-    return "a '*' ends the blocks of DIN/ISO programs of Heidenhain; programs in G-code of other "
-           "controls and Heidenhain conversational are read here";
+    return "a '*' ends blocks of Heidenhain DIN/ISO programs, which are not supported; use "
+           "Heidenhain conversational or G-code of other controls";
   }
   constexpr std::array<std::string_view, 13> kShopBot = {"SA", "SR", "CN", "MS", "MX", "MY", "MZ",
                                                          "M2", "M3", "JX", "JY", "JZ", "J2"};
@@ -130,7 +129,7 @@ std::string other_blocks(std::string_view line) {
       (line.size() == 2 || line[2] == ',');
   const bool is_ambiguous = line.size() == 2 && line.front() == 'M';  // M2 and M3 of G-code
   if (line.front() == '\'' || (is_command && !is_ambiguous)) {
-    return "this is a program of ShopBot (OpenSBP); programs in G-code are read here";
+    return "this is a ShopBot program (OpenSBP), which is not supported; use G-code";
   }
   return {};
 }
@@ -141,15 +140,13 @@ std::string unfinished_line(std::string_view line) {
   line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   for (const std::string_view mark : {"#region", "#endregion"}) {
     if (!line.starts_with(mark)) continue;
-    return fmt::format(
-        "'{}' is a mark of an editor, which folds the lines behind it; remove the line", mark);
+    return fmt::format("'{}' is a fold mark of an editor; remove the line", mark);
   }
   if (line.size() < 3 || upper(line.front()) != 'O' || line[1] != ' ') return {};
   const std::size_t first = std::min(line.find_first_not_of(' ', 1), line.size());
   const bool is_text =
       first + 1 < line.size() && is_letter(line[first]) && is_letter(line[first + 1]);
-  return is_text ? "a program number is missing behind O; write one (O1000), or remove the line"
-                 : "";
+  return is_text ? "O requires a program number; write one (O1000), or remove the line" : "";
 }
 
 // VC1=10 of Okuma, among names of Siemens.
@@ -214,9 +211,9 @@ std::string refused_program(ProgramText& text) {
   const std::string first(text.next(line) ? line : std::string_view());
   text.rewind();
   if (!is_din_iso(first)) return {};
-  return "this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), whose I, J and K "
-         "are positions; only conversational is read: convert it on the control or its "
-         "programming station, or post-process for Fanuc or LinuxCNC";
+  return "this is a Heidenhain DIN/ISO program (G70 or G71 after its name), whose I, J and K are "
+         "absolute; only conversational is supported: convert it on the control or its programming "
+         "station, or post-process for Fanuc or LinuxCNC";
 }
 
 namespace {
@@ -228,11 +225,12 @@ std::string e_word_refusal(std::string_view line, int column) {
   if (column > 0 && !is_smoothness && at + 1 < line.size() && upper(line[at]) == 'E' &&
       (is_digit(line[at + 1]) || line[at + 1] == '-' || line[at + 1] == '.')) {
     if (is_engraving(line)) {
-      return "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
+      return "G47 engraves text (Haas), whose moves are not in the program; have the CAM system "
              "output the moves";
     }
-    return "an E word feeds the extruder of a printer, sets the generator of wire EDM, or names a "
-           "work offset (Fadal, format 1); programs for milling are read here, with G54 ... G59";
+    return "an E word feeds the extruder of a 3D printer, sets the generator of wire EDM, or "
+           "selects a work offset (Fadal, format 1); only milling programs with G54 ... G59 are "
+           "supported";
   }
   return {};
 }
@@ -245,7 +243,7 @@ std::string other_language(std::string_view line, int column) {
   if (std::string blocks = other_blocks(line); !blocks.empty()) return blocks;
   if (line.starts_with('$') && !is_report_request(line)) {
     return fmt::format(
-        "'{}' is a sender command for grbl or TinyG, or a directive of NCPlot, not a block; remove "
+        "'{}' is a sender command for grbl or TinyG, or an NCPlot directive, not a block; remove "
         "the line",
         line.front());
   }
@@ -263,8 +261,7 @@ std::string other_language(std::string_view line, int column) {
   }
   if (is_okuma_variable(assigned_name(line))) {
     return fmt::format(
-        "'{}=' is a variable of Okuma; programs in G-code of other controls are "
-        "read here",
+        "'{}=' is an Okuma variable, which is not supported; post-process for another control",
         assigned_name(line));
   }
   if (const std::string word = siemens_word(line); !word.empty()) {
@@ -279,8 +276,8 @@ std::string other_language(std::string_view line, int column) {
   }
   if (const std::string_view name = called_name(line); !name.empty()) {
     return fmt::format(
-        "'{}(...)' is a word of Siemens or of the machine builder; for a program of Siemens use "
-        "--reader siemens",
+        "'{}(...)' is a word of Siemens or the machine builder; for Siemens programs use --reader "
+        "siemens",
         name);
   }
   if (const std::string corner = corner_refusal(line); !corner.empty()) return corner;

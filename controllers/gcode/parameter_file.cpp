@@ -68,7 +68,7 @@ class ParameterLines {
     std::size_t at = start;
     double value = 0.0;
     if (!read(line, at, value)) {
-      return fault(start, fmt::format("parameter {} needs a value", number));
+      return fault(start, fmt::format("parameter {} requires a value", number));
     }
     if (!std::isfinite(value)) {
       return fault(start, fmt::format("parameter {} = {}; must be finite", number, value));

@@ -36,7 +36,7 @@ double modulo(double a, double b) {
 
 double power(double a, double b, const Place& place) {
   if (a < 0.0 && b != std::floor(b)) {
-    fail(place, fmt::format("{} ** {}: a negative number needs an integer exponent", a, b));
+    fail(place, fmt::format("{} ** {}: a negative base requires an integer exponent", a, b));
   }
   return std::pow(a, b);
 }
@@ -105,12 +105,12 @@ void refuse_other_logic(OpCode code, double a, double b, double logical, const P
   const std::string_view name = code == OpCode::logical_and  ? "AND"
                                 : code == OpCode::logical_or ? "OR"
                                                              : "XOR";
-  const std::string other = bits ? fmt::format("{:g} of their bits", *bits)
-                                 : std::string("nothing, since only integers >= 0 have bits");
-  fail(place,
-       fmt::format("{:g} {} {:g}: {:g} as conditions (LinuxCNC), or {} (Fanuc, Haas); choose "
-                   "with --reader linuxcnc, fanuc or haas",
-                   a, name, b, logical, other));
+  const std::string other =
+      bits ? fmt::format("{:g} as bitwise operation", *bits)
+           : std::string("undefined as bitwise operation, which requires integers >= 0");
+  fail(place, fmt::format("{:g} {} {:g}: {:g} as logical operation (LinuxCNC), or {} (Fanuc, "
+                          "Haas); choose with --reader linuxcnc, fanuc or haas",
+                          a, name, b, logical, other));
 }
 
 double arc_function(std::string_view name, double (*f)(double), double x, const Place& place) {

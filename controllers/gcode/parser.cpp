@@ -141,10 +141,10 @@ void Parser::word() {
     if ((letters_ & bit) != 0) {
       const auto first = std::find_if(block_->words.begin(), block_->words.end(),
                                       [&](const Word& w) { return w.letter == word.letter; });
-      const char* readings =
-          word.letter == 'T' ? " (whether M6 takes the first or the last depends on the control; "
-                               "write the next tool in a block of its own)"
-                             : "";
+      const char* readings = word.letter == 'T'
+                                 ? " (the control determines whether M6 uses the first or the "
+                                   "last; program the next tool in a separate block)"
+                                 : "";
       fail(start, fmt::format("second {} word in one block; the first is in column {}{}",
                               word.letter, first->column, readings));
     }

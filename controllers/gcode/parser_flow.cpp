@@ -125,7 +125,7 @@ void Parser::arguments(OWord& o, std::size_t start) {
 void Parser::only_comments(std::string_view keyword) {
   while (!cursor_.at_end()) {
     if (peek() != '(' && peek() != ';') {
-      fail_here(fmt::format("unexpected {} after {}; an O-word needs a separate block",
+      fail_here(fmt::format("unexpected {} after {}; an O-word must be in a separate block",
                             shown(peek()), keyword));
     }
     comment();
@@ -159,7 +159,7 @@ void Parser::subprogram_call(OWord& o) {
     has_P = has_P || word.letter == 'P';
     o.has_value = o.has_value || word.letter == 'L';
   }
-  if (!has_P) fail(start, "M98 needs a P word (subprogram number)");
+  if (!has_P) fail(start, "M98 requires a P word (subprogram number)");
 }
 
 }  // namespace servomill::controllers

@@ -191,15 +191,15 @@ void Parser::function(std::string_view what) {
   if (peek() != '[') fail_here(fmt::format("expected '[' after {}", name));
   if (found->code == OpCode::has_number) {
     cursor_.advance();
-    if (!accept("#")) fail_here("EXISTS needs a parameter, as in EXISTS[#<name>]");
+    if (!accept("#")) fail_here("EXISTS requires a parameter, as in EXISTS[#<name>]");
     parameter(OpCode::has_number, OpCode::has_name);
     if (!accept("]")) fail_here("expected ']' after the parameter of EXISTS");
     return;
   }
   bracketed();
   if (found->code == OpCode::atan) {
-    if (!accept("/")) fail_here("expected '/': ATAN needs two arguments, ATAN[y]/[x]");
-    if (peek() != '[') fail_here("expected '[': ATAN needs two arguments, ATAN[y]/[x]");
+    if (!accept("/")) fail_here("expected '/': ATAN requires two arguments, ATAN[y]/[x]");
+    if (peek() != '[') fail_here("expected '[': ATAN requires two arguments, ATAN[y]/[x]");
     bracketed();
   }
   emit(found->code, here);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kStandingTip = 1e-9;  // m; a shorter way of the tip is none
 constexpr std::string_view kRemedies =
-    "keep the tool axis away from it, retract there, or start the axes elsewhere (--start)";
+    "keep the tool axis away from it, retract there, or change the start position (--start)";
 
 using Eigen::Vector3d;
 
@@ -108,7 +108,8 @@ class Post {
     const double feed = record.feed > 0.0 ? record.feed : options_.feed;
     if (feed == 0.0) {
       if (!missed_feed_)
-        report_.fault(record.line, "no feed is given for this location; add FEDRAT or --feed");
+        report_.fault(record.line,
+                      "no feed rate is defined for this location; add FEDRAT or --feed");
       missed_feed_ = true;
       return jump_to(i);
     }
@@ -183,6 +184,8 @@ class Post {
 
   // ---- feed moves
 
+  // In a singular direction the free rotary axis rotates first, at a fixed TCP (`departure`); the
+  // chords that follow keep TCP and tool axis within the tolerance.
   void feed_to(const ToolPose& P, int line, double feed) {
     if (angle_between(here_.k_W, P.k_W) >= plant::kRoundTurn) {
       return report_.fault(
@@ -235,8 +238,8 @@ class Post {
     }
     const bool linear = *joint < kLinearJoints;
     return fmt::format(
-        "axis {} reaches its travel limit at {:.6g} {}, and otherwise the axes would have to jump; "
-        "{}",
+        "axis {} reaches its travel limit at {:.6g} {}; the alternative solution would require the "
+        "axes to jump; {}",
         inverse_.chain().layout.letter_of(*joint), Q[*joint] / (linear ? mm : deg),
         linear ? "mm" : "deg", kRemedies);
   }
@@ -276,13 +279,14 @@ std::string reason(const plant::JointSolution& solution, const plant::InverseKin
     case plant::Reach::orientation:
       if (inverse.chain().axes.size() == std::size_t(number_of_linear_axes(inverse.chain())))
         return "the machine has no rotary axes";
-      return fmt::format("the rotary axes miss this tool axis by {:.3g} deg", solution.miss / deg);
+      return fmt::format("the rotary axes cannot reach this tool axis; the error is {:.3g} deg",
+                         solution.miss / deg);
     case plant::Reach::position:
       return fmt::format(
-          "the machine lacks a linear axis to reach this location; it misses by {:.3g} mm",
+          "the machine lacks a linear axis to reach this location; the error is {:.3g} mm",
           solution.miss / mm);
     case plant::Reach::parallel_axes:
-      return "two linear axes are parallel at the angles that this tool axis needs";
+      return "two linear axes are parallel at the rotary angles of this tool axis";
     case plant::Reach::travel:
       break;
   }

@@ -43,16 +43,15 @@ void PostReport::note_slowed(const std::vector<FeedReduction>& joints) {
 
 void PostReport::sum_up() {
   if (singular_ > 0) {
-    warn(first_singular_,
-         fmt::format("the tool axis is singular, here and at {} more locations: a rotary axis is "
-                     "free",
-                     singular_ - 1));
+    warn(first_singular_, fmt::format("the tool axis is in a singular direction, here and at {} "
+                                      "other locations: a rotary axis is undetermined",
+                                      singular_ - 1));
   }
   if (bent_ > 0) {
     const std::string more =
-        bent_ == 1 ? "" : fmt::format(", and by more than the tolerance on {} more", bent_ - 1);
-    warn(most_bent_, fmt::format("between the previous location and this one the TCP leaves the "
-                                 "straight line by {:.4g} mm{}; only --classical inserts no points",
+        bent_ == 1 ? "" : fmt::format(", and exceeds the tolerance on {} other moves", bent_ - 1);
+    warn(most_bent_, fmt::format("between the previous location and this one the TCP deviates from "
+                                 "the straight line by {:.4g} mm{}; --classical inserts no points",
                                  bend_ / mm, more));
   }
   if (slowed_) {

@@ -168,7 +168,7 @@ class Printer {
     change(work_, work_system_code(move.work_offset), true);
     if (move.tool_offset == kOtherToolOffset) {
       throw InputError({{}, move.line, 0},
-                       "a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
+                       "tool offsets of G43.1 and G43.2 cannot be output; use G43 H");
     }
     change(tool_, tool_code(move.tool_offset), true);
   }
@@ -296,12 +296,11 @@ class Printer {
 
   void print_motion(const Move& move) {
     if (move.tool_control != ToolControl::none) {
-      throw InputError({{}, move.line, 0},
-                       "tool-centre-point control and tilted work planes cannot be printed");
+      throw InputError({{}, move.line, 0}, "TCP control and tilted work planes cannot be output");
     }
     if (move.feed_mode == FeedMode::units_per_revolution && S_ == "0") {
       throw InputError({{}, move.line, 0},
-                       "a feed per revolution while the spindle speed is zero cannot be printed");
+                       "a feed per revolution with zero spindle speed cannot be output");
     }
     if (move.synchronised != Synchronised::no) return print_synchronised(move);
     print_modes(move);
@@ -338,7 +337,7 @@ class Printer {
     if (move.synchronised == Synchronised::tap_out) return;
     constexpr double kShortest = 2.0;
     if (linear_.step_count((move.s_end - move.s_begin) / mm) < kShortest) {
-      throw InputError({{}, move.line, 0}, "G33 over less than the printed decimals");
+      throw InputError({{}, move.line, 0}, "a G33 move shorter than the output resolution");
     }
     print_offsets(move);
     if (feed_mode_ == feed_mode_code(FeedMode::inverse_time)) {

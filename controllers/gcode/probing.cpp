@@ -24,12 +24,15 @@ void Interpreter::Machine::require_probing() const {
   const Request::Chosen& chosen = request().motion;
   const std::string name = code_name('G', chosen.code->tenths);
   const auto refuse = [&](std::string_view why) { fail(chosen.column, name + std::string(why)); };
-  if (!has_any_axis() && !request().has_polar()) refuse(" without an axis word");
-  if (state_.compensation.is_on) refuse(" with cutter compensation active; G40 first");
+  if (!has_any_axis() && !request().has_polar()) refuse(" requires an axis word");
+  if (state_.compensation.is_on)
+    refuse(" is not allowed with cutter compensation active; program G40 first");
   if (state_.controls_tip())
-    refuse(" while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
-  if (state_.feed_mode == FeedMode::inverse_time) refuse(" with G93; G94 first");
-  if (state_.feed_mode == FeedMode::units_per_revolution) refuse(" with G95; G94 first");
+    refuse(" is not allowed under TCP control; cancel G43.4, G43.5 or G68.2 first");
+  if (state_.feed_mode == FeedMode::inverse_time)
+    refuse(" is not allowed with G93; program G94 first");
+  if (state_.feed_mode == FeedMode::units_per_revolution)
+    refuse(" is not allowed with G95; program G94 first");
   require_feed(request().motion);
   if (!setup_.probed)
     refuse(": the probed surface is unknown here; simulate it with [touch_probe] of a scenario");
@@ -44,7 +47,7 @@ void Interpreter::Machine::probe() {
   move.end = programmed_end();
   const bool stays = (move.end.array() == move.begin.array()).all();
   if (stays && move.mode.must_switch()) {
-    fail(chosen.column, fmt::format("{} has no travel: start and end coincide",
+    fail(chosen.column, fmt::format("{} has zero travel: start and end coincide",
                                     code_name('G', chosen.code->tenths)));
   }
   note_height();
@@ -81,8 +84,9 @@ void Interpreter::Machine::finish_probing(const ProbingMove& move,
   const Request::Chosen& chosen = request().motion;
   const std::string name = code_name('G', chosen.code->tenths);
   if (!contact && move.mode.must_switch()) {
-    fail(chosen.column, fmt::format("{}: the probe {} before the end of the move", name,
-                                    move.mode.leaves() ? "still touches" : "touches nothing"));
+    fail(chosen.column,
+         fmt::format("{}: the probe {} before the end of the move", name,
+                     move.mode.leaves() ? "is still in contact" : "makes no contact"));
   }
   if (is_assumed && noted_.insert("probe").second) {
     warn(chosen.column,

@@ -9,7 +9,7 @@ namespace servomill::controllers {
 namespace {
 
 constexpr std::string_view kMisplacedPercent =
-    "'%' ends a program only if another '%' is its first line";
+    "'%' ends a program only if its first line is also '%'";
 constexpr std::string_view kPercentInside =
     "Fanuc ends the program at this '%', other controls continue after it; choose with --reader "
     "fanuc, haas or linuxcnc";
@@ -111,9 +111,10 @@ void Interpreter::Machine::fail_at_end() {
   std::string message(texts_[0].percent.saw_nothing() ? kEmpty : kNoEnd);
   if (flow_.skips_to_sub) {
     message = fmt::format(
-        "no subroutine O<{0}> up to here, which line {1} calls{2}", *flow_.skip_to, flow_.skip_from,
+        "subroutine O<{0}>, called in line {1}, not found up to the end of the program{2}",
+        *flow_.skip_to, flow_.skip_from,
         text_ == flow_.calls.back().return_to.text
-            ? fmt::format(", and no file {}.ngc (--subs names its folder)", *flow_.skip_to)
+            ? fmt::format(", nor a file {}.ngc (set its folder with --subs)", *flow_.skip_to)
             : "");
     flow_.calls.pop_back();  // it has not begun
   } else if (flow_.skip_to) {

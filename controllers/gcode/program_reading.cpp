@@ -13,8 +13,8 @@ namespace servomill::controllers {
 namespace {
 
 constexpr std::string_view kSecondBlock =
-    "words behind ';': a comment (LinuxCNC, grbl, Mach), or another block (Fanuc, Haas, where ';' "
-    "ends a block); write each block in a line of its own, or remarks in ( )";
+    "words after ';': a comment (LinuxCNC, grbl, Mach), or another block (Fanuc, Haas, where ';' "
+    "ends a block); write each block on a separate line, or comments in ( )";
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void Interpreter::Machine::read_executed_line() {
   if (block_.percent) return saw_percent();
   if (reader_.corner() && (block_.words.empty() || block_.o_word.flow != Flow::none)) {
     fail(reader_.corner()->column,
-         fmt::format("',{}' needs a line in its block", reader_.corner()->letter));
+         fmt::format("',{}' requires a linear move in its block", reader_.corner()->letter));
   }
   const bool is_strict = setup_.reader == Reader::linuxcnc;
   const bool is_comment = !is_strict && block_.words.empty() && block_.assignments.empty() &&

@@ -109,6 +109,9 @@ bool ProgramText::refill() {
   return !reader_->has_failed();
 }
 
+// Lines are views into the buffer and remain valid until the next call. A line longer than
+// kLongestKept is returned truncated and skipped from there on, so that no file can exhaust the
+// memory.
 bool ProgramText::next(std::string_view& line) {
   throw_if_interrupted();
   if (source_) {

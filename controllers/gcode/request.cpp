@@ -104,17 +104,17 @@ Request::Chosen choose_motion(const Context& context, const Request& request, in
   if (taker.code != nullptr && !(shares && programmed.code != nullptr && !cancel)) {
     if (programmed.code != nullptr && !cancel) {
       context.fail(programmed.column,
-                   fmt::format("{} and {} in one block: both use the axis words",
+                   fmt::format("{} and {} are not allowed in one block: both use the axis words",
                                name_of('G', *taker.code), name_of('G', *programmed.code)));
     }
     return {};
   }
   const int axis_column = first_axis_word(request, has_vectors);
-  if (cancel && axis_column > 0) context.fail(axis_column, "axis words with G80");
+  if (cancel && axis_column > 0) context.fail(axis_column, "axis words are not allowed with G80");
   if (cancel) return {};
   if (programmed.code != nullptr && axis_column == 0 && is_canned_cycle(programmed.code->tenths)) {
     context.fail(programmed.column,
-                 fmt::format("{} without an axis word", name_of('G', *programmed.code)));
+                 fmt::format("{} requires an axis word", name_of('G', *programmed.code)));
   }
   if (programmed.code != nullptr || axis_column == 0) return programmed;
   if (modal_motion == kNoMotion) {
@@ -156,11 +156,10 @@ void check_claims(const Context& context, const Request& request, bool has_vecto
     constexpr double kPerSubroutine = 100.0;  // L100 is the first, L101 calls it once
     const double value = request[letter];
     if (letter == 'L' && value >= kPerSubroutine && std::fmod(value, kPerSubroutine) == 0.0) {
-      context.fail(
-          request.word(letter).column,
-          fmt::format("L{} begins a subroutine of Fadal, format 1, which is not supported; "
-                      "output the program in format 2",
-                      value));
+      context.fail(request.word(letter).column,
+                   fmt::format("L{} starts a Fadal subroutine (format 1), which is not supported; "
+                               "output the program in format 2",
+                               value));
     }
     const std::string users = users_of(letter);
     context.fail(request.word(letter).column,

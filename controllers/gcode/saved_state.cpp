@@ -57,7 +57,7 @@ SavedModes Interpreter::Machine::save_modal_state() const {
 bool Interpreter::Machine::restore_modal_state(const SavedModes& saved) {
   if (saved.controls_tip != state_.controls_tip()) {
     fail(request().of(Group::m_spindle).column,
-         "M72 cannot switch tool-centre-point control or a tilted work plane");
+         "M72 cannot switch TCP control or a tilted work plane");
   }
   const bool new_unit = saved.unit != state_.unit;
   if (new_unit) state_.set_unit(saved.unit);
@@ -159,12 +159,12 @@ void Interpreter::Machine::saved_modes() {
 // take the place of this one.
 void Interpreter::Machine::restore_saved_level(int column) {
   if (!saved_level().is_valid) {
-    fail(column, "M72 without an M70 or M73 before it at this call level");
+    fail(column, "M72 requires a preceding M70 or M73 at this call level");
   }
   if (!restore_modal_state(saved_level().modes)) return;
   if (block_.words.size() > 1) {
     warn(column,
-         "M72 restores modal state: words in the same block that act later are dropped, as in "
+         "M72 restores the modal state: words in the same block that act later are ignored, as in "
          "LinuxCNC");
   }
   request_.clear();

@@ -24,24 +24,26 @@ void Interpreter::Machine::require_spline_modes(const Request::Chosen& chosen) c
   const auto refuse = [&](std::string_view why) {
     fail(chosen.column, fmt::format("{} {}", name, why));
   };
-  if (state_.compensation.is_on) refuse("with cutter compensation active; G40 first");
-  if (state_.plane) refuse("in a tilted work plane; G69 first");
-  if (state_.controls_tip()) refuse("under tool-centre-point control; G49 first");
+  if (state_.compensation.is_on)
+    refuse("is not allowed with cutter compensation active; program G40 first");
+  if (state_.plane) refuse("is not allowed in a tilted work plane; program G69 first");
+  if (state_.controls_tip()) refuse("is not allowed under TCP control; program G49 first");
   if (state_.normal_axis != 2 || state_.is_uvw_plane) {
-    refuse("outside of G17; splines lie in the XY plane");
+    refuse("requires G17; splines are in the XY plane");
   }
   for (const Axis axis : kAllAxes) {
     const bool is_in_plane = axis == Axis::X || axis == Axis::Y;
     if (is_in_plane || !has_axis(index_of(axis))) continue;
-    fail_at(letter(axis),
-            fmt::format("{} word with {}; a spline moves X and Y only", letter(axis), name));
+    fail_at(letter(axis), fmt::format("{} word is not allowed with {}; a spline moves X and Y only",
+                                      letter(axis), name));
   }
 }
 
 // The control points that have been read would be lost.
 void Interpreter::Machine::refuse_inside_nurbs(int column, std::string_view name) const {
   if (state_.nurbs.points.empty()) return;
-  fail(column, fmt::format("{} between G5.2 and G5.3; only further control points", name));
+  fail(column,
+       fmt::format("{} is not allowed between G5.2 and G5.3; program only control points", name));
 }
 
 // G5: from the start towards I and J, to the end from P and Q; G5.1: by way of I and J. Neither is
@@ -53,21 +55,21 @@ void Interpreter::Machine::bezier() {
   require_spline_modes(chosen);
   require_feed(chosen);
   if (!has_axis(0) && !has_axis(1) && !request().has_polar()) {
-    fail(chosen.column, fmt::format("{} without X or Y", name));
+    fail(chosen.column, fmt::format("{} requires X or Y", name));
   }
   const bool is_cubic = chosen.code->tenths == kCubicCode;
   const bool has_begin = request().has('I') && request().has('J');
   const bool goes_on = is_cubic && !request().has('I') && !request().has('J');
   if (!has_begin && !goes_on) {
-    fail(chosen.column, fmt::format("{} needs both I and J{}", name,
-                                    is_cubic ? ", or neither to go on from the G5 before" : ""));
+    fail(chosen.column,
+         fmt::format("{} requires both I and J{}", name,
+                     is_cubic ? ", or neither to continue from the previous G5" : ""));
   }
   const Vector2d begin = state_.position.head<2>();
   if (goes_on && begin != state_.spline_end) {
-    warn(chosen.column,
-         fmt::format("G5 without I and J, and no G5 ends here: read as I{:g} J{:g}, what LinuxCNC "
-                     "has kept from the last G5 or G87",
-                     state_.cycle.i, state_.cycle.j));
+    warn(chosen.column, fmt::format("G5 without I and J, and no G5 ends here: read as I{:g} J{:g}, "
+                                    "stored by LinuxCNC from the last G5 or G87",
+                                    state_.cycle.i, state_.cycle.j));
   }
   const AxisWords end = programmed_end();
   const Vector2d first =
@@ -76,7 +78,7 @@ void Interpreter::Machine::bezier() {
   curve.points = {begin, begin + first * state_.unit};
   if (is_cubic) {
     if (!request().has('P') || !request().has('Q')) {
-      fail(chosen.column, "G5 needs both P and Q");
+      fail(chosen.column, "G5 requires both P and Q");
     }
     const Vector2d second(request()['P'], request()['Q']);
     curve.points.emplace_back(end.head<2>() + second * state_.unit);
@@ -97,20 +99,22 @@ void Interpreter::Machine::nurbs_point() {
   require_spline_modes(chosen);
   require_feed(chosen);
   if (state_.feed_mode == FeedMode::inverse_time) {
-    fail(chosen.column, "G5.2 under G93, where F is the time of one block; G94 first");
+    fail(chosen.column,
+         "G5.2 is not allowed with G93, where F is the time of one block; program G94 first");
   }
-  if (request().has_polar()) fail(chosen.column, "G5.2 with polar coordinates");
+  if (request().has_polar()) fail(chosen.column, "G5.2 is not allowed with polar coordinates");
   const bool has_point = has_axis(0);
-  if (has_axis(0) != has_axis(1)) fail(chosen.column, "G5.2 needs both X and Y");
+  if (has_axis(0) != has_axis(1)) fail(chosen.column, "G5.2 requires both X and Y");
   const bool is_first = curve.points.empty();
   if (!is_first && !has_point) {
-    fail(chosen.column, "G5.2 without X and Y; only the first may give the weight of the start");
+    fail(chosen.column,
+         "G5.2 requires X and Y; only the first may define just the weight of the start point");
   }
   if (has_point && !request().has('P')) {
-    fail(chosen.column, "G5.2 needs a weight P for each control point");
+    fail(chosen.column, "G5.2 requires a weight P for each control point");
   }
   if (request().has('P') && !(request()['P'] > 0.0)) {
-    fail_at('P', fmt::format("P{}; a weight must be > 0", request()['P']));
+    fail_at('P', fmt::format("P{}; the weight must be > 0", request()['P']));
   }
   if (is_first) {
     curve.position = state_.position;
@@ -135,22 +139,25 @@ void Interpreter::Machine::nurbs_point() {
 void Interpreter::Machine::end_nurbs() {
   const Request::Chosen& chosen = request().of(Group::g_non_modal);
   if (request().of(Group::g_motion).code != nullptr) {
-    fail(chosen.column,
-         fmt::format("{} and G5.3 in one block", code_name('G', request().code(Group::g_motion))));
+    fail(chosen.column, fmt::format("{} and G5.3 are not allowed in one block",
+                                    code_name('G', request().code(Group::g_motion))));
   }
-  if (has_any_axis() || request().has_polar()) fail(chosen.column, "axis words with G5.3");
+  if (has_any_axis() || request().has_polar())
+    fail(chosen.column, "axis words are not allowed with G5.3");
   const OpenNurbs curve = std::exchange(state_.nurbs, OpenNurbs{});
-  if (curve.points.empty()) fail(chosen.column, "G5.3 without G5.2 before it");
+  if (curve.points.empty()) fail(chosen.column, "G5.3 requires a preceding G5.2");
   if (static_cast<int>(curve.points.size()) < curve.order) {
-    fail(chosen.column, fmt::format("{} control points with the start; a NURBS of order L{} needs "
-                                    "at least {}",
-                                    curve.points.size(), curve.order, curve.order));
+    fail(chosen.column,
+         fmt::format(
+             "{} control points including the start; a NURBS of order L{} requires at least {}",
+             curve.points.size(), curve.order, curve.order));
   }
   const bool stays = curve.position == state_.position && curve.zero.is_at(state_.zero()) &&
                      curve.unit == state_.unit;
   if (!stays) {
     fail(chosen.column,
-         "unit, work coordinates or position change between G5.2 and G5.3; move that before G5.2");
+         "the unit, work coordinates or position change between G5.2 and G5.3; program the change "
+         "before G5.2");
   }
   require_spline_modes(chosen);
   require_feed(chosen);
@@ -172,7 +179,8 @@ void Interpreter::Machine::spline(const OpenNurbs& given, const AxisWords& end,
   const SplineCurve curve(given.order, std::move(in_machine), given.weights);
   const double length = curve.length();
   const bool is_timed = state_.feed_mode == FeedMode::inverse_time;
-  if (is_timed && length == 0.0) fail(chosen.column, "a spline without length under G93");
+  if (is_timed && length == 0.0)
+    fail(chosen.column, "a spline of zero length is not allowed with G93");
   move_to(MoveKind::spline, end, length, is_timed ? move_feed(length, 0.0) : state_.feed_linear);
   // behind a queue of cutter compensation there is none: that is off
   out_.back().spline = std::make_shared<const Spline>(Spline{curve, std::move(points)});

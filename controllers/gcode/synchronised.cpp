@@ -22,26 +22,28 @@ void Interpreter::Machine::synchronised() {
   const auto refuse = [&](std::string_view why) {
     fail(request().motion.column, fmt::format("{}{}", code_name('G', code), why));
   };
-  if (!has_any_axis() && !request().has_polar()) refuse(" without an axis word");
+  if (!has_any_axis() && !request().has_polar()) refuse(" requires an axis word");
   if (!request().has('K')) {
-    refuse(" without K, the lead in a revolution (Fanuc and Haas give it as F)");
+    refuse(" requires K, the lead per revolution (F on Fanuc and Haas)");
   }
   if (request()['K'] == 0.0) refuse(" with K0; the lead must not be zero");
-  if (request().has('F')) refuse(" with F; the feed is K times the speed of the spindle");
-  if (state_.spindle_direction == 0) refuse(" while the spindle stands still; M3 or M4 first");
+  if (request().has('F')) refuse(" does not accept F; the feed rate is K times the spindle speed");
+  if (state_.spindle_direction == 0) refuse(" requires a running spindle; program M3 or M4 first");
   if (state_.spindle_speed == 0.0) refuse(" with zero spindle speed; no S is active");
-  if (state_.feed_mode == FeedMode::inverse_time) refuse(" with G93; G94 first");
-  if (state_.compensation.acts()) refuse(" with cutter compensation active; G40 first");
+  if (state_.feed_mode == FeedMode::inverse_time)
+    refuse(" is not allowed with G93; program G94 first");
+  if (state_.compensation.acts())
+    refuse(" is not allowed with cutter compensation active; program G40 first");
   if (state_.controls_tip()) {
-    refuse(" while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
+    refuse(" is not allowed under TCP control; cancel G43.4, G43.5 or G68.2 first");
   }
   const bool is_tap = code == kRigidTapping;
   for (int i = kLinearJoints; is_tap && i < kAxisWords; ++i) {
-    if (has_axis(i)) refuse(" moves X, Y and Z only (LinuxCNC drops the words of rotary axes)");
+    if (has_axis(i)) refuse(" moves X, Y and Z only (LinuxCNC ignores rotary axis words)");
   }
   const AxisWords begin = state_.programmed(), end = programmed_end();
   const double length = (end - begin).head<3>().norm();
-  if (!(length > 0.0)) refuse(" has no travel of X, Y or Z");
+  if (!(length > 0.0)) refuse(" requires travel in X, Y or Z");
   note_height();
   const double lead = request()['K'] * state_.unit;
   const auto move_synchronised = [&](const AxisWords& to, Synchronised kind) {

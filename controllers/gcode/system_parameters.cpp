@@ -53,8 +53,8 @@ double Interpreter::Machine::system_number(int number) const {
   }
   const int axis = number - kPosition;
   if (axis >= 0 && state_.compensation.is_on && !is_printing_) {
-    fail(0, fmt::format("#{} with cutter compensation active: it is not known yet; G40 first",
-                        number));
+    fail(0,
+         fmt::format("#{} is unknown with cutter compensation active; program G40 first", number));
   }
   if (axis >= 0 && axis < kAxisWords) {
     require_height(axis_at(axis), fmt::format("{}", number));

@@ -112,9 +112,9 @@ void Interpreter::Machine::work_plane() {
     stand_at(machine, column);
     return;
   }
-  if (state_.plane) fail(column, "G68.2 in a tilted work plane; G69 first");
+  if (state_.plane) fail(column, "G68.2 is not allowed in a tilted work plane; program G69 first");
   if (state_.tool_offset_number == kOtherToolOffset) {
-    fail(column, "G68.2 with a tool offset of G43.1 or G43.2; use G43 H");
+    fail(column, "G68.2 is not supported with a tool offset of G43.1 or G43.2; use G43 H");
   }
   refuse_rotary_words();
   const AxisWords machine = machine_now(column);
@@ -134,7 +134,7 @@ void Interpreter::Machine::work_plane() {
 
 void Interpreter::Machine::orient_tool() {
   const int column = request().of(Group::g_non_modal).column;
-  if (!state_.plane) fail(column, "G53.1 without a tilted work plane; G68.2 first");
+  if (!state_.plane) fail(column, "G53.1 requires a tilted work plane; program G68.2 first");
   if (request().motion.code != nullptr) {
     fail(request().motion.column, "G53.1 must be in a block without motion");
   }
@@ -176,11 +176,12 @@ void Interpreter::Machine::refuse_while_tip_is_controlled() const {
   const bool speaks_of_axes =
       code == 530 || code == 280 || code == 281 || code == 300 || code == 301;
   if (state_.plane) {
-    fail(chosen.column, fmt::format("{} in a tilted work plane; G69 first", code_name('G', code)));
+    fail(chosen.column, fmt::format("{} is not allowed in a tilted work plane; program G69 first",
+                                    code_name('G', code)));
   }
   if (state_.tool_control != ToolControl::none && speaks_of_axes) {
-    fail(chosen.column,
-         fmt::format("{} under tool-centre-point control; G49 first", code_name('G', code)));
+    fail(chosen.column, fmt::format("{} is not allowed under TCP control; program G49 first",
+                                    code_name('G', code)));
   }
 }
 
@@ -190,16 +191,16 @@ void Interpreter::Machine::refuse_rotary_words() const {
     if (!has_axis(i)) continue;
     const char name = letter(axis_at(i));
     if (has_vectors) {
-      fail_at(name, fmt::format("{} word under G43.5; I J K give the tool axis", name));
+      fail_at(name,
+              fmt::format("{} word is not allowed with G43.5; I J K define the tool axis", name));
     }
     if (state_.plane && state_.tool_control == ToolControl::none) {
-      fail_at(name,
-              fmt::format(
-                  "{} word in a tilted work plane; G53.1 orients the tool, G43.4 moves rotary axes",
-                  name));
+      fail_at(name, fmt::format("{} word is not allowed in a tilted work plane; orient the tool "
+                                "with G53.1, or use G43.4 for rotary axes",
+                                name));
     }
     if (request().code(Group::g_work_plane) == 682) {
-      fail_at(name, fmt::format("{} word with G68.2; its angles are I J K", name));
+      fail_at(name, fmt::format("{} word is not allowed with G68.2; its angles are I J K", name));
     }
   }
 }
@@ -213,7 +214,7 @@ bool Interpreter::Machine::has_vector() const {
 Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   if (!has_vector()) {
     if (state_.tool_axis.isZero(0.0)) {
-      fail(request().motion.column, "G43.5 without I J K in its first move");
+      fail(request().motion.column, "G43.5 requires I J K in its first move");
     }
     return state_.tool_axis;
   }
@@ -223,7 +224,7 @@ Eigen::Vector3d Interpreter::Machine::programmed_axis() {
   if (!(length > kMinVector)) fail_at(first, "the tool axis I J K has length zero");
   if (std::abs(length - 1.0) > kAxisLengthTolerance) {
     warn(request().word(first).column,
-         fmt::format("the tool axis I J K has length {:.6g}; taken as a unit vector", length));
+         fmt::format("the tool axis I J K has length {:.6g}; normalised to a unit vector", length));
   }
   return (state_.direction_in_workpiece(given) / length).normalized();
 }

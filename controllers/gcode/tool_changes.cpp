@@ -57,14 +57,14 @@ AxisWords Interpreter::Machine::offset_from_position(const AxisWords& old, int L
 
 void Interpreter::Machine::set_tool(int L) {
   const int column = request().of(Group::g_non_modal).column;
-  if (!request().has('P')) fail(column, fmt::format("G10 L{} needs a P word (tool number)", L));
+  if (!request().has('P')) fail(column, fmt::format("G10 L{} requires a P word (tool number)", L));
   const int number = integer('P');
   if (number < 1) fail_at('P', fmt::format("G10 L{} P{}; must be a tool number >= 1", L, number));
   ToolEntry tool = tool_named('P', number);
   const bool sets_more =
       request().has('R') || request().has('I') || request().has('J') || request().has('Q');
   if (!has_any_axis() && !sets_more) {
-    fail(column, fmt::format("G10 L{} without a word to set (X Y Z A B C R I J Q)", L));
+    fail(column, fmt::format("G10 L{} requires a word to set (X Y Z A B C R I J Q)", L));
   }
   for (int i = 0; i < kAxisWords && L == 1; ++i) {
     if (has_axis(i)) tool.offset[i] = axis_word(i);
@@ -76,8 +76,8 @@ void Interpreter::Machine::set_tool(int L) {
   if (request().has('Q')) {
     tool.orientation = integer('Q');
     if (tool.orientation < 0 || tool.orientation > kMaxOrientation) {
-      fail_at('Q', fmt::format("Q{}; the orientation of a tool must be in 0 ... {}",
-                               tool.orientation, kMaxOrientation));
+      fail_at('Q', fmt::format("Q{}; the tool orientation must be in 0 ... {}", tool.orientation,
+                               kMaxOrientation));
     }
   }
   setup_.tools.replace(tool);

@@ -29,7 +29,7 @@ class ToolLine {
     ToolEntry tool;
     for (skip_blanks(); at_ < line_.size(); skip_blanks()) read_word(tool);
     const bool has_number = seen_.find('T') != std::string::npos;
-    if (!has_number) fault(0, "tool without a number (T word)");
+    if (!has_number) fault(0, "the tool number (T word) is missing");
     if (!has_number || faults_.size() > faults_before) return std::nullopt;
     return tool;
   }
@@ -58,7 +58,7 @@ class ToolLine {
       return skip_word();
     }
     if (seen_.find(letter) != std::string::npos) {
-      fault(start, fmt::format("second {} word of a tool", letter));
+      fault(start, fmt::format("the {} word appears twice", letter));
     }
     seen_ += letter;
     const std::optional<double> value = number();
@@ -116,7 +116,8 @@ class ToolLine {
         tool.back_angle = x * deg;
         return;
       default:  // U V W
-        if (x != 0.0) fault(start, fmt::format("{}{}; must be 0: no axis {}", letter, x, letter));
+        if (x != 0.0)
+          fault(start, fmt::format("{}{}; must be 0: axis {} is not supported", letter, x, letter));
     }
   }
 

@@ -70,9 +70,9 @@ std::string to_string(const FeedReduction& s, const JointLayout& layout) {
   constexpr double kWaits = 1e-3;  // of the programmed feed: next to nothing
   const bool is_near = s.singular_angle < kNearSingular;
   if (s.share() < kWaits) {
-    return fmt::format("{}the TCP waits while {} {}",
+    return fmt::format("{}the TCP is at rest while {} {}",
                        is_near ? "in a singular direction of the tool axis " : "",
-                       layout.letter_of(s.joint), s.joint < kLinearJoints ? "moves" : "turns");
+                       layout.letter_of(s.joint), s.joint < kLinearJoints ? "moves" : "rotates");
   }
   const bool is_linear_joint = s.joint < kLinearJoints;
   const double unit = is_linear_joint ? mm : deg;
@@ -82,13 +82,12 @@ std::string to_string(const FeedReduction& s, const JointLayout& layout) {
       is_near ? fmt::format(", {:.2f} deg from a singular direction of the tool axis",
                             s.singular_angle / deg)
               : "";
-  const std::string others = s.others == 0 ? ""
-                             : s.others == 1
-                                 ? ", and in one more block, too"
-                                 : fmt::format(", and in {} more blocks, too", s.others);
+  const std::string others = s.others == 0   ? ""
+                             : s.others == 1 ? ", and in one other block"
+                                             : fmt::format(", and in {} other blocks", s.others);
   return fmt::format(
-      "the programmed feed needs {} at {:.4g} {}{}; it can do {:.4g}: the feed falls "
-      "to {}{:.3g} %{}",
+      "the programmed feed rate requires {} at {:.4g} {}{}; its limit is {:.4g}: the feed rate is "
+      "reduced to {}{:.3g} %{}",
       layout.letter_of(s.joint), s.needed / unit, rate, where, s.allowed / unit,
       s.order == 1 ? "" : "about ", 100.0 * s.share(), others);
 }

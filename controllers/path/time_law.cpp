@@ -100,7 +100,9 @@ class SpeedPlanner {
 
   double speed_at(std::size_t point) const { return points_[point].v; }
 
-  // The law between two waypoints.
+  // The law between two waypoints, of phases: rise (jerk, constant acceleration, jerk), cruise, and
+  // the fall as a mirrored rise. Each jerk phase of duration T changes the velocity by
+  // dv = j T^2 / 2 over the distance v T + j T^3 / 6 = T (v + dv / 3).
   TimeLaw write(std::size_t from = 0, std::size_t to = kLast) const {
     TimeLaw law;
     double t = 0.0;

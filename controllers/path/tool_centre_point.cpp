@@ -82,14 +82,14 @@ ToolCentrePoint::Pointing ToolCentrePoint::point(const Vector3d& k, const Joints
   Pointing out{Q_near, {}};
   out.Q.tail<kJoints - kLinearJoints>() = found.Q.tail<kJoints - kLinearJoints>();
   if (found.reach == plant::Reach::orientation) {
-    out.fault = fmt::format("the tool axis {} is out of reach by {:.4f} deg", vector_text(k),
-                            found.miss / deg);
+    out.fault = fmt::format("the tool axis {} cannot be reached; the error is {:.4f} deg",
+                            vector_text(k), found.miss / deg);
   } else if (found.reach == plant::Reach::travel) {
     const int j = found.joint;
     const auto& [lower, upper] =
         std::pair(inverse_.settings().lower[j], inverse_.settings().upper[j]);
     const bool above = found.Q[j] > upper;
-    out.fault = fmt::format("the tool axis {} needs {} = {:.4f} deg; must be {} {:.4f}",
+    out.fault = fmt::format("the tool axis {} requires {} = {:.4f} deg; must be {} {:.4f}",
                             vector_text(k), chain().layout.letter_of(j), found.Q[j] / deg,
                             above ? "<=" : ">=", (above ? upper : lower) / deg);
   }
@@ -134,8 +134,8 @@ std::string ToolCentrePoint::jump_fault(const Joints& from, const Joints& to,
   }
   const std::string other = *ends == joint ? "" : fmt::format("{} ", letter);
   return fmt::format(
-      "{} reaches its travel limit at {:.4f} deg, and otherwise {}would have to jump from {:.4f} "
-      "to {:.4f} deg",
+      "{} reaches its travel limit at {:.4f} deg; otherwise {}would have to jump from {:.4f} to "
+      "{:.4f} deg",
       chain().layout.letter_of(*ends), from[*ends] / deg, other, from[joint] / deg,
       to[joint] / deg);
 }

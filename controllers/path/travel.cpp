@@ -55,7 +55,7 @@ Range<Joints> range_of(const Move& move, const Joints& from, const JointLayout& 
 
 std::string message(char name, bool rotary, double value, double limit, bool above) {
   const double unit = rotary ? deg : mm;
-  return fmt::format("{} moves to {:.4f} {}, outside the travel; must be {} {:.4f}", name,
+  return fmt::format("{} moves to {:.4f} {}, outside its travel; must be {} {:.4f}", name,
                      value / unit, rotary ? "deg" : "mm", above ? "<=" : ">=", limit / unit);
 }
 

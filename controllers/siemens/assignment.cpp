@@ -54,8 +54,8 @@ bool read_assignment(Scanner& scanner, Variables& variables) {
   }
   if (name.starts_with('$')) {
     throw InputError(reference.place,
-                     fmt::format("{}: assigns to a variable of the control, whose effect is not "
-                                 "supported; remove the block if it causes no motion",
+                     fmt::format("{}: assignments to control variables are not supported; remove "
+                                 "the block if it causes no motion",
                                  to_string(reference)));
   }
   assign(reference, scanner, variables);
@@ -78,7 +78,7 @@ void assign(const Reference& reference, Scanner& scanner, Variables& variables) 
   const bool starts_elsewhere = std::any_of(reference.indices.begin(), reference.indices.end(),
                                             [](int index) { return index != 0; });
   if (starts_elsewhere) {
-    throw InputError(reference.place, "SET and REP from an element other than the first");
+    throw InputError(reference.place, "SET and REP must start at the first element");
   }
   const std::size_t count = is_repeated ? variables.size(reference) : values.size();
   for (std::size_t i = 0; i < count; ++i) {

@@ -101,7 +101,8 @@ bool Reader::read_address() {
   }
   if (scanner_.take('=') && scanner_.now() != '=') {
     constexpr std::size_t kLongest = 4;
-    if (digits.size() > kLongest) fail(address.place, "an extension of at most four digits");
+    if (digits.size() > kLongest)
+      fail(address.place, "an address extension of at most four digits");
     if (!digits.empty()) address.extension = std::stoi(digits);
     address.is_assigned = true;
   } else {
@@ -109,7 +110,7 @@ bool Reader::read_address() {
     scanner_.skip_blanks();
     const bool has_number = is_digit(scanner_.now()) || is_sign_or_point(scanner_.now());
     if (!has_number) {
-      fail(address.place, fmt::format("{} needs a number, or '=' with a value", address.name));
+      fail(address.place, fmt::format("{} requires a number, or '=' and a value", address.name));
     }
   }
   put(address);
@@ -150,7 +151,7 @@ Number Reader::read_number(const Address& address) {
     if (out.measure != Measure::modal &&
         std::string_view("+-*/").find(scanner_.now()) != std::string_view::npos) {
       scanner_.fail(
-          fmt::format("{}: AC, IC, DC, ACP and ACN hold the whole value; write the sum in "
+          fmt::format("{}: AC, IC, DC, ACP and ACN must contain the whole value; write the sum in "
                       "their parentheses",
                       address.name));
     }
@@ -179,9 +180,10 @@ void Reader::require_measure(const Number& number, const Address& address) const
   const bool is_length =
       number.measure == Measure::absolute || number.measure == Measure::incremental;
   if (is_rotary || (is_length && (is_in(kLinear) || address.name == "AP"))) return;
-  fail(address.place, is_length
-                          ? fmt::format("{}: AC and IC are for positions only", address.name)
-                          : fmt::format("{}: DC, ACP and ACN are for rotary axes", address.name));
+  fail(address.place,
+       is_length
+           ? fmt::format("{}: AC and IC are allowed for positions only", address.name)
+           : fmt::format("{}: DC, ACP and ACN are allowed for rotary axes only", address.name));
 }
 
 int Reader::whole(double value, const Address& address) const {
@@ -229,10 +231,9 @@ bool Reader::put_position(const Address& address) {
     return true;
   }
   if (axis) {
-    fail(address.place,
-         fmt::format("{}{}= names a machine axis or an orientation, which is not supported; "
-                     "program X, Y, Z, A, B, C",
-                     letter, *address.extension));
+    fail(address.place, fmt::format("{}{}= is a machine axis or an orientation, which is not "
+                                    "supported; program X, Y, Z, A, B, C",
+                                    letter, *address.extension));
   }
   return false;
 }
@@ -258,7 +259,7 @@ void Reader::put(const Address& address) {
     return;
   }
   if (letter == 'S' && address.extension.value_or(1) != 1) {
-    fail(address.place, fmt::format("S{}=: a second spindle", *address.extension));
+    fail(address.place, fmt::format("S{}=: a second spindle is not supported", *address.extension));
   }
   std::optional<Number>* place =
       !address.extension || letter == 'S' ? number_of(address.name) : nullptr;
@@ -310,11 +311,10 @@ void Reader::read_assigned(Address address, const std::string& index) {
     return;
   }
   const std::string why = refusal_of(address.name);
-  fail(address.place,
-       why.empty() ? fmt::format("{}= is neither an address nor a variable: DEF is missing before "
-                                 "it, or it is one of the machine",
-                                 address.name + index)
-                   : fmt::format("{}: {}", address.name, why));
+  fail(address.place, why.empty() ? fmt::format("{}= is neither an address nor a variable: DEF is "
+                                                "missing, or it is a machine variable",
+                                                address.name + index)
+                                  : fmt::format("{}: {}", address.name, why));
 }
 
 // A word of several letters: a code, an address with '=', a cycle or a subprogram.

@@ -30,10 +30,10 @@ std::vector<int> read_sizes(Scanner& scanner, const Variables& variables) {
   do {
     const double size = evaluate_number(scanner, variables);
     constexpr double kMax = 1e6;
-    if (!(size >= 1.0 && size <= kMax)) scanner.fail("the size of an array must be from 1");
+    if (!(size >= 1.0 && size <= kMax)) scanner.fail("the array size must be from 1 to 1e6");
     sizes.push_back(static_cast<int>(size));
   } while (scanner.take(','));
-  scanner.expect(']', "the size of an array");
+  scanner.expect(']', "the array size");
   return sizes;
 }
 
@@ -53,11 +53,11 @@ void Translator::define(Scanner& scanner) {
     Reference reference;
     reference.place = scanner.place();
     reference.name = scanner.read_name();
-    if (reference.name.empty()) scanner.fail("DEF without the name of a variable");
+    if (reference.name.empty()) scanner.fail("DEF requires a variable name");
     variables_.define(reference.name, *type, read_sizes(scanner, variables_), reference.place);
     if (scanner.take('=')) assign(reference, scanner, variables_);
   } while (scanner.take(','));
-  if (!scanner.at_end()) scanner.fail("DEF: unexpected words behind the variables");
+  if (!scanner.at_end()) scanner.fail("DEF: unexpected text after the variables");
 }
 
 // PROC NAME(REAL A, VAR INT B, REAL C=5) SAVE DISPLOF: parameters take the values of the call.
@@ -96,7 +96,7 @@ void Translator::define_parameters(Scanner& scanner) {
   } while (scanner.take(','));
   scanner.expect(')', "the parameters of PROC");
   if (caller != nullptr && caller->call.arguments.size() > count) {
-    fail(fmt::format("{} is called with {} values; PROC has {}", caller->call.name,
+    fail(fmt::format("{} is called with {} parameters; PROC defines {}", caller->call.name,
                      caller->call.arguments.size(), count));
   }
 }
@@ -107,8 +107,9 @@ void Translator::call_by_text(Scanner& scanner) {
   Call call;
   call.place = scanner.place();
   const Value name = evaluate(scanner, variables_);
-  if (!name.text) fail("CALL needs the name of a program in quotes");
-  if (!scanner.at_end()) fail("CALL BLOCK and CALL with values are not supported; write the name");
+  if (!name.text) fail("CALL requires a program name in quotes");
+  if (!scanner.at_end())
+    fail("CALL BLOCK and CALL with parameters are not supported; write the program name");
   call.name = program_name(*name.text);
   call_subprogram(call, 1);
 }
@@ -135,17 +136,17 @@ void Translator::execute_calls(const Block& block) {
   if (block.is_modal_call) {
     modal_call_.reset();
     if (calls.empty() || calls.front().name == "CYCLE80") return;
-    if (calls.size() > 1) fail(calls[1].place, "MCALL with two programs");
+    if (calls.size() > 1) fail(calls[1].place, "MCALL accepts one program only");
     const Call& modal = calls.front();
     if (modal.name.starts_with("HOLES") || modal.name == "CYCLE832" || modal.name == "CYCLE800") {
-      fail(modal.place, fmt::format("MCALL {}: only drilling cycles and subprograms are called at "
-                                    "each position",
-                                    modal.name));
+      fail(modal.place,
+           fmt::format("MCALL {}: only drilling cycles and subprograms can be called modally",
+                       modal.name));
     }
     modal_call_ = modal;
     return;
   }
-  if (calls.size() > 1) fail(calls[1].place, "a second call in the block");
+  if (calls.size() > 1) fail(calls[1].place, "the block contains more than one call");
   if (!calls.empty()) call(calls.front(), repeats);
 }
 
@@ -161,14 +162,15 @@ void Translator::call_modal() {
 void Translator::call(const Call& call, long repeats) {
   if (ProgramFile* program = find_program(call.name)) return enter(program, call, repeats);
   if (repeats != 1) {
-    fail(call.place, fmt::format("{}: P repeats subprograms only; program a loop", call.name));
+    fail(call.place,
+         fmt::format("{}: P is allowed for subprograms only; program a loop", call.name));
   }
   if (run_cycle(call)) return;
   const std::string why = refusal_of(call.name);
   if (!why.empty()) fail(call.place, fmt::format("{}: {}", call.name, why));
   fail(call.place,
-       fmt::format("{0}: no such word, cycle or subprogram: no file {0}.SPF next to the program or "
-                   "in the folders of --subs, where an empty one leaves the call out{1}",
+       fmt::format("{0}: unknown word, cycle or subprogram: file {0}.SPF found neither next to the "
+                   "program nor in the folders of --subs (an empty one skips the call){1}",
                    call.name, similar_word(call.name)));
 }
 
@@ -176,7 +178,8 @@ void Translator::call_subprogram(const Call& call, long repeats) {
   ProgramFile* program = find_program(call.name);
   if (program == nullptr) {
     fail(call.place,
-         fmt::format("no file {}.SPF next to the program or in the folders of --subs", call.name));
+         fmt::format("file {}.SPF found neither next to the program nor in the folders of --subs",
+                     call.name));
   }
   enter(program, call, repeats);
 }
@@ -251,7 +254,7 @@ void Translator::leave_subprogram() {
 // SAVE: modal functions and the frame are those of the caller again.
 void Translator::restore(const Modes& modes) {
   if (modes.offset != modes_.offset) {
-    if (modes.offset == 0) fail("SAVE with a work offset that no block has programmed before");
+    if (modes.offset == 0) fail("SAVE requires a work offset programmed before");
     put_offset(modes.offset);
     forget_positions();
   }

@@ -38,31 +38,31 @@ void Translator::refuse_unread(const Block& block) {
   const bool is_element = is_work && !is_thread && !is_chuck;
   const bool has_corner = block.RND || block.CHR || block.CHF;
   const Word words[] = {
-      {&block.AP, "AP", is_polar, "G0 to G3, CT and G110 to G112"},
-      {&block.RP, "RP", is_polar, "G0 to G3, CT and G110 to G112"},
-      {&block.RPL, "RPL", is_rotation, "ROT and AROT"},
-      {&block.centre[0], "I", is_arc || is_thread, "G2, G3 and threads"},
-      {&block.centre[1], "J", is_arc || is_thread, "G2, G3 and threads"},
-      {&block.centre[2], "K", is_arc || is_thread, "G2, G3 and threads"},
+      {&block.AP, "AP", is_polar, "G0 to G3, CT or G110 to G112"},
+      {&block.RP, "RP", is_polar, "G0 to G3, CT or G110 to G112"},
+      {&block.RPL, "RPL", is_rotation, "ROT or AROT"},
+      {&block.centre[0], "I", is_arc || is_thread, "G2, G3 or thread cutting"},
+      {&block.centre[1], "J", is_arc || is_thread, "G2, G3 or thread cutting"},
+      {&block.centre[2], "K", is_arc || is_thread, "G2, G3 or thread cutting"},
       {&block.through[0], "I1", is_through, "CIP"},
       {&block.through[1], "J1", is_through, "CIP"},
       {&block.through[2], "K1", is_through, "CIP"},
-      {&block.CR, "CR", is_arc, "G2 and G3"},
-      {&block.AR, "AR", is_arc, "G2 and G3"},
-      {&block.TURN, "TURN", is_arc, "G2 and G3"},
-      {&block.RND, "RND", is_element, "a move of G1 to G3, CIP or CT in the plane"},
-      {&block.CHR, "CHR", is_element, "a move of G1 to G3, CIP or CT in the plane"},
-      {&block.CHF, "CHF", is_element, "a move of G1 to G3, CIP or CT in the plane"},
-      {&block.FRC, "FRC", has_corner, "RND, CHR and CHF"},
+      {&block.CR, "CR", is_arc, "G2 or G3"},
+      {&block.AR, "AR", is_arc, "G2 or G3"},
+      {&block.TURN, "TURN", is_arc, "G2 or G3"},
+      {&block.RND, "RND", is_element, "a move in the plane with G1 to G3, CIP or CT"},
+      {&block.CHR, "CHR", is_element, "a move in the plane with G1 to G3, CIP or CT"},
+      {&block.CHF, "CHF", is_element, "a move in the plane with G1 to G3, CIP or CT"},
+      {&block.FRC, "FRC", has_corner, "RND, CHR or CHF"},
   };
   for (const Word& one : words) {
     if (!*one.number || one.is_read) continue;
     fail((*one.number)->place,
-         fmt::format("{}: nothing in the block reads it; it is for {}", one.name, one.where));
+         fmt::format("{} has no effect in this block; it requires {}", one.name, one.where));
   }
   const int corners =
       int{block.RND.has_value()} + int{block.CHR.has_value()} + int{block.CHF.has_value()};
-  if (corners > 1) fail("RND, CHR and CHF exclude each other; program one of them");
+  if (corners > 1) fail("RND, CHR and CHF are mutually exclusive; program one of them");
   refuse_unread_call(block, is_path);
 }
 
@@ -70,17 +70,18 @@ void Translator::refuse_unread_call(const Block& block, bool is_path) {
   const auto call = std::find_if(block.calls.begin(), block.calls.end(), is_call_of_program);
   const bool has_call = call != block.calls.end() || block.L;
   if (block.P && (!has_call || block.is_modal_call)) {
-    fail(block.P->place,
-         "P: the number of runs needs the call of a subprogram in its block: L10 P3");
+    fail(
+        block.P->place,
+        "P, the number of repetitions, requires a subprogram call in the same block, as in L10 P3");
   }
   if (block.is_modal_call && is_path) {
-    fail("MCALL beside words that move axes; program it in a block of its own");
+    fail("MCALL must be in a block without axis words");
   }
   if (!has_call || !is_path) return;
   const bool is_known = block.L || is_cycle(call->name) || find_program(call->name) != nullptr;
   if (!is_known) return;  // as a call that is refused by its name
   fail(block.L ? block.L->place : call->place,
-       "a call beside words that move axes; program it in a block of its own");
+       "a cycle or subprogram call must be in a block without axis words");
 }
 
 // Functions that are not supported unless they are switched off.
@@ -97,7 +98,7 @@ void Translator::refuse_switched_on(const Block& block) const {
     fail(block.FRCM->place, "FRCM is not supported; program FRC in each block");
   }
   if (block.DISC && block.DISC->value != 0.0) {
-    fail(block.DISC->place, "DISC: outside corners that rise are not supported; use DISC=0");
+    fail(block.DISC->place, "DISC: overshoot at outside corners is not supported; use DISC=0");
   }
   for (const Code& code : block.codes) {
     if (code.arguments.empty() || takes_names(code.name)) continue;
@@ -107,7 +108,7 @@ void Translator::refuse_switched_on(const Block& block) const {
                                  code.name == "SETMS"    ? "a second spindle is not supported"
                                  : code.name == "TRAORI" ? "only the first transformation is "
                                                            "supported, without parameters"
-                                                         : "it takes no parameters"));
+                                                         : "parameters are not allowed"));
   }
 }
 
@@ -117,8 +118,8 @@ void Translator::warn_of_settings(const Block& block) {
   }
   if (block.has("ORIWKS")) {
     warn_once("ORIWKS",
-              "ORIWKS: rotary axes are taken to move linearly between blocks, as with ORIAXES; "
-              "the tool then leaves the plane of its first and last direction");
+              "ORIWKS: treated as ORIAXES, linear interpolation of the rotary axes; the tool "
+              "leaves the plane of its start and end orientation");
   }
 }
 
@@ -126,8 +127,8 @@ void Translator::warn_of_settings(const Block& block) {
 // or after it. Fundamentals 07/2010 (6FC5398-1BP40-0BA0) p. 282
 void Translator::warn_of_corner() {
   warn_once("corner",
-            "F or an M function behind RND, CHF or CHR: taken as behind the corner, as with bit 0 "
-            "of MD20201; FRC gives the corner a feed");
+            "F or an M function in the block of RND, CHF or CHR: treated as effective after the "
+            "corner, as with MD20201 bit 0 = 1; FRC sets the feed rate of the corner");
 }
 
 // [F] "Chamfer, rounding": the control inserts nothing then.
@@ -135,8 +136,8 @@ void Translator::count_block_behind_corner() {
   constexpr int kLargest = 3;
   if (!path_.has_corner() || ++blocks_behind_corner_ <= kLargest) return;
   fail(
-      "RND, CHF or CHR, and more than three blocks without a motion in the plane: the control "
-      "leaves the corner as it is; program the next element sooner");
+      "RND, CHF and CHR allow at most three following blocks without motion in the plane: the "
+      "control inserts nothing otherwise; program the next element earlier");
 }
 
 }  // namespace servomill::controllers::siemens

@@ -31,23 +31,22 @@ double Translator::coordinate(const Number& number, double now) const {
 // AP and RP about the pole. RP is absolute and stays; AP stays until another pole or plane, and
 // AP=IC counts from the one programmed last. NC programming 12/2019 (6FC5398-2EP40-0BA0) p. 175
 Point Translator::polar_point(const Block& block) {
-  if (!pole_) fail("AP and RP without a pole: program G111 before, in the same frame");
+  if (!pole_) fail("AP and RP require a pole in the same frame; program G111 first");
   if (block.RP && block.RP->value < 0.0) fail(block.RP->place, "RP must be >= 0");
   if (block.RP) polar_radius_ = block.RP->value * unit();
-  if (!polar_radius_) fail("RP is missing, and none was programmed before");
+  if (!polar_radius_) fail("RP is missing and was not programmed before");
   if (block.AP) {
     const Number& AP = *block.AP;
     if (AP.measure == Measure::modal && modes_.is_incremental) {
-      fail(AP.place, "AP with G91: write AP=AC(...) or AP=IC(...)");
+      fail(AP.place, "AP with G91 is ambiguous; write AP=AC(...) or AP=IC(...)");
     }
     const bool is_by = AP.measure == Measure::incremental;
     if (is_by && !polar_angle_) {
-      fail(AP.place,
-           "AP=IC: no angle about this pole was programmed before; program AP=AC(...) first");
+      fail(AP.place, "AP=IC requires a previous angle about this pole; program AP=AC(...) first");
     }
     polar_angle_ = AP.value + (is_by ? *polar_angle_ : 0.0);
   }
-  if (!polar_angle_) fail("AP is missing, and none was programmed since the pole was set");
+  if (!polar_angle_) fail("AP is missing and was not programmed since the pole was set");
   return *pole_ + *polar_radius_ * turned(Point(1.0, 0.0), *polar_angle_ * deg);
 }
 
@@ -90,12 +89,14 @@ std::optional<Point> Translator::programmed_centre(const Block& block, const Poi
 void Translator::arc(const Block& block) {
   const double sign = modes_.motion == MotionCode::clockwise ? -1.0 : 1.0;
   const auto start = program_point(modes_.normal);
-  if (!start) fail("an arc from a position that is unknown here; program both axes of the plane");
+  if (!start)
+    fail("the start position of the arc is unknown here; program both axes of the plane before");
   const auto end = end_in_plane(block, *start);
   const auto centre = programmed_centre(block, *start);
   Element element;
   if (block.CR && (centre || block.AR)) {
-    fail(block.CR->place, "CR with the centre or the angle of the arc; use one of them");
+    fail(block.CR->place,
+         "CR is not allowed with the centre or the angle of the arc; program one of them");
   }
   if (centre) {
     element = about_centre(block, *start, *centre, end, sign);
@@ -106,7 +107,7 @@ void Translator::arc(const Block& block) {
           is_closed ? sign * kFullTurn : translation::sweep_between(*centre, *start, *end, sign);
     }
   } else {
-    if (!end) fail("an arc without its end and without its centre");
+    if (!end) fail("an arc requires an end point or a centre");
     element = through_end(block, *start, *end, sign);
   }
   if (block.TURN) {
@@ -124,13 +125,13 @@ void Translator::arc(const Block& block) {
 Element Translator::about_centre(const Block& block, const Point& start, const Point& centre,
                                  const std::optional<Point>& end, double sign) {
   const double radius = (start - centre).norm();
-  if (radius < kSamePoint) fail("the centre of the arc is its start");
+  if (radius < kSamePoint) fail("the centre of the arc is its start point");
   Element out{start, start, true, centre, sign * kFullTurn};
   if (end && std::abs((*end - centre).norm() - radius) > kRadiusFits) {
-    fail(fmt::format("the arc starts {:.4f} mm from its centre and ends {:.4f} mm from it", radius,
+    fail(fmt::format("the arc starts {:.4f} mm and ends {:.4f} mm from its centre", radius,
                      (*end - centre).norm()));
   }
-  if (block.AR && end) fail("AR with the end and the centre of the arc");
+  if (block.AR && end) fail("AR is not allowed with both the end point and the centre of the arc");
   if (block.AR) {
     if (!(block.AR->value > 0.0)) fail(block.AR->place, "AR must be > 0");
     out.sweep = sign * block.AR->value * deg;
@@ -144,7 +145,7 @@ Element Translator::about_centre(const Block& block, const Point& start, const P
 Element Translator::through_end(const Block& block, const Point& start, const Point& end,
                                 double sign) {
   const double chord = (end - start).norm();
-  if (chord < kSamePoint) fail("an arc with CR or AR that ends where it starts");
+  if (chord < kSamePoint) fail("an arc with CR or AR cannot end at its start point");
   double radius = 0.0;
   bool is_large = false;
   if (block.CR) {
@@ -153,16 +154,15 @@ Element Translator::through_end(const Block& block, const Point& start, const Po
     if (radius < chord / 2.0 && radius > chord / 2.0 - kRadiusFits) radius = chord / 2.0;
   } else if (block.AR) {
     const double angle = block.AR->value * deg;
-    if (!(angle > 0.0) || angle >= kFullTurn) fail(block.AR->place, "AR must be between 0 and 360");
+    if (!(angle > 0.0) || angle >= kFullTurn) fail(block.AR->place, "AR must be > 0 and < 360");
     radius = chord / (2.0 * std::abs(std::sin(angle / 2.0)));
     is_large = angle > std::numbers::pi;
   } else {
-    fail("an arc needs I, J, K, CR or AR");
+    fail("an arc requires I, J, K, CR or AR");
   }
   const auto element = translation::arc_of_radius(start, end, radius, sign, is_large);
   if (!element) {
-    fail(fmt::format("CR={:g} is less than half the distance of {:.4f} mm to the end", radius,
-                     chord));
+    fail(fmt::format("CR={:g} is less than half the chord length of {:.4f} mm", radius, chord));
   }
   return *element;
 }
@@ -186,7 +186,7 @@ void Translator::arc_through_point(const Block& block) {
         std::abs(end[i] - start[i]) < kSamePoint && std::abs(by[i] - start[i]) < kSamePoint;
     if (normal < 0 && is_level) normal = i;
   }
-  if (normal < 0) fail("CIP in a plane that is none of G17, G18 and G19 is not supported");
+  if (normal < 0) fail("CIP is supported only in the planes G17, G18 and G19");
   const auto axes = plane_axes(normal);
   const auto in_plane = [&](const Eigen::Vector3d& p) {
     return Point(p[static_cast<Eigen::Index>(axes[0])], p[static_cast<Eigen::Index>(axes[1])]);
@@ -195,7 +195,7 @@ void Translator::arc_through_point(const Block& block) {
   const Point u = b - a, v = c - a;
   const double cross = u.x() * v.y() - u.y() * v.x();
   if (std::abs(cross) < kSamePoint * v.norm() || v.norm() < kSamePoint) {
-    fail("CIP: the point lies on the line from the start to the end");
+    fail("CIP: the three points are collinear");
   }
   const Point centre = a + Point(v.y() * u.squaredNorm() - u.y() * v.squaredNorm(),
                                  u.x() * v.squaredNorm() - v.x() * u.squaredNorm()) /
@@ -207,15 +207,16 @@ void Translator::arc_through_point(const Block& block) {
 void Translator::tangential_arc(const Block& block) {
   const auto start = program_point(modes_.normal);
   if (!start || !last_element_ || last_normal_ != modes_.normal) {
-    fail("CT: no line or arc in the plane precedes it");
+    fail("CT requires a preceding line or arc in the plane");
   }
   const auto end = end_in_plane(block, *start);
-  if (!end) fail("CT without its end");
+  if (!end) fail("CT requires an end point");
   const Point along = translation::direction_at_end(*last_element_);
   const auto element = translation::tangential_arc(*start, along, *end);
   if (!element) {
     const bool is_ahead = along.dot(*end - *start) > 0.0;
-    if (!is_ahead) fail("CT: the end lies straight behind the path");
+    if (!is_ahead)
+      fail("CT: the end point is opposite to the path tangent; no tangential arc exists");
     return move_straight(block);
   }
   add_arc(block, *element, modes_.normal);
@@ -229,10 +230,10 @@ void Translator::add_arc(const Block& block, Element element, int normal) {
   const Frame& frame = modes_.frame;
   if (!frame.keeps_plane(normal)) {
     fail(
-        "an arc in a plane that ROT has turned in space is not supported; post-process to lines, "
-        "or use CYCLE800");
+        "an arc in a plane tilted by ROT is not supported; post-process to lines, or use CYCLE800");
   }
-  if (!frame.is_alike_in_plane(normal)) fail("an arc while SCALE differs in the axes of its plane");
+  if (!frame.is_alike_in_plane(normal))
+    fail("an arc requires equal SCALE factors in the axes of its plane");
   const auto axes = plane_axes(normal);
   Block depth = block;
   depth.axes[axes[0]].reset();
@@ -245,7 +246,8 @@ void Translator::add_arc(const Block& block, Element element, int normal) {
   work.end = work_point(normal, element.end);
   work.centre = work_point(normal, element.centre);
   if (frame.is_mirrored(normal)) work.sweep = -element.sweep;
-  if (motion.is_incremental) fail("a helix whose depth counts from an unknown position");
+  if (motion.is_incremental)
+    fail("helix: the position along its axis is unknown here; program it absolutely");
   motion.words[axes[0]] = work.end.x();
   motion.words[axes[1]] = work.end.y();
   motion.element = work;
@@ -268,8 +270,8 @@ void Translator::require_axis_of_pitch(const Block& block) const {
     if (block.axes[i].has_value() == is_of_pitch) continue;
     const Place& place = block.axes[i] ? block.axes[i]->place : block.centre[i]->place;
     fail(place,
-         "a thread along another axis than that of its pitch, or several, is not supported: "
-         "program X with I, Y with J or Z with K");
+         "a thread must run along the axis of its pitch only; program X with I, Y with J or Z with "
+         "K");
   }
   require_lengths_kept("a thread");
 }
@@ -277,8 +279,8 @@ void Translator::require_axis_of_pitch(const Block& block) const {
 void Translator::require_lengths_kept(std::string_view what) const {
   if (modes_.frame.keeps_lengths()) return;
   fail(
-      fmt::format("{} while SCALE is active: whether it scales the pitch is not certain; end it by "
-                  "SCALE",
+      fmt::format("{} while SCALE is active: it is undocumented whether the pitch is scaled; "
+                  "cancel it with SCALE",
                   what));
 }
 
@@ -287,18 +289,18 @@ void Translator::require_lengths_kept(std::string_view what) const {
 // without compensating chuck"
 void Translator::thread(const Block& block) {
   require_no_compensation("G33, G331 and G332");
-  if (!speed_ || *speed_ <= 0.0) fail("G33, G331 and G332: no S is active");
+  if (!speed_ || *speed_ <= 0.0) fail("G33, G331 and G332 require an active S");
   const bool is_cut = block.has("G33");
   if (!is_cut && !block.has("G331") && !block.has("G332")) {
-    fail("a thread without G33, G331 or G332 in its block; program one, or G0 or G1");
+    fail("a motion after a thread requires G33, G331 or G332 in its block, or G0 or G1");
   }
   Block end = block;
   std::optional<Number> pitch;
   for (auto& one : end.centre) {
-    if (one && pitch) fail(one->place, "two pitches in one block");
+    if (one && pitch) fail(one->place, "the pitch appears twice in the block");
     if (one) pitch = std::exchange(one, std::nullopt);
   }
-  if (!pitch || pitch->value == 0.0) fail("G33, G331 and G332 need the pitch as I, J or K");
+  if (!pitch || pitch->value == 0.0) fail("G33, G331 and G332 require the pitch as I, J or K");
   require_axis_of_pitch(block);
   const bool is_right = pitch->value > 0.0;
   if (!is_cut) {
@@ -306,7 +308,7 @@ void Translator::thread(const Block& block) {
     spindle_ = is_forward ? 1 : -1;
     note(is_forward ? "M3" : "M4");
   } else if (spindle_ == 0) {
-    fail("G33: M3 or M4 must be active");
+    fail("G33 requires M3 or M4");
   }
   Motion motion;
   motion.place = place_;

@@ -35,8 +35,8 @@ void Translator::refuse_options(const Call& call) const {
                                 [&](const Places& one) { return one.name == call.name; });
   value_of(call, 0, {}, "RTP");
   if (value_of(call, at->GMODE, 0.0, "_GMODE") != 0.0) {
-    fail(call.place, fmt::format("{}: a depth from the shank or by a diameter (_GMODE) is not "
-                                 "supported; give the depth of the tip",
+    fail(call.place, fmt::format("{}: a depth referred to the shank or a diameter (_GMODE) is not "
+                                 "supported; program the depth of the tip",
                                  call.name));
   }
   refuse_alternatives(call, value_of(call, at->DMODE + 1, 0.0, "_AMODE"));
@@ -45,7 +45,7 @@ void Translator::refuse_options(const Call& call) const {
   if ((plane == 0.0 || plane == 3.0 - modes_.normal) &&
       (axis == 0.0 || axis == modes_.normal + 1.0))
     return;
-  fail(call.place, fmt::format("{}: drilling along another axis than that of the active plane "
+  fail(call.place, fmt::format("{}: drilling along an axis other than that of the active plane "
                                "(_DMODE, _AXN) is not supported; program G17, G18 or G19",
                                call.name));
 }
@@ -55,20 +55,20 @@ void Translator::refuse_options(const Call& call) const {
 void Translator::refuse_alternatives(const Call& call, double AMODE) const {
   const double depth = std::fmod(AMODE, 10.0), dwell = std::fmod(std::floor(AMODE / 10.0), 10.0);
   if (AMODE < 0.0 || AMODE >= 100.0 || depth > 2.0 || dwell > 2.0 || AMODE != std::floor(AMODE)) {
-    fail(call.place,
-         fmt::format("{}: _AMODE {:.0f} gives other parameters another meaning, which is not "
-                     "supported; program the cycle without _AMODE",
-                     call.name, AMODE));
+    fail(call.place, fmt::format("{}: _AMODE {:.0f} changes the meaning of other parameters, which "
+                                 "is not supported; program the cycle without _AMODE",
+                                 call.name, AMODE));
   }
   const bool has_DPR = value_of(call, 4, 0.0, "DPR") != 0.0;
   if ((depth == 1.0 && !has_DPR) || (depth == 2.0 && has_DPR)) {
-    fail(call.place, fmt::format("{}: _AMODE takes the depth from {}, and the call gives {}",
+    fail(call.place, fmt::format("{}: _AMODE selects the depth {}, but the call specifies {}",
                                  call.name, has_DPR ? "DP" : "DPR", has_DPR ? "DPR" : "DP"));
   }
   if (dwell == 2.0 && call.name != "CYCLE81" && call.name != "CYCLE82") {
-    fail(call.place,
-         fmt::format("{}: a dwell in revolutions by _AMODE is not supported; program DTB < 0",
-                     call.name));
+    fail(
+        call.place,
+        fmt::format("{}: dwell in revolutions selected by _AMODE is not supported; program DTB < 0",
+                    call.name));
   }
 }
 
@@ -79,9 +79,9 @@ void Translator::refuse_pattern_options(const Call& call) const {
     const auto& value = call.arguments[i].value;
     const bool is_set = value && (value->text ? !value->text->empty() : value->number != 0.0);
     if (!is_set) continue;
-    fail(call.place, fmt::format("{}: parameters behind NUM are not supported; program the "
-                                 "positions",
-                                 call.name));
+    fail(call.place,
+         fmt::format("{}: parameters after NUM are not supported; program the positions",
+                     call.name));
   }
 }
 

@@ -63,7 +63,7 @@ bool Translator::refuse_cycle(const Call& call) {
   }
   require_no_compensation(call.name);
   warn_once(call.name,
-            fmt::format("{}: {}; extent and cycle time are without its moves", call.name, why));
+            fmt::format("{}: {}; extent and cycle time exclude its moves", call.name, why));
   path_.note({"G91 G30 X0 Y0 Z0", place_, {false, false, call.name}});
   note("G90");
   forget_linear_positions();
@@ -75,7 +75,7 @@ void Translator::smoothing(const Call& call) {
   const double tolerance = value_of(call, 0, 0.0, "the tolerance") * unit();
   if (tolerance < 0.0) fail(call.place, "CYCLE832: the tolerance must be >= 0");
   const bool is_off =
-      call.arguments.size() > 1 && std::fmod(value_of(call, 1, 0.0, "the kind"), 10.0) == 0.0;
+      call.arguments.size() > 1 && std::fmod(value_of(call, 1, 0.0, "the type"), 10.0) == 0.0;
   tolerance_line_ = tolerance > 0.0 && !is_off ? "G64 " + word('P', tolerance) : "G64";
   use_path(false);
 }
@@ -121,9 +121,10 @@ void Translator::pattern(const Call& call) {
     std::reverse(points.begin(), points.end());
   }
   if (modal_call_ && find_program(modal_call_->name) != nullptr) {
-    fail(call.place, fmt::format("{} with a subprogram called by MCALL is not supported; program "
-                                 "the positions",
-                                 call.name));
+    fail(call.place,
+         fmt::format(
+             "{} with a modal subprogram call (MCALL) is not supported; program the positions",
+             call.name));
   }
   const auto axes = plane_axes(modes_.normal);
   for (const Point& point : points) {

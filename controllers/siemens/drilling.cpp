@@ -30,10 +30,10 @@ struct Translator::Hole {
 double Translator::value_of(const Call& call, std::size_t at, std::optional<double> otherwise,
                             std::string_view name) const {
   const bool has = at < call.arguments.size() && call.arguments[at].value;
-  if (!has && !otherwise) fail(call.place, fmt::format("{} without {}", call.name, name));
+  if (!has && !otherwise) fail(call.place, fmt::format("{} requires {}", call.name, name));
   if (!has) return *otherwise;
   if (call.arguments[at].value->text) {
-    fail(call.place, fmt::format("{}: {} is a text", call.name, name));
+    fail(call.place, fmt::format("{}: {} must be a number, not a string", call.name, name));
   }
   return call.arguments[at].value->number;
 }
@@ -46,12 +46,12 @@ Translator::Hole Translator::hole_of(const Call& call) const {
   out.retract = value_of(call, 0, out.surface / unit(), "RTP") * unit();
   const double DPR = value_of(call, 4, 0.0, "DPR") * unit();
   const bool has_DP = call.arguments.size() > 3 && call.arguments[3].value;
-  if (!has_DP && DPR == 0.0) fail(call.place, fmt::format("{} without DP and DPR", call.name));
+  if (!has_DP && DPR == 0.0) fail(call.place, fmt::format("{} requires DP or DPR", call.name));
   out.bottom = DPR != 0.0 ? out.surface - std::abs(DPR) : value_of(call, 3, {}, "DP") * unit();
   out.up = out.bottom <= out.surface ? 1.0 : -1.0;
   out.clearance = out.surface + out.up * std::abs(value_of(call, 2, 0.0, "SDIS")) * unit();
   if (out.up * (out.retract - out.surface) < 0.0) {
-    fail(call.place, fmt::format("{}: RTP lies below RFP", call.name));
+    fail(call.place, fmt::format("{}: RTP must not be below RFP", call.name));
   }
   return out;
 }
@@ -78,16 +78,18 @@ void Translator::cycle_move(const Feed& feed, const std::array<std::optional<dou
 // Seconds, or revolutions where it is negative.
 void Translator::cycle_dwell(double time) {
   if (time >= 0.0) return dwell_for(time);
-  if (!speed_ || *speed_ <= 0.0) fail("a dwell in revolutions: no S is active");
+  if (!speed_ || *speed_ <= 0.0) fail("a dwell in revolutions requires an active S");
   dwell_for(-time * 60.0 / *speed_);
 }
 
 Feed Translator::cycle_feed(double per_minute) {
   if (modes_.feed_code != 94) {
-    fail(fmt::format("a feed of the cycle with G{} is not supported; program G94 before the cycle",
-                     modes_.feed_code));
+    fail(fmt::format(
+        "a feed rate of the cycle with G{} is not supported; program G94 before the cycle",
+        modes_.feed_code));
   }
-  if (!(per_minute > 0.0)) fail(fmt::format("a feed of {:g} in a cycle; must be > 0", per_minute));
+  if (!(per_minute > 0.0))
+    fail(fmt::format("feed rate of the cycle {:g}; must be > 0", per_minute));
   const double unit = unit_of_feed(place_);
   if (unit == 0.0) return {Feed::Kind::unknown};
   return effective({Feed::Kind::per_minute, per_minute * unit}, override_);
@@ -111,9 +113,12 @@ bool Translator::run_drilling_cycle(const Call& call) {
                                    [&](const auto& one) { return one.first == call.name; });
   if (found == kCycles.end()) return false;
   require_no_compensation(call.name);
-  if (is_tcp_) fail(call.place, fmt::format("{} with TRAORI; end it with TRAFOOF", call.name));
+  if (is_tcp_)
+    fail(call.place,
+         fmt::format("{} is not allowed with TRAORI; cancel it with TRAFOOF", call.name));
   if (modes_.feed_code == 93) {
-    fail(call.place, fmt::format("{} with G93; program G94 or G95 before it", call.name));
+    fail(call.place,
+         fmt::format("{} is not allowed with G93; program G94 or G95 first", call.name));
   }
   check_length_axis(true);
   refuse_options(call);
@@ -145,7 +150,7 @@ std::vector<double> Translator::strokes_of(const Call& call, const Hole& hole) c
   const double step = DAM > 0.0 ? DAM * unit() : 0.0;
   if (!(stroke > 0.0)) fail(call.place, "CYCLE83: the first drilling depth must not be 0");
   if (stroke > total * (1.0 + 1e-9)) {
-    fail(call.place, "CYCLE83: the first drilling depth lies below the final one");
+    fail(call.place, "CYCLE83: the first drilling depth must not exceed the final drilling depth");
   }
   const double floor = least > 0.0 ? least : step;
   std::vector<double> out;
@@ -176,7 +181,7 @@ void Translator::drill_83(const Call& call) {
   const std::vector<double> strokes = strokes_of(call, hole);
   const Feed feed = modal_feed();
   const double FRF = value_of(call, 10, 1.0, "FRF");
-  if (FRF < 0.0 || FRF > 1.0) fail(call.place, "CYCLE83: FRF must be a factor from 0 to 1");
+  if (FRF < 0.0 || FRF > 1.0) fail(call.place, "CYCLE83: FRF must be from 0 to 1");
   const bool is_removal = value_of(call, 11, 0.0, "VARI") != 0.0;
   const double VRT = std::abs(value_of(call, 14, 0.0, "_VRT")) * unit();
   const double back = VRT > 0.0 ? VRT : 1.0;
@@ -215,14 +220,15 @@ double Translator::pitch_of(const Call& call, std::size_t at_MPIT, std::size_t a
     if (kind <= 1.0) return PIT * (kind == 0.0 ? unit() : 1.0);
     if (kind == 2.0) return 25.4 / PIT;
     if (kind == 3.0) return 25.4 * PIT;
-    fail(call.place, fmt::format("{}: a pitch as a module is not supported", call.name));
+    fail(call.place, fmt::format("{}: a pitch in modules is not supported", call.name));
   }
   for (const auto& [size, pitch] : kPitches) {
     if (std::abs(MPIT) == size) return std::copysign(pitch, MPIT);
   }
   if (MPIT == 0.0) return 0.0;
-  fail(call.place, fmt::format("{}: M{:g} is no metric coarse thread from M3 to M48; give PIT",
-                               call.name, std::abs(MPIT)));
+  fail(call.place,
+       fmt::format("{}: M{:g} is not a metric coarse thread from M3 to M48; program PIT", call.name,
+                   std::abs(MPIT)));
 }
 
 void Translator::turn_spindle(int direction) {
@@ -237,12 +243,12 @@ void Translator::tap_84(const Call& call) {
   const Hole hole = hole_of(call);
   const double pitch = pitch_of(call, 7, 13);
   require_lengths_kept(call.name);
-  if (pitch == 0.0) fail(call.place, "CYCLE84 without MPIT and PIT");
+  if (pitch == 0.0) fail(call.place, "CYCLE84 requires MPIT or PIT");
   if (std::fmod(value_of(call, 15, 0.0, "_VARI"), 10.0) != 0.0) {
     fail(call.place, "CYCLE84 with chip breaking (_VARI) is not supported; program G331 and G332");
   }
   const double SST = value_of(call, 10, speed_.value_or(0.0), "SST");
-  if (!(SST > 0.0)) fail(call.place, "CYCLE84 without SST");
+  if (!(SST > 0.0)) fail(call.place, "CYCLE84 requires SST");
   const double SST1 = value_of(call, 11, 0.0, "SST1");
   const double out = SST1 > 0.0 ? SST1 : SST;
   const std::optional<double> before = speed_;
@@ -269,15 +275,15 @@ void Translator::tap_84(const Call& call) {
 // Tapping with a compensating chuck: at the pitch, or at F where there is none.
 void Translator::tap_840(const Call& call) {
   const Hole hole = hole_of(call);
-  if (spindle_ == 0) fail(call.place, "CYCLE840: M3 or M4 must be active");
+  if (spindle_ == 0) fail(call.place, "CYCLE840 requires M3 or M4");
   const double pitch = std::abs(pitch_of(call, 9, 12));
   require_lengths_kept(call.name);
-  if (pitch > 0.0 && (!speed_ || *speed_ <= 0.0)) fail(call.place, "CYCLE840: no S is active");
+  if (pitch > 0.0 && (!speed_ || *speed_ <= 0.0)) fail(call.place, "CYCLE840 requires an active S");
   const Feed feed = pitch > 0.0 ? Feed{Feed::Kind::per_minute, pitch * *speed_} : modal_feed(1.0);
   const int direction = spindle_;
   const double SDR = value_of(call, 6, 0.0, "SDR");
   if (SDR != 0.0 && SDR != (direction > 0 ? 4.0 : 3.0)) {
-    fail(call.place, "CYCLE840: SDR must reverse the spindle: 0, or 4 behind M3, 3 behind M4");
+    fail(call.place, "CYCLE840: SDR must reverse the spindle: 0, 4 after M3, or 3 after M4");
   }
   cycle_move({}, hole.clearance);
   cycle_move(feed, hole.bottom);

@@ -28,7 +28,7 @@ class Evaluator {
  private:
   [[noreturn]] void fail(std::string message) const { scanner_.fail(std::move(message)); }
   double number(const Value& value) const {
-    if (value.text) fail("a number is needed here, not a text");
+    if (value.text) fail("expected a number, not a string");
     return value.number;
   }
   long bits(const Value& value) const;
@@ -80,12 +80,13 @@ Value Evaluator::comparison() {
     if (found.empty()) return left;
     if (!is_first) {
       fail(
-          "two comparisons without parentheses: AND, OR and XOR come before == and <; write "
-          "(...) AND (...)");
+          "two comparisons without parentheses: AND, OR and XOR take precedence over == and <; "
+          "write (...) AND (...)");
     }
     is_first = false;
     const Value right = joined();
-    if (left.text.has_value() != right.text.has_value()) fail("a text is compared with a number");
+    if (left.text.has_value() != right.text.has_value())
+      fail("a string cannot be compared with a number");
     left = {compare(found, left, right) ? 1.0 : 0.0};
   }
 }
@@ -99,7 +100,7 @@ Value Evaluator::joined() {
   Value left = logic(0);
   while (scanner_.take_sign("<<")) {
     left.text = text_of(left) + text_of(logic(0));
-    if (left.text->size() > kLongest) fail("the text is too long");
+    if (left.text->size() > kLongest) fail("the string is too long");
   }
   return left;
 }
@@ -107,7 +108,7 @@ Value Evaluator::joined() {
 long Evaluator::bits(const Value& value) const {
   constexpr double kMax = 2147483648.0;
   const double x = number(value);
-  if (std::abs(x) > kMax) fail(fmt::format("{:g} is not an integer of 32 bits", x));
+  if (std::abs(x) > kMax) fail(fmt::format("{:g} is not a 32-bit integer", x));
   return std::lround(x);
 }
 
@@ -150,7 +151,7 @@ Value Evaluator::product() {
     const bool is_rest = !is_division && !is_whole && scanner_.take_word("MOD");
     if (is_division || is_whole || is_rest) {
       const double a = number(left), b = number(unary());
-      if (b == 0.0) fail("division by 0");
+      if (b == 0.0) fail("division by zero");
       left = {is_division ? a / b : is_whole ? std::trunc(a / b) : std::fmod(a, b)};
     } else if (scanner_.take('*')) {
       left = {number(left) * number(unary())};
@@ -162,7 +163,7 @@ Value Evaluator::product() {
 }
 
 Value Evaluator::unary() {
-  if (++depth_ > kMaxNested) fail("the expression is nested too deep");
+  if (++depth_ > kMaxNested) fail("the expression is nested too deeply");
   Value out;
   if (scanner_.take('-')) {
     out = {-number(unary())};
@@ -216,7 +217,7 @@ std::vector<Value> Evaluator::arguments(const std::string& name) {
 
 double Evaluator::function_of_one(const std::string& name, double x, const Place& place) const {
   const auto refuse = [&](bool is_outside) {
-    if (is_outside) throw InputError(place, fmt::format("{}({:g}) has no value", name, x));
+    if (is_outside) throw InputError(place, fmt::format("{}({:g}) is undefined", name, x));
   };
   if (name == "SIN") return std::sin(x * deg);
   if (name == "COS") return std::cos(x * deg);
@@ -239,20 +240,20 @@ double Evaluator::function_of_one(const std::string& name, double x, const Place
     refuse(x <= 0.0);
     return std::log(x);
   }
-  throw InputError(place, fmt::format("'{}(...)' is not a function that is supported", name));
+  throw InputError(place, fmt::format("function '{}(...)' is not supported", name));
 }
 
 // ATAN2(y, x): the angle of the sum of two vectors, -180 to 180 degrees.
 Value Evaluator::function(const std::string& name, const Place& place) {
-  if (name == "ISVAR") fail("ISVAR asks for variables of the machine, which are unknown");
+  if (name == "ISVAR") fail("ISVAR queries machine variables, which are unknown");
   const std::vector<Value> all = arguments(name);
   const auto need = [&](std::size_t count) {
     if (all.size() == count) return;
-    throw InputError(place, fmt::format("{} takes {} values", name, count));
+    throw InputError(place, fmt::format("{} requires {} arguments", name, count));
   };
   if (name == "STRLEN") {
     need(1);
-    if (!all[0].text) throw InputError(place, "STRLEN takes a text");
+    if (!all[0].text) throw InputError(place, "STRLEN requires a string");
     return {static_cast<double>(all[0].text->size())};
   }
   if (name == "ATAN2" || name == "MINVAL" || name == "MAXVAL") {
@@ -275,7 +276,7 @@ int Evaluator::read_index() {
   const double value = number(comparison());
   constexpr double kMax = 1e6;
   if (!(std::abs(value) <= kMax) || value != std::floor(value)) {
-    fail(fmt::format("{:g} is not an index", value));
+    fail(fmt::format("{:g} is not a valid index", value));
   }
   return static_cast<int>(value);
 }
@@ -295,7 +296,7 @@ Reference Evaluator::reference() {
     out.name += scanner_.read_brackets();
     return out;
   }
-  if (++depth_ > kMaxNested) fail("the expression is nested too deep");
+  if (++depth_ > kMaxNested) fail("the expression is nested too deeply");
   if (scanner_.take('[')) {
     do {
       out.indices.push_back(read_index());
@@ -316,7 +317,7 @@ double evaluate_number(Scanner& scanner, const Variables& variables) {
   scanner.skip_blanks();
   const Place place = scanner.place();
   const Value value = evaluate(scanner, variables);
-  if (value.text) throw InputError(place, "a number is needed here, not a text");
+  if (value.text) throw InputError(place, "expected a number, not a string");
   return value.number;
 }
 

@@ -64,7 +64,7 @@ bool Translator::define_or_call(Scanner& scanner, const std::string& word) {
   } else if (word == "CALL" || word == "EXTCALL") {
     call_by_text(scanner);
   } else if (word == "RET") {
-    if (!scanner.at_end()) fail("RET with values is not supported");
+    if (!scanner.at_end()) fail("RET with parameters is not supported");
     returns_.empty() ? end_program(30) : leave_subprogram();
   } else {
     return false;
@@ -93,7 +93,7 @@ void Translator::go_on(Scanner& scanner, const std::string& word, const Line& li
   } else if (word == "CASE") {
     choose(scanner);
   } else if (word == "ENDLABEL") {
-    fail("ENDLABEL is a label: write ENDLABEL:");
+    fail("ENDLABEL is a label; write ENDLABEL:");
   } else {
     loop(scanner, word, line);
   }
@@ -105,7 +105,7 @@ void Translator::go_behind(const Line& line) {
 
 // Words that nothing would read.
 void Translator::require_end(Scanner& scanner, std::string_view what) {
-  if (!scanner.at_end()) scanner.fail(fmt::format("unexpected words behind {}", what));
+  if (!scanner.at_end()) scanner.fail(fmt::format("unexpected text after {}", what));
 }
 
 // IF ... GOTOF LABEL in one block, several of them one after the other; else a structure.
@@ -138,11 +138,11 @@ void Translator::loop(Scanner& scanner, const std::string& word, const Line& lin
 // FOR variable = first TO last: the variable counts up by 1 and is compared before each run.
 void Translator::count_loop(Scanner& scanner, const Line& line) {
   scanner.skip_blanks();
-  if (scanner.peek_name().empty()) scanner.fail("FOR without a variable");
+  if (scanner.peek_name().empty()) scanner.fail("FOR requires a variable");
   const Reference counter = read_reference(scanner, variables_);
   scanner.expect('=', "the variable of FOR");
   const double first = evaluate_number(scanner, variables_);
-  if (!scanner.take_word("TO")) scanner.fail("FOR without TO");
+  if (!scanner.take_word("TO")) scanner.fail("FOR requires TO");
   const double last = evaluate_number(scanner, variables_);
   require_end(scanner, "FOR");
   variables_.set(counter, {first});
@@ -172,8 +172,8 @@ void Translator::end_count_loop(const Line& line) {
     count_jump();
   } else {
     variables_.forget(counter,
-                      "counted a loop of FOR, and behind its end holds the last value or the one "
-                      "after it, by the control");
+                      "is the counter of a finished FOR loop: it holds the last value or the next "
+                      "one, depending on the control");
     program_->go_to(behind);
   }
 }
@@ -181,7 +181,7 @@ void Translator::end_count_loop(const Line& line) {
 std::string Translator::read_target(Scanner& scanner, const std::string& word) {
   scanner.skip_blanks();
   std::string name = scanner.now() == '"' ? capitals(scanner.read_text()) : scanner.read_name();
-  if (name.empty()) scanner.fail(fmt::format("{} without a label", word));
+  if (name.empty()) scanner.fail(fmt::format("{} requires a label", word));
   return name;
 }
 
@@ -198,8 +198,8 @@ void Translator::jump(const std::string& word, std::string name) {
   if (word != "GOTOF" && label == nullptr) label = program_->label_before(name, here);
   if (label == nullptr && word == "GOTOC") return;
   if (label == nullptr) {
-    fail(fmt::format("{} {}: there is no such label {}", word, name,
-                     word == "GOTOF"   ? "behind it"
+    fail(fmt::format("{} {}: label not found {}", word, name,
+                     word == "GOTOF"   ? "after it"
                      : word == "GOTOB" ? "before it"
                                        : "in the program"));
   }
@@ -209,12 +209,12 @@ void Translator::jump(const std::string& word, std::string name) {
 // CASE R1 OF 1 GOTOF ONE 2 GOTOF TWO DEFAULT GOTOF OTHERS
 void Translator::choose(Scanner& scanner) {
   const double value = evaluate_number(scanner, variables_);
-  if (!scanner.take_word("OF")) scanner.fail("CASE without OF");
+  if (!scanner.take_word("OF")) scanner.fail("CASE requires OF");
   while (!scanner.at_end()) {
     const bool is_chosen =
         scanner.take_word("DEFAULT") || evaluate_number(scanner, variables_) == value;
     const std::string word = scanner.read_name();
-    if (!is_jump(word)) scanner.fail("CASE: expected GOTOF, GOTOB or GOTO behind a value");
+    if (!is_jump(word)) scanner.fail("CASE: expected GOTOF, GOTOB or GOTO after a value");
     const std::string target = read_target(scanner, word);
     if (is_chosen) return jump(word, target);
   }
@@ -250,8 +250,8 @@ BlockMark Translator::behind_end_label(const BlockMark& mark) {
   scanner.take(':');
   if (!scanner.at_end()) {
     scanner.fail(
-        "words behind ENDLABEL: whether REPEAT repeats them is not certain; program them "
-        "in the next block");
+        "text after ENDLABEL: it is undocumented whether REPEAT repeats it; program it in the next "
+        "block");
   }
   return program_->mark();
 }
@@ -270,7 +270,7 @@ BlockMark Translator::end_of_part(const std::vector<BlockMark>& labels, bool is_
   if (closing != nullptr && (is_ahead || closing->mark.offset < repeat.offset)) {
     return behind_end_label(closing->mark);
   }
-  if (is_ahead) fail("REPEAT of a part behind it needs ENDLABEL: at its end");
+  if (is_ahead) fail("REPEAT of a section after it requires ENDLABEL: at the end of the section");
   return repeat;
 }
 
@@ -279,30 +279,28 @@ void Translator::repeat(Scanner& scanner, const std::string& word, const Line& l
   const Repetition repetition = read_repetition(scanner);
   const std::size_t most = word == "REPEATB" ? 1 : 2;
   if (repetition.labels.empty() || repetition.labels.size() > most) {
-    fail(fmt::format("{} takes {}", word, most == 1 ? "one label" : "one or two labels"));
+    fail(fmt::format("{} requires {}", word, most == 1 ? "one label" : "one or two labels"));
   }
   const BlockMark behind = program_->mark();
   std::vector<BlockMark> labels;
   for (const std::string& name : repetition.labels) {
     const Label* label = program_->label_before(name, line.mark);
     if (label == nullptr) label = program_->label_behind(name, behind);
-    if (label == nullptr) fail(fmt::format("{} {}: there is no such label", word, name));
+    if (label == nullptr) fail(fmt::format("{} {}: label not found", word, name));
     labels.push_back(label->mark);
   }
   const BlockMark begin = labels.front();
   const BlockMark end = end_of_part(labels, word == "REPEATB", line.mark);
   program_->go_to(behind);
   if (end.offset <= begin.offset)
-    fail(fmt::format("{}: the second label is before the first", word));
+    fail(fmt::format("{}: the second label must be after the first", word));
   if (begin.offset <= line.mark.offset && line.mark.offset < end.offset) {
-    fail(
-        fmt::format("{}: the part to repeat holds this block itself; repeat a part before or "
-                    "behind it",
-                    word));
+    fail(fmt::format(
+        "{}: the repeated section contains this block; repeat a section before or after it", word));
   }
   if (repetition.times == 0) return;
   constexpr std::size_t kMaxNested = 32;
-  if (returns_.size() >= kMaxNested) fail("REPEAT and calls nested too deep");
+  if (returns_.size() >= kMaxNested) fail("REPEAT and calls are nested too deeply");
   Return one;
   one.program = program_;
   one.mark = behind;

@@ -12,7 +12,8 @@ namespace servomill::controllers::siemens {
 
 void Translator::require_no_compensation(std::string_view what) const {
   if (modes_.side == 0 && !path_.is_compensating()) return;
-  fail(fmt::format("{} with G41 or G42 active; program G40 and a move in the plane first", what));
+  fail(fmt::format(
+      "{} is not allowed with G41 or G42 active; program G40 and a move in the plane first", what));
 }
 
 void Translator::forget_linear_positions() {
@@ -32,7 +33,7 @@ void Translator::forget_positions() {
 void Translator::refuse_measures(const Block& block, const Code& code) const {
   const auto check = [&](const std::optional<Number>& number) {
     if (!number || number->measure == Measure::modal) return;
-    fail(number->place, fmt::format("{}: its values take no AC, IC or the like", code.name));
+    fail(number->place, fmt::format("{} does not accept AC, IC, DC, ACP or ACN", code.name));
   };
   for (const auto& number : block.axes) check(number);
   check(block.AP);
@@ -44,7 +45,7 @@ bool Translator::act(const Block& block) {
   if (code == nullptr) return false;
   if (code->name == "G63") return false;
   if (code->name == "G4") {
-    if (moves(block)) fail(code->place, "G4 stands in a block of its own; the block moves an axis");
+    if (moves(block)) fail(code->place, "G4 must be in a block without axis words");
     dwell(block);
   } else if (code->name == "G25" || code->name == "G26") {
     limit(block, *code);
@@ -64,7 +65,7 @@ void Translator::set_frame(const Block& block, const Code& code) {
   const bool is_additive = code.name.front() == 'A';
   const std::string name = is_additive ? code.name.substr(1) : code.name;
   const bool has_words = block.has_axes() || block.RPL;
-  if (is_additive && !has_words) fail(code.place, fmt::format("{} without an axis", code.name));
+  if (is_additive && !has_words) fail(code.place, fmt::format("{} requires an axis", code.name));
   Frame frame = is_additive ? modes_.frame : Frame{};
   if (name == "ROT") {
     rotate_frame(block, frame);
@@ -108,7 +109,7 @@ void Translator::set_linear(Frame& frame, const std::string& name, const Block& 
 // new Y and the new X (MD10600 = 1, RPY, as delivered). [F] "Programmable rotation"
 void Translator::rotate_frame(const Block& block, Frame& frame) {
   if (block.RPL) {
-    if (block.has_axes()) fail("ROT with RPL and an axis");
+    if (block.has_axes()) fail("ROT does not accept both RPL and axis words");
     return frame.rotate(modes_.normal, block.RPL->value);
   }
   int angles = 0;
@@ -122,9 +123,11 @@ void Translator::rotate_frame(const Block& block, Frame& frame) {
     fail("ROT with several angles as Euler angles (MD10600 = 2) is not supported");
   }
   if (angles > 1) {
-    warn_once("ROT", "ROT with several angles: about Z, the new Y, the new X (MD10600 = 1)");
+    warn_once("ROT",
+              "ROT with several angles: treated as RPY angles, about Z, the new Y, the new X "
+              "(MD10600 = 1)");
   }
-  if (block.axes[3] || block.axes[4] || block.axes[5]) fail("ROT takes angles of X, Y and Z");
+  if (block.axes[3] || block.axes[4] || block.axes[5]) fail("ROT accepts only angles X, Y and Z");
 }
 
 void Translator::use_frame(const Frame& frame) {
@@ -139,7 +142,7 @@ void Translator::use_frame(const Frame& frame) {
 // last pole. [F] "Defining the pole"
 Point Translator::pole_origin(const Code& code) {
   if (code.name == "G112") {
-    if (!pole_) fail(code.place, "G112: no pole is set");
+    if (!pole_) fail(code.place, "G112 requires a pole");
     return *pole_;
   }
   if (code.name != "G110") return Point::Zero();
@@ -161,10 +164,9 @@ void Translator::pole(const Block& block, const Code& code) {
 Point Translator::polar_pole(const Block& block, const Code& code) {
   polar_radius_.reset();  // whether it is that of the pole from here on is not in the manual
   if (block.has_axes()) {
-    fail(code.place,
-         fmt::format("{} with AP and RP beside axis words; use one of both", code.name));
+    fail(code.place, fmt::format("{} accepts either AP and RP or axis words, not both", code.name));
   }
-  if (!block.AP || !block.RP) fail(code.place, fmt::format("{} needs AP and RP", code.name));
+  if (!block.AP || !block.RP) fail(code.place, fmt::format("{} requires AP and RP", code.name));
   const double angle = block.AP->value * deg;
   return block.RP->value * unit() * Point(std::cos(angle), std::sin(angle));
 }
@@ -176,7 +178,7 @@ Point Translator::cartesian_pole(const Block& block, const Code& code) {
     if (!block.axes[i]) continue;
     if (i != axes[0] && i != axes[1]) {
       fail(block.axes[i]->place,
-           fmt::format("{}: the pole lies in the plane of G{}", code.name, 19 - modes_.normal));
+           fmt::format("{}: the pole must be in the plane of G{}", code.name, 19 - modes_.normal));
     }
     out[i == axes[0] ? 0 : 1] = block.axes[i]->value * unit();
   }
@@ -188,17 +190,17 @@ void Translator::transform(const Code& code) {
   const bool is_on = code.name == "TRAORI";
   if (is_on == is_tcp_) return;
   require_no_compensation(code.name);
-  if (!plane_line_.empty()) fail(code.place, "TRAORI in a plane of CYCLE800; end it first");
+  if (!plane_line_.empty())
+    fail(code.place, "TRAORI is not allowed in a plane of CYCLE800; program CYCLE800() first");
   if (!modes_.frame.is_plain()) {
-    fail(code.place,
-         fmt::format("{} with TRANS, ROT, SCALE or MIRROR active: whether the frame stays depends "
-                     "on the machine (MD10602); program TRANS before it",
-                     code.name));
+    fail(code.place, fmt::format("{} with TRANS, ROT, SCALE or MIRROR active: MD10602 determines "
+                                 "whether the frame is deleted; cancel it with TRANS first",
+                                 code.name));
   }
   if (is_on && !has_tool_ && tool_ == 0) {
-    fail(code.place, "TRAORI before the first tool: the length of the tool is unknown");
+    fail(code.place, "TRAORI requires a preceding tool change: the tool length is unknown");
   }
-  warn_once("TRAORI", "TRAORI and TRAFOOF: the work offset stays in force (MD10602 may delete it)");
+  warn_once("TRAORI", "TRAORI and TRAFOOF: the work offset remains active (MD10602 may delete it)");
   is_tcp_ = is_on;
   path_.flush();
   put_length();

@@ -36,7 +36,7 @@ void Translator::move(const Block& block) {
   }
   warn_of_start(block);
   if (!plane_line_.empty() && (block.axes[3] || block.axes[4] || block.axes[5])) {
-    fail("a rotary axis in a plane of CYCLE800; program CYCLE800() first");
+    fail("rotary axes cannot be programmed in a plane of CYCLE800; program CYCLE800() first");
   }
   check_length_axis(false);
   switch (modes_.motion) {
@@ -65,7 +65,7 @@ Feed Translator::modal_feed(double override) {
   const std::string why = "no F is active";
   if (!feed_ && !setup_.accepts_unknown_feeds) fail(why);
   if (!feed_) {
-    warn_once("feed", why + "; the cycle time stays unknown");
+    warn_once("feed", why + "; the cycle time is unknown");
     return {Feed::Kind::unknown};
   }
   return effective(*feed_, override);
@@ -100,7 +100,7 @@ void Translator::add(Motion motion) {
     motion.radius = survey_knows_no_radius() ? 0.0 : tool_radius();
     motion.is_feed_of_contour = modes_.is_contour_feed;
     if (!modes_.frame.keeps_plane(modes_.normal)) {
-      fail("G41 and G42 in a plane that ROT has turned in space are not supported");
+      fail("G41 and G42 in a plane tilted by ROT are not supported");
     }
   } else if (modes_.side != 0) {
     motion.side = modes_.side;
@@ -109,7 +109,8 @@ void Translator::add(Motion motion) {
   if (is_beside_ && modes_.side == 0 && in_plane) {
     // the end of the compensation needs both axes of the plane: the other one returns, too
     is_beside_ = false;
-    if (motion.element && motion.element->is_arc) fail("G40 with an arc; program a line first");
+    if (motion.element && motion.element->is_arc)
+      fail("G40 is not allowed with an arc; program a line first");
     for (const std::size_t axis : axes) {
       if (!motion.words[axis] && !motion.is_incremental) motion.words[axis] = work_[axis];
     }
@@ -133,7 +134,7 @@ Motion Translator::straight_motion(const Block& block) {
   if (!block.is_polar()) return motion_of(block);
   const auto axes = plane_axes(modes_.normal);
   if (block.axes[axes[0]] || block.axes[axes[1]]) {
-    fail("AP and RP beside an axis of the plane");
+    fail("AP and RP are not allowed with an axis of the plane");
   }
   Block cartesian = block;
   const Point end = polar_point(block);
@@ -151,13 +152,15 @@ void Translator::move_straight(const Block& block) {
   Motion motion = straight_motion(block);
   if (moves_rotary(motion) && !moves_linear(motion) && !is_tcp_ && feed_unit_ != 1.0 &&
       motion.feed.kind == Feed::Kind::per_minute) {
-    fail("F in inches for rotary axes alone: the degrees of an inch depend on FGREF; program G710");
+    fail(
+        "F in inches for rotary axes only: the conversion to degrees depends on FGREF; program "
+        "G710");
   }
   if (moves_rotary(motion) && moves_linear(motion) && !is_tcp_ &&
       motion.feed.kind == Feed::Kind::per_minute) {
     warn_once("mixed feed",
-              "F of a block with linear and rotary axes: taken as the feed of the linear axes "
-              "(FGROUP, MD22420)");
+              "F in a block with linear and rotary axes: treated as the feed rate of the linear "
+              "axes (FGROUP, MD22420)");
   }
   const bool in_plane = motion.words[axes[0]] || motion.words[axes[1]];
   if (in_plane && from_u && from_v && !motion.is_incremental) {
@@ -180,9 +183,11 @@ void Translator::move_straight(const Block& block) {
 void Translator::move_to_machine(const Block& block) {
   const Code& code = *codes_[static_cast<std::size_t>(Group::suppression)];
   require_no_compensation(code.name);
-  if (is_tcp_) fail(code.place, fmt::format("{} with TRAORI; end it with TRAFOOF", code.name));
+  if (is_tcp_)
+    fail(code.place,
+         fmt::format("{} is not allowed with TRAORI; cancel it with TRAFOOF", code.name));
   if (modes_.motion != MotionCode::rapid && modes_.motion != MotionCode::line) {
-    fail(code.place, fmt::format("{} with an arc or a thread", code.name));
+    fail(code.place, fmt::format("{} is not allowed with an arc or a thread", code.name));
   }
   Motion motion;
   motion.place = place_;
@@ -191,20 +196,23 @@ void Translator::move_to_machine(const Block& block) {
   for (std::size_t i = 0; i < motion.words.size(); ++i) {
     if (!block.axes[i]) continue;
     const Number& number = *block.axes[i];
-    if (is_increment(number)) fail(number.place, fmt::format("{} with an increment", code.name));
+    if (is_increment(number))
+      fail(number.place, fmt::format("{} requires absolute positions", code.name));
     if (number.measure != Measure::modal && number.measure != Measure::absolute) {
-      fail(number.place, fmt::format("{} with DC, ACP or ACN; program the position", code.name));
+      fail(number.place,
+           fmt::format("{} does not accept DC, ACP or ACN; program the absolute position",
+                       code.name));
     }
     motion.words[i] = number.value * (i < 3 ? unit() : 1.0);
   }
-  if (!block.has_axes()) fail(code.place, fmt::format("{} without an axis", code.name));
+  if (!block.has_axes()) fail(code.place, fmt::format("{} requires an axis", code.name));
   if (motion.words[2] && tool_length() != 0.0) {
     const bool is_dropped = setting("$MN_G53_TOOLCORR", 0.0) != 0.0;
     if (!is_dropped) *motion.words[2] += tool_length();
     warn_once("G53_TOOLCORR",
-              fmt::format("{} with a tool length in force: {} (MD10760); program D0, or pass "
+              fmt::format("{} with an active tool length: {} (MD10760); program D0, or pass "
                           "--parameter '$MN_G53_TOOLCORR={}'",
-                          code.name, is_dropped ? "it is dropped" : "it stays in force",
+                          code.name, is_dropped ? "it is suppressed" : "it remains active",
                           is_dropped ? 0 : 1));
   }
   for (std::size_t i = 0; i < motion.words.size(); ++i) {

@@ -26,10 +26,10 @@ void Translator::require_same_offset(std::size_t axis, const Number& number) con
   const auto now = program_position(axis);
   if (now && std::abs(*now - *programmed_[axis]) < kSame) return;
   fail(number.place,
-       fmt::format("an increment of {} behind a change of the frame, the work offset or the tool "
-                   "length: whether it takes the change in depends on SD42440 and SD42442; program "
-                   "an absolute position first",
-                   letter(kAllAxes[axis])));
+       fmt::format(
+           "an increment of {} after a change of frame, work offset or tool length: SD42440 and "
+           "SD42442 determine whether it includes the change; program an absolute position first",
+           letter(kAllAxes[axis])));
 }
 
 // The position of an axis in the program's coordinates, where those that it depends on are known.
@@ -82,8 +82,8 @@ Translator::NamedEnds Translator::named_ends(const Block& block) {
     const Number& number = *block.axes[i];
     if (number.measure != Measure::modal && number.measure != Measure::absolute &&
         number.measure != Measure::incremental) {
-      fail(number.place,
-           fmt::format("{}: DC, ACP and ACN are for rotary axes", letter(kAllAxes[i])));
+      fail(number.place, fmt::format("{}: DC, ACP and ACN are allowed for rotary axes only",
+                                     letter(kAllAxes[i])));
     }
     require_same_offset(i, number);
     const bool is_by = is_increment(number);
@@ -95,9 +95,7 @@ Translator::NamedEnds Translator::named_ends(const Block& block) {
     if (is_by && !now) ++free;
   }
   if (free > 0 && free < named) {
-    fail(
-        "an increment from a position that is unknown here, beside other axes; program an "
-        "absolute position first");
+    fail("the start position of an increment is unknown here; program an absolute position first");
   }
   out.is_incremental = free > 0;
   return out;
@@ -133,8 +131,9 @@ bool Translator::is_moved(const NamedEnds& named, int axis) const {
 void Translator::require_known(const NamedEnds& named, int axis) {
   for (int j = 0; j < 3; ++j) {
     if (named.is_known[static_cast<std::size_t>(j)] || !modes_.frame.couples(axis, j)) continue;
-    fail(fmt::format("the frame is rotated, and the position of {} is unknown here; program it",
-                     "XYZ"[j]));
+    fail(fmt::format(
+        "the position of {} is unknown here and required in a rotated frame; program it",
+        "XYZ"[j]));
   }
 }
 
@@ -157,9 +156,8 @@ double Translator::rotary_end(std::size_t axis, const Number& number) {
     turned = way - kTurn * std::floor((way + kRounding) / kTurn);
     if (number.measure == Measure::negative && turned > kRounding) turned -= kTurn;
   } else if (std::abs(std::abs(turned) - kTurn / 2.0) < 1e-6) {
-    fail(number.place,
-         fmt::format("{}=DC: would turn by 180 degrees: the direction is undetermined",
-                     letter(kAllAxes[axis])));
+    fail(number.place, fmt::format("{}=DC: rotation by 180 degrees: the direction is undetermined",
+                                   letter(kAllAxes[axis])));
   }
   turns_[axis] = *work_[axis] + turned - target;
   return *work_[axis] + turned;
@@ -173,12 +171,14 @@ Values Translator::ends(const Block& block, bool& is_incremental) {
     const Number& number = *block.axes[i];
     require_same_offset(i, number);
     if (!is_increment(number)) {
-      if (is_incremental) fail(number.place, "absolute and unknown positions in one block");
+      if (is_incremental)
+        fail(number.place, "absolute positions and increments from unknown positions in one block");
       end[i] = rotary_end(i, number);
     } else if (is_incremental || !work_[i]) {
       if (!is_incremental &&
           std::any_of(end.begin(), end.end(), [](const auto& one) { return one.has_value(); })) {
-        fail(number.place, "an increment of a rotary axis whose position is unknown here");
+        fail(number.place,
+             "the position of the rotary axis is unknown here; program an absolute position first");
       }
       is_incremental = true;
       end[i] = modes_.frame.rotary_increment(i, number.value);

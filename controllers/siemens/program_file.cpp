@@ -200,7 +200,7 @@ void ProgramFile::index() {
     if (may_have_M) has_M6_ = changes_tool(scanner.rest());
   }
   for (const Open& one : open) {
-    faults_.push_back({one.place, fmt::format("{} without its end", one.word)});
+    faults_.push_back({one.place, fmt::format("{} is not closed; its end is missing", one.word)});
   }
   at_ = begin_;
 }
@@ -218,7 +218,7 @@ void ProgramFile::index_structure(const Line& line, const std::string& word,
   const std::string wanted = word == "ELSE" ? "IF" : opener_of(word);
   const bool is_else = !open.empty() && open.back().word == "ELSE" && wanted == "IF";
   if (open.empty() || (open.back().word != wanted && (!is_else || word == "ELSE"))) {
-    faults_.push_back({place, fmt::format("{} without {}", word, wanted)});
+    faults_.push_back({place, fmt::format("{} requires {}", word, wanted)});
     return;
   }
   close(line, word, open);

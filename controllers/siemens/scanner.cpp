@@ -95,7 +95,7 @@ bool Scanner::take_word(std::string_view name) {
 }
 
 void Scanner::expect(char c, std::string_view behind) {
-  if (!take(c)) fail(fmt::format("'{}' is missing behind {}", c, behind));
+  if (!take(c)) fail(fmt::format("'{}' is missing after {}", c, behind));
 }
 
 bool Scanner::is_at_number() {
@@ -148,7 +148,7 @@ double Scanner::read_number() {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value <= kLargestNumber)) {
     at_ = begin;
-    fail(fmt::format("'{}' is not a number that a control reads", text));
+    fail(fmt::format("'{}' is not a valid number", text));
   }
   return value;
 }

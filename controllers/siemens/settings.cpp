@@ -47,14 +47,15 @@ void Translator::set_modes(const Block& block) {
   if (const Code* code = codes_[at(Group::work_offset)]) set_offset(*code);
   if (const Code* code = codes_[at(Group::path)]) set_path(*code);
   if (codes_[at(Group::exact_stop)] != nullptr) {
-    warn_once("G9", "G9: the exact stop at the end of single blocks is ignored; use G60");
+    warn_once("G9", "G9: non-modal exact stop is ignored; use G60");
   }
   if (codes_[at(Group::rapid)] != nullptr) {
-    warn_once("RTLIOF", "RTLIOF: rapid moves are taken as straight lines, as with RTLION");
+    warn_once("RTLIOF", "RTLIOF: treated as RTLION, rapid moves in a straight line");
   }
   if (const Code* code = codes_[at(Group::compressor)]; code && code->name != "COMPOF") {
-    warn_once("compressor",
-              code->name + ": lines stay lines; the tolerance of CYCLE832 blends them");
+    warn_once(
+        "compressor",
+        code->name + ": linear blocks are not compressed; the CYCLE832 tolerance blends them");
   }
   if (const Code* code = codes_[at(Group::transformation)]) transform(*code);
   if (const Code* code = codes_[at(Group::cutter)]) set_side(block, *code);
@@ -72,7 +73,7 @@ void Translator::set_feed_code(int number) {
   if (number == 971) number = kPerMinute;
   if (number == 97) {
     number = kPerRevolution;
-    if (modes_.feed_code != number) warn_once("G97", "G97: F counts per revolution, as with G95");
+    if (modes_.feed_code != number) warn_once("G97", "G97: F is in mm/rev, as with G95");
   }
   if (number != modes_.feed_code) feed_.reset();
   modes_.feed_code = number;
@@ -100,9 +101,9 @@ void Translator::set_plane(const Code& code) {
 
 void Translator::set_side(const Block& block, const Code& code) {
   const int side = code.name == "G41" ? 1 : code.name == "G42" ? -1 : 0;
-  if (side != 0 && is_tcp_) fail(code.place, "G41 and G42 with TRAORI are not supported");
+  if (side != 0 && is_tcp_) fail(code.place, "G41 and G42 are not supported with TRAORI");
   if (side != 0 && edge_ == 0 && !block.D) {
-    fail(code.place, fmt::format("{} with D0: no tool radius is in force; program D1", code.name));
+    fail(code.place, fmt::format("{} with D0: no tool radius is active; program D1", code.name));
   }
   modes_.side = side;
 }
@@ -112,9 +113,9 @@ void Translator::set_offset(const Code& code) {
   constexpr int kMax = 9;
   const int offset = number == 500 ? -1 : number < 500 ? number - 53 : number - 500;
   if (offset > kMax) {
-    fail(code.place, fmt::format("{}: only G54 to G57 and G505 to G509 are supported, as the work "
-                                 "offsets G54 to G59.3",
-                                 code.name));
+    fail(code.place,
+         fmt::format("{}: only G54 to G57 and G505 to G509 are supported, mapped to G54 to G59.3",
+                     code.name));
   }
   if (offset == modes_.offset) return;
   require_no_compensation(code.name);
@@ -136,7 +137,7 @@ void Translator::put_offset(int offset) {
   }
   if (is_zero) {
     note("G10 L2 P9 X0 Y0 Z0 A0 B0 C0 R0");
-    warn_once("G500", "G500: the basic frame, which stays in force, is taken as zero");
+    warn_once("G500", "G500: the basic frame remains active and is assumed to be zero");
   }
   const int system = is_zero ? kLast : offset;
   note(system <= 6 ? fmt::format("G{}", 53 + system) : fmt::format("G59.{}", system - 6));
@@ -145,9 +146,11 @@ void Translator::put_offset(int offset) {
 // G642 with CTOL; G641 with ADIS and G645 blend by other rules. The tolerance of CYCLE832 stays.
 void Translator::set_path(const Code& code) {
   if (code.name == "G641" || code.name == "G642" || code.name == "G645") {
-    warn_once("smoothing", fmt::format("{}: taken as G64: the tolerance is not read; CYCLE832 "
-                                       "gives one",
-                                       code.name));
+    warn_once(
+        "smoothing",
+        fmt::format(
+            "{}: treated as G64: the smoothing tolerance is not evaluated; set it with CYCLE832",
+            code.name));
   }
   use_path(code.name == "G60");
 }
@@ -163,11 +166,11 @@ double Translator::unit_of_feed(const Place& place) {
   const auto is_metric = variables_.given("$MN_SCALING_SYSTEM_IS_METRIC");
   if (modes_.is_inch && !modes_.is_feed_inch && !is_metric) {
     const std::string why =
-        "F with G70: in the basic unit of the machine (MD10240), which is not in the program; "
-        "pass --parameter '$MN_SCALING_SYSTEM_IS_METRIC=1' for mm/min, '=0' for inch/min, or "
-        "program G700";
+        "F with G70 is in the basic unit of the machine (MD10240), which is unknown here; pass "
+        "--parameter '$MN_SCALING_SYSTEM_IS_METRIC=1' for mm/min, '=0' for inch/min, or program "
+        "G700";
     if (!setup_.accepts_unknown_feeds) fail(place, why);
-    warn_once("G70", why + "; the cycle time stays unknown");
+    warn_once("G70", why + "; the cycle time is unknown");
     return 0.0;
   }
   const bool is_inch = modes_.is_feed_inch || (!modes_.is_full_units && is_metric == 0.0);
@@ -179,7 +182,7 @@ void Translator::set_feed(const Block& block) {
   if (block.OVR) set_override(*block.OVR);
   if (!block.F || block.has("G4")) return;
   const double F = block.F->value;
-  if (!(F > 0.0)) fail(block.F->place, fmt::format("F{:g}: a feed must be > 0", F));
+  if (!(F > 0.0)) fail(block.F->place, fmt::format("F{:g}: the feed rate must be > 0", F));
   if (path_.has_corner()) warn_of_corner();
   if (modes_.feed_code == 93) {
     feed_ = Feed{Feed::Kind::time, 60.0 / F};
@@ -205,8 +208,8 @@ Feed Translator::effective(Feed feed, double override) const {
   if (feed.kind != Feed::Kind::per_minute) return feed;
   feed.value *= override;
   if (modes_.feed_code != 95) return feed;
-  if (!speed_) fail("F with G95: no S is active");
-  if (!(*speed_ > 0.0)) fail("F with G95: S must be > 0");
+  if (!speed_) fail("F with G95 requires an active S");
+  if (!(*speed_ > 0.0)) fail("F with G95 requires S > 0");
   feed.value *= *speed_;
   return feed;
 }
@@ -227,9 +230,7 @@ void Translator::warn_of_start(const Block&) {
                  : std::string(name);
   }
   if (names.empty()) return;
-  warn_once("start", fmt::format("a move before any function of the groups of {}: taken as in "
-                                 "force at the start",
-                                 names));
+  warn_once("start", fmt::format("a motion block precedes {}: assumed active at the start", names));
 }
 
 // ------------------------------------------------------------------------- spindle, M functions
@@ -257,8 +258,8 @@ void Translator::limit(const Block& block, const Code& code) {
 void Translator::require_speed_in_limits(double S, const Place& place) const {
   const bool is_low = S > 0.0 && S < least_speed_;
   if (!is_low && S <= most_speed_) return;
-  fail(place, fmt::format("S{:g} is {} the limit S{:g} of {}, at which the control turns; program "
-                          "a speed within the limits",
+  fail(place, fmt::format("S{:g} is {} the limit S{:g} of {}, to which the control clamps it; "
+                          "program a speed within the limits",
                           S, is_low ? "below" : "above", is_low ? least_speed_ : most_speed_,
                           is_low ? "G25" : "G26"));
 }
@@ -294,24 +295,24 @@ void Translator::begin_functions(const Block& block) {
 void Translator::begin_function(const Function& one) {
   constexpr std::array kOfLanguage = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 17, 19, 30};
   if (one.number == 70) {
-    fail(one.place, "M70: the spindle as an axis is not supported; use a rotary axis");
+    fail(one.place, "M70: axis mode of the spindle is not supported; use a rotary axis");
   }
   if (std::find(kOfLanguage.begin(), kOfLanguage.end(), one.number) == kOfLanguage.end()) {
     const bool is_gear = one.number >= 40 && one.number <= 45;
     warn_once(fmt::format("M{}", one.number),
-              fmt::format("M{}: {}; ignored: no effect on motion", one.number,
-                          is_gear ? "a gear stage" : "a function of the machine builder"));
+              fmt::format("M{} is ignored: {}; no effect on motion", one.number,
+                          is_gear ? "gear stage selection" : "machine-builder function"));
     return;
   }
   const bool is_of_master = one.spindle == -1 || one.spindle == 1;
   if (!is_of_master) {
     warn_once("spindle",
-              fmt::format("M{}={}: a further spindle; ignored", one.spindle, one.number));
+              fmt::format("M{}={} is ignored: a further spindle", one.spindle, one.number));
     return;
   }
   const bool turns_on = one.number == 3 || one.number == 4;
   if (turns_on) {
-    if (!speed_) fail(one.place, fmt::format("M{}: no S before it", one.number));
+    if (!speed_) fail(one.place, fmt::format("M{} requires S before it", one.number));
     spindle_ = one.number == 3 ? 1 : -1;
   }
   if (one.number == 19) orient_spindle();
@@ -339,15 +340,15 @@ void Translator::end_functions(const Block& block) {
 
 // G4 F in seconds, G4 S in revolutions of the spindle: [F] "Dwell time".
 void Translator::dwell(const Block& block) {
-  if (block.F && block.S) fail("G4 with F and S; program one of them");
+  if (block.F && block.S) fail("G4 accepts either F or S; program one of them");
   if (block.F) return dwell_for(block.F->value);
-  if (!block.S) fail("G4 without F or S");
-  if (!speed_ || *speed_ <= 0.0) fail(block.S->place, "G4 S: no S is active");
+  if (!block.S) fail("G4 requires F or S");
+  if (!speed_ || *speed_ <= 0.0) fail(block.S->place, "G4 S requires an active spindle speed S");
   dwell_for(block.S->value * 60.0 / *speed_);
 }
 
 void Translator::dwell_for(double seconds) {
-  if (seconds < 0.0) fail(fmt::format("a dwell of {:g} s", seconds));
+  if (seconds < 0.0) fail(fmt::format("dwell time {:g} s; must be >= 0", seconds));
   if (seconds > 0.0) note("G4 " + word('P', seconds));
 }
 

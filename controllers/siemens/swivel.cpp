@@ -31,14 +31,15 @@ Eigen::Matrix3d Translator::swivel_of(const Call& call) const {
   constexpr unsigned kKind = 6;
   if (bits >> kKind != 0U) {
     fail(call.place,
-         "CYCLE800: only swivelling axis by axis (_MODE up to 63) is supported; solid angles, "
-         "projection angles and rotary axes are not");
+         "CYCLE800: only axis-by-axis swivelling (_MODE up to 63) is supported; solid angles, "
+         "projection angles and direct rotary axes are not");
   }
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < 3; ++i) {
     const double angle = value_of(call, kAngles + i, 0.0, "an angle");
     const unsigned axis = (bits >> (2U * i)) & 3U;
-    if (angle != 0.0 && axis == 0U) fail(call.place, "CYCLE800: _MODE names no axis of an angle");
+    if (angle != 0.0 && axis == 0U)
+      fail(call.place, "CYCLE800: _MODE does not assign an axis to an angle");
     if (angle == 0.0) continue;
     R = R * Eigen::AngleAxisd(angle * deg, Eigen::Vector3d::Unit(static_cast<int>(axis) - 1))
                 .toRotationMatrix();
@@ -54,9 +55,11 @@ bool Translator::are_rotary_axes_at_zero() const {
 // CYCLE800() ends the swivelling; no axis moves.
 void Translator::swivel(const Call& call) {
   require_no_compensation("CYCLE800");
-  if (is_tcp_) fail(call.place, "CYCLE800 with TRAORI; end it with TRAFOOF");
+  if (is_tcp_) fail(call.place, "CYCLE800 is not allowed with TRAORI; cancel it with TRAFOOF");
   if (!modes_.frame.is_plain()) {
-    fail(call.place, "CYCLE800 with TRANS, ROT, SCALE or MIRROR active; program TRANS before it");
+    fail(call.place,
+         "CYCLE800 is not supported with TRANS, ROT, SCALE or MIRROR active; cancel them with "
+         "TRANS first");
   }
   path_.flush();
   end_swivel();
@@ -68,7 +71,7 @@ void Translator::swivel(const Call& call) {
   };
   if (value_of(call, kState, 0.0, "_ST") != 0.0) {
     fail(call.place,
-         "CYCLE800: only new planes without tracking of the tip (_ST = 0) are supported");
+         "CYCLE800: only new planes without tool tip correction (_ST = 0) are supported");
   }
   const Eigen::Matrix3d R = swivel_of(call);
   const Eigen::Vector3d origin = vector(kBefore) + R * vector(kBehind);
@@ -77,13 +80,13 @@ void Translator::swivel(const Call& call) {
       value_of(call, kDirection, 0.0, "_DIR") != 0.0 && !(is_level && are_rotary_axes_at_zero());
   if (value_of(call, kRetraction, 0.0, "_FR") != 0.0) {
     warn_once("_FR",
-              "CYCLE800: the retraction before the rotary axes turn (_FR) goes to positions "
-              "of the swivel data set, and is left out");
+              "CYCLE800: the retraction before the rotary axes rotate (_FR) is omitted: its "
+              "positions are in the swivel data record");
   }
   if (turns) {
     warn_once("_DIR",
-              "CYCLE800: of the positions of the rotary axes the nearest one is taken; "
-              "_DIR chooses by the swivel data set");
+              "CYCLE800: the nearest solution of the rotary axes is used; the control selects it "
+              "by _DIR and the swivel data record");
   }
   plane_line_ = "G68.2";
   const std::array<double, 3> euler = translation::euler_angles(R);

@@ -24,11 +24,11 @@ void Translator::tools(const Block& block) {
                                   [](const Function& one) { return one.number == 6; });
   const bool changes_at_once = block.tool && !files_.front()->changes_tools_by_M6();
   if (changes_at_once) {
-    warn_once("T", "T changes the tool at once: the program has no M6 (MD22550 = 0)");
+    warn_once("T", "T is treated as a tool change: the program has no M6 (MD22550 = 0)");
   }
   if ((has_M6 || changes_at_once) && next_tool_ >= 0) change_tool(next_tool_);
   if (has_M6 && next_tool_ < 0) {
-    warn_once("M6", "M6 without a T before it: the tool stays");
+    warn_once("M6", "M6 without a preceding T is ignored: the tool remains in the spindle");
   }
   if (block.D) {
     constexpr int kMaxEdges = 99;
@@ -61,17 +61,16 @@ int Translator::named_tool(const std::string& name, const Place& place) {
   if (name.empty()) return 0;
   if (!setup_.tools.empty()) {
     fail(place,
-         fmt::format("T=\"{}\": only the control's own tool management has names; use the number "
-                     "of the tool in --tools",
+         fmt::format("T=\"{}\": tool names are not supported with --tools; use the tool number",
                      name));
   }
   const auto [found, is_new] =
       tool_names_.try_emplace(capitals(name), kFirstNamed + static_cast<int>(tool_names_.size()));
   if (is_new) {
     warn_once("tool " + name,
-              fmt::format("T=\"{}\": taken as tool {} of unknown length, since no tool table is "
-                          "given",
-                          name, found->second));
+              fmt::format(
+                  "T=\"{}\": treated as tool {} of unknown length; pass a tool table with --tools",
+                  name, found->second));
   }
   return found->second;
 }
@@ -79,8 +78,9 @@ int Translator::named_tool(const std::string& name, const Place& place) {
 // Cutting edge D1 is selected with the tool: MD20270 = 1, as delivered.
 void Translator::change_tool(int number) {
   require_no_compensation("a tool change");
-  if (is_tcp_) fail("a tool change with TRAORI; end it with TRAFOOF");
-  if (!plane_line_.empty()) fail("a tool change in a plane of CYCLE800; program CYCLE800() first");
+  if (is_tcp_) fail("a tool change is not allowed with TRAORI; cancel it with TRAFOOF");
+  if (!plane_line_.empty())
+    fail("a tool change is not allowed in a plane of CYCLE800; program CYCLE800() first");
   const bool is_same = has_tool_ && number == tool_;
   next_tool_ = number;
   tool_ = number;
@@ -98,12 +98,12 @@ void Translator::change_tool(int number) {
 
 void Translator::set_edge(int edge, const Place& place) {
   if (edge > 1 && setup_.tools.entry_of(tool_) != nullptr) {
-    fail(place, fmt::format("D{}: the tool table has one cutting edge for each tool, D1", edge));
+    fail(place, fmt::format("D{}: the tool table has only one cutting edge per tool, D1", edge));
   }
   if (edge > 1) {
-    warn_once(fmt::format("D{}", edge), fmt::format("D{}: the length of this cutting edge is "
-                                                    "unknown; taken as that of D1",
-                                                    edge));
+    warn_once(
+        fmt::format("D{}", edge),
+        fmt::format("D{}: the length of this cutting edge is unknown; that of D1 is used", edge));
   }
   // all edges have the length of D1 here
   if (edge == edge_ || (edge > 0 && edge_ > 0)) {
@@ -111,7 +111,7 @@ void Translator::set_edge(int edge, const Place& place) {
     return;
   }
   require_no_compensation("D");
-  if (is_tcp_) fail(place, "D with TRAORI; end it with TRAFOOF");
+  if (is_tcp_) fail(place, "D is not allowed with TRAORI; cancel it with TRAFOOF");
   edge_ = edge;
   path_.flush();
   put_length();
@@ -128,14 +128,14 @@ double Translator::tool_length() const {
 void Translator::check_length_axis(bool is_hole) {
   if (modes_.normal == 2 || tool_length() == 0.0) return;
   const bool is_along_Z = setting("$SC_TOOL_LENGTH_CONST", is_hole ? 0.0 : 17.0) == 17.0;
-  const std::string which = fmt::format("G{} with a tool length in force", 19 - modes_.normal);
+  const std::string which = fmt::format("G{} with an active tool length", 19 - modes_.normal);
   if (!is_along_Z) {
     fail(
         fmt::format("{}: it acts along {} (SD42940 = 0), which is not supported; pass --parameter "
-                    "'$SC_TOOL_LENGTH_CONST=17' if it stays along Z on the machine",
+                    "'$SC_TOOL_LENGTH_CONST=17' if it remains along Z on the machine",
                     which, "XYZ"[modes_.normal]));
   }
-  warn_once("plane", which + ": it stays along Z (SD42940 = 17)");
+  warn_once("plane", which + ": it remains along Z (SD42940 = 17)");
 }
 
 void Translator::put_length() {
@@ -148,8 +148,8 @@ void Translator::put_length() {
   }
   if (!is_tcp_) work_[2].reset();
   if (edge_ <= 0 || tool_ == 0 || is_known || !setup_.tools.empty()) return;
-  warn_once("length", fmt::format("the length of tool {} is unknown, so machine Z is taken as the "
-                                  "tip position; pass a tool table with --tools",
+  warn_once("length", fmt::format("the length of tool {} is unknown, so machine Z is treated as "
+                                  "the TCP position; pass a tool table with --tools",
                                   tool_));
 }
 

@@ -37,7 +37,7 @@ void Translator::run_block() {
   if (!line) {
     place_ = {program_->file(), std::max(program_->line(), 1), 0};
     if (!returns_.empty()) return leave_subprogram();
-    warn_once("end", "the program ends without M30: read as if it followed");
+    warn_once("end", "the program ends without M30: treated as if M30 followed");
     return end_program(30);
   }
   place_ = {program_->file(), line->number, static_cast<int>(line->column) + 1};
@@ -79,8 +79,7 @@ void Translator::sort_codes(const Block& block) {
     }
     const Code*& slot = codes_[static_cast<std::size_t>(*group)];
     if (slot != nullptr && slot->name != one.name && *group != Group::without_effect) {
-      fail(one.place,
-           fmt::format("{} and {} in one block: they are of one group", slot->name, one.name));
+      fail(one.place, fmt::format("{} and {} in one block (same G group)", slot->name, one.name));
     }
     slot = &one;
     is_programmed_[static_cast<std::size_t>(*group)] = true;

@@ -44,8 +44,9 @@ constexpr auto kConstants = std::to_array<std::pair<std::string_view, double>>({
 Value converted(Type type, const Value& value, const Reference& reference) {
   const bool wants_text = type == Type::text || type == Type::axis;
   if (wants_text != value.text.has_value()) {
-    refuse(reference.place, fmt::format("{} takes a {}", to_string(reference),
-                                        wants_text ? "text, not a number" : "number, not a text"));
+    refuse(reference.place,
+           fmt::format("{} must be a {}", to_string(reference),
+                       wants_text ? "string, not a number" : "number, not a string"));
   }
   if (type == Type::integer || type == Type::character) return {std::round(value.number)};
   if (type == Type::boolean) return {value.number != 0.0 ? 1.0 : 0.0};
@@ -101,10 +102,10 @@ void Variables::define(const std::string& name, Type type, const std::vector<int
   if (find(name) != nullptr) refuse(place, fmt::format("{} is defined twice", name));
   std::size_t elements = 1;
   for (const int size : sizes) {
-    if (size < 1) refuse(place, fmt::format("{}: an array needs a size of at least 1", name));
+    if (size < 1) refuse(place, fmt::format("{}: the array size must be at least 1", name));
     elements *= static_cast<std::size_t>(size);
     if (elements > kMaxElements) {
-      refuse(place, fmt::format("{}: an array of more than {} elements", name, kMaxElements));
+      refuse(place, fmt::format("{}: an array may have at most {} elements", name, kMaxElements));
     }
   }
   Value initial;
@@ -115,7 +116,7 @@ void Variables::define(const std::string& name, Type type, const std::vector<int
 std::size_t Variables::element(const Variable& variable, const Reference& reference) const {
   if (variable.sizes.size() != reference.indices.size()) {
     refuse(reference.place,
-           fmt::format("{} needs {} indices", reference.name, variable.sizes.size()));
+           fmt::format("{} requires {} indices", reference.name, variable.sizes.size()));
   }
   std::size_t at = 0;
   for (std::size_t i = 0; i < variable.sizes.size(); ++i) {
@@ -136,7 +137,7 @@ Value Variables::get(const Reference& reference) const {
       return known(reference, found->second);
     }
     refuse(reference.place,
-           fmt::format("R{0} has no value here: the control would use the value left by an earlier "
+           fmt::format("R{0} is not defined: the control would use the value from an earlier "
                        "program; assign it, or pass --parameter R{0}=NUMBER",
                        number));
   }
@@ -150,25 +151,26 @@ Value Variables::get(const Reference& reference) const {
   }
   if (name.starts_with('$')) {
     refuse(reference.place,
-           fmt::format("{0} is a variable of the control, whose value is not in the "
-                       "program; pass --parameter '{0}=NUMBER'",
-                       name));
+           fmt::format(
+               "{0} is a control variable with an unknown value; pass --parameter '{0}=NUMBER'",
+               name));
   }
   refuse(reference.place,
-         fmt::format("{} is not defined: DEF is missing before it, or it is a variable of the "
-                     "machine, whose value is not in the program",
-                     reference.name));
+         fmt::format(
+             "{} is not defined: DEF is missing, or it is a machine variable with an unknown value",
+             reference.name));
 }
 
 double Variables::number(const Reference& reference) const {
   const Value value = get(reference);
-  if (value.text) refuse(reference.place, fmt::format("{} is a text", to_string(reference)));
+  if (value.text)
+    refuse(reference.place, fmt::format("{} is a string, not a number", to_string(reference)));
   return value.number;
 }
 
 void Variables::set(const Reference& reference, const Value& value) {
   if (reference.name == "R") {
-    if (value.text) refuse(reference.place, "an R parameter takes a number, not a text");
+    if (value.text) refuse(reference.place, "an R parameter must be a number, not a string");
     R_[reference.indices.empty() ? 0 : reference.indices.front()] = {value.number};
     return;
   }
@@ -204,8 +206,8 @@ std::size_t Variables::size(const Reference& reference) const {
 void Variables::set_element(const Reference& reference, std::size_t at, const Value& value) {
   Variable& variable = local_.back().find(reference.name)->second;
   if (at >= variable.values.size()) {
-    refuse(reference.place, fmt::format("{} has {} elements; more are assigned", reference.name,
-                                        variable.values.size()));
+    refuse(reference.place, fmt::format("{} has {} elements, but more values are assigned",
+                                        reference.name, variable.values.size()));
   }
   variable.values[at] = converted(variable.type, value, reference);
 }

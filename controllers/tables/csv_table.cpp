@@ -55,7 +55,7 @@ void read_components(const TableText& file, const std::vector<std::string_view>&
   const std::string_view place = headers[0];
   const auto axis = place.empty() ? std::nullopt : axis_of(place.front());
   if (!axis || place.substr(1) != (is_linear(*axis) ? "_mm" : "_deg")) {
-    refuse(file.name, 1, fmt::format("'{}' is not an axis with its unit", place));
+    refuse(file.name, 1, fmt::format("'{}' is not an axis and its unit", place));
   }
   for (std::size_t n = 1; n < headers.size(); ++n) {
     double unit = 1.0;

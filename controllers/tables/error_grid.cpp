@@ -93,15 +93,15 @@ ErrorGrid grid_of(ErrorGrid grid, const std::vector<GridRecord>& records) {
     grid.at.push_back(positions_of(records, k));
     if (grid.at.back().size() < 2) {
       refuse(grid.file, grid.line,
-             fmt::format("{}: one position of {}; a grid must have at least two", grid.name,
+             fmt::format("{}: one position of {}; a grid requires at least two", grid.name,
                          letter(grid.axes[k])));
     }
     combinations *= static_cast<double>(grid.at.back().size());
   }
   if (combinations > static_cast<double>(records.size())) {
     refuse(grid.file, grid.line,
-           fmt::format("{}: {} records, but their positions make a grid of {:.15g} combinations; "
-                       "{} is the first without a record; interpolation GRID needs one for each",
+           fmt::format("{}: {} records, but their positions form a grid of {:.15g} points; {} is "
+                       "the first without a record; interpolation GRID requires one for each",
                        grid.name, records.size(), combinations,
                        position_text(grid, first_missing(grid, records))));
   }

@@ -53,7 +53,7 @@ void add_component(ErrorColumns& errors, ErrorColumn column, int line) {
   for (std::size_t i = 1; i < column.points.size(); ++i) {
     if (column.points[i].position > column.points[i - 1].position) continue;
     refuse(column.file, column.points[i].line,
-           fmt::format("{}: position does not exceed that of the previous point", column.name));
+           fmt::format("{}: the positions must increase", column.name));
   }
   errors.components.push_back(std::move(column));
 }

@@ -85,7 +85,7 @@ class Reader {
     }
     const auto words = words_of(line);
     if (words.size() != 2) {
-      refuse(file_.name, line_, fmt::format("{} values; a grid point needs two", words.size()));
+      refuse(file_.name, line_, fmt::format("{} values; a grid point requires two", words.size()));
     }
     const double value = number_at(words[1], file_.name, line_) * parameter_->unit();
     const double position =

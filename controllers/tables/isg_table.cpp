@@ -29,7 +29,7 @@ std::string_view without_comment(std::string_view line) {
 std::vector<std::string_view> words_in(std::string_view line, const TableText& file, int number) {
   if (line.find_first_of(",;") != std::string_view::npos) {
     refuse(file.name, number,
-           "contains a comma or a semicolon; the format separates columns by blanks and uses "
+           "contains a comma or a semicolon; columns must be separated by spaces and numbers use "
            "decimal points");
   }
   std::vector<std::string_view> words;
@@ -132,7 +132,7 @@ void read_other(const Block& block, const TableText& file, std::size_t column, E
     if (record.values[column] == 0.0) continue;
     refuse(file.name, record.line,
            fmt::format("{} is not 0; {} are not supported", name,
-                       name.starts_with("V") ? "axes of modified orientation"
+                       name.starts_with("V") ? "axes with modified orientation"
                                              : "offsets of the programmed values"));
   }
 }
@@ -149,7 +149,7 @@ void read_block(const Block& block, const TableText& file, ErrorColumns& out) {
       read_other(block, file, i, out);
     } else if (!parameter->is_location && arguments.empty()) {
       refuse(file.name, block.line,
-             fmt::format("{} has no argument; must be a function of the position of an axis",
+             fmt::format("{} has no argument; must be a function of an axis position",
                          block.header[i]));
     } else if (!parameter->is_location && arguments == std::vector{parameter->axis}) {
       read_component(block, file, i, *parameter, out);

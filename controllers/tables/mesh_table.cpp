@@ -16,7 +16,9 @@ constexpr int kMaxPoints = 100;  // along an axis
 
 void check_size(const MeshTable& mesh, const TableText& file, int line) {
   if (mesh.nx < 2 || mesh.ny < 2 || mesh.nx > kMaxPoints || mesh.ny > kMaxPoints) {
-    refuse(file.name, line, fmt::format("a mesh of {} x {} points", mesh.nx, mesh.ny));
+    refuse(
+        file.name, line,
+        fmt::format("a mesh of {} x {} points; must be from 2 x 2 to 100 x 100", mesh.nx, mesh.ny));
   }
   const auto points = static_cast<std::size_t>(mesh.nx) * static_cast<std::size_t>(mesh.ny);
   if (mesh.z.size() != points) {
@@ -40,7 +42,8 @@ MeshTable read_marlin(const TableText& file) {
     const int i = index_at(words[1].substr(1), file.name, number);
     const int j = index_at(words[2].substr(1), file.name, number);
     const double z = number_at(words[3].substr(1), file.name, number) * mm;
-    if (!found.emplace(std::pair(j, i), z).second) refuse(file.name, number, "a point twice");
+    if (!found.emplace(std::pair(j, i), z).second)
+      refuse(file.name, number, "a mesh point appears twice");
     mesh.nx = std::max(mesh.nx, i + 1);
     mesh.ny = std::max(mesh.ny, j + 1);
   }
@@ -72,7 +75,7 @@ MeshTable read_klipper(const TableText& file) {
     const std::string_view bare = line.substr(0, line.find('#')), text = trimmed(bare);
     if (text.empty()) continue;
     if (text.starts_with("[bed_mesh ") && text.back() == ']') {
-      if (has_section) refuse(file.name, number, "a second mesh; one is read");
+      if (has_section) refuse(file.name, number, "a second mesh; only one is supported");
       has_section = true;
       continue;
     }
@@ -90,8 +93,8 @@ MeshTable read_klipper(const TableText& file) {
       refuse(file.name, number, fmt::format("{} appears twice", key));
     }
   }
-  if (!has_section) refuse(file.name, 0, "holds no section [bed_mesh NAME]");
-  if (value_of(values, "version", file) != 1.0) refuse(file.name, 0, "version 1 is read");
+  if (!has_section) refuse(file.name, 0, "contains no section [bed_mesh NAME]");
+  if (value_of(values, "version", file) != 1.0) refuse(file.name, 0, "the version must be 1");
   for (const char* key : {"mesh_x_pps", "mesh_y_pps"}) {
     if (value_of(values, key, file) != 0.0) refuse(file.name, 0, fmt::format("{} is not 0", key));
   }
@@ -109,7 +112,7 @@ MeshTable read_reprapfirmware(const TableText& file) {
   constexpr std::string_view kNames =
       "axis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1";
   if (lines.size() < 3 || !lines[0].starts_with(kComment)) {
-    refuse(file.name, 1, fmt::format("begins with '{}'", kComment));
+    refuse(file.name, 1, fmt::format("starts with '{}'", kComment));
   }
   if (lines[1] != kNames) refuse(file.name, 2, fmt::format("must be {}", kNames));
   const auto cells = cells_of(lines[2]);
@@ -125,7 +128,8 @@ MeshTable read_reprapfirmware(const TableText& file) {
   for (std::size_t i = 3; i < lines.size(); ++i) {
     if (trimmed(lines[i]).empty()) continue;
     for (const std::string_view cell : cells_of(lines[i])) {
-      if (trimmed(cell) == "0") refuse(file.name, int(i) + 1, "a point that was not probed");
+      if (trimmed(cell) == "0")
+        refuse(file.name, int(i) + 1, "the mesh contains a point that was not probed");
     }
     add_row(lines[i], file, static_cast<int>(i) + 1, mesh);
   }

@@ -109,7 +109,7 @@ class SiemensFile {
   const Value& named(const Variables& table, std::string_view name) const {
     const auto found = table.named.find(name);
     if (found != table.named.end()) return found->second;
-    fault(table.line, fmt::format("the table assigns no {}", name));
+    fault(table.line, fmt::format("the table does not assign {}", name));
   }
 
   double number(const Variables& table, std::string_view name) const {
@@ -156,7 +156,7 @@ class SiemensFile {
                               direction > 0 ? 0.0 : value, found->second.line});
     }
     if (v.points.rbegin()->first > last) {
-      fault(v.points.rbegin()->second.line, fmt::format("the table ends with point {}", last));
+      fault(v.points.rbegin()->second.line, fmt::format("the last point of the table is {}", last));
     }
     table.repeats = number(v, "IS_MODULO") != 0.0;
     check_points(table, max_points_);

@@ -85,7 +85,7 @@ void check_points(const ControlTable& table, std::size_t max_points) {
   }
   for (std::size_t i = 1; i < table.points.size(); ++i) {
     if (table.points[i].position > table.points[i - 1].position) continue;
-    refuse(table.file, table.points[i].line, "position does not exceed that of the previous point");
+    refuse(table.file, table.points[i].line, "the positions must increase");
   }
 }
 

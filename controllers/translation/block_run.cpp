@@ -37,9 +37,10 @@ void BlockRun::count_block(const Place& place) {
 
 void BlockRun::count_jump(const Place& place) {
   if (++jumps_ <= most_jumps_) return;
-  throw InputError(place,
-                   fmt::format("{} jumps: the program looks endless; raise --max-jumps if intended",
-                               most_jumps_));
+  throw InputError(
+      place,
+      fmt::format("{} jumps: the program appears to loop endlessly; raise --max-jumps if intended",
+                  most_jumps_));
 }
 
 }  // namespace servomill::controllers::translation

@@ -56,7 +56,7 @@ Point tangent_point(const Point& centre, double radius, const Point& outside, do
 
 void ContourPath::add(Motion motion) {
   if (!motion.element) {
-    if (corner_) fail(corner_->place, "a contour element in the plane must follow RND and CHF");
+    if (corner_) fail(corner_->place, "RND and CHF require a following motion block in the plane");
     if (held_ && !moves_in_plane(motion)) {
       behind_held_.emplace_back(std::move(motion));
       return;
@@ -88,7 +88,7 @@ void ContourPath::corner(CornerKind kind, double size, const std::optional<Feed>
       std::any_of(behind_held_.begin(), behind_held_.end(),
                   [](const Entry& entry) { return std::holds_alternative<Motion>(entry); });
   if (!held_ || corner_ || has_moved_since) {
-    fail(place, "a contour element in the plane must precede RND and CHF");
+    fail(place, "RND and CHF require a preceding motion block in the plane");
   }
   corner_ = Corner{kind, size, feed, place};
 }
@@ -101,17 +101,20 @@ Motion ContourPath::cut_corner(Motion& next) {
   Element &a = *before.element, &b = *next.element;
   const auto n = static_cast<std::size_t>(before.normal);
   if (before.normal != next.normal || before.words[n] || next.words[n]) {
-    fail(corner.place, "RND and CHF: both elements must be in the plane; program the depth first");
+    fail(corner.place,
+         "RND and CHF: both motion blocks must be in the plane; program the depth first");
   }
   const double turn = turn_at(direction_at_end(a), direction_at_begin(b));
-  if (std::abs(turn) < kPositionTol) fail(corner.place, "RND and CHF: there is no corner here");
+  if (std::abs(turn) < kPositionTol)
+    fail(corner.place, "RND and CHF require a corner; the contour is tangential here");
   const double sign = turn > 0.0 ? 1.0 : -1.0;
   Element between;
   if (is_rounding) {
     const auto to_a = parallel(a, sign * corner.size), to_b = parallel(b, sign * corner.size);
     const auto centre = to_a && to_b ? meeting_point(*to_a, *to_b, a.end) : std::nullopt;
     if (!centre)
-      fail(corner.place, fmt::format("{}{:g} does not fit here", words_.rounding, corner.size));
+      fail(corner.place,
+           fmt::format("{}{:g} does not fit into the corner", words_.rounding, corner.size));
     between = {foot(a, *centre), foot(b, *centre), true, *centre, 0.0};
     between.sweep = sweep_between(*centre, between.begin, between.end, sign);
   } else {
@@ -135,7 +138,7 @@ Motion ContourPath::cut_corner(Motion& next) {
   inserted.place = corner.place;
   set_end(inserted, between.end);
   if (next.side == 0) inserted.side = before.side, inserted.radius = before.radius;
-  if (!corner.feed) fail(corner.place, "RND and CHF: no F is active");
+  if (!corner.feed) fail(corner.place, "RND and CHF require an active F");
   inserted.feed = *corner.feed;
   return inserted;
 }
@@ -149,7 +152,7 @@ void ContourPath::release_held() {
 }
 
 void ContourPath::flush() {
-  if (corner_) fail(corner_->place, "a contour element in the plane must follow RND and CHF");
+  if (corner_) fail(corner_->place, "RND and CHF require a following motion block in the plane");
   release_held();
   finish_compensation();
 }
@@ -179,22 +182,23 @@ void ContourPath::compensate(Motion motion) {
   const int side = approach_ ? approach_->side : side_;
   if (motion.side != side) {
     fail(motion.place,
-         fmt::format("{}: the other side is active; program a block with {} in between",
+         fmt::format("{}: compensation on the other side is active; program {} in between",
                      words_.compensation, words_.cancel));
   }
   if (!motion.element) {
-    fail(
-        motion.place,
-        fmt::format("with {} every element must start at a known position and have non-zero length",
-                    words_.compensation));
+    fail(motion.place,
+         fmt::format(
+             "with {} every motion block must start at a known position and have non-zero length",
+             words_.compensation));
   }
   join(std::move(motion));
 }
 
 void ContourPath::begin_compensation(Motion motion) {
   if (motion.element && motion.element->is_arc) {
-    fail(motion.place, fmt::format("{} cannot start on a circle; program a straight line first",
-                                   words_.compensation));
+    fail(motion.place,
+         fmt::format("{} must not be activated in a circle block; program a straight line first",
+                     words_.compensation));
   }
   side_ = motion.side;
   entry_ = std::move(motion);
@@ -211,9 +215,9 @@ void ContourPath::enter_at(const Point& point) {
 void ContourPath::join(Motion next) {
   auto beside = parallel(*next.element, next.side * next.radius);
   if (!beside) {
-    fail(next.place, fmt::format("the tool of radius {:g} mm does not fit inside the arc of radius "
-                                 "{:g} mm",
-                                 next.radius, (next.element->begin - next.element->centre).norm()));
+    fail(next.place,
+         fmt::format("a tool of radius {:g} mm does not fit inside an arc of radius {:g} mm",
+                     next.radius, (next.element->begin - next.element->centre).norm()));
   }
   if (approach_) {
     put_approach(next, *beside);
@@ -234,16 +238,15 @@ void ContourPath::join(Motion next) {
       if (position_on(*beside_, *corner, 1.0) < -kPositionTol ||
           position_on(*beside, *corner, 0.0) > 1.0 + kPositionTol) {
         fail(next.place,
-             fmt::format("the tool of radius {:g} mm does not fit into the corner before "
-                         "this element",
+             fmt::format("a tool of radius {:g} mm does not fit into the corner before this block",
                          next.radius));
       }
       *beside_ = cut_at_end(*beside_, *corner);
       *beside = cut_at_begin(*beside, *corner);
     } else if (is_inside && std::abs(turn) > kNearlyTangential) {
-      fail(next.place, fmt::format("the tool of radius {:g} mm does not fit into the corner before "
-                                   "this element",
-                                   next.radius));
+      fail(next.place,
+           fmt::format("a tool of radius {:g} mm does not fit into the corner before this block",
+                       next.radius));
     }
     const bool is_gap = (beside_->end - beside->begin).norm() >= kTangential;
     put_last();
@@ -298,12 +301,13 @@ void ContourPath::put_waiting() {
 }
 
 void ContourPath::finish_compensation() {
-  if (approach_) fail(approach_->place, "APPR: no contour element follows");
+  if (approach_) fail(approach_->place, "APPR requires a following contour element");
   if (entry_) {
     const auto beside =
         entry_->element ? parallel(*entry_->element, entry_->side * entry_->radius) : std::nullopt;
     if (!beside)
-      fail(entry_->place, fmt::format("{}: no contour element follows", words_.compensation));
+      fail(entry_->place,
+           fmt::format("{} requires a following contour element", words_.compensation));
     enter_at(beside->end);
   }
   if (last_) put_last();
@@ -369,9 +373,9 @@ void ContourPath::put_approach(const Motion& first, const Element& beside) {
 }
 
 Point ContourPath::depart(const Run& run) {
-  if (corner_) fail(corner_->place, "a contour element in the plane must follow RND and CHF");
+  if (corner_) fail(corner_->place, "RND and CHF require a following motion block in the plane");
   release_held();
-  if (!last_) fail(run.place, "DEP: a contour element with RL or RR must precede it");
+  if (!last_) fail(run.place, "DEP requires a preceding contour element with RL or RR");
   const Element from = *beside_;
   const int side = side_;
   finish_compensation();

@@ -44,8 +44,8 @@ double argument_value(const MacroWord& word, const Expression::Context& context,
   }
   if (kNoLength.find(word.letter) != std::string_view::npos) {
     context.reading.fail(place_of(word, context),
-                         fmt::format("{} as an argument without a decimal point: its increment "
-                                     "depends on parameters; add the decimal point",
+                         fmt::format("argument {} without a decimal point: its increment depends "
+                                     "on parameters; add the decimal point",
                                      word.letter));
   }
   return value * increment_of(word.letter, units.is_inch);
@@ -75,7 +75,7 @@ void split_repetitions(const MacroWord& P, bool has_L, MacroCall& call,
   constexpr long kNumbers = 10000;
   if (call.number < kNumbers) return;
   if (context.reading.choose(WordDifference::subprogram_digits, place_of(P, context)) == 0) return;
-  if (has_L) context.reading.refuse(place_of(P, context), "L in addition to repetitions in P");
+  if (has_L) context.reading.refuse(place_of(P, context), "L is not allowed with repetitions in P");
   context.reading.apply(ReaderRule::subprogram_repeats, place_of(P, context));
   call.turns = call.number / kNumbers;
   call.number %= kNumbers;
@@ -92,7 +92,7 @@ MacroCall macro_call(const std::vector<MacroWord>& words, const MacroWord& code,
   const MacroWord* P = find(words, 'P');
   if (P == nullptr) {
     context.reading.refuse(place_of(code, context),
-                           fmt::format("{} needs a P word (program number)", name));
+                           fmt::format("{} requires a P word (program number)", name));
   }
   call.number = whole(*P, 1, context);
   call.column = P->column();
@@ -101,7 +101,7 @@ MacroCall macro_call(const std::vector<MacroWord>& words, const MacroWord& code,
     if (word.begin < code.begin) {
       context.reading.refuse(
           place_of(word, context),
-          fmt::format("{0} must come before its arguments: program {1} in a separate block", name,
+          fmt::format("{0} must precede its arguments; program {1} in a separate block", name,
                       word.letter));
     }
     if (word.letter == 'L') {
@@ -127,9 +127,9 @@ MacroCall subprogram_call(std::vector<MacroWord>& words, MacroWord& code,
   const MacroWord* P = find(words, 'P');
   const MacroWord* L = find(words, 'L');
   if (P == nullptr) {
-    context.reading.refuse(place_of(code, context), call.is_block
-                                                        ? "M97 needs a P word (block number)"
-                                                        : "M98 needs a P word (subprogram number)");
+    context.reading.refuse(place_of(code, context),
+                           call.is_block ? "M97 requires a P word (block number)"
+                                         : "M98 requires a P word (subprogram number)");
   }
   call.number = whole(*P, 0, context);
   call.column = P->column();

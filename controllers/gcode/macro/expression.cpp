@@ -79,8 +79,8 @@ double rounded_to(double x, double increment) {
 MacroValue Expression::settled(const Term& term) const {
   if (term.is_doubtful) {
     refuse(term.column,
-           "a vacant variable after a sign or alone in brackets: no manual says whether it is 0 or "
-           "stays vacant; remove the sign or brackets, or set it");
+           "a vacant variable after a sign or alone in brackets: it is undocumented whether it is "
+           "0 or remains vacant; remove the sign or brackets, or set it");
   }
   if (term.is_comparison && context_.reading.reader() == Reader::fanuc) {
     refuse(term.column, "a comparison is allowed only in IF and WHILE");
@@ -113,7 +113,7 @@ bool Expression::condition() {
 
 long Expression::variable_number() {
   const int column = cursor_.column();
-  if (cursor_.peek() == '#') refuse(column, "## is not read: write #[#1]");
+  if (cursor_.peek() == '#') refuse(column, "## is not supported; write #[#1]");
   if (cursor_.peek() != '[' && !is_digit(cursor_.peek())) {
     refuse(column, "expected a variable number after '#'");
   }
@@ -121,7 +121,7 @@ long Expression::variable_number() {
   double number = 0.0;
   if (cursor_.peek() == '[') {
     const Term term = bracketed();
-    if (!term.value) refuse(column, "the number of the variable is vacant");
+    if (!term.value) refuse(column, "the variable number is vacant");
     number = *term.value;
   } else {
     cursor_.take_digits(digits);
@@ -129,7 +129,7 @@ long Expression::variable_number() {
   }
   const double nearest = std::round(number);
   if (std::abs(number - nearest) > 1e-4 || nearest < 0.0 || nearest > 1e7) {
-    refuse(column, fmt::format("#[{}]: the number of a variable is an integer", number));
+    refuse(column, fmt::format("#[{}]: the variable number must be an integer", number));
   }
   return std::lround(nearest);
 }
@@ -214,7 +214,7 @@ Expression::Term Expression::expression(int loosest, Seen& seen) {
     if (op == nullptr || op->level < loosest) return left;
     const int column = cursor_.column();
     if (op->level == 1 && seen.comparison) {
-      refuse(column, "a second comparison; put brackets around each");
+      refuse(column, "more than one comparison; put brackets around each");
     }
     (op->level == 1 ? seen.comparison : is_logic(op->op) ? seen.logic : seen.arithmetic) = true;
     cursor_.accept(op->token);
@@ -257,12 +257,11 @@ double Expression::compare(int op, const Term& a, const Term& b, int column) {
     if (!is_near(x, y)) return is_equal == (op == kEq) ? 1.0 : 0.0;
   }
   if (is_near(x, y)) {
-    context_.reading.warn(
-        here(column),
-        fmt::format(
-            "the compared values, {:.10g} and a value {:.1g} away, are closer than controls "
-            "calculate: another control may branch differently; compare with a margin",
-            x, std::abs(x - y)));
+    context_.reading.warn(here(column),
+                          fmt::format("the compared values, {:.10g} and a value {:.1g} away, "
+                                      "differ by less than the precision of controls: another "
+                                      "control may branch differently; compare with a tolerance",
+                                      x, std::abs(x - y)));
   }
   const bool holds = op == kEq   ? x == y
                      : op == kNe ? x != y
@@ -277,7 +276,7 @@ double Expression::logic(int op, const Term& a, const Term& b, int column) const
   const auto bits = [&](const Term& term) {
     const double x = term.number();
     if (x < 0.0 || x != std::floor(x) || x > 4294967295.0) {
-      refuse(column, fmt::format("{}: AND, OR and XOR need integers >= 0", x));
+      refuse(column, fmt::format("{}: AND, OR and XOR require integers >= 0", x));
     }
     return static_cast<std::uint64_t>(x);
   };

@@ -53,7 +53,7 @@ double Expression::atan(int column) {
   if (!cursor_.accept("]")) refuse(cursor_.column(), "expected an operator or ']'");
   if (!has_comma && !cursor_.accept("/")) return std::atan(y) / deg;
   const double x = has_comma ? pair_x : argument();
-  if (x == 0.0 && y == 0.0) refuse(column, "ATAN[0]/[0] is not an angle");
+  if (x == 0.0 && y == 0.0) refuse(column, "ATAN[0]/[0] is undefined");
   return angle(std::atan2(y, x) / deg, column);
 }
 
@@ -72,13 +72,13 @@ double Expression::pow(int column) {
 // BIN reads the decimal digits of a number as written in four bits each, BCD writes them so.
 double Expression::decimal(bool is_to_binary, double x, int column) const {
   if (x < 0.0 || x != std::floor(x) || x > 99999999.0 * (is_to_binary ? 29.0 : 1.0)) {
-    refuse(column, fmt::format("{}: BIN and BCD need integers of up to 8 digits", x));
+    refuse(column, fmt::format("{}: BIN and BCD require integers of up to 8 digits", x));
   }
   const double from = is_to_binary ? 16.0 : 10.0, to = is_to_binary ? 10.0 : 16.0;
   double out = 0.0, place = 1.0;
   for (; x > 0.0; x = std::floor(x / from), place *= to) {
     const double digit = std::fmod(x, from);
-    if (digit > 9.0) refuse(column, "BIN: a digit beyond 9");
+    if (digit > 9.0) refuse(column, "BIN: a digit is greater than 9");
     out += digit * place;
   }
   return out;

@@ -36,7 +36,7 @@ bool moves(const std::vector<MacroWord>& words) {
 
 void MacroSource::call_codes(std::vector<MacroWord>& words, const WordUnits& units) {
   if (MacroWord* code = find_code(words, 'G', 661)) {
-    refuse(code->column(), "G66.1, a call at every block, is not supported; use G66 or G65");
+    refuse(code->column(), "G66.1, a call in every block, is not supported; use G66 or G65");
   }
   for (const int tenths : {650, 660}) {
     const MacroWord* code = find_code(words, 'G', tenths);
@@ -74,8 +74,8 @@ void MacroSource::call_codes(std::vector<MacroWord>& words, const WordUnits& uni
 void MacroSource::begin_modal(MacroCall call) {
   if (!calls_.empty()) {
     refuse(call.column,
-           "G66 within a called program: how long it stays active is undocumented; move it to the "
-           "main program");
+           "G66 within a called program: it is undocumented how long it remains active; move it to "
+           "the main program");
   }
   modals_.push_back(std::move(call));
 }
@@ -83,7 +83,8 @@ void MacroSource::begin_modal(MacroCall call) {
 void MacroSource::end_modal(MacroWord& code) {
   reading_.apply(ReaderRule::modal_macro_call, here(code.column()));
   if (!calls_.empty()) {
-    refuse(code.column(), "G67 within a called program: move it to the main program");
+    refuse(code.column(),
+           "G67 is not supported within a called program; move it to the main program");
   }
   code.is_erased = true;
   if (!modals_.empty()) modals_.pop_back();
@@ -97,8 +98,8 @@ void MacroSource::call_modal(const std::vector<MacroWord>& words) {
   if (!calls_.empty()) {
     if (!calls_.back().modal) {
       refuse(static_cast<int>(line_.begin) + 1,
-             "a move of a program called while G66 is active: whether it calls again is "
-             "undocumented; program G67 before the call");
+             "a move in a program called while G66 is active: it is undocumented whether it calls "
+             "again; program G67 before the call");
     }
     count = *calls_.back().modal;
   }
@@ -155,11 +156,11 @@ void MacroSource::begin_call(MacroCall call, std::optional<std::size_t> modal) {
   const int column = call.column;
   if (call.is_block) {
     const auto mark = places().block(call.number);
-    if (!mark) refuse(column, fmt::format("M97 P{0}: there is no block N{0}", call.number));
+    if (!mark) refuse(column, fmt::format("M97 P{0}: block N{0} not found", call.number));
     text().go_to(*mark);
   } else if (!find_program(call.number)) {
     refuse(column,
-           fmt::format("there is no program O{0} in this file, and no file {0}.ngc", call.number));
+           fmt::format("program O{0} not found in this file, nor a file {0}.ngc", call.number));
   }
   running.file = file_;
   running.body = text().mark();
@@ -175,8 +176,8 @@ bool MacroSource::turn_again(RunningCall& running) {
   const bool has_changed = running.call.locals && variables_.locals() != *running.call.locals;
   if (has_changed && reading_.reader() != Reader::haas) {
     reading_.fail(here(0),
-                  "the program changes its local variables, and L calls it again: whether they "
-                  "keep their values differs between controls; use a WHILE loop");
+                  "the program changes its local variables and L calls it again: controls differ "
+                  "in whether the values are kept; use a WHILE loop");
   }
   count_jump();
   file_ = running.file;

@@ -54,7 +54,7 @@ void MacroSource::run_statement(Statement statement, std::size_t begin) {
 void MacroSource::nothing_behind(const Cursor& cursor) {
   if (cursor.at_end()) return;
   refuse(cursor.column(),
-         fmt::format("unexpected '{}' after a macro statement, which needs a separate block",
+         fmt::format("unexpected '{}' after a macro statement, which must be in a separate block",
                      cursor.peek()));
 }
 
@@ -104,9 +104,9 @@ void MacroSource::write_system_variable(long number, MacroValue value, const Pla
   const std::string_view name = system_variable_name(number);
   std::string_view remedy = "its effect is not simulated";
   if (name == "a work offset") remedy = "set it with G10 L2";
-  if (name == "a tool offset") remedy = "put it in the tool table (--tools), and remove the line";
-  reading_.fail(place, fmt::format("#{} is {} and is not set from here: {}", number,
-                                   name.empty() ? "a variable of the control" : name, remedy));
+  if (name == "a tool offset") remedy = "enter it in the tool table (--tools), and remove the line";
+  reading_.fail(place, fmt::format("#{} is {} and cannot be set here: {}", number,
+                                   name.empty() ? "a control variable" : name, remedy));
 }
 
 void MacroSource::stop_with_message() {
@@ -169,7 +169,7 @@ void MacroSource::conditional_return(std::size_t begin) {
   Cursor& cursor = expression.cursor();
   const int column = cursor.column();
   if (reading_.reader() == Reader::fanuc) {
-    refuse(column, "a condition before M99 is specific to Haas; use IF[...]GOTO");
+    refuse(column, "a condition before M99 is Haas syntax; use IF[...]GOTO");
   }
   const bool holds = expression.condition();
   const auto words = read_words(line_.body, cursor.at(), context(), {});
@@ -224,7 +224,7 @@ void MacroSource::go_to(std::size_t begin) {
   const MacroValue number = expression.word_value();
   nothing_behind(cursor);
   if (!number || *number < 0.0 || *number > 99'999'999.0) {
-    refuse(column, "GOTO needs a block number");
+    refuse(column, "GOTO requires a block number");
   }
   jump(std::lround(*number), here(column), "this program");
 }
@@ -233,7 +233,7 @@ void MacroSource::jump(long number, const Place& place, std::string_view program
   const int from = text().number();
   const auto mark = places().block(number);
   if (!mark) {
-    reading_.refuse(place, fmt::format("there is no block N{} in {}", number, program));
+    reading_.refuse(place, fmt::format("block N{} not found in {}", number, program));
   }
   if (const Loop* loop = places().loop_entered(from, mark->line + 1)) {
     reading_.refuse(
@@ -252,8 +252,9 @@ void MacroSource::count_jump() {
   if (++jumps_ <= most_jumps_ && lines_ <= kLinesOfATurn * most_jumps_) return;
   has_ended_ = true;
   refuse(static_cast<int>(line_.begin) + 1,
-         fmt::format("{} jumps, loop iterations and calls, {} lines; the program looks endless",
-                     jumps_, lines_));
+         fmt::format(
+             "{} jumps, loop iterations and calls, {} lines; the program appears to loop endlessly",
+             jumps_, lines_));
 }
 
 }  // namespace servomill::controllers::macro

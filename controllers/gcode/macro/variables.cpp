@@ -25,18 +25,18 @@ constexpr auto kSystem = std::to_array<Range>({
     {3003, 3004, "a switch for single block, feed hold and override"},
     {3005, 3005, "a setting"},
     {3006, 3006, "the stop with a message"},
-    {3007, 3007, "the mirror images in force"},
+    {3007, 3007, "the active mirror images"},
     {3008, 3010, "the state of a restart"},
     {3011, 3012, "date and time"},
-    {3020, 3033, "a timer or a switch of the operator"},
-    {3901, 3902, "the number of parts"},
-    {4001, 4199, "a mode in force"},
-    {4201, 4499, "a mode in force"},
-    {5001, 5020, "the end position of the block before"},
+    {3020, 3033, "a timer or an operator switch"},
+    {3901, 3902, "the part count"},
+    {4001, 4199, "an active mode"},
+    {4201, 4499, "an active mode"},
+    {5001, 5020, "the end position of the previous block"},
     {5021, 5040, "the machine position"},
     {5041, 5060, "the position in work coordinates"},
-    {5061, 5080, "the position of the skip signal"},
-    {5081, 5100, "the tool offset in force"},
+    {5061, 5080, "the position at the skip signal"},
+    {5081, 5100, "the active tool offset"},
     {5101, 5120, "the following error"},
     {5201, 5220, "the external work offset"},
     {5221, 5400, "a work offset"},
@@ -89,13 +89,14 @@ bool Variables::is_of_system(long number) const { return kind_of(number) == Kind
 
 MacroValue Variables::unset(long number, Kind kind, const Place& place) const {
   if (kind == Kind::kept_common) {
-    reading_.fail(place, fmt::format("#{0} keeps its value from earlier programs, and this program "
-                                     "has not set it; set it with --parameter '#{0}=...'",
+    reading_.fail(place, fmt::format("#{0} keeps its value from earlier programs and is not set in "
+                                     "this program; set it with --parameter '#{0}=...'",
                                      number));
   }
   reading_.choose(WordDifference::common_variable, place);
-  reading_.warn(place,
-                fmt::format("#{} is read before it is set: vacant, as after power-on", number));
+  reading_.warn(
+      place,
+      fmt::format("#{} is read before it is set: treated as vacant, as after power-on", number));
   return std::nullopt;
 }
 
@@ -103,7 +104,8 @@ MacroValue Variables::read(long number, const Place& place) const {
   const Kind kind = kind_of(number);
   if (kind == Kind::vacant) return std::nullopt;
   if (kind == Kind::local) return levels_.back()[static_cast<std::size_t>(number)];
-  if (kind == Kind::none) reading_.refuse(place, fmt::format("there is no variable #{}", number));
+  if (kind == Kind::none)
+    reading_.refuse(place, fmt::format("variable #{} does not exist", number));
   if (const auto found = common_.find(number); found != common_.end()) return found->second;
   if (kind != Kind::system) {
     return unset(number, kind, place);
@@ -112,17 +114,18 @@ MacroValue Variables::read(long number, const Place& place) const {
   const std::optional<double> value =
       control_->system_variable ? control_->system_variable(number, why) : std::nullopt;
   if (value) return value;
-  if (why.empty()) why = "it is unknown to a simulation";
+  if (why.empty()) why = "it is unknown in a simulation";
   why += fmt::format("; or set it with --parameter '#{}=...'", number);
   const std::string_view name = system_variable_name(number);
-  reading_.fail(place, fmt::format("#{} is {}: {}", number,
-                                   name.empty() ? "a variable of the control" : name, why));
+  reading_.fail(
+      place, fmt::format("#{} is {}: {}", number, name.empty() ? "a control variable" : name, why));
 }
 
 void Variables::write(long number, MacroValue value, const Place& place) {
   const Kind kind = kind_of(number);
   if (kind == Kind::vacant) reading_.refuse(place, "#0 is always vacant and cannot be set");
-  if (kind == Kind::none) reading_.refuse(place, fmt::format("there is no variable #{}", number));
+  if (kind == Kind::none)
+    reading_.refuse(place, fmt::format("variable #{} does not exist", number));
   if (kind == Kind::local) {
     levels_.back()[static_cast<std::size_t>(number)] = value;
   } else {

@@ -55,7 +55,7 @@ class WordReader {
   void refuse_character() const {
     const int column = cursor_.column();
     if (cursor_.peek() == '#') {
-      refuse(column, "a macro statement needs a separate block");
+      refuse(column, "a macro statement must be in a separate block");
     }
     if (has("+-*/]", cursor_.peek())) {
       refuse(
@@ -92,7 +92,7 @@ class WordReader {
                          word.letter));
     }
     if (word.letter == 'N' || word.letter == 'O') {
-      refuse(word.column(), fmt::format("{} needs a number, not a variable", word.letter));
+      refuse(word.column(), fmt::format("{} requires a number, not a variable", word.letter));
     }
     const double increment = units_.are_arguments ? 0.0 : increment_of(word.letter, units_.is_inch);
     Expression reader(

@@ -273,8 +273,8 @@ void ReadingStep::curve_codes() {
   const bool is_moved = memory.frame.is_active() || memory.polar.is_on;
   if (!is_moved || motion < kFirst || motion > kLast || !words.has_axis()) return;
   fail(words.all().front().column,
-       fmt::format("{} under G16, G51, G51.1, G54.1 or G68, which no control with splines has; "
-                   "cancel that first",
+       fmt::format("{} is not supported with G16, G51, G51.1, G54.1 or G68, which no control with "
+                   "splines has; cancel it first",
                    code_name('G', motion)));
 }
 

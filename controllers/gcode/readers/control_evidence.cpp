@@ -90,20 +90,20 @@ ControlEvidence control_evidence(ProgramText text) {
     for (const ControlName& one : kNames) {
       if ((named.readers & bit(one.reader)) != 0 || !has_word(comments, one.word)) continue;
       named.readers |= bit(one.reader);
-      named.text = fmt::format("line {} names {}", text.number(), one.name);
+      named.text = fmt::format("line {} contains {}", text.number(), one.name);
     }
     if (!is_first_block || is_tape_mark(line) || !has_words(line)) continue;
     is_first_block = false;
     if (const std::string number = program_number(line); !number.empty()) {
       numbered.readers = bit(Reader::fanuc) | bit(Reader::haas);
-      numbered.text = fmt::format("the program begins with {}, as those of Fanuc and Haas", number);
+      numbered.text = fmt::format("the program starts with {}, as on Fanuc and Haas", number);
     }
   }
   const bool names_one = named.readers != 0 && (named.readers & (named.readers - 1)) == 0;
   if (named.readers != 0) return names_one ? named : ControlEvidence();
   if (numbered.readers != 0) return numbered;
   if (!text.file().ends_with(".ngc")) return {};
-  return {bit(Reader::linuxcnc), "the file is called *.ngc, as those of LinuxCNC"};
+  return {bit(Reader::linuxcnc), "the file is named *.ngc, as on LinuxCNC"};
 }
 
 }  // namespace servomill::controllers

@@ -42,7 +42,7 @@ std::string PlaneCorner::fault(std::string_view name, double size) const {
   }
   const double taken = way(name.back(), size);
   if (taken <= shortest()) return {};
-  return fmt::format("'{}{:g}' takes {:.4g} of each line; the shorter one is {:.4g}", name, size,
+  return fmt::format("'{}{:g}' requires {:.4g} of each line; the shorter one is {:.4g}", name, size,
                      taken, shortest());
 }
 
@@ -70,12 +70,15 @@ std::string ReadingStep::no_line_for(std::string_view corner, int motion) const 
         tenths == 10 || tenths == 900 || tenths == 910 || word.letter == 'M';
     const bool is_rate = word.letter == 'F' || word.letter == 'S' || word.letter == 'N';
     if (is_of_plane || is_allowed_code || is_rate) continue;
-    return fmt::format("'{}' with {} in this or the next block; program the corner", corner,
-                       tenths >= 0 ? code_name('G', tenths) : std::string(1, word.letter));
+    return fmt::format(
+        "'{}' is not supported with {} in this or the next block; program the corner", corner,
+        tenths >= 0 ? code_name('G', tenths) : std::string(1, word.letter));
   }
   return {};
 }
 
+// Replaces ,R or ,C by the arc or chamfer that it stands for. The corner is tangent to both lines,
+// so the next block must be known in full before this one can end.
 void ReadingStep::corner() {
   if (!reading_.corner_) return;
   BlockWord size = reading_.corner_->size;
@@ -93,7 +96,8 @@ void ReadingStep::corner() {
   }
   const bool is_next_move = reading_.next_words_ && reading_.next_words_->has_axis();
   if (!is_next_move) {
-    fail(size.column, fmt::format("'{}' needs a line with plain numbers in the next block", name));
+    fail(size.column,
+         fmt::format("'{}' requires a linear move with plain numbers in the next block", name));
   }
   ReadingStep next(reading_, *reading_.next_words_, state, file_, reading_.corner_->next);
   next.decimal_points();
@@ -103,8 +107,9 @@ void ReadingStep::corner() {
   }
   const bool has_distance = next.words.has_code('G', 900) || next.words.has_code('G', 910);
   if (has_distance && next.words.has_code('G', 910) != is_incremental()) {
-    fail(size.column, fmt::format("'{}' with {} in the next block; program the corner", name,
-                                  is_incremental() ? "G90" : "G91"));
+    fail(size.column,
+         fmt::format("'{}' is not supported with {} in the next block; program the corner", name,
+                     is_incremental() ? "G90" : "G91"));
   }
   const bool depends = options.reader == Reader::fanuc || options.reader == Reader::haas ||
                        options.decimal_point != DecimalPoint::unset;

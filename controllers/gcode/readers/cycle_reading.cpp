@@ -67,8 +67,8 @@ void ReadingStep::begin_cycle(int code) {
   const BlockWord& word = *words.code('G', code);
   if (code == kBackBoring && words.has('Q')) {
     fail(word.column,
-         "G87 with Q: back boring by an oriented spindle is not simulated; use G87 I J "
-         "K of LinuxCNC");
+         "G87 with Q: back boring with an oriented spindle is not simulated; use G87 I J K of "
+         "LinuxCNC");
   }
   if (is_pecking(code) && (words.has('I') || words.has('J'))) {
     fail(word.column,
@@ -84,8 +84,8 @@ void ReadingStep::fine_boring() {
   if (code == nullptr) return;
   if (!words.has('R') && !memory.cycle.values[kR]) {
     fail(code->column,
-         "G76 without R: a thread of a lathe (LinuxCNC), or fine boring (Fanuc, "
-         "Haas), which needs R");
+         "G76 without R: lathe threading (LinuxCNC), or fine boring (Fanuc, Haas), which requires "
+         "R");
   }
   need(ReaderRule::fine_boring, code->column);
   code->value = 86.0;
@@ -171,7 +171,7 @@ void ReadingStep::cycle_count(int code) {
   const bool is_back_boring = code == kBackBoring;
   if (const BlockWord* K = is_back_boring ? nullptr : words.find('K')) {
     const int column = K->column;
-    if (words.has('L')) fail(column, "K and L in one block: both repeat the cycle");
+    if (words.has('L')) fail(column, "K and L are not allowed in one block: both repeat the cycle");
     need(ReaderRule::cycle_repeats, column);
     words.add('L', words['K'], column);
     words.erase('K');

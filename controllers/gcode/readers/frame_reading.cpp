@@ -36,7 +36,7 @@ void ReadingStep::frames() {
 
 void ReadingStep::refuse_frame_change(const BlockWord& code) const {
   if (!state.compensation.is_on) return;
-  fail(code.column, fmt::format("{} with cutter compensation active; G40 first",
+  fail(code.column, fmt::format("{} with cutter compensation active; program G40 first",
                                 code_name('G', tenths_of(code.value))));
 }
 
@@ -60,7 +60,7 @@ void ReadingStep::polar_origin(int column) {
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
   const Eigen::Vector2d here(now[(n + 1) % 3], now[(n + 2) % 3]);
   if (here.isZero() || choose(WordDifference::polar_centre, column) == 0) return;
-  if (is_incremental()) fail(column, "G16 under G91 is not a known mode of Mach; use G90");
+  if (is_incremental()) fail(column, "G16 with G91 is not defined on Mach; use G90");
   memory.polar.origin = here;
 }
 
@@ -70,7 +70,7 @@ void ReadingStep::scale_inputs(BlockWord& code) {
   for (const char letter : {'P', 'I', 'J', 'K'}) {
     if (!words.has(letter)) continue;
     fail(words.column(letter),
-         fmt::format("{} with G51: the factors on Mach are X, Y and Z", letter));
+         fmt::format("{} with G51: on Mach the factors are X, Y and Z", letter));
   }
   need(ReaderRule::scaling, code.column);
   for (int i = 0; i < 3; ++i) {
@@ -108,7 +108,7 @@ void ReadingStep::scaling() {
          "factor of a setting (Haas); write P");
   }
   if (frame.is_rotated || frame.is_mirrored) {
-    fail(on->column, "G51 under G68 or G51.1; scale before");
+    fail(on->column, "G51 is not supported with G68 or G51.1 active; program G51 first");
   }
   need(ReaderRule::scaling, on->column);
   const Eigen::Vector3d now = frame.from_work(state.programmed().head<3>());
@@ -138,7 +138,7 @@ void ReadingStep::mirror() {
     refuse_frame_change(*code);
     PlaneFrame& frame = memory.frame;
     if (frame.is_rotated || frame.is_scaled) {
-      fail(code->column, fmt::format("{} under G68 or G51", code_name('G', tenths)));
+      fail(code->column, fmt::format("{} with G68 or G51 active", code_name('G', tenths)));
     }
     need(ReaderRule::mirror_image, code->column);
     const bool ends_all = tenths == 501 && !words.has_axis();
@@ -160,14 +160,14 @@ void ReadingStep::centre_of_mach(const BlockWord& code) {
   const bool can_be = is_mach || options.reader == Reader::any;
   for (const auto& [letter, axis] : {std::pair{'A', 'X'}, std::pair{'B', 'Y'}}) {
     if (is_mach && words.has(axis)) {
-      fail(words.column(axis), fmt::format("{} with G68: the centre on Mach is A and B", axis));
+      fail(words.column(axis), fmt::format("{} with G68: on Mach the centre is A and B", axis));
     }
     if (!words.has(letter)) continue;
     const int column = words.column(letter);
     if (!can_be || words.has(axis) || is_incremental() || normal_axis() != 2) {
-      fail(column, fmt::format("{} beside {}: the {} of the centre for Mach, in G17 and G90, a "
-                               "rotary axis for others",
-                               letter, code_name('G', tenths_of(code.value)), axis));
+      fail(column,
+           fmt::format("{} with {}: the {} of the centre (Mach in G17, G90) or a rotary axis",
+                       letter, code_name('G', tenths_of(code.value)), axis));
     }
     const double value = words[letter];
     words.erase(letter);
@@ -188,9 +188,9 @@ void ReadingStep::rotation() {
   if (on == nullptr) return;
   refuse_frame_change(*on);
   if (!words.has('R') || words.has('I') || words.has('J') || words.has('K')) {
-    fail(on->column, "G68 is read with R, an angle in the plane; a tilted plane is G68.2");
+    fail(on->column, "G68 requires R, an angle in the plane; for a tilted plane use G68.2");
   }
-  if (frame.is_rotated) fail(on->column, "G68 under G68; G69 first");
+  if (frame.is_rotated) fail(on->column, "G68 is already active; program G69 first");
   need(ReaderRule::rotation, on->column);
   centre_of_mach(*on);
   const int n = normal_axis();
@@ -198,7 +198,8 @@ void ReadingStep::rotation() {
   Eigen::Vector3d centre = now;
   for (int i = 0; i < 3; ++i) {
     const char axis = "XYZ"[i];
-    if (i == n && words.has(axis)) fail(words.column(axis), "the axis of G68 is that of the plane");
+    if (i == n && words.has(axis))
+      fail(words.column(axis), "the axis of G68 must be normal to the plane");
     if (words.has(axis)) centre[i] = words[axis] * unit() + (is_incremental() ? now[i] : 0.0);
     words.erase(axis);
   }
@@ -240,7 +241,7 @@ void ReadingStep::additional_offset() {
   refuse_frame_change(*code);
   need(ReaderRule::additional_work_offset, code->column);
   const std::string name = code_name('G', tenths_of(code->value));
-  if (!words.has('P')) fail(code->column, fmt::format("{} needs P", name));
+  if (!words.has('P')) fail(code->column, fmt::format("{} requires P", name));
   const int P = static_cast<int>(std::lround(words['P']));
   const auto found = memory.additional_offsets.find(P);
   frame.is_translation_known = found != memory.additional_offsets.end();
@@ -267,7 +268,7 @@ void ReadingStep::polar_words() {
   const bool is_of_machine = words.has_code('G', 530) || has_axis_taker();
   if (!polar.is_on || !has_words || is_of_machine) return;
   if (words.has('L') && words['L'] > 1.0) {
-    fail(words.column('L'), "repetitions under G16 are not supported; program each hole");
+    fail(words.column('L'), "repetitions with G16 are not supported; program each hole");
   }
   const Eigen::Vector3d now = memory.frame.from_work(state.programmed().head<3>());
   if (words.has(radius)) {
@@ -310,8 +311,8 @@ void ReadingStep::refuse_lone_axis(const Eigen::Vector3d& now) {
   if (has_first != has_second && std::abs(now[other] - known[other]) > kSame) {
     const char named = "XYZ"[has_first ? first : second];
     fail(words.column(named),
-         fmt::format("{} alone after G68: whether {} keeps its machine position or its coordinate "
-                     "from before G68 is a parameter of the control (Fanuc 11600#5); program both",
+         fmt::format("{} alone after G68: the control determines whether {} keeps its machine "
+                     "position or its coordinate from before G68 (Fanuc 11600#5); program both",
                      named, "XYZ"[other]));
   }
   known = now;
@@ -337,7 +338,7 @@ void ReadingStep::frame_words() {
   for (int i = 0; i < 3; ++i) is_named = is_named || (frame.concerns(i) && words.has("XYZ"[i]));
   if (is_named && has_axis_taker()) {
     fail(words.all().front().column,
-         "G10, G28, G30, G52 or G92 of an axis that G51, G51.1, G54.1 or G68 moves; cancel that "
+         "G10, G28, G30, G52 or G92 of an axis affected by G51, G51.1, G54.1 or G68; cancel it "
          "first");
   }
   if (has_axis_taker()) return;
@@ -377,7 +378,7 @@ void ReadingStep::frame_centre() {
   const int n = normal_axis();
   const double factor = std::abs(frame.scale[(n + 1) % 3]);
   if (factor != std::abs(frame.scale[(n + 2) % 3])) {
-    fail(words.all().front().column, "an arc under G51 with two different factors is not an arc");
+    fail(words.all().front().column, "an arc requires equal G51 factors in its plane");
   }
   if (words.has('R')) return words.set('R', words['R'] * factor);
   const bool is_absolute =

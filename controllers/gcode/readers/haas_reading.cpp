@@ -43,7 +43,7 @@ void ReadingStep::circular_pocket() {
 void ReadingStep::circular_pocket_of_mach(BlockWord& code, bool is_clockwise) {
   need(ReaderRule::circular_pocket, code.column);
   if (!words.has('I') || words['I'] <= 0.0 || words.has_axis() || normal_axis() != 2) {
-    fail(code.column, fmt::format("{} needs I > 0, G17, and no axis words",
+    fail(code.column, fmt::format("{} requires I > 0, G17, and no axis words",
                                   code_name('G', is_clockwise ? kClockwise : kCounterclockwise)));
   }
   const std::string I = number_of(words['I']);
@@ -65,17 +65,17 @@ void ReadingStep::circular_pocket_of_haas(BlockWord& code, bool is_clockwise) {
   const double I = words.has('I') ? words['I'] : 0.0, K = words.has('K') ? words['K'] : I;
   const double Q = words.has('Q') ? words['Q'] : 0.0;
   if (normal_axis() != 2 || I <= 0.0 || K < I || (K > I && Q <= 0.0)) {
-    fail(column, fmt::format("{} needs G17, I > 0, and Q > 0 with a K above I", name));
+    fail(column, fmt::format("{} requires G17, I > 0, and Q > 0 with K > I", name));
   }
-  if (!words.has('D')) fail(column, fmt::format("{} needs D, the offset of the tool", name));
+  if (!words.has('D')) fail(column, fmt::format("{} requires D, the tool offset", name));
   const double L = words.has('L') ? words['L'] : 1.0;
   const bool can_repeat = is_incremental() && words.has('Z') && L == std::floor(L) && L >= 1.0;
   if (L != 1.0 && !can_repeat) {
     fail(words.column('L'),
-         fmt::format("{} with L repeats it deeper by Z: under G91, with Z and a whole L", name));
+         fmt::format("{} with L repeats it deeper by Z: requires G91, Z and an integer L", name));
   }
   if (memory.frame.is_active() || memory.polar.is_on || state.compensation.is_on) {
-    fail(column, fmt::format("{} under G16, G41, G51, G54.1 or G68 is not supported", name));
+    fail(column, fmt::format("{} is not supported with G16, G41, G51, G54.1 or G68", name));
   }
   if (L * (1.0 + (K - I) / (Q > 0.0 ? Q : 1.0)) > kMaxCircles)
     fail(column, name + " with too many circles");
@@ -83,7 +83,7 @@ void ReadingStep::circular_pocket_of_haas(BlockWord& code, bool is_clockwise) {
   const double R = D > 0 && options.radius_of ? options.radius_of(D) / unit() : 0.0;
   if (D > 0 && R == 0.0) {
     reading_.notes_.push_back(
-        {column, name + ": the tool has no diameter; nothing is compensated"});
+        {column, name + ": the tool diameter is 0; the path is not compensated"});
   }
   if (R > I) {
     fail(column, fmt::format("{}: the tool of radius {:g} does not fit in I{:g}", name, R, I));
@@ -127,9 +127,10 @@ void ReadingStep::mirror_of_haas() {
     refuse_frame_change(*code);
     PlaneFrame& frame = memory.frame;
     if (frame.is_rotated || frame.is_scaled) {
-      fail(code->column, fmt::format("{} under G68 or G51", code_name('G', tenths)));
+      fail(code->column,
+           fmt::format("{} is not supported with G68 or G51 active", code_name('G', tenths)));
     }
-    if (!words.has_axis()) fail(code->column, code_name('G', tenths) + " needs an axis word");
+    if (!words.has_axis()) fail(code->column, code_name('G', tenths) + " requires an axis word");
     need(ReaderRule::haas_mirror, code->column);
     for (int i = 0; i < 3; ++i) {
       const char axis = "XYZ"[i];

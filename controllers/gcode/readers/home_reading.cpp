@@ -25,7 +25,7 @@ void ReadingStep::home() {
   if (G30 != nullptr && words.has('P')) {
     if (words['P'] != 2.0) {
       fail(words.column('P'),
-           fmt::format("G30 P{}: the position is not in the program; use G53", words['P']));
+           fmt::format("G30 P{}: the position is unknown here; use G53", words['P']));
     }
     need(ReaderRule::second_home_number, words.column('P'));
     words.erase('P');
@@ -43,10 +43,10 @@ void ReadingStep::home() {
 bool ReadingStep::distances_of_home(const BlockWord& word) {
   if (!words.has_code('G', 280) && !words.has_code('G', 300)) return false;
   const std::string why =
-      "G90 and G91 with G28 or G30: no control documents which one applies to the intermediate "
+      "G90 and G91 with G28 or G30: it is undocumented which one applies to the intermediate "
       "point; use two blocks";
   if (!options.accepts_unknown_positions) fail(word.column, why);
-  reading_.notes_.push_back({word.column, why + "; left out here"});
+  reading_.notes_.push_back({word.column, why + "; omitted here"});
   const bool ends_incremental = tenths_of(word.value) == 910;
   for (const Axis axis : kAllAxes) {
     if (words.has(letter(axis))) words.set(letter(axis), 0.0);
@@ -85,7 +85,7 @@ void ReadingStep::homing_cycle() {
     behind.push_back(fmt::format("G90 G53 G0 {}0", axis));
     words.erase(axis);
   }
-  if (behind.empty()) fail(code->column, "G28.2 needs an axis word");
+  if (behind.empty()) fail(code->column, "G28.2 requires an axis word");
   if (is_incremental()) behind.emplace_back("G91");
   words.erase(*words.code('G', 282));
   if (memory.pending_motion < 0 && state.motion <= 30) memory.pending_motion = state.motion;
@@ -109,7 +109,7 @@ void ReadingStep::machine_coordinates() {
   }
   if (words.has_axis() && is_incremental()) {
     fail(code->column,
-         "G53 under G91: a machine position (LinuxCNC refuses it), or a distance (Mitsubishi M700V "
+         "G53 with G91: a machine position (an error on LinuxCNC), or a distance (Mitsubishi M700V "
          "p. 508); program G90");
   }
   if (words.has_axis()) return;
@@ -158,20 +158,20 @@ void ReadingStep::inputs() {
     if (choose(WordDifference::tool_table_input, words.column('L')) == 0) return;
     if (L == 11 || is_incremental() || !words.has('R')) {
       fail(words.column('L'),
-           "G10 L11 and G10 L10 under G91 add to an unknown offset; use G10 L10 under G90");
+           "G10 L11 and G10 L10 with G91 add to an unknown offset; use G10 L10 with G90");
     }
     words.set('L', 1.0);
     words.add('Z', words['R'], words.column('R'));
     return words.erase('R');
   }
   if (L == 12 || L == 13) {
-    fail(words.column('L'), fmt::format("G10 L{}: whether R is a radius or a diameter is a "
-                                        "parameter of the control; use a tool table",
+    fail(words.column('L'), fmt::format("G10 L{}: a control parameter determines whether R is a "
+                                        "radius or a diameter; use a tool table",
                                         L));
   }
   if (L != 20 || choose(WordDifference::work_offset_input, words.column('L')) == 0) return;
   if (!words.has('P') || is_incremental()) {
-    fail(words.column('L'), "G10 L20 of Fanuc needs P, and G90");
+    fail(words.column('L'), "G10 L20 of Fanuc requires P and G90");
   }
   AxisWords& offset = memory.additional_offsets
                           .try_emplace(static_cast<int>(std::lround(words['P'])), AxisWords::Zero())
@@ -196,9 +196,9 @@ void ReadingStep::system_input(int column) {
       const char name = letter(axis);
       if (words.has(name) && words[name] != 0.0) {
         fail(words.column('P'),
-             fmt::format("G10 L2 P0 {}{} moves all work systems, which is not supported; set each "
-                         "of them",
-                         name, words[name]));
+             fmt::format(
+                 "G10 L2 P0 {}{} shifts all work systems, which is not supported; set each of them",
+                 name, words[name]));
       }
       words.erase(name);
     }

@@ -40,7 +40,7 @@ std::optional<LinePlace> Interpreter::Machine::place_of_block(int number) {
 void Interpreter::Machine::call_block(const LocalCall& call) {
   const auto place = place_of_block(call.block_number);
   if (!place) {
-    fail(call.column, fmt::format("M97 P{0}: there is no block N{0}", call.block_number));
+    fail(call.column, fmt::format("M97 P{0}: block N{0} not found", call.block_number));
   }
   long& turns = flow_.turns_left.back();
   if (turns == 0) turns = call.repeats;

@@ -61,7 +61,7 @@ void ReadingStep::rapid_at_start(int column) {
   const std::string readings = both_readings(WordDifference::start_motion);
   if (!options.accepts_unknown_positions) fail(column, readings);
   reading_.notes_.push_back(
-      {column, readings + "; taken as a rapid here: the end of the move is the same"});
+      {column, readings + "; treated as a rapid here: the end of the move is the same"});
 }
 
 // FreeCAD writes K0 into arcs of the XY plane.
@@ -79,10 +79,10 @@ void ReadingStep::radius_of_line() {
   const int motion = motion_in_block();
   const BlockWord* R = words.find('R');
   if (R == nullptr || motion > 10 || !words.has_axis() || has_axis_taker()) return;
-  fail(R->column, fmt::format("R beside {0}: it rounds the corner to the next line on lathes and "
-                              "where the control is set so (Fanuc, parameter 3405#4), and is an "
-                              "alarm on others; program ,R{1:g} after G1, or the arc",
-                              code_name('G', motion), R->value));
+  fail(R->column,
+       fmt::format("R with {0}: corner rounding to the next line on lathes and with Fanuc "
+                   "parameter 3405#4, an alarm otherwise; program ,R{1:g} after G1, or the arc",
+                   code_name('G', motion), R->value));
 }
 
 // G80, alone or with axis words.
@@ -106,7 +106,7 @@ void ReadingStep::cancel_cycle(bool has_words) {
 
 void ReadingStep::refuse_arc_behind_cycle(int motion, int column) const {
   if (motion <= 10) return;
-  fail(column, fmt::format("axis words after G80 while {} is active; program the code",
+  fail(column, fmt::format("axis words after G80 while {} is active; program the motion code",
                            code_name('G', motion)));
 }
 
@@ -141,7 +141,7 @@ void ReadingStep::feed() {
         "program F, or set the feed with --feed or program.first_feed of a scenario",
         code_name('G', motion));
     if (!options.accepts_unknown_feeds) fail(column, why);
-    reading_.notes_.push_back({column, why + "; the cycle time stays unknown"});
+    reading_.notes_.push_back({column, why + "; the cycle time is unknown"});
     reading_.has_unknown_feed_ = true;
     return before.push_back(word_text('F', 1.0));
   }

@@ -81,16 +81,17 @@ std::optional<int> PossibleReaders::common_reading(WordDifference difference,
 std::optional<DeducedReading> PossibleReaders::reading_of(WordDifference difference) const {
   if (const auto of_all = common_reading(difference, possible_)) {
     const std::string stops = who_stops();
-    return DeducedReading{*of_all, stops.empty() ? "as all of these controls would read the program"
-                                                 : "since " + stops};
+    return DeducedReading{
+        *of_all, stops.empty() ? "as on all controls that accept this program" : "since " + stops};
   }
   const auto named = static_cast<std::uint8_t>(possible_ & evidence_.readers);
   const std::optional<int> of_named = common_reading(difference, named);
   if (!of_named) return std::nullopt;
   const WordDifferenceEntry& entry = word_differences()[static_cast<std::size_t>(difference)];
   const WordReading& other = entry.readings[static_cast<std::size_t>(1 - *of_named)];
-  return DeducedReading{*of_named, fmt::format("since {}; not as {} ({}), which --reader chooses",
-                                               evidence_.text, other.text, other.controls)};
+  return DeducedReading{
+      *of_named, fmt::format("since {}; --reader selects the alternative: {} ({})", evidence_.text,
+                             other.text, other.controls)};
 }
 
 std::string PossibleReaders::who_stops() const {

@@ -22,7 +22,7 @@ void ReadingStep::subprograms() {
   const double repeats = std::floor(P->value / kNumbers);
   const double number = P->value - repeats * kNumbers;
   if (repeats == 0.0) return;
-  if (words.has('L')) fail(words.column('L'), "L in addition to repetitions in P");
+  if (words.has('L')) fail(words.column('L'), "L is not allowed with repetitions in P");
   words.set('P', number);
   words.add('L', repeats, P->column);
 }
@@ -42,7 +42,7 @@ void ReadingStep::drop_words_of_earlier_turn() {
 void ReadingStep::call_behind_words() {
   BlockWord* code = words.code('M', 980);
   if (code == nullptr) return;
-  if (!words.has('P')) fail(code->column, "M98 needs a P word (subprogram number)");
+  if (!words.has('P')) fail(code->column, "M98 requires a P word (subprogram number)");
   need(ReaderRule::call_with_words, code->column);
   std::string call = fmt::format("M98 P{}", words['P']);
   if (words.has('L')) call += fmt::format(" L{}", words['L']);
@@ -56,7 +56,7 @@ void ReadingStep::local_call() {
   BlockWord* code = words.code('M', 970);
   if (code == nullptr) return;
   need(ReaderRule::local_subprogram, code->column);
-  if (!words.has('P')) fail(code->column, "M97 needs a P word (block number)");
+  if (!words.has('P')) fail(code->column, "M97 requires a P word (block number)");
   LocalCall call;
   call.block_number = static_cast<int>(std::lround(words['P']));
   call.repeats = words.has('L') ? static_cast<int>(std::lround(words['L'])) : 1;

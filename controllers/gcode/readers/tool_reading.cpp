@@ -16,7 +16,7 @@ void ReadingStep::tip_control_of_haas() {
   BlockWord* code = words.code('G', 2340);
   if (code == nullptr) return;
   need(ReaderRule::haas_tip_control, code->column);
-  if (!words.has('H')) fail(code->column, "G234 needs H: the number of the tool length offset");
+  if (!words.has('H')) fail(code->column, "G234 requires H, the number of the tool length offset");
   code->value = 43.4;
   code->is_changed = true;
 }
@@ -63,7 +63,7 @@ void ReadingStep::diameter_offset() {
   if (is_other) return;
   if (D != nullptr && on == nullptr) {
     if (state.compensation.is_on && !words.has_code('G', 400)) {
-      fail(D->column, "D with cutter compensation active; G40 first");
+      fail(D->column, "D is not allowed with cutter compensation active; program G40 first");
     }
     need(ReaderRule::modal_diameter_offset, D->column);
     memory.diameter_offset = D->value;
@@ -88,8 +88,8 @@ void ReadingStep::idle_beam() {
   if (is_on) memory.is_idle_beam = words['S'] == 0.0;
   if (is_on || !memory.is_idle_beam || words['S'] == 0.0) return;
   fail(words.column('S'),
-       "S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; programs for "
-       "milling are read here");
+       "S after M3 S0 or M4 S0 without another M3 or M4: a laser power; only milling programs are "
+       "supported");
 }
 
 // A laser's power follows the path; the speed of a spindle does not.
@@ -101,10 +101,9 @@ void ReadingStep::laser_power() {
   if (words.has('M')) memory.power_changes = 0;
   if (words.has('M') || words['S'] * rpm == state.spindle_speed) return;
   if (++memory.power_changes == 1) {
-    reading_.notes_.push_back(
-        {words.column('S'),
-         "S changes in a feed move without M3 or M4: read as a spindle speed, which a mill changes "
-         "at rest; if it is a laser power, the motion is the same"});
+    reading_.notes_.push_back({words.column('S'),
+                               "S changes in a feed move without M3 or M4: read as a spindle "
+                               "speed; a laser power would give the same motion"});
   }
   if (memory.power_changes < kPowerChanges) return;
   fail(words.column('S'),

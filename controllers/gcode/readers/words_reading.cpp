@@ -69,7 +69,7 @@ constexpr auto kRefused = std::to_array<Refused>({
     {'G', 71, "cylindrical interpolation; post-process to moves of the rotary axis"},
     {'G', 121,
      "polar coordinate interpolation of a linear and a rotary axis; post-process to moves of both"},
-    {'G', 270, "checks by a move that the axes are at the reference point; use G53"},
+    {'G', 270, "checks with a move that the axes are at the reference point; use G53"},
     {'G', 283, "sets machine coordinates without a move (TinyG); use G92"},
     {'G', 290, "returns through the intermediate point of the last G28; program the moves"},
     {'G', 310, "a probing move, which is not simulated"},
@@ -83,10 +83,11 @@ constexpr auto kRefused = std::to_array<Refused>({
      "moves"},
     {'G', 480, "shortens a move by twice a tool offset; program the move"},
     {'G', 600,
-     "approaches from one direction by a distance set in a control parameter; program the moves"},
-    {'G', 650, "calls a macro of the control that is not in the program"},
-    {'G', 660, "calls a macro of the control at each move that is not in the program"},
-    {'G', 770, "back boring by an oriented spindle is not simulated"},
+     "approaches from one direction with an overtravel set in a control parameter; program the "
+     "moves"},
+    {'G', 650, "calls a control macro that is not in the program"},
+    {'G', 660, "calls a control macro that is not in the program at each move"},
+    {'G', 770, "back boring with an oriented spindle is not simulated"},
     {'G', 1000,
      "ends a mirror image (Haas), or changes a tool (Brother); choose with --reader haas, or use "
      "G50.1 or M6"},
@@ -100,13 +101,13 @@ constexpr auto kRefused = std::to_array<Refused>({
     {'G', 1430, "length compensation on tilted axes (Haas); post-process with G43.4"},
     {'G', 1500, "a pocket cycle (Haas); post-process to the moves of the pocket"},
     {'G', 2540,
-     "shifts the work offset with the rotary axes (Haas), by centres of rotation stored in the "
+     "shifts the work offset with the rotary axes (Haas), using centres of rotation stored in the "
      "control; post-process with G68.2 or G43.4"},
     {'M', 170,
-     "ends a subprogram of Siemens (write M99), or switches motors on (pass --ignore-code M17, or "
+     "ends a Siemens subprogram (use M99), or switches motors on (pass --ignore-code M17, or "
      "remove it)"},
     {'M', 470, "restarts the program endlessly (Mach); use M30"},
-    {'M', 960, "lets a signal interrupt the program; signals are not simulated"},
+    {'M', 960, "enables an interrupt by a signal; signals are not simulated"},
     {'M', 1040, "heats the extruder of a 3D printer; only milling programs are supported"},
     {'M', 1090, "heats the extruder of a 3D printer; only milling programs are supported"},
     {'M', 1400, "heats the bed of a 3D printer; only milling programs are supported"},
@@ -227,7 +228,7 @@ void ReadingStep::override_code(BlockWord& word) {
   }
   if (reading == 0) return;
   reading_.notes_.push_back({word.column, both_readings(WordDifference::override_codes) +
-                                              "; neither moves an axis while the program runs"});
+                                              "; no axis moves while the program runs"});
 }
 
 void ReadingStep::machine_functions() {
@@ -243,8 +244,8 @@ void ReadingStep::machine_functions() {
     }
     if (tenths == 120 || tenths == 130) {
       reading_.notes_.push_back(
-          {word.column, fmt::format("{}: the brake of the fifth axis (Haas), or the spindle or the "
-                                    "coolant of other builders; neither moves an axis",
+          {word.column, fmt::format("{}: the brake of the fifth axis (Haas), or the spindle or "
+                                    "coolant on other machines; no axis moves",
                                     name_of(word))});
       leave_out(ReaderRule::machine_function, word);
       continue;
@@ -262,11 +263,10 @@ void ReadingStep::machine_functions() {
 void ReadingStep::leave_out(ReaderRule rule, BlockWord& word) {
   const int tenths = tenths_of(word.value);
   const std::string name = name_of(word);
-  need(rule, word.column,
-       fmt::format("; {} becomes a comment, also where the program is rewritten", name));
+  need(rule, word.column, fmt::format("; {} becomes a comment, also in rewritten programs", name));
   if (memory.first_left_out < 0) memory.first_left_out = tenths;
   if (memory.first_left_out != tenths) {
-    reading_.notes_.push_back({word.column, fmt::format("{} becomes a comment, too", name)});
+    reading_.notes_.push_back({word.column, fmt::format("{} also becomes a comment", name)});
   }
   words.comment_out(word);
 }
@@ -279,8 +279,8 @@ void ReadingStep::refuse_function(const BlockWord& word) const {
   if (has_none) refuse(word.column, fmt::format("{} is not supported by grbl", name));
   if (options.refuses_code) options.refuses_code(tenths_of(word.value) / 10);
   fail(word.column,
-       fmt::format("unknown M code {0}: a function of the machine builder; some of them mirror or "
-                   "move an axis. If {0} does not, pass --ignore-code {0}, or remove it",
+       fmt::format("unknown M code {0}: a machine-builder function, which may mirror or move an "
+                   "axis; if {0} does not, pass --ignore-code {0}, or remove it",
                    name));
 }
 
@@ -330,8 +330,8 @@ void ReadingStep::idle_codes() {
   if (const BlockWord* table = words.code('G', 542);
       table != nullptr && !(words.has('P') && words['P'] == 0.0)) {
     fail(table->column,
-         "G54.2: the offset rotates with the rotary axes by data in the control; post-process with "
-         "G68.2 or G43.4");
+         "G54.2: the offset rotates with the rotary axes using data stored in the control; "
+         "post-process with G68.2 or G43.4");
   }
   leave_out_all(ReaderRule::smoothing, kSmoothing);
   leave_out_all(ReaderRule::cancel_codes, kCancels);
@@ -342,8 +342,7 @@ double ReadingStep::dwell_of(WordDifference difference, const BlockWord& P) {
   const std::optional<int> reading = chosen_reading(difference, P.column);
   if (reading) return P.value * (*reading == 0 ? 1.0 : 1e-3);
   if (!options.accepts_unknown_dwells) fail(P.column, both_readings(difference));
-  reading_.notes_.push_back(
-      {P.column, both_readings(difference) + "; the dwell time stays unknown"});
+  reading_.notes_.push_back({P.column, both_readings(difference) + "; the dwell time is unknown"});
   reading_.has_unknown_dwell_ = true;
   return 0.0;
 }
@@ -381,7 +380,7 @@ void ReadingStep::dwell_of_other_controls() {
       has_S ? "G4 S: seconds (Marlin), or spindle revolutions (Siemens); use G4 P"
             : "G4 F: seconds (Siemens), not supported by other controls; use G4 P";
   if (!options.accepts_unknown_dwells) fail(column, readings);
-  reading_.notes_.push_back({column, readings + "; the dwell time stays unknown"});
+  reading_.notes_.push_back({column, readings + "; the dwell time is unknown"});
   reading_.has_unknown_dwell_ = true;
   words.erase(has_S ? 'S' : 'F');
   words.add('P', 0.0, column);

@@ -80,7 +80,7 @@ TEST(Conversational, BlockNumbersWithN) {
   EXPECT_EQ(all_moves(program), "2 tool 1\n2 spindle 0 S100\n3 rapid 1 2 3\n4 end\n");
   EXPECT_EQ(warnings_of(program, example_setup()),
             std::vector<std::string>{
-                "block numbers with N: accepted, although controls write them without N"});
+                "block numbers with N are accepted, although controls write them without N"});
 }
 
 // Neither line of the comment is a block, with or without a number.
@@ -90,7 +90,7 @@ TEST(Conversational, CommentsThatGoOn) {
     EXPECT_EQ(framed_moves(lines), "3 rapid 1 0 0\n");
     EXPECT_EQ(warnings_of(with_frame(lines), example_setup()),
               std::vector<std::string>{
-                  "a comment that ends with '~': the next line is taken as part of it"});
+                  "a comment that ends with '~': the next line is treated as part of it"});
   }
 }
 
@@ -98,7 +98,7 @@ TEST(Conversational, Cycle392MovesNothing) {
   const std::string lines = "CYCL DEF 392 ATC~\n Q240=0 ;MODE~\n Q241=1\nL X+1 FMAX\n";
   EXPECT_EQ(framed_moves(lines), "4 rapid 1 0 0\n");
   EXPECT_EQ(warnings_of(with_frame(lines), example_setup()),
-            std::vector<std::string>{"CYCL DEF 392: adapts the drives to the load; ignored"});
+            std::vector<std::string>{"CYCL DEF 392 is ignored: it adapts the drives to the load"});
 }
 
 // A table that tilts about A and turns about C: tilted by 30 degrees about X, the tool stands along
@@ -162,7 +162,7 @@ TEST(Conversational, ASurveyLeavesOutCyclesOfUnknownPath) {
   EXPECT_EQ(warnings_of(with_frame(pocket), setup),
             std::vector<std::string>{
                 "CYCL DEF 251: pockets, slots, studs and threads are not supported; have the CAM "
-                "system output the moves; extent and cycle time are without its moves"});
+                "system output the moves; extent and cycle time exclude its moves"});
   EXPECT_EQ(fault_of(pocket + "L IX+1 Y+2 F100\n", setup),
             "t.h:8:3: error: IX: the position of X is unknown here; program an absolute position");
   // contours name labels, and old pockets have steps
@@ -181,14 +181,14 @@ TEST(Conversational, ASurveyGoesOnAfterTouchProbeCycles) {
   const std::string probe = "TCH PROBE 412 DATUM INSIDE CIRCLE ~\n  Q321=+0 ~\n  Q262=+40\n";
   EXPECT_EQ(framed_moves(probe + "L Z+5 FMAX\nL X+Q262 Y+2 FMAX\n", setup),
             "1 rapid 0 0 0\n1 rapid 100 200 150\n4 rapid 100 200 5\n5 rapid 40 2 5\n");
-  EXPECT_NE(fault_of(probe + "L X+Q151 F100\n", setup).find("Q151 is measured by TCH PROBE"),
+  EXPECT_NE(fault_of(probe + "L X+Q151 F100\n", setup).find("Q151 was measured by TCH PROBE"),
             std::string::npos);
   for (const char* result : {"Q5", "Q8"}) {
     EXPECT_NE(fault_of(std::string("Q5 = 3\nQ8 = 3\nTCH PROBE 0.0 REF. PLANE Q5 X-\nTCH PROBE 0.1 "
                                    "X+5 Y+0 Z-5\nL X+") +
                            result + " F100\n",
                        setup)
-                  .find(std::string(result) + " is measured by TCH PROBE"),
+                  .find(std::string(result) + " was measured by TCH PROBE"),
               std::string::npos);
   }
   EXPECT_EQ(framed_moves("CYCL DEF 202 Q200=2 Q201=-9 Q206=50 Q211=0 Q208=0 Q203=0 Q204=0 Q214=1\n"
@@ -206,7 +206,7 @@ TEST(Conversational, PlaneRetractsBeforeItTurns) {
                          setup),
             "1 rapid 0 0 5\n2 feed 0 0 25 F500\n3 rapid 1 2 3\n");
   EXPECT_EQ(fault_of("L Z+5 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN MB FMAX\n"),
-            "t.h:5:38: error: 'MB' without a number or MAX");
+            "t.h:5:38: error: 'MB' requires a number or MAX");
 }
 
 // Without a machine, surveys leave out what depends on the tilt, and name the option that gives it.
@@ -264,9 +264,9 @@ TEST(Conversational, ASurveyWithoutARadiusFollowsTheContour) {
 TEST(Conversational, ASurveyGoesOnWithoutAFeed) {
   ProgramSetup setup = example_setup();
   setup.accepts_unknown_feeds = true;
-  EXPECT_EQ(warnings_of(with_frame("L X+1\nL X+2\n"), setup),
-            std::vector<std::string>{
-                "no F in the block, and none is active; the cycle time stays unknown"});
+  EXPECT_EQ(
+      warnings_of(with_frame("L X+1\nL X+2\n"), setup),
+      std::vector<std::string>{"no feed rate is active; program F; the cycle time is unknown"});
   EXPECT_EQ(framed_moves("L X+1 F100\nFUNCTION DWELL TIME2.5\nFUNCTION DWELL TIME 3\n", setup),
             "1 feed 1 0 0 F100\n2 dwell 2.5\n3 dwell 3\n");
 }
@@ -297,8 +297,8 @@ TEST(Conversational, NamesOfToolsWithoutATable) {
   const auto warnings = warnings_of(program, setup);
   ASSERT_GE(warnings.size(), 1u);
   EXPECT_EQ(warnings.front(),
-            "TOOL CALL \"END MILL\": taken as tool 30001 of unknown length, since no tool table is "
-            "given");
+            "TOOL CALL \"END MILL\": treated as tool 30001 of unknown length; pass a tool table "
+            "with --tools");
 }
 
 // The tip counts: machine Z is 100 mm above it
@@ -322,7 +322,7 @@ TEST(Conversational, PresetThatWasSetByHand) {
   const std::string program = with_frame("CYCL DEF 247 Q339=0\nL X+1 F9\n");
   EXPECT_EQ(interpret(program, "t.h", example_setup()).back().work_offset, 1);
   EXPECT_EQ(warnings_of(program, example_setup()).front(),
-            "preset 0, the manually set datum: taken as preset 1, which is in force at the start");
+            "preset 0, the manually set datum: treated as preset 1, which is active at the start");
 }
 
 TEST(Conversational, ToolsDefinedInTheProgram) {
@@ -347,8 +347,7 @@ TEST(Conversational, ToolsDefinedByTheirLengthAlone) {
     FAIL() << "read";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "t.h:4:1: error: RL and RR: TOOL DEF 1 has no R, so the radius is unknown; write "
-                 "it");
+                 "t.h:4:1: error: RL and RR: TOOL DEF 1 has no R, so the radius is unknown; add R");
   }
 }
 

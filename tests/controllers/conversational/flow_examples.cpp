@@ -7,7 +7,7 @@ std::vector<Example> flow_examples() {
   return {
       {"subprogram", "L F100\nCALL LBL 1\nL X+1\nCALL LBL 1\nL M30\nLBL 1\nL IY+2\nLBL 0\n",
        "7 feed 0 2 0 F100\n3 feed 1 2 0 F100\n7 feed 1 4 0 F100\n"},
-      {"a repeat without a number calls once",
+      {"a repeat requires a number calls once",
        "LBL 1\nL IX+1 F100\nLBL 0\nCALL LBL 1 REP\nL IY+1\n",
        "2 feed 1 0 0 F100\n2 feed 2 0 0 F100\n5 feed 2 1 0 F100\n"},
       // the section runs once, and twice more

@@ -30,7 +30,7 @@ std::vector<FanucExample> fanuc_frame_examples() {
        "8 rapid X215.5 (Y267.5)\n"
        "9 rapid X205 (Y267.5)\n"},
       {"increments from an unknown place", "", FANUC_BEGIN "G54 G91 G0 X5.\n",
-       "error: 6:12: an incremental move needs the position of X, which is unknown"},
+       "error: 6:12: an incremental move requires the position of X, which is unknown"},
       {"a number without point on IS-B", "IS-B LRP=1", FANUC_BEGIN "G54 G0 X1000\n",
        "6 rapid X201\n"},
       {"a number without point on IS-C", "IS-C LRP=1", FANUC_BEGIN "G54 G0 X1000\n",
@@ -47,7 +47,7 @@ std::vector<FanucExample> fanuc_frame_examples() {
        "6 rapid X225.4 B45\n"
        "7 feed X263.5 (B45) F254\n"},
       {"a switch of the unit", "", "G21\nG20\n",
-       "error: 2:1: a switch between G20 and G21 changes work offsets and compensation values"},
+       "error: 2:1: switching between G20 and G21 changes work offsets and compensation values"},
       {"the unit beside other words", "", "G21 G90\n",
        "error: 1:1: G20 and G21 must be in a separate block at the start of the program"},
       {"a place that nobody has entered", "", FANUC_BEGIN "G56 G0 X0.\n",
@@ -55,27 +55,27 @@ std::vector<FanucExample> fanuc_frame_examples() {
 
       // ---- modes at the start
       {"no G90", "", FANUC_MODES("G17 G40 G80 G94 G69 G15 G50") "G54 G0 X0.\n",
-       "error: 6:1: moves while G90 or G91 is not known to be active"},
+       "error: 6:1: a motion requires an active G90 or G91"},
       {"no G40", "", FANUC_MODES("G17 G80 G90 G94 G69 G15 G50") "G54 G0 X0.\n",
-       "error: 6:1: moves while G40 is not known to be active"},
+       "error: 6:1: a motion requires an active G40"},
       {"no G69", "", FANUC_MODES("G17 G40 G80 G90 G94 G15 G50") "G54 G0 X0.\n",
-       "error: 6:1: moves while G69 is not known to be active"},
+       "error: 6:1: a motion requires an active G69"},
       {"no G97", "", FANUC_MODES("G17 G40 G80 G90 G94 G69 G15 G50") "S500 M3\n",
-       "error: 6:1: S while G97 is not known to be active: under G96 it is a cutting speed"},
+       "error: 6:1: S requires G97: with G96 it is a cutting speed"},
       {"a mirror image of B", "",
        "G21\nG17 G40 G80 G90 G94 G69 G15 G50\nG50.1 X0. Y0. Z0.\nG0 B0.\n",
-       "error: 4:1: moves while G51.1 may mirror B; cancel it with G50.1 B0."},
+       "error: 4:1: G51.1 may be active in B; cancel it with G50.1 B0."},
       {"local coordinates", "",
        "G21\nG17 G40 G80 G90 G94 G69 G15 G50\nG50.1 X0. Y0. Z0.\nG52 Y0.\nG92.1 X0. Y0.\n"
        "G54 G0 Y0. X0.\n",
-       "error: 6:12: moves X while a shift by G52 may be active"},
+       "error: 6:12: X moves, and a shift by G52 may be active"},
       {"work systems shifted by G92", "",
        "G21\nG17 G40 G80 G90 G94 G69 G15 G50\nG50.1 X0. Y0. Z0.\nG52 X0.\nG54 G0 X0.\n",
-       "error: 5:8: moves X while a shift by G92 may be active"},
+       "error: 5:8: X moves, and a shift by G92 may be active"},
       {"other local coordinates", "", FANUC_BEGIN "G52 X5.\n",
-       "error: 6:5: G52 and G92.1 with values other than 0 are not supported"},
+       "error: 6:5: G52 and G92.1 are supported with values of 0 only"},
       {"G92.1 with a tool length", "", FANUC_BEGIN "G54 G0 G43 H1 Z5.\nG92.1 Z0.\n",
-       "error: 7:1: G92.1 while a tool length is active cancels it"},
+       "error: 7:1: G92.1 cancels the active tool length"},
       // G53 counts from the machine's zero, whatever shifts the work
       {"machine positions need no work system", "LRP=1",
        "G21\nG17 G40 G80 G90 G94 G69 G15 G50\nG50.1 X0. Y0. Z0.\nG49 G53 G0 Z0.\n",
@@ -97,14 +97,13 @@ std::vector<FanucExample> fanuc_frame_examples() {
        "10 rapid A120 ~\n"
        "11 rapid A-720 ~\n"},
       {"half a turn of an axis that rolls over", "ROA=1", FANUC_BEGIN "G54 G0 A0.\nA180.\n",
-       "error: 7:1: moves A by half a turn: the direction is undetermined where No. 1008#0 (ROA) "
-       "is 1"},
+       "error: 7:1: A moves by 180 degrees: the direction is undetermined with No. 1008#0 (ROA) = "
+       "1"},
       {"no G0", "", FANUC_BEGIN "G54 X0.\n",
-       "error: 6:1: moves while G0, G1, G2 or G3 is not known to be active"},
-      {"no G54", "", FANUC_BEGIN "G0 X0.\n",
-       "error: 6:4: moves while none of G54 ... G59 is active"},
+       "error: 6:1: a motion requires an active G0, G1, G2 or G3"},
+      {"no G54", "", FANUC_BEGIN "G0 X0.\n", "error: 6:4: a motion requires an active G54 ... G59"},
       {"no tool length", "", FANUC_BEGIN "G54 G0 Z0.\n",
-       "error: 6:8: Z while none of G43, G44 and G49 is known to be active"},
+       "error: 6:8: Z requires an active G43, G44 or G49"},
 
       // ---- places of the machine and the tool length
       {"G53 and the reference position", "LRP=1",
@@ -168,7 +167,7 @@ std::vector<FanucExample> fanuc_frame_examples() {
        "6 rapid Z-45 H1\n"
        "8 rapid Z-95\n"},
       {"G49 alone at the start", "TOS=0", FANUC_BEGIN "G0 G49\n",
-       "error: 6:4: moves Z by the change of the tool length where No. 5006#6 (TOS) is 0, and the "
+       "error: 6:4: moves Z by the change of the tool length with No. 5006#6 (TOS) = 0, and the "
        "previous length is unknown"},
       {"another length without Z", "TOS=0 LRP=1",
        FANUC_BEGIN "G54 G0 G43 H1 Z5.\n"
@@ -179,9 +178,9 @@ std::vector<FanucExample> fanuc_frame_examples() {
        "8 rapid Z25 H3\n"},
       {"G44 subtracts", "LRP=1", FANUC_BEGIN "G54 G0 G44 H1 Z200.\n", "6 rapid Z50 H1\n"},
       {"G53 under G91", "", FANUC_BEGIN "G91 G53 G0 Z0.\n",
-       "error: 6:5: G53 under G91 has no effect"},
+       "error: 6:5: G53 has no effect with G91"},
       {"G53 while G1 is in force", "", FANUC_BEGIN "G1 G53 Z0.\n",
-       "error: 6:4: G53 while G0 is not active"},
+       "error: 6:4: G53 requires an active G0"},
 
   };
 }

@@ -30,17 +30,17 @@ std::vector<FanucExample> fanuc_motion_examples() {
        FANUC_BEGIN "T1 M6\n"
                    "G54 G40 G80 G94 G17\n"
                    "G0 X10.\n",
-       "error: 8:1: moves while G90 or G91 is not known to be active"},
+       "error: 8:1: a motion requires an active G90 or G91"},
       {"the spindle after the tool change", "",
        FANUC_BEGIN "S1000 M3\n"
                    "T1 M6\n"
                    "M3\n",
-       "error: 8:1: M3 while S is unknown"},
+       "error: 8:1: M3 requires a known S"},
       {"a stop leaves positions unknown", "",
        FANUC_BEGIN "G54 G0 X0.\n"
                    "M0\n"
                    "G91 X1.\n",
-       "error: 8:5: an incremental move needs the position of X, which is unknown"},
+       "error: 8:5: an incremental move requires the position of X, which is unknown"},
       {"modes stay over a stop", "LRP=1",
        FANUC_BEGIN "G54 G0 X0. G43 H1 Z5.\n"
                    "M1\n"
@@ -70,13 +70,13 @@ std::vector<FanucExample> fanuc_motion_examples() {
        FANUC_BEGIN "G54 G0 X0. Y0. G43 H1 Z5.\n"
                    "G31 X10. F300.\n"
                    "G91 X1.\n",
-       "error: 8:5: an incremental move needs the position of X, which is unknown"},
-      {"a skip without an axis", "", FANUC_BEGIN "G31 F300.\n", "error: 6:1: G31 without an axis"},
+       "error: 8:5: an incremental move requires the position of X, which is unknown"},
+      {"a skip without an axis", "", FANUC_BEGIN "G31 F300.\n", "error: 6:1: G31 requires an axis"},
       {"a skip with a change of the length", "",
        FANUC_BEGIN "G54 G0 X0. Y0.\nG31 G43 H1 Z5. F300.\n",
-       "error: 7:1: a change of the tool length in a block with G31"},
+       "error: 7:1: a change of the tool length is not allowed in a block with G31"},
       {"a skip by time", "", FANUC_BEGIN "G54 G0 X0.\nG93 G31 X5. F3.\n",
-       "error: 7:5: G31 while G94 is not known to be in force"},
+       "error: 7:5: G31 requires an active G94"},
 
       // ---- feeds
       {"feeds per minute, per revolution and by time", "LRP=1",
@@ -97,12 +97,13 @@ std::vector<FanucExample> fanuc_motion_examples() {
                    "G1 X10. F300\n"
                    "G93 X20. F2.\n"
                    "G94 X30.\n",
-       "error: 9:1: feeds while F is unknown"},
+       "error: 9:1: a feed motion requires a known F"},
       {"F under G93 is of its block", "", FANUC_BEGIN "G54 G0 X0.\nG1 G93 X10. F2.\nX20.\n",
-       "error: 8:1: a block under G93 needs F"},
-      {"no F", "", FANUC_BEGIN "G54 G0 X0.\nG1 X10.\n", "error: 7:1: feeds while F is unknown"},
+       "error: 8:1: G93 requires F in every block"},
+      {"no F", "", FANUC_BEGIN "G54 G0 X0.\nG1 X10.\n",
+       "error: 7:1: a feed motion requires a known F"},
       {"linear and rotary together", "", FANUC_BEGIN "G54 G0 X0. B0.\nG1 X1. B1. F100\n",
-       "error: 7:1: linear and rotary axes together have a common feed only under G93"},
+       "error: 7:1: linear and rotary axes in one block require G93"},
 
       // ---- arcs
       {"a quarter clockwise", "LRP=1",
@@ -125,12 +126,12 @@ std::vector<FanucExample> fanuc_motion_examples() {
        "7 arc X220 Y250 Z-70 F118.54471 about Z at 210 250 turns -1 H1\n"},
       // B-63943EN-1/02 p. 1654: type B
       {"a length along the normal of another plane", "TLB=1", FANUC_BEGIN "G54 G0 G18 G43 H1 Z5.\n",
-       "error: 6:12: G43 outside G17: where No. 5001#1 (TLB) is 1 the length applies to another "
-       "axis than Z"},
+       "error: 6:12: G43 requires G17: with No. 5001#1 (TLB) = 1 the length applies to an axis "
+       "other than Z"},
       {"another plane under a length", "TLB=1",
        FANUC_BEGIN "G54 G0 X0. G43 H1 Z10.\nG18 G2 X10. Z0. K-10. F100\n",
-       "error: 7:1: moves outside G17 with a tool length: no manual found says whether it follows "
-       "the plane where No. 5001#1 (TLB) is 1"},
+       "error: 7:1: a motion outside G17 with a tool length: it is undocumented whether the length "
+       "follows the plane with No. 5001#1 (TLB) = 1"},
       {"the plane ZX", "LRP=1",
        FANUC_BEGIN "G54 G18 G0 X0. G43 H1 Z10.\n"
                    "G2 X10. Z0. K-10. F100\n",
@@ -144,7 +145,7 @@ std::vector<FanucExample> fanuc_motion_examples() {
       {"another radius at the end", "", FANUC_BEGIN "G54 G0 X10. Y0.\nG3 X0. Y10.006 I-10. F100\n",
        "error: 7:1: the arc starts at a radius of 10.0000 mm and ends at a radius of 10.0060 mm"},
       {"an arc from an unknown place", "", FANUC_BEGIN "G54 G0 X10.\nG3 X0. Y10. I-10. F100\n",
-       "error: 7:1: an arc needs the position of Y, which is unknown"},
+       "error: 7:1: an arc requires the position of Y, which is unknown"},
 
       // ---- everything else
       {"dwell on IS-B", "IS-B",
@@ -185,7 +186,8 @@ std::vector<FanucExample> fanuc_motion_examples() {
        "9 feed X203 F100 stops\n"
        "10 feed X204 F100\n"},
       {"M beside a motion", "", FANUC_BEGIN "G54 G0 X0. M8\n",
-       "error: 6:12: M with a motion or a dwell: their order is up to the machine builder"},
+       "error: 6:12: M and a motion or dwell in one block: their order is defined by the machine "
+       "builder"},
       {"a cycle", "", FANUC_BEGIN "G54 G81 X0. Z-5. R2. F100\n",
        "error: 6:5: G81 is not supported here"},
       {"the frame of a program", "LRP=1",

@@ -144,7 +144,7 @@ TEST(FanucReader, FunctionsThatTheControlDoesNotHave) {
   EXPECT_EQ(actions(bare_head + "S100 M3\nG54 G0 X0.\n"), "4 spindle +100\n5 rapid X200\n");
   for (const std::string code : {"G15", "G50", "G50.1", "G92.1", "G97"}) {
     EXPECT_EQ(actions(code + "\n"),
-              "error: 1:1: " + code + " is an alarm on a control without the option");
+              "error: 1:1: " + code + " causes an alarm on a control without this option");
   }
 }
 

@@ -59,8 +59,8 @@ std::vector<SiemensExample> offsets() {
         "7 rapid X208 Y217 ~"}},
       {"AnIncrementAfterANewOffsetDependsOnSD42440",
        "G0 X10\nG55 G91\nX5",
-       {"p.mpf:5:1: error: an increment of X after a new work offset or tool length: settings "
-        "determine whether the change is included"}},
+       {"p.mpf:5:1: error: an increment of X after a change of work offset or tool length: "
+        "settings determine whether it includes the change"}},
       // [IS] p. 3-42: not modal, in the machine's coordinates.
       {"SUPAIsOneBlockInMachineCoordinates",
        "G0 X10 Y0\nSUPA X0\nX10",
@@ -112,11 +112,11 @@ std::vector<SiemensExample> lengths() {
        {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z310"}},
       {"AnArcDoesNotTakeANewLength",
        TOOL_1 "G0 X0 Y0 D1\nG2 X10 Y0 Z-1 I5 F60",
-       {"p.mpf:7:1: error: the tool length changes in Z: it acts with G0 or G1 only"}},
+       {"p.mpf:7:1: error: the tool length changes in Z; this requires G0 or G1"}},
       {"AnIncrementAfterANewLengthDependsOnSD42442",
        TOOL_1 "G0 Z10 D0\nD1\nZ=IC(1)",
-       {"p.mpf:8:1: error: an increment of Z after a new work offset or tool length: settings "
-        "determine whether the change is included"}},
+       {"p.mpf:8:1: error: an increment of Z after a change of work offset or tool length: "
+        "settings determine whether it includes the change"}},
       {"SUPAWithoutTheLength",
        TOOL_1 "G0 Z10 D1\nSUPA Z400\nZ10",
        {"3 tool 1", "6 rapid Z360 H1", "7 rapid Z400 machine", "8 rapid Z360 H1"},
@@ -146,11 +146,11 @@ std::vector<SiemensExample> lengths() {
        has_default_D<-1>},
       {"TheOldEdgeIsUnknown",
        "T1 M6\nG0 Z10",
-       {"p.mpf:4:1: error: Z needs a tool length, and D is unknown here"},
+       {"p.mpf:4:1: error: Z requires a tool length, but D is unknown here"},
        has_default_D<-1>},
       {"AMacroForgetsD",
        TOOL_1 "G0 Z10",
-       {"p.mpf:6:1: error: Z needs a tool length, and D is unknown here"},
+       {"p.mpf:6:1: error: Z requires a tool length, but D is unknown here"},
        has_macro},
       {"AMacroForgetsPositions",
        "G0 X10 Y0\n" TOOL_1 "G0 X10",
@@ -238,30 +238,30 @@ std::vector<SiemensExample> arcs() {
         "5 arc X100 Y210 Z320 F60 about X at 210 310 turns 1"}},
       {"CIPWithoutAllCoordinatesOfItsPoint",
        "G0 X5 Y0\nZ0 D0\nCIP X-5 I1=AC(0) J1=AC(5) F60",
-       {"p.mpf:5:1: error: CIP without K1"}},
+       {"p.mpf:5:1: error: CIP requires K1"}},
       {"CIPThroughAPointOnTheLine",
        "G0 X5 Y0\nZ0 D0\nCIP X-5 I1=AC(0) J1=AC(0) K1=AC(0) F60",
        {"p.mpf:5:1: error: the three points of CIP are collinear"}},
       {"CIPIsNoFullCircle",
        "G0 X5 Y0\nZ0 D0\nCIP X5 I1=AC(0) J1=AC(5) K1=AC(0) F60",
-       {"p.mpf:5:1: error: CIP with equal start and end: the circle is undetermined"}},
+       {"p.mpf:5:1: error: CIP: start and end coincide: the circle is undetermined"}},
       {"CIPInATiltedPlane",
        "G0 X5 Y0\nZ0 D0\nCIP X-5 Z1 I1=AC(0) J1=AC(5) K1=AC(0.5) F60",
-       {"p.mpf:5:1: error: CIP in a plane that is not spanned by two axes is not supported"}},
+       {"p.mpf:5:1: error: CIP in a plane not spanned by two axes is not supported"}},
       {"CIPDoesNotTakeANewLength",
        TOOL_1 "G0 X0 Y0 Z0 D0\nCIP X10 I1=AC(5) J1=AC(0) K1=AC(5) D1 F60",
-       {"p.mpf:7:1: error: the tool length changes in Z: it acts with G0 or G1 only"},
+       {"p.mpf:7:1: error: the tool length changes in Z; this requires G0 or G1"},
        stays_in_Z},
       {"PointsAreOfCIPOnly",
        "G0 X5 Y0\nG1 X0 I1=AC(0) F60",
-       {"p.mpf:4:1: error: I1, J1 and K1 are for CIP; G1 is active"}},
+       {"p.mpf:4:1: error: I1, J1 and K1 require CIP; G1 is active"}},
       {"NearlyAFullCircleIsRefused",
        "G0 X10 Y0\nG2 Y0.0001 I-10 F60",
        {"p.mpf:4:1: error: start and end of the arc nearly coincide: rounding decides between no "
         "motion and a full circle"}},
       {"AnArcNeedsAKnownStart",
        "G0 X10\nG2 X20 Y0 I5 F60",
-       {"p.mpf:4:1: error: the arc starts at an unknown position of Y"}},
+       {"p.mpf:4:1: error: the start position of the arc in Y is unknown"}},
   };
 }
 
@@ -276,7 +276,7 @@ std::vector<SiemensExample> feeds() {
       // [D] p. 8-139: G70 and G71 do not concern F.
       {"G71SaysNothingOfTheFeed",
        "G71 G0 X0\nG1 X1 F10",
-       {"p.mpf:4:1: error: with G70 and G71 F is in the basic unit of the control; use G700 or "
+       {"p.mpf:4:1: error: with G70 and G71, F is in the basic unit of the control; use G700 or "
         "G710"}},
       // [P] p. 108: 2 a minute is 0.5 min for the block.
       {"InverseTime", "G93 G1 X100 F2", {"3 feed X200 F21/min"}},
@@ -287,7 +287,7 @@ std::vector<SiemensExample> feeds() {
       // [V1] p. 2-4.
       {"AnotherKindOfFeedDeletesF",
        "G1 X10 F100\nG95\nX20",
-       {"p.mpf:5:1: error: no feed is programmed since G93, G94 or G95"}},
+       {"p.mpf:5:1: error: no feed rate has been programmed since G93, G94 or G95"}},
       {"TheSameKindOfFeedKeepsF", "G1 X10 F100\nG94 X20", {"3 feed X110 F100", "4 feed X120 F100"}},
       {"DwellDoesNotChangeTheFeed",
        "G1 X10 F100\nG4 F2.5\nX20",

@@ -31,9 +31,8 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":3:1: error: '$' is a sender command for grbl or TinyG, or a directive of NCPlot, not a "
-       "block; "
-       "remove the line"},
+       ":3:1: error: '$' is a sender command for grbl or TinyG, or an NCPlot directive, not a "
+       "block; remove the line"},
       {"bcnc_probe.nc",
        {},
        0,
@@ -47,8 +46,8 @@ const std::vector<Style>& styles() {
        0,
        0,
        0,
-       ":5:8: error: S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; "
-       "programs for milling are read here"},
+       ":5:8: error: S after M3 S0 or M4 S0 without another M3 or M4: a laser power; only milling "
+       "programs are supported"},
       {"cncjs_macro.nc", {2, 4}, 5, 0.0, 0.0},
       {"cncjs_variables.nc",
        {},

@@ -101,19 +101,21 @@ TEST(CannedCycle, TappingOutsideOfG17Warns) {
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(to_string(interpreter.warnings()[0].place), "p.nc:3:1");
   EXPECT_EQ(interpreter.warnings()[0].message,
-            "G84 outside G17 moves to swapped coordinates, as LinuxCNC 2.9 does; tap in G17");
+            "G84 outside G17 swaps coordinates, as in LinuxCNC 2.9; use G17 for tapping");
 }
 
 TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   const auto fault = [](const std::string& block) { return fault_of("F100\nG0 Z10\n" + block); };
-  EXPECT_EQ(fault("G81 X1 Z-1"), "p.nc:3:1: error: G81 needs R; no earlier G81 has set it");
-  EXPECT_EQ(fault("G81 X1 R1"), "p.nc:3:1: error: G81 needs Z; no earlier G81 has set it");
-  EXPECT_EQ(fault("G19 G81 Y1 R1"), "p.nc:3:5: error: G81 needs X; no earlier G81 has set it");
-  EXPECT_EQ(fault("G83 X1 Z-1 R1"), "p.nc:3:1: error: G83 needs Q; no earlier G83 has set it");
+  EXPECT_EQ(fault("G81 X1 Z-1"), "p.nc:3:1: error: G81 requires R, which no earlier G81 has set");
+  EXPECT_EQ(fault("G81 X1 R1"), "p.nc:3:1: error: G81 requires Z, which no earlier G81 has set");
+  EXPECT_EQ(fault("G19 G81 Y1 R1"),
+            "p.nc:3:5: error: G81 requires X, which no earlier G81 has set");
+  EXPECT_EQ(fault("G83 X1 Z-1 R1"),
+            "p.nc:3:1: error: G83 requires Q, which no earlier G83 has set");
   EXPECT_EQ(fault("G81 X1 Z-1 R1\nG82 Z-1 R1"),
-            "p.nc:4:1: error: G82 needs P; no earlier G82 has set it");
+            "p.nc:4:1: error: G82 requires P, which no earlier G82 has set");
   EXPECT_EQ(fault("G87 X1 Z-1 R1 I1 K0"),
-            "p.nc:3:1: error: G87 needs J; no earlier G87 has set it");
+            "p.nc:3:1: error: G87 requires J, which no earlier G87 has set");
   EXPECT_EQ(fault("G81 X1 Z-1 R-2"), "p.nc:3:12: error: G81: R = -2 is below Z = -1, the bottom");
   EXPECT_EQ(fault("G83 X1 Z-1 R1 Q0"), "p.nc:3:15: error: Q0; must be > 0");
   EXPECT_EQ(fault("G73 X1 Z-1 R1 Q-2"), "p.nc:3:15: error: Q-2; must be > 0");
@@ -122,31 +124,31 @@ TEST(CannedCycle, FaultsNameTheWordAndTheRule) {
   EXPECT_EQ(fault("G81 X1 Z-1 R1 L1.5"), "p.nc:3:15: error: L1.5; must be an integer");
   EXPECT_EQ(fault("G81 X1 Z-1 R1 C5"),
             "p.nc:3:15: error: C word with G81; rotary axes are not allowed in a cycle");
-  EXPECT_EQ(fault("G81 R1"), "p.nc:3:1: error: G81 without an axis word");
+  EXPECT_EQ(fault("G81 R1"), "p.nc:3:1: error: G81 requires an axis word");
   EXPECT_EQ(fault("G93 G81 X1 Z-1 R1 F1"),
-            "p.nc:3:5: error: G81 under G93; a cycle needs G94 or G95");
+            "p.nc:3:5: error: G81 with G93; a cycle requires G94 or G95");
   EXPECT_EQ(fault("F0\nG81 X1 Z-1 R1"),
-            "p.nc:4:1: error: G81 with zero feed; F0 is active, F must be > 0");
+            "p.nc:4:1: error: G81 with zero feed rate; F0 is active, F must be > 0");
   EXPECT_EQ(fault("G17.1 G81 X1 Z-1 R1"),
-            "p.nc:3:7: error: G81 in a plane of U, V and W (G17.1 G18.1 G19.1); use G17, G18 or "
-            "G19");
+            "p.nc:3:7: error: G81 is not supported in a plane of U, V and W (G17.1 G18.1 G19.1); "
+            "use G17, G18 or G19");
   EXPECT_EQ(fault("G84 X1 Z-1 R1"),
-            "p.nc:3:1: error: G84 with the spindle stopped; start it with M3");
+            "p.nc:3:1: error: G84 requires a running spindle; start it with M3");
   EXPECT_EQ(fault("G74 X1 Z-1 R1"),
-            "p.nc:3:1: error: G74 with the spindle stopped; start it with M4");
+            "p.nc:3:1: error: G74 requires a running spindle; start it with M4");
   EXPECT_EQ(fault("M4 G84 X1 Z-1 R1"),
-            "p.nc:3:4: error: G84 with the spindle running counter-clockwise (M4); it needs M3");
+            "p.nc:3:4: error: G84 with the spindle running counter-clockwise (M4); it requires M3");
   EXPECT_EQ(fault("M3 G74 X1 Z-1 R1"),
-            "p.nc:3:4: error: G74 with the spindle running clockwise (M3); it needs M4");
+            "p.nc:3:4: error: G74 with the spindle running clockwise (M3); it requires M4");
   EXPECT_EQ(fault("G86 X1 Z-1 R1 P1"),
-            "p.nc:3:1: error: G86 with the spindle stopped; start it with M3 or M4");
+            "p.nc:3:1: error: G86 requires a running spindle; start it with M3 or M4");
 }
 
 TEST(CannedCycle, OfEndlessPecksIsRefused) {
   EXPECT_EQ(fault_of("F100\nG83 X1 Z-1 R1 Q0.00001"),
-            "p.nc:2:15: error: G83 would make 600006 moves; must be <= 100000");
+            "p.nc:2:15: error: G83 would generate 600006 moves; must be <= 100000");
   EXPECT_EQ(fault_of("F100\nG81 X1 Z-1 R1 L10000"),
-            "p.nc:2:15: error: G81 would make 150000 moves; must be <= 100000");
+            "p.nc:2:15: error: G81 would generate 150000 moves; must be <= 100000");
   EXPECT_EQ(fault_of("F100\nG73 X1 Z-1000 R1 Q0.000000000000000001").substr(0, 21),
             "p.nc:2:18: error: G73");
 }

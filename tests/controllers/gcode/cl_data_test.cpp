@@ -139,8 +139,8 @@ TEST(ClData, LengthOfTheAxisOnBothSidesOfTheTolerance) {
   EXPECT_TRUE(apt(inside).warnings.empty());
   const ClData data = apt("\n" + outside);
   EXPECT_EQ(warnings_of(data),
-            std::vector<std::string>({"p.cls:2:12: warning: tool axis has length "
-                                      "1.0001; taken as a unit vector"}));
+            std::vector<std::string>(
+                {"p.cls:2:12: warning: tool axis has length 1.0001; normalised to a unit vector"}));
   expect_pose(data.records[0], {0, 0, 0}, {0, 0, 1});
 }
 
@@ -182,20 +182,21 @@ TEST(ClData, WhatIsWrittenIsReadInBothForms) {
 }
 
 TEST(ClData, WhatIsSkippedIsSaid) {
-  EXPECT_EQ(warnings_of(apt("MACHIN/FANUC\nPAINT/PATH\nPAINT/SPEED,10\nPAINT/COLOR,3\n"
-                            "COOLNT/ON,THRU\nLOADTL/1,ADJUST,1\nGOTO/0,0,0\nFINI\nGOTO/1,1,1\n")),
-            std::vector<std::string>({"p.cls:1:1: warning: MACHIN is ignored",
-                                      "p.cls:2:1: warning: PAINT is ignored, here and 2 more times",
-                                      "p.cls:5:11: warning: 'THRU' of COOLNT is ignored",
-                                      "p.cls:6:10: warning: 'ADJUST' of LOADTL is ignored",
-                                      "p.cls:6:17: warning: '1' of LOADTL is ignored",
-                                      "p.cls:9:1: warning: text after FINI is ignored"}));
+  EXPECT_EQ(
+      warnings_of(apt("MACHIN/FANUC\nPAINT/PATH\nPAINT/SPEED,10\nPAINT/COLOR,3\n"
+                      "COOLNT/ON,THRU\nLOADTL/1,ADJUST,1\nGOTO/0,0,0\nFINI\nGOTO/1,1,1\n")),
+      std::vector<std::string>({"p.cls:1:1: warning: MACHIN is ignored",
+                                "p.cls:2:1: warning: PAINT is ignored, here and in 2 other lines",
+                                "p.cls:5:11: warning: 'THRU' of COOLNT is ignored",
+                                "p.cls:6:10: warning: 'ADJUST' of LOADTL is ignored",
+                                "p.cls:6:17: warning: '1' of LOADTL is ignored",
+                                "p.cls:9:1: warning: text after FINI is ignored"}));
 }
 
 TEST(ClData, FaultsOfApt) {
   EXPECT_EQ(apt_fault("GOTO/1,2,3,0,0,0\n"),
-            "p.cls:1:12: error: tool axis (0, 0, 0) has no direction");
-  EXPECT_EQ(apt_fault("GOTO/1,2\n"), "p.cls:1:1: error: GOTO needs x,y,z or x,y,z,i,j,k");
+            "p.cls:1:12: error: tool axis (0, 0, 0) has zero length");
+  EXPECT_EQ(apt_fault("GOTO/1,2\n"), "p.cls:1:1: error: GOTO requires x,y,z or x,y,z,i,j,k");
   EXPECT_EQ(apt_fault("GOTO/1,two,3\n"), "p.cls:1:8: error: 'two' is not a number");
   EXPECT_EQ(apt_fault("GOTO/1,,3\n"), "p.cls:1:8: error: a number is missing");
   EXPECT_EQ(apt_fault("GOTO/1,2,3,$\n0,nan,1\n"), "p.cls:2:3: error: 'nan' is not a number");
@@ -212,27 +213,27 @@ TEST(ClData, FaultsOfApt) {
               "p.cls:1:1: error: " + name +
                   " changes the tool path and is not supported; output GOTO locations instead");
   }
-  EXPECT_EQ(apt_fault("FEDRAT/0,MMPM\n"), "p.cls:1:8: error: a feed must be > 0");
-  EXPECT_EQ(apt_fault("FEDRAT/MMPM\n"), "p.cls:1:1: error: FEDRAT needs a number");
+  EXPECT_EQ(apt_fault("FEDRAT/0,MMPM\n"), "p.cls:1:8: error: the feed rate must be > 0");
+  EXPECT_EQ(apt_fault("FEDRAT/MMPM\n"), "p.cls:1:1: error: FEDRAT requires a number");
   EXPECT_EQ(apt_fault("FEDRAT/10,MPM\n"),
             "p.cls:1:11: error: unknown unit 'MPM' of FEDRAT; must be one of MMPM, IPM, MMPR, IPR, "
             "PERMIN, PERREV");
   EXPECT_EQ(apt_fault("FEDRAT/0.1,MMPR\nGOTO/0,0,0\n"),
-            "p.cls:2:1: error: a feed per revolution needs a spindle speed (SPINDL)");
-  EXPECT_EQ(apt_fault("UNITS/CM\n"), "p.cls:1:1: error: UNITS needs MM or INCH");
-  EXPECT_EQ(apt_fault("SPINDL/ON\n"), "p.cls:1:1: error: SPINDL needs a speed");
+            "p.cls:2:1: error: a feed per revolution requires a spindle speed (SPINDL)");
+  EXPECT_EQ(apt_fault("UNITS/CM\n"), "p.cls:1:1: error: UNITS requires MM or INCH");
+  EXPECT_EQ(apt_fault("SPINDL/ON\n"), "p.cls:1:1: error: SPINDL requires a speed");
   EXPECT_EQ(apt_fault("SPINDL/-5,CLW\n"), "p.cls:1:8: error: the spindle speed must be > 0");
-  EXPECT_EQ(
-      apt_fault("SPINDL/100,SMM\n"),
-      "p.cls:1:12: error: a cutting speed (SFM, SMM) is not supported; give the speed in RPM");
+  EXPECT_EQ(apt_fault("SPINDL/100,SMM\n"),
+            "p.cls:1:12: error: a cutting speed (SFM, SMM) is not supported; program the spindle "
+            "speed in RPM");
   EXPECT_EQ(apt_fault("LOADTL/1.5\n"),
             "p.cls:1:8: error: the tool number must be an integer >= 1 and <= 99999");
   EXPECT_EQ(apt_fault("DELAY/-1\n"), "p.cls:1:7: error: DELAY must be >= 0");
   EXPECT_EQ(apt_fault("RAPID/1\n"), "p.cls:1:1: error: RAPID does not accept parameters");
   EXPECT_EQ(apt_fault("/1\n"), "p.cls:1:1: error: a word is missing before '/'");
   EXPECT_EQ(apt_fault("GOTO/0,0,0,$"),
-            "p.cls:1: error: the last line ends with the continuation '$', but no line follows\n"
-            "p.cls:1:1: error: GOTO needs x,y,z or x,y,z,i,j,k");
+            "p.cls:1: error: the last line ends with the continuation '$', but no line "
+            "follows\np.cls:1:1: error: GOTO requires x,y,z or x,y,z,i,j,k");
   EXPECT_EQ(apt_fault(std::string_view("GOTO/0,\0,0", 10)),
             "p.cls:1:8: error: byte 0x00 is not allowed");
   EXPECT_EQ(apt_fault("UNITS/MM\n"), "p.cls: error: contains no cutter location");
@@ -248,10 +249,10 @@ TEST(ClData, FaultsOfCsv) {
   EXPECT_EQ(csv_fault("x,y,z,x_mm,i,j,k\n"), "p.csv:1:7: error: column x appears twice");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2,3,0,0\n"), "p.csv:2:1: error: 5 values; the header has 6");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2,3,0,0,0\n"),
-            "p.csv:2:7: error: tool axis (0, 0, 0) has no direction");
+            "p.csv:2:7: error: tool axis (0, 0, 0) has zero length");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n1,2;5,3,0,0,1\n"), "p.csv:2:3: error: '2;5' is not a number");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k,feed\n1,2,3,0,0,1,0\n"),
-            "p.csv:2:13: error: a feed must be > 0");
+            "p.csv:2:13: error: the feed rate must be > 0");
   EXPECT_EQ(csv_fault("x,y,z,i,j,k\n"), "p.csv: error: contains no cutter location");
 }
 
@@ -289,9 +290,8 @@ TEST(ClData, WhateverIsReadIsALocationOrAFaultWithItsLine) {
 
 TEST(ClData, AllFaultsAreToldAtOnce) {
   EXPECT_EQ(apt_fault("GOTO/1\nUNITS/CM\nGOTO/0,0,0,0,0,0\n"),
-            "p.cls:1:1: error: GOTO needs x,y,z or x,y,z,i,j,k\n"
-            "p.cls:2:1: error: UNITS needs MM or INCH\n"
-            "p.cls:3:12: error: tool axis (0, 0, 0) has no direction");
+            "p.cls:1:1: error: GOTO requires x,y,z or x,y,z,i,j,k\np.cls:2:1: error: UNITS "
+            "requires MM or INCH\np.cls:3:12: error: tool axis (0, 0, 0) has zero length");
 }
 
 TEST(ClApt, EndOfACycleThatNeverWasIsNothing) {
@@ -312,7 +312,7 @@ TEST(ClData, WarningsOfWhatIsRefusedAreKept) {
     std::vector<Warning> warnings;
     EXPECT_THROW(read_cl_data(text, file, &warnings), InputError);
     ASSERT_EQ(warnings.size(), 1u) << file;
-    EXPECT_EQ(warnings[0].message, "tool axis has length 2; taken as a unit vector");
+    EXPECT_EQ(warnings[0].message, "tool axis has length 2; normalised to a unit vector");
   }
 }
 

@@ -102,7 +102,7 @@ TEST(CompensatedProgram, Warnings) {
     }
     return all;
   };
-  EXPECT_EQ(warning("G41"), "1:1: G41: the tool has no diameter; nothing is compensated");
+  EXPECT_EQ(warning("G41"), "1:1: G41: the tool diameter is 0; the path is not compensated");
   EXPECT_EQ(warning("G42 D1 L3"), "1:8: L has no effect with G42");
   EXPECT_EQ(warning("G41.1 D1 R3"), "1:10: R has no effect with G41.1");
   EXPECT_EQ(warning("G41 D1\nG92.1"),
@@ -115,22 +115,24 @@ TEST(CompensatedProgram, Messages) {
   const auto expect = [&](const std::string& text, const std::string& message) {
     EXPECT_EQ(fault_of(text, setup), message.empty() ? "" : "p.nc:" + message) << text;
   };
-  expect("G19 G41 D1", "1:5: error: G41 in the YZ plane; must be in G17 or G18");
-  expect("G41 D1\nG42.1 D1", "2:1: error: G42.1 with cutter compensation active; G40 first");
-  expect("G41.1", "1:1: error: G41.1 needs a D word (diameter of the tool)");
+  expect("G19 G41 D1", "1:5: error: G41 is not allowed in the YZ plane; use G17 or G18");
+  expect("G41 D1\nG42.1 D1",
+         "2:1: error: G42.1 is not allowed with cutter compensation active; program G40 first");
+  expect("G41.1", "1:1: error: G41.1 requires a D word (tool diameter)");
   expect("G41 D1.5", "1:5: error: D1.5; must be an integer");
   expect("G41 D-1", "1:5: error: G41 D-1; must be >= 0");
   expect("G41 D7", "1:5: error: D7 is not in the tool table");
   expect("G41.1 D2 L0",
-         "1:10: error: L with G41.1 in the XY plane; it is the orientation of a turning tool, "
-         "which needs G18");
+         "1:10: error: L with G41.1 in the XY plane; L, the orientation of a turning tool, "
+         "requires G18");
   const std::string turning =
-      "error: turning tool of orientation 2; cutter compensation takes round tools only (0 or 9)";
+      "error: turning tool of orientation 2; cutter compensation supports round tools only (0 or "
+      "9)";
   expect("G18 G41.1 D2 L2", "1:14: " + turning);
   expect("G18 G41.1 D2 L9", "");
   expect("G18 G41 D4", "1:9: " + turning);
   expect("G41 D5", "");
-  expect("G43.4 H1\nG41 D1", "2:1: error: G41 under tool-centre-point control; G49 first");
+  expect("G43.4 H1\nG41 D1", "2:1: error: G41 is not allowed under TCP control; program G49 first");
   const std::vector<std::string> refused = {
       "G18",   "M6",     "M48",    "M49",          "G43 H1",       "G49",   "G54",
       "G61",   "G64",    "G98",    "G68.2",        "G28",          "G28.1", "G30",
@@ -138,7 +140,8 @@ TEST(CompensatedProgram, Messages) {
   for (const std::string& code : refused) {
     const std::string name = code.substr(0, code.find(' '));
     expect("G41 D1\n" + code,
-           "2:1: error: " + name + " with cutter compensation active; G40 first");
+           "2:1: error: " + name +
+               " is not allowed with cutter compensation active; program G40 first");
   }
   const std::vector<std::string> taken = {"G17",   "G4 P1",        "G91",    "G90.1", "G93",
                                           "S1 M3", "M8",           "T1",     "M0",    "G80",
@@ -147,12 +150,13 @@ TEST(CompensatedProgram, Messages) {
   expect("G41 D1\nG0",
          "2:1: error: the first move with cutter compensation is 0.0000 mm long; must be longer "
          "than the tool radius, 4.0000 mm");
-  expect(kEntry + "G53 G0 X0", "5:1: error: G53 with cutter compensation active; G40 first");
+  expect(kEntry + "G53 G0 X0",
+         "5:1: error: G53 is not allowed with cutter compensation active; program G40 first");
   expect(kEntry + "X20\nG40\nG3 X0 Y20 R30",
          "7:1: error: G3 is the first move after G40; must be G0 or G1");
   expect(kEntry + "X20\nG40\nG1 X20\nG3 X0 Y20 R30", "");
   expect(kEntry + "X20\n#1=[1+#5421]",
-         "6: error: #5421 with cutter compensation active: it is not known yet; G40 first");
+         "6: error: #5421 is unknown with cutter compensation active; program G40 first");
   const std::string gouge =
       "the tool cannot reach the line in the concave corner without gouging (move of line 6)";
   expect(kEntry + "X20\nY3\nX0", "7:1: error: " + gouge);

@@ -209,23 +209,22 @@ TEST(WordDifferences, AreWarnedOfInOverridesWhichMoveNothing) {
   EXPECT_EQ(warnings_of(program),
             std::vector<std::string>(
                 {"p.nc:1:1: error: " + both_readings(WordDifference::override_codes) +
-                 "; neither moves an axis while the program runs"}));
+                 "; no axis moves while the program runs"}));
 }
 
 TEST(WordDifferences, AreWarnedOfInALoneG53BeforeAMoveWithoutAWorkOffset) {
   EXPECT_EQ(moves_of("G53\nG0 X1.\nM2\n", setup_for(Reader::any)),
             moves_of("G0 X1\nM2\n", setup_for(Reader::linuxcnc)));
-  EXPECT_EQ(
-      warnings_of("G53 G0\nX1.\nM2\n"),
-      std::vector<std::string>(
-          {"p.nc:2:1: error: G53 without axis words: read as no effect (LinuxCNC, grbl, Fanuc, "
-           "Haas, Mach), as all of these controls would read the program"}));
+  EXPECT_EQ(warnings_of("G53 G0\nX1.\nM2\n"),
+            std::vector<std::string>(
+                {"p.nc:2:1: error: G53 without axis words: read as no effect (LinuxCNC, grbl, "
+                 "Fanuc, Haas, Mach), as on all controls that accept this program"}));
   EXPECT_TRUE(warnings_of("G53 G0\nG55\nX1.\nG0 G53 G54 G90\nX1.\nM2\n").empty());
 }
 
 TEST(WordDifferences, AreRefusedInG53UnderG91) {
   const std::string refusal =
-      "G53 under G91: a machine position (LinuxCNC refuses it), or a distance (Mitsubishi M700V p. "
+      "G53 with G91: a machine position (an error on LinuxCNC), or a distance (Mitsubishi M700V p. "
       "508); program G90";
   EXPECT_EQ(moves_of("G91\nG53 G0 Z0\nM2\n", setup_for(Reader::any)),
             "p.nc:2:1: error: " + refusal);
@@ -244,17 +243,17 @@ TEST(MachineFunctions, BecomeCommentsWithAWarning) {
   ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 3u);
   EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
             sentence(ReaderRule::machine_function) +
-                "; M10 becomes a comment, also where the program is rewritten");
+                "; M10 becomes a comment, also in rewritten programs");
   EXPECT_EQ(to_string(besides_unit(interpreter.warnings())[1]),
-            "p.nc:2:1: error: M88 becomes a comment, too");
+            "p.nc:2:1: error: M88 also becomes a comment");
   EXPECT_EQ(to_string(besides_unit(interpreter.warnings())[2]),
-            "p.nc:3:20: error: M11 becomes a comment, too");
+            "p.nc:3:20: error: M11 also becomes a comment");
 }
 
 TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
   EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::any)),
-            "p.nc:1:1: error: unknown M code M82: a function of the machine builder; some of them "
-            "mirror or move an axis. If M82 does not, pass --ignore-code M82, or remove it");
+            "p.nc:1:1: error: unknown M code M82: a machine-builder function, which may mirror or "
+            "move an axis; if M82 does not, pass --ignore-code M82, or remove it");
   EXPECT_EQ(moves_of("M82\nG0 X1.\nM2\n", setup_for(Reader::grbl)),
             "p.nc:1:1: error: M82 is not supported by grbl");
   ProgramSetup setup = setup_for(Reader::any);
@@ -267,7 +266,7 @@ TEST(MachineFunctions, OfTheBuilderAreRefusedUnlessTheUserNamesThem) {
 
 TEST(MachineFunctions, MotorsAreSwitchedOnByTheUsersWord) {
   EXPECT_EQ(moves_of("M17\nG0 X1.\nM2\n", setup_for(Reader::any)),
-            "p.nc:1:1: error: M17: ends a subprogram of Siemens (write M99), or switches motors on "
+            "p.nc:1:1: error: M17: ends a Siemens subprogram (use M99), or switches motors on "
             "(pass --ignore-code M17, or remove it)");
   ProgramSetup setup = setup_for(Reader::any);
   setup.ignored_codes = {17};
@@ -291,7 +290,7 @@ TEST(Dwells, InWordsOfOtherControlsAreUnknown) {
   EXPECT_TRUE(std::isnan(dwell->value));
   ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 1u);
   EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
-            std::string(kBoth) + "; the dwell time stays unknown");
+            std::string(kBoth) + "; the dwell time is unknown");
 }
 
 // Clamps of the fifth axis on Haas; no control moves an axis by them.
@@ -301,8 +300,8 @@ TEST(MachineFunctions, WithTwoMeaningsOfWhichNoneMovesAnAxisBecomeComments) {
   const std::vector<std::string> found = warnings_of("M13\nG0 X1. C2.\nM2\n");
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[1],
-            "p.nc:1:1: error: M13: the brake of the fifth axis (Haas), or the spindle or the "
-            "coolant of other builders; neither moves an axis");
+            "p.nc:1:1: error: M13: the brake of the fifth axis (Haas), or the spindle or coolant "
+            "on other machines; no axis moves");
 }
 
 // G9 stops at the end of its block only.
@@ -323,9 +322,9 @@ TEST(CutterCompensation, TellsOfAnEntryThatOtherControlsMakeInAnotherWay) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0],
             "p.nc:4:1: error: the entry of cutter compensation follows LinuxCNC: the tool ends "
-            "line 3 1.4142 mm away from where Fanuc and Haas end it, next to the start of the next "
-            "move (or within two moves: parameter 5003, setting 43); an entry followed by a move "
-            "in the same direction is the same for all");
+            "line 3 1.4142 mm away from its end point on Fanuc and Haas, which is normal to the "
+            "start of the next move (or within two moves: parameter 5003, setting 43); an entry "
+            "followed by a move in the same direction is identical on all");
   EXPECT_TRUE(warnings_of(head + "Y10.\nG40 X-10.\nM2\n", setup_for(Reader::any)).empty());
   ProgramSetup strict = setup_for(Reader::linuxcnc);
   Interpreter interpreter(head + "X10.\nG40 Y-10.\nM2\n", "p.nc", strict);
@@ -373,7 +372,7 @@ TEST(WordDifferences, LeaveADwellUnknownThatIsNotNeeded) {
   EXPECT_EQ(dwells[2], 3.0);
   ASSERT_EQ(besides_unit(interpreter.warnings()).size(), 2u);
   EXPECT_EQ(besides_unit(interpreter.warnings())[0].message,
-            both_readings(WordDifference::dwell_unit) + "; the dwell time stays unknown");
+            both_readings(WordDifference::dwell_unit) + "; the dwell time is unknown");
 }
 
 // From the centre to +X, once round, and back; the motion code in force stays.
@@ -385,7 +384,7 @@ TEST(CircularPocket, OfMachBeginsAtPlusX) {
   EXPECT_EQ(moves_of("G91 G13 I4. F300.\nG1 X1.\nM2\n", setup),
             moves_of("G91 F300\nG1 X4\nG3 I-4\nG1 X-4\nX1\nM2\n", setup_for(Reader::linuxcnc)));
   EXPECT_EQ(moves_of("G12 I-4. F300.\nM2\n", setup),
-            "p.nc:1:1: error: G12 needs I > 0, G17, and no axis words");
+            "p.nc:1:1: error: G12 requires I > 0, G17, and no axis words");
 }
 
 }  // namespace

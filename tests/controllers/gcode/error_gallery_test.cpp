@@ -51,14 +51,14 @@ TEST(ErrorGallery, Values) {
       {"G0 X[1 FOO 2]", "1:8: error: expected an operator or ']', found 'F'"},
       {"#1=SINE[3]", "1:4: error: unknown function 'SINE'; did you mean 'SIN'?"},
       {"#1=SIN 5", "1:8: error: expected '[' after SIN"},
-      {"#1=ATAN[1]", "1:11: error: expected '/': ATAN needs two arguments, ATAN[y]/[x]"},
-      {"#1=EXISTS[5]", "1:11: error: EXISTS needs a parameter, as in EXISTS[#<name>]"},
+      {"#1=ATAN[1]", "1:11: error: expected '/': ATAN requires two arguments, ATAN[y]/[x]"},
+      {"#1=EXISTS[5]", "1:11: error: EXISTS requires a parameter, as in EXISTS[#<name>]"},
       {"#1=[1 / 0]", "1:7: error: 1 / 0: division by zero"},
       {"#1=[7 MOD 0]", "1:7: error: 7 MOD 0: division by zero"},
       {"#1=ACOS[1.5]", "1:4: error: ACOS[1.5]: argument must be in -1 ... 1"},
       {"#1=SQRT[-1]", "1:4: error: SQRT[-1]: argument must be >= 0"},
       {"#1=LN[0]", "1:4: error: LN[0]: argument must be > 0"},
-      {"#1=[[-8] ** 0.5]", "1:10: error: -8 ** 0.5: a negative number needs an integer exponent"},
+      {"#1=[[-8] ** 0.5]", "1:10: error: -8 ** 0.5: a negative base requires an integer exponent"},
       {"#1=EXP[1000]", "1:4: error: the result is not a finite number"},
   });
 }
@@ -98,17 +98,17 @@ TEST(ErrorGallery, WordsAndCodes) {
 TEST(ErrorGallery, Motion) {
   expect_gallery({
       {"X1", "1:1: error: axis words, but no active G code uses them"},
-      {"G80 X1", "1:5: error: axis words with G80"},
-      {"G28 G1 X1", "1:5: error: G28 and G1 in one block: both use the axis words"},
-      {"G1 X1", "1:1: error: G1 with zero feed; no F is active"},
-      {"F9\nG94\nG1 X1", "3:1: error: G1 with zero feed; no F is active"},
-      {"G93 F1\nG1 X1", "2:1: error: G1 without F; G93 needs one in every block"},
+      {"G80 X1", "1:5: error: axis words are not allowed with G80"},
+      {"G28 G1 X1", "1:5: error: G28 and G1 are not allowed in one block: both use the axis words"},
+      {"G1 X1", "1:1: error: G1 with zero feed rate; no F is active"},
+      {"F9\nG94\nG1 X1", "3:1: error: G1 with zero feed rate; no F is active"},
+      {"G93 F1\nG1 X1", "2:1: error: G1 without F; G93 requires F in every block"},
       {"F-1", "1:1: error: F-1; must be >= 0"},
       {"S-1", "1:1: error: S-1; must be >= 0"},
-      {"G4", "1:1: error: G4 needs a P word (seconds)"},
+      {"G4", "1:1: error: G4 requires a P word (seconds)"},
       {"G4 P-1", "1:4: error: G4 P-1; must be >= 0"},
       {"G53 X1", "1:5: error: axis words, but no active G code uses them"},
-      {"G53 G2 X1 I1 F1", "1:1: error: G53 needs G0 or G1"},
+      {"G53 G2 X1 I1 F1", "1:1: error: G53 requires G0 or G1"},
       {"G91 G53 G0 X1", "1:5: error: G53 with G91; machine coordinates are absolute"},
   });
 }
@@ -117,9 +117,9 @@ TEST(ErrorGallery, Arcs) {
   expect_gallery({
       {"F1 G2 X2 I1 R1", "1:10: error: I and R in one G2 block"},
       {"F1 G2 X2 I1 K1", "1:13: error: K in an arc of the XY plane"},
-      {"F1 G2 X2", "1:4: error: G2 needs R, I or J"},
-      {"F1 G2 Z5 R3", "1:4: error: G2 with R needs X or Y"},
-      {"F1 G90.1 G2 X2 I1", "1:10: error: G2 needs J: with G90.1 the centre is absolute"},
+      {"F1 G2 X2", "1:4: error: G2 requires R, I or J"},
+      {"F1 G2 Z5 R3", "1:4: error: G2 with R requires X or Y"},
+      {"F1 G90.1 G2 X2 I1", "1:10: error: G2 requires J: with G90.1 the centre is absolute"},
       {"F1 G2 X2 I0",
        "1:4: error: G2: radius is zero: 0.0000 mm at the start, 2.0000 mm at the end"},
       {"F1 G2 X0 R1", "1:4: error: G2: an arc with R cannot end where it starts; use I, J, K"},
@@ -135,12 +135,13 @@ TEST(ErrorGallery, ToolsAndOffsets) {
       {"T1.5", "1:1: error: T1.5; must be an integer"},
       {"T-1", "1:1: error: T-1; must be >= 0"},
       {"G43 H98", "1:5: error: H98 is not in the tool table"},
-      {"G10 P1 X1", "1:1: error: G10 needs an L word (L0 L1 L2 L10 L11 L20)"},
+      {"G10 P1 X1", "1:1: error: G10 requires an L word (L0 L1 L2 L10 L11 L20)"},
       {"G10 L3 P1 X1", "1:5: error: G10 L3; must be L0, L1, L2, L10, L11 or L20"},
-      {"G10 L2 X1", "1:1: error: G10 L2 needs a P word (0 ... 9)"},
+      {"G10 L2 X1", "1:1: error: G10 L2 requires a P word (0 ... 9)"},
       {"G10 L2 P10 X1", "1:8: error: G10 L2 P10; must be in 0 ... 9"},
-      {"G10 L20 P1 X1 R5", "1:15: error: R word with G10 L20; only G10 L2 sets a rotation"},
-      {"G92", "1:1: error: G92 needs an axis word"},
+      {"G10 L20 P1 X1 R5",
+       "1:15: error: R word is not allowed with G10 L20; only G10 L2 sets a rotation"},
+      {"G92", "1:1: error: G92 requires an axis word"},
   });
 }
 
@@ -159,7 +160,7 @@ TEST(ErrorGallery, EndOfProgram) {
   EXPECT_EQ(fault_of_whole("%\nG0 X1"),
             "p.nc:2: error: the program ends without M2, M30 or a closing '%'");
   EXPECT_EQ(fault_of_whole("G0 X1\n%\n"),
-            "p.nc:2:1: error: '%' ends a program only if another '%' is its first line");
+            "p.nc:2:1: error: '%' ends a program only if its first line is also '%'");
   EXPECT_EQ(fault_of_whole("G0 X1\nG1 X[2"), "p.nc:2:5: error: '[' is not closed; ']' is missing");
 }
 
@@ -186,10 +187,10 @@ TEST(ErrorGallery, ToolTable) {
     }
   };
   EXPECT_EQ(fault("T1 Z5 ; comment\n\n;\nT1 Z6"), "t.tbl:4:1: error: tool T1 appears twice");
-  EXPECT_EQ(fault("P1 Z5"), "t.tbl:1:1: error: tool without a number (T word)");
+  EXPECT_EQ(fault("P1 Z5"), "t.tbl:1:1: error: the tool number (T word) is missing");
   EXPECT_EQ(fault("T1 Zx\nT2 W5"),
-            "t.tbl:1:4: error: Z must be followed by a number\n"
-            "t.tbl:2:4: error: W5; must be 0: no axis W");
+            "t.tbl:1:4: error: Z must be followed by a number\nt.tbl:2:4: error: W5; must be 0: "
+            "axis W is not supported");
   EXPECT_EQ(fault("T1.5"), "t.tbl:1:1: error: T1.5; must be an integer in 0 ... 1000000");
 }
 
@@ -199,11 +200,10 @@ TEST(CheckProgram, GivesEverySyntaxFaultAndTheFirstOther) {
   std::string text;
   for (const Fault& fault : faults) text += to_string(fault) + "\n";
   EXPECT_EQ(text,
-            "p.nc:2:1: error: G1 with zero feed; no F is active\n"
-            "p.nc:3:5: error: comment is not closed; ')' is missing\n"
-            "p.nc:4:4: error: G2 and G3 in one block (same modal group)\n"
-            "p.nc:6:1: error: unknown G code G99.5\n"
-            "p.nc:7:5: error: '[' is not closed; ']' is missing\n");
+            "p.nc:2:1: error: G1 with zero feed rate; no F is active\np.nc:3:5: error: comment is "
+            "not closed; ')' is missing\np.nc:4:4: error: G2 and G3 in one block (same modal "
+            "group)\np.nc:6:1: error: unknown G code G99.5\np.nc:7:5: error: '[' is not closed; "
+            "']' is missing\n");
   EXPECT_TRUE(check_program("G0 X1\nM2\n", "p.nc", {}).empty());
 }
 

@@ -44,12 +44,12 @@ TEST(FeedPerRevolution, HoldsUnderCutterCompensation) {
 TEST(FeedPerRevolution, NeedsASpeed) {
   EXPECT_EQ(fault_of("G95 F1\nG1 X1"),
             "p.nc:2:1: error: G1 under G95 with zero spindle speed; no S is active");
-  EXPECT_EQ(fault_of("G95 S100\nG1 X1"), "p.nc:2:1: error: G1 with zero feed; no F is active");
+  EXPECT_EQ(fault_of("G95 S100\nG1 X1"), "p.nc:2:1: error: G1 with zero feed rate; no F is active");
 }
 
 TEST(FeedPerRevolution, DropsTheFeedOfTheModeBefore) {
   EXPECT_EQ(fault_of("G1 X1 F100\nS100\nG95 X2"),
-            "p.nc:3:5: error: G1 with zero feed; no F is active");
+            "p.nc:3:5: error: G1 with zero feed rate; no F is active");
 }
 
 TEST(FeedPerRevolution, IsPrintedAndReadAgain) {

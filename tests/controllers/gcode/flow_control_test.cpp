@@ -108,7 +108,7 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
     return text + "o11 sub\no11 endsub\no1 call";
   }();
   const std::map<std::string, std::string> faults = {
-      {"o1 endsub", "p.nc:1:1: error: no subroutine O<1> starts here"},
+      {"o1 endsub", "p.nc:1:1: error: subroutine O<1> has not started"},
       {"o1 sub\no2 sub\no2 endsub\no1 endsub\no1 call",
        "p.nc:2:1: error: a subroutine within the definition of O<1>"},
       {"o1 sub\no1 endsub\no1 sub\no1 endsub",
@@ -116,12 +116,12 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
       {"o1 call\no1 sub\no1 endsub",
        "p.nc:2:1: error: the program runs into O<1>, which it has already called"},
       {"o1 sub\no1 endsub x\no1 call",
-       "p.nc:2:11: error: unexpected 'X' after ENDSUB; an O-word needs a separate block"},
+       "p.nc:2:11: error: unexpected 'X' after ENDSUB; an O-word must be in a separate block"},
       {"o1 sub\no1 endsub\nM98 P1",
        "p.nc:1:1: error: O<1> is a subroutine; call it with O<1> CALL; in O<1>, called in p.nc:3"},
       {"o<hole> call\nG0 X1",
-       "p.nc:3: error: no subroutine O<hole> up to here, which line 1 calls, and no file hole.ngc "
-       "(--subs names its folder)"},
+       "p.nc:3: error: subroutine O<hole>, called in line 1, not found up to the end of the "
+       "program, nor a file hole.ngc (set its folder with --subs)"},
       {"o1.5 sub", "p.nc:1:1: error: O1.5; must be an integer"},
       {"o1 frob", "p.nc:1:4: error: unknown keyword 'FROB' after an O-word"},
       {"o1 cal", "p.nc:1:4: error: unknown keyword 'CAL' after an O-word; did you mean 'CALL'?"},
@@ -137,8 +137,7 @@ TEST(Subroutine, RefusesWhatHasNoMeaning) {
 TEST(LocalSubprogram, IsFoundAtFaultWhereItIsCalled) {
   ProgramSetup setup = usual_setup();
   setup.reader = Reader::haas;
-  EXPECT_EQ(fault_of("G0 X1. M97 P30\nM2", setup),
-            "p.nc:1:8: error: M97 P30: there is no block N30");
+  EXPECT_EQ(fault_of("G0 X1. M97 P30\nM2", setup), "p.nc:1:8: error: M97 P30: block N30 not found");
 }
 
 TEST(Subprogram, IsRepeatedByL) {
@@ -152,7 +151,7 @@ TEST(Subprogram, EndsWithM99WhichEndsAProgram) {
   EXPECT_EQ(moves.size(), 2U);
   EXPECT_EQ(moves.back().kind, MoveKind::end);
   EXPECT_EQ(fault_of("o1 sub\nM99\no1 endsub\no1 call"),
-            "p.nc:2:1: error: a subroutine ends with ENDSUB or RETURN, not with M99; in O<1>, "
+            "p.nc:2:1: error: a subroutine must end with ENDSUB or RETURN, not with M99; in O<1>, "
             "called in p.nc:4");
 }
 
@@ -250,12 +249,12 @@ TEST(Loop, WithoutEndIsStopped) {
   setup.most_jumps = 1000;
   EXPECT_EQ(fault_of("o1 while [1]\no1 endwhile", setup),
             "p.nc:2:1: error: 1001 loop iterations and subroutine calls, 2000 lines; the program "
-            "looks endless");
+            "appears to loop endlessly");
   std::string body;
   for (int i = 0; i < 98; ++i) body += "G1 X1 F1\n";
   EXPECT_EQ(fault_of("o1 while [1]\n" + body + "o1 endwhile", setup),
             "p.nc:100:1: error: 102 loop iterations and subroutine calls, 10100 lines; the program "
-            "looks endless");
+            "appears to loop endlessly");
 }
 
 }  // namespace

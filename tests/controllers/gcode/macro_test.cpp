@@ -28,17 +28,18 @@ std::string refusal(const std::string& program, Reader reader = Reader::fanuc) {
 
 TEST(Macro, NothingIsReadInSilenceThatIsNoMacroB) {
   EXPECT_EQ(refusal("#1=2**3\nM2\n"), "1:6: error: expected a value");
-  EXPECT_EQ(refusal("#1=5. X1.\nM2\n"),
-            "1:7: error: unexpected 'X' after a macro statement, which needs a separate block");
+  EXPECT_EQ(
+      refusal("#1=5. X1.\nM2\n"),
+      "1:7: error: unexpected 'X' after a macro statement, which must be in a separate block");
   EXPECT_EQ(refusal("G0 X#1+5.\nM2\n"),
             "1:7: error: unexpected '+': an expression of several terms must be in brackets, as in "
             "X[#1+5]");
-  EXPECT_EQ(refusal("##1=5.\nM2\n"), "1:2: error: ## is not read: write #[#1]");
+  EXPECT_EQ(refusal("##1=5.\nM2\n"), "1:2: error: ## is not supported; write #[#1]");
   EXPECT_EQ(refusal("#1=SINE[5.]\nM2\n"),
             "1:4: error: unknown function 'SINE'; did you mean 'SIN'?");
   EXPECT_EQ(refusal("#1=[5.\nM2\n"), "1:4: error: '[' is not closed; ']' is missing");
   EXPECT_EQ(refusal("#0=1\nM2\n"), "1:1: error: #0 is always vacant and cannot be set");
-  EXPECT_EQ(refusal("#50=1\nM2\n"), "1:1: error: there is no variable #50");
+  EXPECT_EQ(refusal("#50=1\nM2\n"), "1:1: error: variable #50 does not exist");
   EXPECT_EQ(refusal("#1=1/#0\nM2\n"), "1:5: error: division by zero");
   EXPECT_EQ(refusal("N10 IF[#1GT2]X5.\nM2\n"), "1:14: error: expected GOTO or THEN after IF[...]");
   EXPECT_EQ(refusal("IF[#1EQ#0]THEN X5.\nM2\n"),
@@ -50,8 +51,8 @@ TEST(Macro, NothingIsReadInSilenceThatIsNoMacroB) {
 
 TEST(Macro, VacancyIsNotGuessed) {
   const std::string doubt =
-      "error: a vacant variable after a sign or alone in brackets: no manual says whether it is 0 "
-      "or stays vacant; remove the sign or brackets, or set it";
+      "error: a vacant variable after a sign or alone in brackets: it is undocumented whether it "
+      "is 0 or remains vacant; remove the sign or brackets, or set it";
   EXPECT_EQ(refusal("G0 X[#1]\nM2\n"), "1:5: " + doubt);
   EXPECT_EQ(refusal("#2=-#1\nM2\n"), "1:5: " + doubt);
   EXPECT_EQ(run("#2=[#1]*2.\nG0 X#2 Y1.\nM2\n"), "R 0 1 0");
@@ -63,7 +64,7 @@ TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
       "controls; put brackets around each part";
   EXPECT_EQ(refusal("IF[#1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas), "1:4: " + order);
   EXPECT_EQ(refusal("IF[#1EQ1AND#2EQ2]GOTO9\nN9 M2\n", Reader::haas),
-            "1:14: error: a second comparison; put brackets around each");
+            "1:14: error: more than one comparison; put brackets around each");
   EXPECT_EQ(refusal("#1=1+2AND3\nM2\n", Reader::haas), "1:4: " + order);
   // AND binds as * does: 1 + (2 AND 3); Fanuc B-63944EN, priority of operations, from memory
   EXPECT_EQ(run("#1=1+2AND3\nG0 X#1\nM2\n"), "R 3 0 0");
@@ -72,14 +73,13 @@ TEST(Macro, TheOrderOfLogicIsWrittenInBrackets) {
 
 TEST(Macro, AModalCallIsFaultedAtTheBlockThatCalls) {
   EXPECT_EQ(refusal("#1=0\nN100 (MILL) G66 P9010 Z-1.\nG0 X3.\nG67\nM2\n"),
-            "3:1: error: there is no program O9010 in this file, and no file 9010.ngc");
+            "3:1: error: program O9010 not found in this file, nor a file 9010.ngc");
 }
 
 TEST(Macro, JumpsAndLoopsHaveTheirRules) {
-  EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"),
-            "1:6: error: there is no block N7 in this program");
+  EXPECT_EQ(refusal("GOTO 7\nM2\nO2\nN7 M99\n"), "1:6: error: block N7 not found in this program");
   EXPECT_EQ(refusal("M98 P2 (GOTO)\n#1=1\nM2\nO2\nG0 X1. M99 P7\n"),
-            "5:8: error: there is no block N7 in the calling program")
+            "5:8: error: block N7 not found in the calling program")
       << "where the jump is written, not where it goes to";
   EXPECT_EQ(refusal("GOTO 7\nWHILE[#1LT2]DO1\nN7 G0 X1.\nEND1\nM2\n"),
             "1:6: error: N7 is inside the loop DO1 of line 2: jumps into a loop are not allowed");
@@ -100,25 +100,24 @@ TEST(Macro, AnEndlessProgramIsStopped) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "p.nc:2:1: error: 21 jumps, loop iterations and calls, 40 lines; the program "
-                 "looks endless");
+                 "appears to loop endlessly");
   }
 }
 
 TEST(Macro, CallsAreChecked) {
-  EXPECT_EQ(refusal("#1=1.\nG65 A1.\nM2\n"), "2:1: error: G65 needs a P word (program number)");
+  EXPECT_EQ(refusal("#1=1.\nG65 A1.\nM2\n"), "2:1: error: G65 requires a P word (program number)");
   EXPECT_EQ(refusal("G65 P77 A1.\nM2\n"),
-            "1:5: error: there is no program O77 in this file, and no file 77.ngc");
+            "1:5: error: program O77 not found in this file, nor a file 77.ngc");
   EXPECT_EQ(refusal("#1=1.\nG90 G65 P1 A1.\nM2\nO1\nM99\n"),
-            "2:1: error: G65 must come before its arguments: program G in a separate block");
+            "2:1: error: G65 must precede its arguments; program G in a separate block");
   EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG65 P1\nM99\n"),
             "4:5: error: macro calls nested deeper than 4; in O1, called in p.nc:4, in O1, "
             "called in p.nc:4, in O1, called in p.nc:4, in O1, called in p.nc:1");
   EXPECT_EQ(refusal("G65 P1\nM2\nO1\nG0 X1.\n"),
             "4: error: a called program must end with M99; in O1, called in p.nc:1");
-  EXPECT_EQ(
-      refusal("G65 P1 A1. L2\nM2\nO1\n#1=#1+1.\nM99\n"),
-      "5: error: the program changes its local variables, and L calls it again: whether they keep "
-      "their values differs between controls; use a WHILE loop; in O1, called in p.nc:1");
+  EXPECT_EQ(refusal("G65 P1 A1. L2\nM2\nO1\n#1=#1+1.\nM99\n"),
+            "5: error: the program changes its local variables and L calls it again: controls "
+            "differ in whether the values are kept; use a WHILE loop; in O1, called in p.nc:1");
   EXPECT_EQ(refusal("#1=1.\nG0 X1.\nO2\nM30\n"), "no refusal: R 1 0 0");
 }
 
@@ -128,10 +127,9 @@ TEST(Macro, HaasReturnsAndJumpsOnACondition) {
       "G65 P1 A3.\nG0 Y1.\nM2\nO1\nN10 #1=#1-1\nG0 X#1\nN50 [#1 GT 1] M99 P10\n[#1 EQ 1] M99\n"
       "X9.\nM99\n";
   EXPECT_EQ(run(program, Reader::haas), "R 2 0 0 | R 1 0 0 | R 1 1 0");
-  EXPECT_EQ(
-      refusal(program),
-      "7:5: error: a condition before M99 is specific to Haas; use IF[...]GOTO; in O1, called "
-      "in p.nc:1");
+  EXPECT_EQ(refusal(program),
+            "7:5: error: a condition before M99 is Haas syntax; use IF[...]GOTO; in O1, called in "
+            "p.nc:1");
   EXPECT_EQ(refusal("[1 EQ 1] X5.\nM2\n", Reader::haas),
             "1:1: error: expected M99, or M99 P with a block number, after a condition");
 }
@@ -172,19 +170,19 @@ TEST(Macro, AnAlarmOfTheProgramStopsIt) {
 
 TEST(Macro, ValuesThatASimulationCannotKnowAreRefusedByName) {
   EXPECT_EQ(refusal("#1=#500\nM2\n"),
-            "1:4: error: #500 keeps its value from earlier programs, and this program has not set "
-            "it; set it with --parameter '#500=...'");
+            "1:4: error: #500 keeps its value from earlier programs and is not set in this "
+            "program; set it with --parameter '#500=...'");
   EXPECT_EQ(refusal("IF[#1004EQ1]GOTO9\nN9 M2\n"),
-            "1:4: error: #1004 is an input of the machine: it is unknown to a simulation; or set "
+            "1:4: error: #1004 is an input of the machine: it is unknown in a simulation; or set "
             "it with --parameter '#1004=...'");
   EXPECT_EQ(refusal("#1=#3011\nM2\n"),
-            "1:4: error: #3011 is date and time: it is unknown to a simulation; or set it with "
+            "1:4: error: #3011 is date and time: it is unknown in a simulation; or set it with "
             "--parameter '#3011=...'");
   EXPECT_EQ(refusal("#1=#5063\nM2\n"),
-            "1:4: error: #5063 is the position of the skip signal: it is unknown to a simulation; "
+            "1:4: error: #5063 is the position at the skip signal: it is unknown in a simulation; "
             "or set it with --parameter '#5063=...'");
   EXPECT_EQ(refusal("#2001=5.\nM2\n"),
-            "1:1: error: #2001 is a tool offset and is not set from here: put it in the tool table "
+            "1:1: error: #2001 is a tool offset and cannot be set here: enter it in the tool table "
             "(--tools), and remove the line");
   ProgramSetup setup = setup_of({}, Reader::fanuc);
   setup.parameters["#500"] = 12.5;
@@ -212,10 +210,10 @@ TEST(Macro, LengthsOfToolsAreThoseOfTheToolTable) {
             "table with --tools; or set it with --parameter '#2004=...'");
   // what #2003 is depends on the tool memory (A, B or C), and wear stands in no table
   EXPECT_EQ(fault(Reader::fanuc, "#1=#2003\nG0 X#1\nM2\n"),
-            "p.nc:1:4: error: #2003 is a tool offset: it is unknown to a simulation; or set it "
+            "p.nc:1:4: error: #2003 is a tool offset: it is unknown in a simulation; or set it "
             "with --parameter '#2003=...'");
   EXPECT_EQ(fault(Reader::haas, "#1=#2203\nG0 X#1\nM2\n"),
-            "p.nc:1:4: error: #2203 is a tool offset: it is unknown to a simulation; or set it "
+            "p.nc:1:4: error: #2203 is a tool offset: it is unknown in a simulation; or set it "
             "with --parameter '#2203=...'");
 }
 
@@ -242,7 +240,7 @@ TEST(Macro, PositionsModesAndOffsetsAreThoseOfTheBlockBefore) {
                 "F#4109\nM2\n"),
             "F 25.4 0 0 f254 | F 91 20 0");
   EXPECT_EQ(refusal("#1=#4014\nM2\n", Reader::haas),
-            "1:4: error: #4014 is a mode in force: the work system is #4014 (Fanuc) or #4012 "
+            "1:4: error: #4014 is an active mode: the work offset is #4014 (Fanuc) or #4012 "
             "(Haas); choose with --reader fanuc or haas; or set it with --parameter '#4014=...'");
   EXPECT_EQ(run("G55\n#1=#4014\nG54\nG0 X#1\nM2\n"), "R 55 0 0");
 }
@@ -251,9 +249,10 @@ TEST(Macro, AComparisonNearerThanControlsCalculateIsWarnedOf) {
   const Reading found = read("#1=.1+.2\nIF[#1EQ.3]GOTO9\nG21 G0 X1.\nN9 M2\n", Reader::fanuc, {});
   EXPECT_EQ(found.moves, "R 1 0 0");
   ASSERT_EQ(found.warnings.size(), 2u);
-  EXPECT_EQ(to_string(found.warnings[1]),
-            "p.nc:2:6: error: the compared values, 0.3 and a value 6e-17 away, are closer than "
-            "controls calculate: another control may branch differently; compare with a margin");
+  EXPECT_EQ(
+      to_string(found.warnings[1]),
+      "p.nc:2:6: error: the compared values, 0.3 and a value 6e-17 away, differ by less than the "
+      "precision of controls: another control may branch differently; compare with a tolerance");
 }
 
 // Readings that Fanuc and Haas share count, since no other control reads the program.
@@ -282,14 +281,15 @@ TEST(Macro, OtherReadersDoNotHaveIt) {
 TEST(Macro, LogicWhoseReadingsDifferIsRefusedWithBoth) {
   const auto any = [](const std::string& program) { return run(program, Reader::any); };
   EXPECT_EQ(any("G0 X[1 AND 2]\nM2\n"),
-            "p.nc:1:8: error: 1 AND 2: 1 as conditions (LinuxCNC), or 0 of their bits (Fanuc, "
-            "Haas); choose with --reader linuxcnc, fanuc or haas");
+            "p.nc:1:8: error: 1 AND 2: 1 as logical operation (LinuxCNC), or 0 as bitwise "
+            "operation (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G[20 OR ABS[20]] X1.\nM2\n"),
-            "p.nc:1:6: error: 20 OR 20: 1 as conditions (LinuxCNC), or 20 of their bits (Fanuc, "
-            "Haas); choose with --reader linuxcnc, fanuc or haas");
+            "p.nc:1:6: error: 20 OR 20: 1 as logical operation (LinuxCNC), or 20 as bitwise "
+            "operation (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G0 X[0.5 XOR 1]\nM2\n"),
-            "p.nc:1:10: error: 0.5 XOR 1: 0 as conditions (LinuxCNC), or nothing, since only "
-            "integers >= 0 have bits (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
+            "p.nc:1:10: error: 0.5 XOR 1: 0 as logical operation (LinuxCNC), or undefined as "
+            "bitwise operation, which requires integers >= 0 (Fanuc, Haas); choose with --reader "
+            "linuxcnc, fanuc or haas");
   EXPECT_EQ(any("G0 X[5 AND 0] Y[1 OR 0] Z[1 XOR 1]\nM2\n"), "R 0 1 0");
   EXPECT_EQ(run("G0 X[1 AND 2]\nM2\n", Reader::linuxcnc), "R 1 0 0");
   EXPECT_EQ(run("#1=12 AND 10\nG0 X#1\nM2\n"), "R 8 0 0");
@@ -309,8 +309,8 @@ TEST(Macro, WhatStandsBehindThenIsCheckedWhereItDoesNotRun) {
 // Which of G0 and G1 is in force at power-on is parameter 3402#0.
 TEST(Macro, ModesBeforeTheFirstMotion) {
   EXPECT_EQ(refusal("#1=#4001\nG0 X1.\nM2\n"),
-            "1:4: error: #4001 is a mode in force: no G0, G1, G2 or G3 precedes it: the active one "
-            "is a control setting (Fanuc, parameter 3402#0); program one; or set it with "
+            "1:4: error: #4001 is an active mode: no G0, G1, G2 or G3 precedes it: the active one "
+            "depends on the control (Fanuc, parameter 3402#0); program one; or set it with "
             "--parameter '#4001=...'");
   EXPECT_EQ(run("G1 X1. F100.\n#1=#4001\n#2=#4009\n#3=#4008\nG0 X#1 Y#2 Z#3\nM2\n"),
             "F 1 0 0 f100 | R 1 80 49");
@@ -328,7 +328,7 @@ TEST(Macro, VariablesThatControlsReadDifferentlyAreWarnedOf) {
             "haas");
   EXPECT_EQ(to_string(found.warnings[1]),
             "p.nc:2:9: error: #2 is read before it is set: 0 (LinuxCNC), or vacant, so that its "
-            "word is omitted (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
+            "word is ignored (Fanuc, Haas); choose with --reader linuxcnc, fanuc or haas");
   // O-words are LinuxCNC's
   const Reading flow = read("o1 if [1]\nG0 X#2 Y[FIX[-1]] G21\no1 endif\nM2\n", Reader::any, {});
   EXPECT_TRUE(flow.warnings.empty());

@@ -53,13 +53,13 @@ TEST(Surveys, GoOnWhereBothReadingsEndAtTheSamePlace) {
   EXPECT_EQ(warnings_of(start),
             "p.nc:2:1: error: axis words before the first G0, G1, G2, G3: a rapid (grbl, Haas), or "
             "a rapid or a feed move, depending on a control setting (Fanuc, Mach); choose with "
-            "--reader; taken as a rapid here: the end of the move is the same");
+            "--reader; treated as a rapid here: the end of the move is the same");
   const std::string home = "G0 X5.\nG91 G28 X0. Z9. G90\nX1.\nM2\n";
   EXPECT_EQ(moves_of(home, setup),
             moves_of("G0 X5\nG91\nG28 X0 Z0\nG90\nG0 X1\nM2\n", setup_for(Reader::linuxcnc)));
   EXPECT_EQ(warnings_of("G0 X5.\nG91 G28 X0. Z9. G90\nM2\n"),
-            "p.nc:2:17: error: G90 and G91 with G28 or G30: no control documents which one applies "
-            "to the intermediate point; use two blocks; left out here");
+            "p.nc:2:17: error: G90 and G91 with G28 or G30: it is undocumented which one applies "
+            "to the intermediate point; use two blocks; omitted here");
 }
 
 TEST(Surveys, GoOnBeforeTheFirstFeed) {
@@ -75,16 +75,17 @@ TEST(Surveys, GoOnBeforeTheFirstFeed) {
     EXPECT_EQ(to_string(besides_unit(interpreter.warnings()).front()),
               "p.nc:1:5: error: G1 before the first F: Mach keeps the last feed, other controls "
               "raise an alarm; program F, or set the feed with --feed or program.first_feed of a "
-              "scenario; the cycle time stays unknown");
+              "scenario; the cycle time is unknown");
   }
 }
 
 TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
   const std::string fault =
       moves_of("G0 X10. Y0.\nG3 X0. Y10. I0. J0. F9.\nM2\n", setup_for(Reader::any));
-  EXPECT_NE(fault.find("; as positions of the centre I, J and K fit: if they are meant so, program "
-                       "G90.1 at the start"),
-            std::string::npos)
+  EXPECT_NE(
+      fault.find(
+          "; as absolute centre (G90.1) I, J and K fit: if intended, program G90.1 at the start"),
+      std::string::npos)
       << fault;
   const std::string other =
       moves_of("G90.1\nG0 X10. Y0.\nG3 X0. Y10. I-10. J0. F9.\nM2\n", setup_for(Reader::any));
@@ -96,10 +97,10 @@ TEST(Arcs, ThatFitTheOtherKindOfCentreSaySo) {
 TEST(Arcs, WhoseCentreHasTheWrongSignsSaySo) {
   const std::string fault =
       moves_of("G0 X10. Y0.\nG3 X0. Y10. I10. J0. F9.\nM2\n", setup_for(Reader::any));
-  EXPECT_NE(fault.find("; with their signs changed I, J and K fit: the post-processor writes the "
-                       "way from the centre to the start, but must write that from the start to "
-                       "the centre"),
-            std::string::npos)
+  EXPECT_NE(
+      fault.find("; with opposite signs I, J and K fit: the post-processor outputs the vector from "
+                 "the centre to the start, but must output that from the start to the centre"),
+      std::string::npos)
       << fault;
 }
 
@@ -116,12 +117,12 @@ TEST(Moves, OfMoreThanHalfATurnAreReportedOnce) {
   const std::string program = "G0 B359.\nB2.\nB359. A10.\nA-171. B300.\nG91 B200.\nM2\n";
   const auto turns = [](const std::string& place, const std::string& what) {
     return place + ": error: " + what +
-           " degrees: read as the difference of the angles (LinuxCNC); an axis that rolls over "
-           "(Fanuc, parameter 1008) takes the short way";
+           " degrees: read as the difference of the angles (LinuxCNC); a rollover axis "
+           "(Fanuc, parameter 1008) takes the shorter direction";
   };
   EXPECT_EQ(warnings_of(program, Reader::mach),
             std::vector<std::string>(
-                {turns("p.nc:1:4", "B turns by 359"), turns("p.nc:4:1", "A turns by 181")}));
+                {turns("p.nc:1:4", "B rotates by 359"), turns("p.nc:4:1", "A rotates by 181")}));
   EXPECT_TRUE(warnings_of(program, Reader::linuxcnc).empty());
   EXPECT_TRUE(warnings_of("G0 B180.\nB0.\nB-180.\nM2\n", Reader::mach).empty());
 }
@@ -137,10 +138,10 @@ TEST(Lengths, BeforeTheirUnitAreReportedOnce) {
     }
     return out;
   };
-  EXPECT_EQ(reported("G0 Z0.\nA3. Z1.\nX2.\nG20 X1.\nM2\n", Reader::any),
-            std::vector<std::string>({"p.nc:2:5: error: a length before any G20 or G21: read in "
-                                      "millimetres; controls keep the unit that they are set to; "
-                                      "program G20 or G21"}));
+  EXPECT_EQ(
+      reported("G0 Z0.\nA3. Z1.\nX2.\nG20 X1.\nM2\n", Reader::any),
+      std::vector<std::string>({"p.nc:2:5: error: a length before G20 or G21: read in millimetres; "
+                                "controls use the unit set last; program G20 or G21"}));
   EXPECT_EQ(reported("G0 X2.\nM2\n", Reader::haas).size(), 1u);
   EXPECT_TRUE(reported("G20 G0 X1.\nM2\n", Reader::any).empty());
   EXPECT_TRUE(reported("G0 X1.\nM2\n", Reader::grbl).empty());
@@ -151,8 +152,8 @@ TEST(Lengths, BeforeTheirUnitAreReportedOnce) {
 TEST(Programs, ThatEndWithM99AreWarnedOf) {
   const std::string program = "G0 X1.\nM99\n";
   EXPECT_EQ(warnings_of(program, Reader::any),
-            std::vector<std::string>({"p.nc:2:1: error: M99 in a program that none calls: read as "
-                                      "its end; a control begins it anew, without end"}));
+            std::vector<std::string>({"p.nc:2:1: error: M99 in a main program: treated as program "
+                                      "end; a control repeats the program endlessly"}));
   EXPECT_TRUE(warnings_of(program, Reader::linuxcnc).empty());
   EXPECT_TRUE(warnings_of("M98 P1\nM2\nO1\nG0 X1.\nM99\n", Reader::any).empty());
 }
@@ -163,12 +164,12 @@ TEST(Calls, WithOtherWordsBehindThemAreRefused) {
                     choose = ", or choose with --reader linuxcnc";
   for (const Reader reader : {Reader::any, Reader::haas, Reader::mach}) {
     EXPECT_EQ(moves_of("G0\nM98 P1 X5." + callee, setup_for(reader)),
-              "p.nc:2:8: error: X behind M98: without effect (LinuxCNC), or read before the call "
-              "(Fanuc, Haas); write it in a block of its own" +
+              "p.nc:2:8: error: X after M98: no effect (LinuxCNC), or executed before the call "
+              "(Fanuc, Haas); program it in a separate block" +
                   choose);
     EXPECT_EQ(moves_of("M98 P1 Q5" + callee, setup_for(reader)),
-              "p.nc:1:8: error: Q with M98: without effect (LinuxCNC), or the block where the "
-              "subprogram begins (Fanuc); remove it" +
+              "p.nc:1:8: error: Q with M98: no effect (LinuxCNC), or the block where the "
+              "subprogram starts (Fanuc); remove it" +
                   choose);
   }
   EXPECT_EQ(moves_of("G0\nM98 P1 X5." + callee, setup_for(Reader::linuxcnc)),

@@ -26,7 +26,7 @@ TEST(OtherLanguage, CornersWithAVariableAreRefusedByName) {
 
 TEST(OtherLanguage, SubroutinesOfFadalAreRefusedByName) {
   EXPECT_EQ(refusal("N1 O2 (HOLES)\nN2 L100\nN3 X-24. Y6.\nN4 M17\n"),
-            "p.nc:2:4: error: L100 begins a subroutine of Fadal, format 1, which is not supported; "
+            "p.nc:2:4: error: L100 starts a Fadal subroutine (format 1), which is not supported; "
             "output the program in format 2");
 }
 
@@ -44,9 +44,8 @@ std::string fault_in(const std::string& file, const std::string& text, Reader re
 // I and J are positions there, so the lines must not be taken for G-code.
 TEST(OtherLanguage, DinIsoOfHeidenhainIsRefusedByItsFirstLine) {
   const std::string refusal =
-      "p.nc:1:1: error: this is a DIN/ISO program of Heidenhain (G70 or G71 behind its name), "
-      "whose "
-      "I, J and K are positions; only conversational is read: convert it on the control or its "
+      "p.nc:1:1: error: this is a Heidenhain DIN/ISO program (G70 or G71 after its name), whose I, "
+      "J and K are absolute; only conversational is supported: convert it on the control or its "
       "programming station, or post-process for Fanuc or LinuxCNC";
   const std::string rest = "N10 G90\nN20 I+10 J+0\nN30 G2 X+10 Y+10\nN40 M30\n";
   for (const std::string first : {"% 123 G71", "%PART G70 *", "%PART G71*\r"}) {
@@ -66,9 +65,9 @@ TEST(OtherLanguage, BlocksBehindASemicolonAreNotLostInSilence) {
   }
   const std::string program = "G0 X1.; Y2.\nX3.; Y4.\nM2\n";
   const std::string said =
-      "p.nc:1:9: error: words behind ';': a comment (LinuxCNC, grbl, Mach), or another block "
-      "(Fanuc, "
-      "Haas, where ';' ends a block); write each block in a line of its own, or remarks in ( )";
+      "p.nc:1:9: error: words after ';': a comment (LinuxCNC, grbl, Mach), or another block "
+      "(Fanuc, Haas, where ';' ends a block); write each block on a separate line, or comments in "
+      "( )";
   EXPECT_EQ(fault_in("p.nc", program, Reader::haas), said);
   ProgramSetup setup;
   setup.reader = Reader::any;
@@ -80,9 +79,9 @@ TEST(OtherLanguage, BlocksBehindASemicolonAreNotLostInSilence) {
 
 TEST(OtherLanguage, LinesThatWereNotFilledInAreNamed) {
   EXPECT_EQ(other_language("#region tools", 2),
-            "'#region' is a mark of an editor, which folds the lines behind it; remove the line");
+            "'#region' is a fold mark of an editor; remove the line");
   EXPECT_EQ(other_language("O ENTER THE NUMBER", 3),
-            "a program number is missing behind O; write one (O1000), or remove the line");
+            "O requires a program number; write one (O1000), or remove the line");
   EXPECT_EQ(other_language("O 100", 3), "");
   EXPECT_EQ(other_language("O  ", 3), "") << "nothing behind O";
 }
@@ -108,7 +107,7 @@ TEST(OtherLanguage, TextsAndEngravingAreNamed) {
             "a string in quotes is RepRapFirmware or Siemens syntax; only G-code is supported: "
             "remove the line if it causes no motion");
   EXPECT_EQ(other_language("G47 P0 (PART) X1. Y2. E10.", 23),
-            "G47 engraves text (Haas), whose letters are not in the program; have the CAM system "
+            "G47 engraves text (Haas), whose moves are not in the program; have the CAM system "
             "output the moves");
 }
 
@@ -117,26 +116,26 @@ TEST(OtherLanguage, IsNamedInProgramsOfTheDefaultReader) {
             "p.nc:2:2: error: 'TOOL CALL' is Heidenhain conversational; use --reader heidenhain");
   EXPECT_EQ(refusal("N10 CYCLE81(5,0,2,-10)\n"),
             "p.nc:1:6: error: 'CYCLE' is a Siemens word; use --reader siemens");
-  EXPECT_EQ(
-      refusal("G1 X1 F100 E0.5\nM2\n"),
-      "p.nc:1:12: error: an E word feeds the extruder of a printer, sets the generator of wire "
-      "EDM, or names a work offset (Fadal, format 1); programs for milling are read here, with "
-      "G54 ... G59");
+  EXPECT_EQ(refusal("G1 X1 F100 E0.5\nM2\n"),
+            "p.nc:1:12: error: an E word feeds the extruder of a 3D printer, sets the generator of "
+            "wire EDM, or selects a work offset (Fadal, format 1); only milling programs with G54 "
+            "... G59 are supported");
 }
 
 TEST(OtherLanguage, IsNamedByTheFormOfItsBlocks) {
   const std::string star =
-      "a '*' ends the blocks of DIN/ISO programs of Heidenhain; programs in G-code of other "
-      "controls and Heidenhain conversational are read here";
+      "a '*' ends blocks of Heidenhain DIN/ISO programs, which are not supported; use Heidenhain "
+      "conversational or G-code of other controls";
   EXPECT_EQ(other_language("N50 G00 G40 G90 Z+250 *", 23), star);
   EXPECT_EQ(other_language("#1=#2*", 6), "");
   EXPECT_EQ(other_language("$PART.MIN%", 1),
-            "'$PART.MIN%' begins a program of Okuma; programs in G-code of other controls are read "
-            "here: let the post-processor write for Fanuc or LinuxCNC");
-  EXPECT_EQ(other_language("VC1=10", 1),
-            "'VC1=' is a variable of Okuma; programs in G-code of other controls are read here");
+            "'$PART.MIN%' starts an Okuma program, which is not supported; post-process for Fanuc "
+            "or LinuxCNC");
+  EXPECT_EQ(
+      other_language("VC1=10", 1),
+      "'VC1=' is an Okuma variable, which is not supported; post-process for another control");
   const std::string shopbot =
-      "this is a program of ShopBot (OpenSBP); programs in G-code are read here";
+      "this is a ShopBot program (OpenSBP), which is not supported; use G-code";
   EXPECT_EQ(other_language("'SHOPBOT FILE", 1), shopbot);
   EXPECT_EQ(other_language("MS,2.0,1.0", 3), shopbot);
   EXPECT_EQ(other_language("M3,1.0,2.0", 3), shopbot);
@@ -152,8 +151,8 @@ TEST(OtherLanguage, TextBehindTwoSlashesIsAComment) {
 
 TEST(OtherLanguage, ALaserIsRefusedByName) {
   const std::string refused =
-      ": error: S behind M3 S0 or M4 S0, without another M3 or M4: the power of a laser; programs "
-      "for milling are read here";
+      ": error: S after M3 S0 or M4 S0 without another M3 or M4: a laser power; only milling "
+      "programs are supported";
   EXPECT_EQ(refusal("M4 S0\nG0 X1.\nG1 X2. S500 F100.\nM2\n"), "p.nc:3:8" + refused);
   EXPECT_EQ(refusal("M3 S0\nG0 X1.\nS1000\nG1 X2. F100.\nM2\n"), "p.nc:3:1" + refused);
   // a spindle that is switched on with its speed, or does not turn

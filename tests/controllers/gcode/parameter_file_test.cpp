@@ -35,11 +35,11 @@ TEST(ParameterFile, NamesEveryFaultAtItsPlace) {
             "error: must start with a parameter number from 1 to 5601\np.var:4:1: error: parameter "
             "number 0; must be in 1 ... 5601\np.var:5:1: error: parameter number 5602; must be in "
             "1 ... 5601\np.var:6:1: error: must start with a parameter number from 1 to "
-            "5601\np.var:7:4: error: parameter 160 needs a value\np.var:8:5: error: parameter 170 "
-            "needs a value\np.var:9:5: error: parameter 180 = inf; must be finite\np.var:10:7: "
-            "error: unexpected '6' after the value of parameter 190\np.var:11:6: error: unexpected "
-            "',5' after the value of parameter 200\np.var:12:6: error: parameter 5220 = 12, the "
-            "active work offset; must be an integer from 1 to 9");
+            "5601\np.var:7:4: error: parameter 160 requires a value\np.var:8:5: error: parameter "
+            "170 requires a value\np.var:9:5: error: parameter 180 = inf; must be "
+            "finite\np.var:10:7: error: unexpected '6' after the value of parameter "
+            "190\np.var:11:6: error: unexpected ',5' after the value of parameter 200\np.var:12:6: "
+            "error: parameter 5220 = 12, the active work offset; must be an integer from 1 to 9");
   EXPECT_EQ(faults_of("100 1\n100 1"),
             "p.var:2:1: error: parameter 100 after 100; the numbers must increase");
 }

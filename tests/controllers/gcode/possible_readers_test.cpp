@@ -79,9 +79,8 @@ TEST(PossibleReaders, GiveTheReadingOfTheControlThatTheProgramNames) {
       warnings_of("%\nO0042 (PLATE)\n" + cycle + "%\n"),
       std::vector<std::string>(
           {"p.nc:4:14: error: a canned cycle from above R before the first G98 or G99: read as "
-           "returns to the initial level (Fanuc, Haas), since the program begins with "
-           "O0042, as those of Fanuc and Haas; not as returns to R (LinuxCNC), which "
-           "--reader chooses"}));
+           "returns to the initial level (Fanuc, Haas), since the program starts with O0042, as "
+           "on Fanuc and Haas; --reader selects the alternative: returns to R (LinuxCNC)"}));
 }
 
 TEST(PossibleReaders, GiveNoneWhereTheProgramNamesNoControlOrTwo) {

@@ -125,12 +125,12 @@ TEST(Post, Faults) {
       fault_of_post(cl("GOTO/0,0,0,0,-1,-1\n"), machine(kTableTable)),
       "p.cls:1: error: axis A would move to 135 deg, outside its travel of -114.592 to 114.592");
   EXPECT_EQ(fault_of_post(cl("GOTO/0,0,0,1,0,0\n"), machine("[w b X Y Z C t]")),
-            "p.cls:1: error: the rotary axes miss this tool axis by 90 deg");
+            "p.cls:1: error: the rotary axes cannot reach this tool axis; the error is 90 deg");
   PostOptions options = usual_options();
   options.feed = 0.0;
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,1\nGOTO/0,0,0\nGOTO/1,0,0\n"), machine(kTableTable), options),
-      "p.cls:2: error: no feed is given for this location; add FEDRAT or --feed");
+      "p.cls:2: error: no feed rate is defined for this location; add FEDRAT or --feed");
   EXPECT_EQ(fault_of_post(cl("LOADTL/7\nGOTO/0,0,1\n"), machine(kTableTable)),
             "p.cls:1: error: tool 7 is not in the tool table");
 }
@@ -139,8 +139,8 @@ TEST(Post, ATableThatTiltsToOneSideCannotPassTheVertical) {
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable, 0.0)),
       "p.cls:2: error: at 50.0 % of the move to this location axis A reaches its travel limit at 0 "
-      "deg, and otherwise the axes would have to jump; keep the tool axis away from it, retract "
-      "there, or start the axes elsewhere (--start)");
+      "deg; the alternative solution would require the axes to jump; keep the tool axis away from "
+      "it, retract there, or change the start position (--start)");
   EXPECT_EQ(
       fault_of_post(cl("GOTO/0,0,0,0,-0.6,0.8\nGOTO/5,0,0,0,0.6,0.8\n"), machine(kTableTable)), "");
 }

@@ -14,8 +14,8 @@ TEST(PostReport, SingularToolAxisIsToldOnce) {
                                   machine(kTableTable), usual_options());
   ASSERT_EQ(made.warnings.size(), 1u);
   EXPECT_EQ(to_string(made.warnings[0]),
-            "p.cls:1: warning: the tool axis is singular, here and at 2 more locations: a rotary "
-            "axis is free");
+            "p.cls:1: warning: the tool axis is in a singular direction, here and at 2 other "
+            "locations: a rotary axis is undetermined");
 }
 
 TEST(PostReport, TimesThatAskTooMuchOfAnAxisAreReported) {
@@ -34,10 +34,12 @@ TEST(PostReport, TimesThatAskTooMuchOfAnAxisAreReported) {
   ASSERT_FALSE(fast.warnings.empty());
   const Warning& warning = fast.warnings.back();
   EXPECT_EQ(warning.place.line, 2);
-  EXPECT_TRUE(warning.message.starts_with("the programmed feed needs C at ")) << warning.message;
-  EXPECT_NE(warning.message.find("deg from a singular direction of the tool axis; it can do 1146: "
-                                 "the feed falls to "),
-            std::string::npos)
+  EXPECT_TRUE(warning.message.starts_with("the programmed feed rate requires C at "))
+      << warning.message;
+  EXPECT_NE(
+      warning.message.find("deg from a singular direction of the tool axis; its limit is 1146: "
+                           "the feed rate is reduced to "),
+      std::string::npos)
       << warning.message;
 }
 
@@ -59,10 +61,11 @@ TEST(PostReport, WhatClassicalPostsBendIsReported) {
             .norm());
   }
   ASSERT_EQ(made.warnings.size(), 1u);
-  EXPECT_EQ(to_string(made.warnings.back()),
-            fmt::format("p.cls:2: warning: between the previous location and this one the TCP "
-                        "leaves the straight line by {:.4g} mm; only --classical inserts no points",
-                        bend / mm));
+  EXPECT_EQ(
+      to_string(made.warnings.back()),
+      fmt::format("p.cls:2: warning: between the previous location and this one the TCP deviates "
+                  "from the straight line by {:.4g} mm; --classical inserts no points",
+                  bend / mm));
 }
 
 TEST(PostReport, WarningsOfWhatIsRefusedAreKept) {
@@ -105,12 +108,11 @@ TEST(PostReport, KeepsTheWorstBendAndTheMostSlowedBlock) {
   const std::vector<Warning> warnings = report.conclude(nullptr);
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0].place.line, 5);
-  EXPECT_NE(warnings[0].message.find("by 0.004 mm, and by more than the "
-                                     "tolerance on 2 more"),
+  EXPECT_NE(warnings[0].message.find("by 0.004 mm, and exceeds the tolerance on 2 other moves"),
             std::string::npos)
       << warnings[0].message;
   EXPECT_EQ(warnings[1].place.line, 3);
-  EXPECT_TRUE(warnings[1].message.starts_with("the programmed feed needs C at "))
+  EXPECT_TRUE(warnings[1].message.starts_with("the programmed feed rate requires C at "))
       << warnings[1].message;
 }
 

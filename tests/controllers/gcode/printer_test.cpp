@@ -123,7 +123,7 @@ TEST(Printer, RefusesToolOffsetsOutsideTheTable) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "<input>:2: error: a tool offset of G43.1 or G43.2 cannot be printed; use G43 H");
+                 "<input>:2: error: tool offsets of G43.1 and G43.2 cannot be output; use G43 H");
   }
 }
 

@@ -76,9 +76,9 @@ TEST(Probing, GivesTheProbeWhatItNeedsToKnow) {
 TEST(Probing, ThatMeetsNothingIsAFaultOrGoesOn) {
   const WallRun run;
   EXPECT_EQ(fault_of("G21 F300\nG38.2 X9", run.setup),
-            "p.nc:2:1: error: G38.2: the probe touches nothing before the end of the move");
+            "p.nc:2:1: error: G38.2: the probe makes no contact before the end of the move");
   EXPECT_EQ(fault_of("G21 F300\nG0 X20\nG38.4 X11", run.setup),
-            "p.nc:3:1: error: G38.4: the probe still touches before the end of the move");
+            "p.nc:3:1: error: G38.4: the probe is still in contact before the end of the move");
   expect_axes(last_move("G21 F300\nG38.3 X9\nG0 Y#5061 Z#5070", run.setup).end, axes(9, 9, 0));
   expect_axes(last_move("G21 F300\nG0 X20\nG38.5 X11\nG0 Y#5061 Z#5070", run.setup).end,
               axes(11, 11, 0));
@@ -102,16 +102,16 @@ TEST(Probing, IsRefusedWhereItMeansNothing) {
     const std::string all = fault_of(text, run.setup);
     return all.substr(all.find(": error: ") + 9);
   };
-  EXPECT_EQ(fault("G38.2 F100"), "G38.2 without an axis word");
-  EXPECT_EQ(fault("G38.2 X20"), "G38.2 with zero feed; no F is active");
-  EXPECT_EQ(fault("G93 G38.2 X20 F2"), "G38.2 with G93; G94 first");
-  EXPECT_EQ(fault("G95 F1 S100\nG38.2 X20"), "G38.2 with G95; G94 first");
+  EXPECT_EQ(fault("G38.2 F100"), "G38.2 requires an axis word");
+  EXPECT_EQ(fault("G38.2 X20"), "G38.2 with zero feed rate; no F is active");
+  EXPECT_EQ(fault("G93 G38.2 X20 F2"), "G38.2 is not allowed with G93; program G94 first");
+  EXPECT_EQ(fault("G95 F1 S100\nG38.2 X20"), "G38.2 is not allowed with G95; program G94 first");
   EXPECT_EQ(fault("F100 G41.1 D3\nG1 X5\nG38.2 X20"),
-            "G38.2 with cutter compensation active; G40 first");
+            "G38.2 is not allowed with cutter compensation active; program G40 first");
   EXPECT_EQ(fault("F100 G43.4 H1\nG38.2 X20"),
-            "G38.2 while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
-  EXPECT_EQ(fault("F100 G0 X20\nG38.2 X20"), "G38.2 has no travel: start and end coincide");
-  EXPECT_EQ(fault("F100 G53 G38.2 X20"), "G53 needs G0 or G1");
+            "G38.2 is not allowed under TCP control; cancel G43.4, G43.5 or G68.2 first");
+  EXPECT_EQ(fault("F100 G0 X20\nG38.2 X20"), "G38.2 has zero travel: start and end coincide");
+  EXPECT_EQ(fault("F100 G53 G38.2 X20"), "G53 requires G0 or G1");
   EXPECT_EQ(fault_of("F100 G38.2 X20"),
             "p.nc:1:6: error: G38.2: the probed surface is unknown here; simulate it with "
             "[touch_probe] of a scenario");

@@ -309,7 +309,7 @@ TEST(Reader, ProgramsForLinuxCncAreReadAlikeByDefault) {
 
 TEST(Reader, RefusesWhatItsControlDoesNotHave) {
   EXPECT_EQ(refusal("T1 M6\nG234\n", Reader::haas),
-            "p.nc:2:1: error: G234 needs H: the number of the tool length offset");
+            "p.nc:2:1: error: G234 requires H, the number of the tool length offset");
   EXPECT_EQ(refusal("O100 sub\nO100 endsub\nM2\n", Reader::grbl),
             "p.nc:1:1: error: O-words with keywords are not supported by grbl");
   EXPECT_EQ(refusal("G99 G81 X1. Z-2. R1. F100.\nM2\n", Reader::grbl),
@@ -329,7 +329,7 @@ TEST(Reader, TwoReadingsAreRefused) {
             "p.nc:3:1: error: Fanuc, Haas and LinuxCNC end the program at this '%', but blocks "
             "follow it; remove the '%', or choose with --reader fanuc, haas or linuxcnc");
   EXPECT_EQ(refusal("%\nG0 X1\n%\n(X2)\n\x1a"), "");
-  EXPECT_NE(refusal("T1 M6 T2\nM2\n").find("whether M6 takes the first or the last depends"), ~0ul);
+  EXPECT_NE(refusal("T1 M6 T2\nM2\n").find("M6 uses the first or the last"), ~0ul);
   // a control that ends the comment at its first ')' would go to X10
   EXPECT_EQ(refusal("G0 (a (b) X10)\nM2\n"), "p.nc:1:7: error: comment within a comment");
   // behind its first ')' it finds another comment

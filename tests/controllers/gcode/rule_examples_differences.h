@@ -92,7 +92,7 @@ inline std::vector<DifferenceExample> difference_examples() {
       {circular_pocket, 0, Reader::mach, "G0 X1. Y2.\nG12 I5. F100.\nG0 X0. Y0.\nM2\n",
        "R 1 2 0 | F 6 2 0 f100 | CW 6 2 0 o 1 2 0 | F 1 2 0 | R 0 0 0", "from memory"},
       {circular_pocket, 1, Reader::haas, "G12 I5. F100.\nM2\n",
-       "p.nc:1:1: error: G12 needs D, the offset of the tool", "Haas 96-8000, June 1999, p. 237"},
+       "p.nc:1:1: error: G12 requires D, the tool offset", "Haas 96-8000, June 1999, p. 237"},
       {start_motion, 0, Reader::grbl, "F100\nX1\nG91Y1\nM2\n", "R 1 0 0 | R 1 1 0",
        "grbl 1.1, gcode.c, gc_init()"},
       {start_motion, 0, Reader::haas, "F100.\nX1.\nM2\n", "R 1 0 0", "from memory"},

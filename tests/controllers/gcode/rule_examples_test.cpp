@@ -99,10 +99,9 @@ TEST(DifferenceExamples, CoverEveryReading) {
 
 // Fanuc 11600#5 decides where the axis that is not named goes, from memory.
 TEST(RuleExamples, ALoneAxisBehindARotationIsRefusedWhereItMatters) {
-  EXPECT_EQ(
-      read("G0 X5. Y0.\nG68 X0. Y0. R90.\nX10.\nM2\n", Reader::fanuc, {}).moves,
-      "p.nc:3:1: error: X alone after G68: whether Y keeps its machine position or its coordinate "
-      "from before G68 is a parameter of the control (Fanuc 11600#5); program both");
+  EXPECT_EQ(read("G0 X5. Y0.\nG68 X0. Y0. R90.\nX10.\nM2\n", Reader::fanuc, {}).moves,
+            "p.nc:3:1: error: X alone after G68: the control determines whether Y keeps its "
+            "machine position or its coordinate from before G68 (Fanuc 11600#5); program both");
   EXPECT_EQ(read("G68 X0. Y0. R90.\nG0 X10.\nY5.\nM2\n", Reader::fanuc, {}).moves,
             "R 0 10 0 | R -5 10 0");
 }
@@ -111,12 +110,11 @@ TEST(RuleExamples, WordsOfG15G51AndG68ThatTwoControlsHaveAreRefused) {
   EXPECT_EQ(read("G15 H1\nG0 X1.\nM2\n", Reader::any, {}).moves,
             "p.nc:1:5: error: H with G15 or G16 is a work coordinate system on Okuma");
   EXPECT_EQ(read("G51 X2. Y2. P3.\nM2\n", Reader::mach, {}).moves,
-            "p.nc:1:13: error: P with G51: the factors on Mach are X, Y and Z");
+            "p.nc:1:13: error: P with G51: on Mach the factors are X, Y and Z");
   EXPECT_EQ(read("G68 X1. Y2. R90.\nM2\n", Reader::mach, {}).moves,
-            "p.nc:1:5: error: X with G68: the centre on Mach is A and B");
+            "p.nc:1:5: error: X with G68: on Mach the centre is A and B");
   EXPECT_EQ(read("G68 A1. B2. R90.\nM2\n", Reader::haas, {}).moves,
-            "p.nc:1:5: error: A beside G68: the X of the centre for Mach, in G17 and G90, a rotary "
-            "axis for others");
+            "p.nc:1:5: error: A with G68: the X of the centre (Mach in G17, G90) or a rotary axis");
 }
 
 TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
@@ -126,8 +124,8 @@ TEST(RuleExamples, WordsOfOtherLanguagesAreRefusedByName) {
   EXPECT_EQ(read("G3 X1. Y2. CR=4. F100.\nM2\n", Reader::fanuc, {}).moves,
             "p.nc:1:13: error: 'CR=' " + siemens);
   EXPECT_EQ(read("GROUP_BEGIN(0,\"TOP\")\nM2\n", Reader::any, {}).moves,
-            "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens or of the machine builder; "
-            "for a program of Siemens use --reader siemens");
+            "p.nc:1:2: error: 'GROUP_BEGIN(...)' is a word of Siemens or the machine builder; for "
+            "Siemens programs use --reader siemens");
   EXPECT_EQ(read("G1 X10. ,R1. F100.\nM2\n", Reader::grbl, {}).moves,
             "p.nc:1:9: error: ',R' rounds the corner to the next move (Fanuc, Haas), which is not "
             "supported; program the arc");
@@ -140,9 +138,9 @@ TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
     return said.starts_with(before) ? said.substr(before.size()) : said;
   };
   EXPECT_EQ(refusal("G1 X10. ,R1. F100."),
-            "',R' needs a line with plain numbers in the next block");
+            "',R' requires a linear move with plain numbers in the next block");
   EXPECT_EQ(refusal("G1 X10. ,C1. F100.\nY#1"),
-            "',C' needs a line with plain numbers in the next block");
+            "',C' requires a linear move with plain numbers in the next block");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG0 Y5."),
             "',R' is supported only between lines (G1), not next to G0; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG2 X12. Y2. R2."),
@@ -150,26 +148,26 @@ TEST(RuleExamples, ACornerThatIsNotBetweenTwoLinesIsRefused) {
   EXPECT_EQ(refusal("G0 X10. ,R1. F100.\nG1 Y2."),
             "',R' is supported only between lines (G1), not next to G0; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nY5. Z-1."),
-            "',R' with Z in this or the next block; program the corner");
+            "',R' is not supported with Z in this or the next block; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nG91 Y5."),
-            "',R' with G91 in the next block; program the corner");
+            "',R' is not supported with G91 in the next block; program the corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX20."), "',R1': the lines form no corner");
   EXPECT_EQ(refusal("G1 X10. ,R1. F100.\nX5."), "',R1': the lines form no corner");
   EXPECT_EQ(refusal("G1 X10. ,R0. F100.\nY5."), "',R0': the lines form no corner");
-  EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."), "',R6' takes 6 of each line; the shorter one is 5");
+  EXPECT_EQ(refusal("G1 X10. ,R6. F100.\nY5."),
+            "',R6' requires 6 of each line; the shorter one is 5");
   EXPECT_EQ(read("G93\nG1 X10. ,C2. F100.\nY5. F100.\nM2\n", Reader::any, {}).moves,
             "p.nc:2:9: error: ',C' is supported only in G94, without G16, G51, G54.1 and G68; "
             "program the corner");
   EXPECT_EQ(read("(TITLE)\nG0 X1.\n,R5.\nM2\n", Reader::fanuc, {}).moves,
-            "p.nc:3:1: error: ',R' needs a line in its block");
+            "p.nc:3:1: error: ',R' requires a linear move in its block");
 }
 
 // The comma is missing: an alarm, or a corner where the control is so set.
 TEST(RuleExamples, ARadiusBesideALineIsRefusedByName) {
   EXPECT_EQ(read("G1 X30. R5. F100.\nY20.\nM2\n", Reader::any, {}).moves,
-            "p.nc:1:9: error: R beside G1: it rounds the corner to the next line on lathes and "
-            "where the control is set so (Fanuc, parameter 3405#4), and is an alarm on others; "
-            "program ,R5 after G1, or the arc");
+            "p.nc:1:9: error: R with G1: corner rounding to the next line on lathes and with Fanuc "
+            "parameter 3405#4, an alarm otherwise; program ,R5 after G1, or the arc");
   EXPECT_EQ(read("G2 X2. R1. F100.\nG1 X5.\nM2\n", Reader::any, {}).moves,
             "CW 2 0 0 o 1 0 0 f100 | F 5 0 0");
 }
@@ -181,9 +179,10 @@ TEST(RuleExamples, PocketsOfHaasThatCannotBeAreRefused) {
   EXPECT_EQ(refusal("G12 D1 I.5 F100."),
             "p.nc:2:1: error: G12: the tool of radius 1 does not fit in I0.5");
   EXPECT_EQ(refusal("G12 D1 I2. K3. F100."),
-            "p.nc:2:1: error: G12 needs G17, I > 0, and Q > 0 with a K above I");
-  EXPECT_EQ(refusal("G13 D1 I2. L3 F100."),
-            "p.nc:2:12: error: G13 with L repeats it deeper by Z: under G91, with Z and a whole L");
+            "p.nc:2:1: error: G12 requires G17, I > 0, and Q > 0 with K > I");
+  EXPECT_EQ(
+      refusal("G13 D1 I2. L3 F100."),
+      "p.nc:2:12: error: G13 with L repeats it deeper by Z: requires G91, Z and an integer L");
 }
 
 // ,R5 is 5 um where X30 is 30 um.

@@ -32,18 +32,18 @@ TEST(SavedState, DropsWhatStandsBesideARestoringM72AndWarns) {
   expect_axes(moves[1].end, axes(6, 0, 0));  // the second one has nothing to restore
   ASSERT_EQ(interpreter.warnings().size(), 1u);
   EXPECT_EQ(to_string(interpreter.warnings()[0]),
-            "p.nc:4:1: error: M72 restores modal state: words in the same block that act later are "
-            "dropped, as in LinuxCNC");
+            "p.nc:4:1: error: M72 restores the modal state: words in the same block that act later "
+            "are ignored, as in LinuxCNC");
 }
 
 TEST(SavedState, FaultsNameTheRule) {
   EXPECT_EQ(fault_of("M72"),
-            "p.nc:1:1: error: M72 without an M70 or M73 before it at this call level");
+            "p.nc:1:1: error: M72 requires a preceding M70 or M73 at this call level");
   EXPECT_EQ(fault_of("M70\nM71\nM72"),
-            "p.nc:3:1: error: M72 without an M70 or M73 before it at this call level");
+            "p.nc:3:1: error: M72 requires a preceding M70 or M73 at this call level");
   EXPECT_EQ(fault_of("M3 M70"), "p.nc:1:4: error: M3 and M70 in one block (same modal group)");
   EXPECT_EQ(fault_of("M70\nG43.4 H1\nM72"),
-            "p.nc:3:1: error: M72 cannot switch tool-centre-point control or a tilted work plane");
+            "p.nc:3:1: error: M72 cannot switch TCP control or a tilted work plane");
 }
 
 TEST(Switches, TakeAPWordAndChangeNoMove) {
@@ -53,7 +53,7 @@ TEST(Switches, TakeAPWordAndChangeNoMove) {
 
 TEST(Outputs, TakeAPWordAndChangeNoMove) {
   EXPECT_EQ(moves_of("M62 P0\nM63 P0\nM64 P2\nM65 P2").size(), 0u);
-  EXPECT_EQ(fault_of("M62"), "p.nc:1:1: error: M62 needs a P word (number of the output)");
+  EXPECT_EQ(fault_of("M62"), "p.nc:1:1: error: M62 requires a P word (output number)");
 }
 
 TEST(Stops, M60WaitsForTheOperatorLikeM0) {
@@ -80,15 +80,14 @@ TEST(RefusedCodes, HaveAReasonEach) {
     const std::string text = fault_of(code);
     return text.substr(text.find(": error: ") + 9);
   };
-  EXPECT_EQ(fault("G7"),
-            "G7: diameter and radius mode are for turning; this is a milling simulator");
-  EXPECT_EQ(fault("G38.3"), "G38.3 without an axis word");
-  EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles are for lathes; this is a milling simulator");
-  EXPECT_EQ(fault("G76"), "G76: threading is for lathes; this is a milling simulator");
+  EXPECT_EQ(fault("G7"), "G7: diameter and radius mode are for turning; only milling is supported");
+  EXPECT_EQ(fault("G38.3"), "G38.3 requires an axis word");
+  EXPECT_EQ(fault("G71.2"), "G71.2: turning cycles are for lathes; only milling is supported");
+  EXPECT_EQ(fault("G76"), "G76: threading is for lathes; only milling is supported");
   EXPECT_EQ(fault("G96"),
             "G96: constant surface speed is for turning; program the speed with G97 S");
   EXPECT_EQ(fault("M19"), "M19: the spindle angle is not simulated, so it cannot be oriented");
-  EXPECT_EQ(fault("M61"), "M61: renames the tool in the spindle by hand; use T and M6");
+  EXPECT_EQ(fault("M61"), "M61: sets the number of the tool in the spindle manually; use T and M6");
   EXPECT_EQ(fault("M66"), "M66: waits for an input of the control, which is not simulated");
   EXPECT_EQ(fault("M68"), "M68: sets analog outputs of the control, which are not simulated");
 }

@@ -112,8 +112,8 @@ TEST(Splines, WordsOfTheFirstBezierThatAreMissingAreThoseThatLinuxCncKeeps) {
   expect_points(moves[3], {{5, 2}, {6, -1}, {8, 3}, {7, 2}});
   ASSERT_EQ(interpreter.warnings().size(), 2U);
   EXPECT_EQ(interpreter.warnings()[1].message,
-            "G5 without I and J, and no G5 ends here: read as I1 J-3, what LinuxCNC has kept from "
-            "the last G5 or G87");
+            "G5 without I and J, and no G5 ends here: read as I1 J-3, stored by LinuxCNC from the "
+            "last G5 or G87");
 }
 
 struct Refused {
@@ -122,49 +122,57 @@ struct Refused {
 
 TEST(Splines, EachRefusalHasItsReason) {
   const std::vector<Refused> all = {
-      {"G5 I1 J1 P1 Q1", "G5 without X or Y"},
-      {"G5.1 I1 J1", "G5.1 without X or Y"},
-      {"G5 X2 I1 P1 Q1", "G5 needs both I and J, or neither to go on from the G5 before"},
-      {"G5.1 X2 J1", "G5.1 needs both I and J"},
-      {"G5.1 X2", "G5.1 needs both I and J"},
-      {"G5 X2 I1 J1 P1", "G5 needs both P and Q"},
-      {"G5 X2 Z1 I1 J1 P1 Q1", "Z word with G5; a spline moves X and Y only"},
-      {"G5.1 X2 A1 I1 J1", "A word with G5.1; a spline moves X and Y only"},
-      {"G5.2 X2 Y1 C1 P1", "C word with G5.2; a spline moves X and Y only"},
-      {"G18\nG5 X2 I1 J1 P1 Q1", "G5 outside of G17; splines lie in the XY plane"},
-      {"G17.1\nG5.2 P1", "G5.2 outside of G17; splines lie in the XY plane"},
-      {"G41.1 D1\nG5 X2 I1 J1 P1 Q1", "G5 with cutter compensation active; G40 first"},
-      {"G41.1 D1\nG1 X3\nG5.2 P1", "G5.2 with cutter compensation active; G40 first"},
-      {"G43.4 H1\nG5 X2 I1 J1 P1 Q1", "G5 under tool-centre-point control; G49 first"},
-      {"F0\nG5 X2 I1 J1 P1 Q1", "G5 with zero feed; F0 is active, F must be > 0"},
-      {"F0\nG5.2 P1", "G5.2 with zero feed; F0 is active, F must be > 0"},
-      {"G93\nG5.1 X2 I1 J1", "G5.1 without F; G93 needs one in every block"},
-      {"G93\nG5.1 X1 Y2 I0 J0 F1", "a spline without length under G93"},
-      {"G93\nG5.2 P1 F2", "G5.2 under G93, where F is the time of one block; G94 first"},
-      {"G5.2 X2 P1", "G5.2 needs both X and Y"},
-      {"G5.2 @2 ^30 P1", "G5.2 with polar coordinates"},
-      {"G5.2 X2 Y1", "G5.2 needs a weight P for each control point"},
-      {"G5.2 X2 Y1 P0", "P0; a weight must be > 0"},
-      {"G5.2 P-1", "P-1; a weight must be > 0"},
-      {"G5.2 P1\nG5.2 P2", "G5.2 without X and Y; only the first may give the weight of the start"},
+      {"G5 I1 J1 P1 Q1", "G5 requires X or Y"},
+      {"G5.1 I1 J1", "G5.1 requires X or Y"},
+      {"G5 X2 I1 P1 Q1", "G5 requires both I and J, or neither to continue from the previous G5"},
+      {"G5.1 X2 J1", "G5.1 requires both I and J"},
+      {"G5.1 X2", "G5.1 requires both I and J"},
+      {"G5 X2 I1 J1 P1", "G5 requires both P and Q"},
+      {"G5 X2 Z1 I1 J1 P1 Q1", "Z word is not allowed with G5; a spline moves X and Y only"},
+      {"G5.1 X2 A1 I1 J1", "A word is not allowed with G5.1; a spline moves X and Y only"},
+      {"G5.2 X2 Y1 C1 P1", "C word is not allowed with G5.2; a spline moves X and Y only"},
+      {"G18\nG5 X2 I1 J1 P1 Q1", "G5 requires G17; splines are in the XY plane"},
+      {"G17.1\nG5.2 P1", "G5.2 requires G17; splines are in the XY plane"},
+      {"G41.1 D1\nG5 X2 I1 J1 P1 Q1",
+       "G5 is not allowed with cutter compensation active; program G40 first"},
+      {"G41.1 D1\nG1 X3\nG5.2 P1",
+       "G5.2 is not allowed with cutter compensation active; program G40 first"},
+      {"G43.4 H1\nG5 X2 I1 J1 P1 Q1", "G5 is not allowed under TCP control; program G49 first"},
+      {"F0\nG5 X2 I1 J1 P1 Q1", "G5 with zero feed rate; F0 is active, F must be > 0"},
+      {"F0\nG5.2 P1", "G5.2 with zero feed rate; F0 is active, F must be > 0"},
+      {"G93\nG5.1 X2 I1 J1", "G5.1 without F; G93 requires F in every block"},
+      {"G93\nG5.1 X1 Y2 I0 J0 F1", "a spline of zero length is not allowed with G93"},
+      {"G93\nG5.2 P1 F2",
+       "G5.2 is not allowed with G93, where F is the time of one block; program G94 first"},
+      {"G5.2 X2 P1", "G5.2 requires both X and Y"},
+      {"G5.2 @2 ^30 P1", "G5.2 is not allowed with polar coordinates"},
+      {"G5.2 X2 Y1", "G5.2 requires a weight P for each control point"},
+      {"G5.2 X2 Y1 P0", "P0; the weight must be > 0"},
+      {"G5.2 P-1", "P-1; the weight must be > 0"},
+      {"G5.2 P1\nG5.2 P2",
+       "G5.2 requires X and Y; only the first may define just the weight of the start point"},
       {"G5.2 P1 L-1", "L-1; must be >= 0"},
       {"G5.2 P1 L3.5", "L3.5; must be an integer"},
       {"G5.2 P1 L4\nX2 Y1 P1\nX3 Y1 P1\nG5.3",
-       "3 control points with the start; a NURBS of order L4 needs at least 4"},
-      {"G5.3", "G5.3 without G5.2 before it"},
+       "3 control points including the start; a NURBS of order L4 requires at least 4"},
+      {"G5.3", "G5.3 requires a preceding G5.2"},
       {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG5.3\nX4", "axis words, but no active G code uses them"},
-      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG5.3 X5", "axis words with G5.3"},
-      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG5.2 G5.3", "G5.2 and G5.3 in one block"},
-      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG1 G5.3", "G1 and G5.3 in one block"},
-      {"G5.2 P1\nG1 X3", "G1 between G5.2 and G5.3; only further control points"},
-      {"G5.2 P1\nG80", "G80 between G5.2 and G5.3; only further control points"},
-      {"G5.2 P1\nG5 X3 I1 J1 P1 Q1", "G5 between G5.2 and G5.3; only further control points"},
-      {"G5.2 P1\nX2 Y1 P1\nM2", "M2 between G5.2 and G5.3; only further control points"},
+      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG5.3 X5", "axis words are not allowed with G5.3"},
+      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG5.2 G5.3", "G5.2 and G5.3 are not allowed in one block"},
+      {"G5.2 P1\nX2 Y1 P1\nX3 Y1 P1\nG1 G5.3", "G1 and G5.3 are not allowed in one block"},
+      {"G5.2 P1\nG1 X3", "G1 is not allowed between G5.2 and G5.3; program only control points"},
+      {"G5.2 P1\nG80", "G80 is not allowed between G5.2 and G5.3; program only control points"},
+      {"G5.2 P1\nG5 X3 I1 J1 P1 Q1",
+       "G5 is not allowed between G5.2 and G5.3; program only control points"},
+      {"G5.2 P1\nX2 Y1 P1\nM2",
+       "M2 is not allowed between G5.2 and G5.3; program only control points"},
       {"G5.2 P1\nX2 Y1 P1\nG92 X0\nX3 Y1 P1\nG5.3",
-       "unit, work coordinates or position change between G5.2 and G5.3; move that before G5.2"},
+       "the unit, work coordinates or position change between G5.2 and G5.3; program the change "
+       "before G5.2"},
       {"G5.2 P1\nX2 Y1 P1\nG20\nX3 Y1 P1\nG5.3",
-       "unit, work coordinates or position change between G5.2 and G5.3; move that before G5.2"},
-      {"G53 G5 X2 I1 J1 P1 Q1", "G53 needs G0 or G1"},
+       "the unit, work coordinates or position change between G5.2 and G5.3; program the change "
+       "before G5.2"},
+      {"G53 G5 X2 I1 J1 P1 Q1", "G53 requires G0 or G1"},
       {"G5.1 X2 I1 J1 P1",
        "P word without a code that uses it (G2, G3, G4, G5, G5.2, G10, G64, G74, G82, G84, G86, "
        "G88, G89, M50, M51, M52, M53, M62, M63, M64, M65)"},
@@ -204,8 +212,8 @@ TEST(Splines, OtherControlsHaveOtherCodesOfTheseNumbers) {
 
 TEST(Splines, NoControlHasThemInScaledOrRotatedCoordinates) {
   EXPECT_EQ(reading("G0 X1. Y2.\nG68 X0. Y0. R30.\nG5.1 X2. Y2. I1. J1. F600.\n", Reader::any),
-            "p.nc:3:1: error: G5.1 under G16, G51, G51.1, G54.1 or G68, which no control with "
-            "splines has; cancel that first");
+            "p.nc:3:1: error: G5.1 is not supported with G16, G51, G51.1, G54.1 or G68, which no "
+            "control with splines has; cancel it first");
 }
 
 }  // namespace

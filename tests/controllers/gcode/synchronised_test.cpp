@@ -56,23 +56,22 @@ TEST(Synchronised, RefusesWithAReason) {
     return text.substr(std::min(text.size(), text.find(": error: ") + 9));
   };
   EXPECT_EQ(fault("G33.1 Z-1 K1"), "");
-  EXPECT_EQ(fault("G33.1"), "G33.1 without an axis word");
-  EXPECT_EQ(fault("G33 Z-1"),
-            "G33 without K, the lead in a revolution (Fanuc and Haas give it as F)");
+  EXPECT_EQ(fault("G33.1"), "G33.1 requires an axis word");
+  EXPECT_EQ(fault("G33 Z-1"), "G33 requires K, the lead per revolution (F on Fanuc and Haas)");
   EXPECT_EQ(fault("G33 Z-1 K0"), "G33 with K0; the lead must not be zero");
   EXPECT_EQ(fault("G33.1 Z-1 K1 F100"),
-            "G33.1 with F; the feed is K times the speed of the spindle");
+            "G33.1 does not accept F; the feed rate is K times the spindle speed");
   EXPECT_EQ(fault("G33.1 Z-1 K1", "S100\n"),
-            "G33.1 while the spindle stands still; M3 or M4 first");
+            "G33.1 requires a running spindle; program M3 or M4 first");
   EXPECT_EQ(fault("G33.1 Z-1 K1", "S0 M3\n"), "G33.1 with zero spindle speed; no S is active");
-  EXPECT_EQ(fault("G33 Z-1 K1", "G93 S100 M3\n"), "G33 with G93; G94 first");
+  EXPECT_EQ(fault("G33 Z-1 K1", "G93 S100 M3\n"), "G33 is not allowed with G93; program G94 first");
   EXPECT_EQ(fault("G33 X9 K1", "S100 M3\nG41.1 D4\n"),
-            "G33 with cutter compensation active; G40 first");
+            "G33 is not allowed with cutter compensation active; program G40 first");
   EXPECT_EQ(fault("G33.1 Z-1 K1", "S100 M3\nG68.2 X0 Y0 Z0 I10 J20 K0\n"),
-            "G33.1 while the TCP is controlled; end G43.4, G43.5 or G68.2 first");
+            "G33.1 is not allowed under TCP control; cancel G43.4, G43.5 or G68.2 first");
   EXPECT_EQ(fault("G33.1 Z-1 A3 K1"),
-            "G33.1 moves X, Y and Z only (LinuxCNC drops the words of rotary axes)");
-  EXPECT_EQ(fault("G33.1 X0 K1"), "G33.1 has no travel of X, Y or Z");
+            "G33.1 moves X, Y and Z only (LinuxCNC ignores rotary axis words)");
+  EXPECT_EQ(fault("G33.1 X0 K1"), "G33.1 requires travel in X, Y or Z");
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(TcpControl, VectorsOfOtherLengthAreNormalisedWithAWarning) {
   ASSERT_EQ(interpreter.warnings().size(), 1U) << "four decimals are not worth a word";
   const Fault& warning = interpreter.warnings().front();
   EXPECT_EQ(to_string(warning.place), "p.nc:2:7");
-  EXPECT_EQ(warning.message, "the tool axis I J K has length 1.3; taken as a unit vector");
+  EXPECT_EQ(warning.message, "the tool axis I J K has length 1.3; normalised to a unit vector");
 }
 
 // --------------------------------------------------------------------------------- G68.2 G53.1
@@ -218,24 +218,28 @@ TEST(TipControlErrors, Vectors) {
   expect_gallery(
       head_machine(),
       {
-          {"G43.5 H1\nG1 X1 F1", "2:1: error: G43.5 without I J K in its first move"},
+          {"G43.5 H1\nG1 X1 F1", "2:1: error: G43.5 requires I J K in its first move"},
           {"G43.5 H1\nG0 X1 I0 J0 K0", "2:7: error: the tool axis I J K has length zero"},
-          {"G43.5 H1\nG0 X1 B5 K1", "2:7: error: B word under G43.5; I J K give the tool axis"},
+          {"G43.5 H1\nG0 X1 B5 K1",
+           "2:7: error: B word is not allowed with G43.5; I J K define the tool axis"},
           {"G43.5 H1\nG0 X1 K1\nG2 X5 I2 F1",
-           "3:1: error: G2 under G43.5, where I J K are the tool axis; use G1 or G43.4"},
+           "3:1: error: G2 is not supported with G43.5, where I J K are the tool axis; use G1 or "
+           "G43.4"},
           {"G43.5 H1\nG0 X1 K1\nG1 X2 K-1 F1",
            "3:1: error: the tool axis rotates by 180 deg, so the great circle is undefined"},
           {"G43.5 H1\nG0 X1 K1\nG1 X2 I1 K-0.5 F1",
-           "3:1: error: the tool axis (0.894427, 0.000000, -0.447214) needs B = 116.5651 deg; must "
-           "be <= 110.0000"},
+           "3:1: error: the tool axis (0.894427, 0.000000, -0.447214) requires B = 116.5651 deg; "
+           "must be <= 110.0000"},
           {"G0 X1 K1",
            "1:7: error: K word without a code that uses it (G2, G3, G33, G33.1, G68.2, G87)"},
           {"G43.5 H1\nG10 L2 P1 X1\nG28",
-           "3:1: error: G28 under tool-centre-point control; G49 first"},
-          {"G43.4 H1\nG53 G0 X1", "2:1: error: G53 under tool-centre-point control; G49 first"},
+           "3:1: error: G28 is not allowed under TCP control; program G49 first"},
+          {"G43.4 H1\nG53 G0 X1",
+           "2:1: error: G53 is not allowed under TCP control; program G49 first"},
           {"G43.4 G43.5 H1", "1:7: error: G43.4 and G43.5 in one block (same modal group)"},
           {"G43.4 H9", "1:7: error: H9 is not in the tool table"},
-          {"G41 G43.4 H1", "1:5: error: G43.4 with cutter compensation active; G40 first"},
+          {"G41 G43.4 H1",
+           "1:5: error: G43.4 is not allowed with cutter compensation active; program G40 first"},
       });
 }
 
@@ -243,23 +247,28 @@ TEST(TipControlErrors, Planes) {
   expect_gallery(
       table_machine(),
       {
-          {"G68.2 J10\nG68.2 J20", "2:1: error: G68.2 in a tilted work plane; G69 first"},
-          {"G53.1", "1:1: error: G53.1 without a tilted work plane; G68.2 first"},
+          {"G68.2 J10\nG68.2 J20",
+           "2:1: error: G68.2 is not allowed in a tilted work plane; program G69 first"},
+          {"G53.1", "1:1: error: G53.1 requires a tilted work plane; program G68.2 first"},
           {"G68.2 J10\nG0 G53.1 X1", "2:1: error: G53.1 must be in a block without motion"},
           {"G68.2 J130\nG53.1",
-           "2:1: error: G53.1: the tool axis (0.000000, -0.766044, -0.642788) needs A = 130.0000 "
-           "deg; must be <= 120.0000"},
-          {"G68.2 J10 A5", "1:11: error: A word with G68.2; its angles are I J K"},
+           "2:1: error: G53.1: the tool axis (0.000000, -0.766044, -0.642788) requires A = "
+           "130.0000 deg; must be <= 120.0000"},
+          {"G68.2 J10 A5", "1:11: error: A word is not allowed with G68.2; its angles are I J K"},
           {"G68.2 J10\nG0 A5",
-           "2:4: error: A word in a tilted work plane; G53.1 orients the tool, G43.4 moves rotary "
-           "axes"},
-          {"G68.2 J10\nG92 X0", "2:1: error: G92 in a tilted work plane; G69 first"},
-          {"G68.2 J10\nG53 G0 X0", "2:1: error: G53 in a tilted work plane; G69 first"},
+           "2:4: error: A word is not allowed in a tilted work plane; orient the tool with G53.1, "
+           "or use G43.4 for rotary axes"},
+          {"G68.2 J10\nG92 X0",
+           "2:1: error: G92 is not allowed in a tilted work plane; program G69 first"},
+          {"G68.2 J10\nG53 G0 X0",
+           "2:1: error: G53 is not allowed in a tilted work plane; program G69 first"},
           {"G43.1 Z5\nG68.2 J10",
-           "2:1: error: G68.2 with a tool offset of G43.1 or G43.2; use G43 H"},
-          {"G68.2 J10\nG43.1 Z5", "2:1: error: G43.1 in a tilted work plane; use G43 H"},
+           "2:1: error: G68.2 is not supported with a tool offset of G43.1 or G43.2; use G43 H"},
+          {"G68.2 J10\nG43.1 Z5",
+           "2:1: error: G43.1 is not supported in a tilted work plane; use G43 H"},
           {"G68.2 G69 J10", "1:7: error: G68.2 and G69 in one block (same modal group)"},
-          {"G68.2 G0 X1", "1:7: error: G68.2 and G0 in one block: both use the axis words"},
+          {"G68.2 G0 X1",
+           "1:7: error: G68.2 and G0 are not allowed in one block: both use the axis words"},
       });
 }
 
@@ -273,8 +282,8 @@ TEST(TipControlErrors, MachinesThatCannotTurn) {
   TipMachine four = table_machine();
   four.chain = plant::make_chain(plant::parse_structure("[w A' X' b Y Z t]"));
   expect_gallery(four, {{"G43.5 H1\nG0 I0.6 K0.8",
-                         "2:1: error: the tool axis (0.600000, 0.000000, 0.800000) is "
-                         "out of reach by 36.8699 deg"}});
+                         "2:1: error: the tool axis (0.600000, 0.000000, 0.800000) cannot be "
+                         "reached; the error is 36.8699 deg"}});
 }
 
 TEST(TipControlErrors, WithoutAMachine) {

@@ -37,17 +37,14 @@ TEST(ToolTable, NamesEveryFaultOfEveryLine) {
                       "T2.5 P-1 Q10\n"
                       "T4 U3 Znan\n"
                       "hello T5\n"),
-            "t.tbl:2:1: error: tool T1 appears twice\n"
-            "t.tbl:3:1: error: tool without a number (T word)\n"
-            "t.tbl:4:4: error: Z must be followed by a number\n"
-            "t.tbl:4:7: error: unknown word 'K'; allowed are T P X Y Z A B C D I J Q\n"
-            "t.tbl:4:13: error: second D word of a tool\n"
-            "t.tbl:5:1: error: T2.5; must be an integer in 0 ... 1000000\n"
-            "t.tbl:5:6: error: P-1; must be an integer in 0 ... 1000000\n"
-            "t.tbl:5:10: error: Q10; must be an integer in 0 ... 9\n"
-            "t.tbl:6:4: error: U3; must be 0: no axis U\n"
-            "t.tbl:6:7: error: Z must be followed by a number\n"
-            "t.tbl:7:1: error: unknown word 'h'; allowed are T P X Y Z A B C D I J Q");
+            "t.tbl:2:1: error: tool T1 appears twice\nt.tbl:3:1: error: the tool number (T word) "
+            "is missing\nt.tbl:4:4: error: Z must be followed by a number\nt.tbl:4:7: error: "
+            "unknown word 'K'; allowed are T P X Y Z A B C D I J Q\nt.tbl:4:13: error: the D word "
+            "appears twice\nt.tbl:5:1: error: T2.5; must be an integer in 0 ... "
+            "1000000\nt.tbl:5:6: error: P-1; must be an integer in 0 ... 1000000\nt.tbl:5:10: "
+            "error: Q10; must be an integer in 0 ... 9\nt.tbl:6:4: error: U3; must be 0: axis U is "
+            "not supported\nt.tbl:6:7: error: Z must be followed by a number\nt.tbl:7:1: error: "
+            "unknown word 'h'; allowed are T P X Y Z A B C D I J Q");
 }
 
 TEST(ToolTable, ChangesWhileTheProgramRuns) {
@@ -59,23 +56,23 @@ TEST(ToolTable, ChangesWhileTheProgramRuns) {
 }
 
 TEST(ToolTable, FaultsOfG10NameTheWord) {
-  EXPECT_EQ(fault_of("G10 X1"), "p.nc:1:1: error: G10 needs an L word (L0 L1 L2 L10 L11 L20)");
+  EXPECT_EQ(fault_of("G10 X1"), "p.nc:1:1: error: G10 requires an L word (L0 L1 L2 L10 L11 L20)");
   EXPECT_EQ(fault_of("G10 L3 P1 X1"),
             "p.nc:1:5: error: G10 L3; must be L0, L1, L2, L10, L11 or L20");
-  EXPECT_EQ(fault_of("G10 L1 X1"), "p.nc:1:1: error: G10 L1 needs a P word (tool number)");
+  EXPECT_EQ(fault_of("G10 L1 X1"), "p.nc:1:1: error: G10 L1 requires a P word (tool number)");
   EXPECT_EQ(fault_of("G10 L1 P1.5 X1"), "p.nc:1:8: error: P1.5; must be an integer");
   EXPECT_EQ(fault_of("G10 L11 P0 X1"), "p.nc:1:9: error: G10 L11 P0; must be a tool number >= 1");
   EXPECT_EQ(fault_of("G10 L10 P5 X1"), "p.nc:1:9: error: P5 is not in the tool table");
   EXPECT_EQ(fault_of("G10 L1 P1"),
-            "p.nc:1:1: error: G10 L1 without a word to set (X Y Z A B C R I J Q)");
+            "p.nc:1:1: error: G10 L1 requires a word to set (X Y Z A B C R I J Q)");
   EXPECT_EQ(fault_of("G10 L1 P1 Q-1"),
-            "p.nc:1:11: error: Q-1; the orientation of a tool must be in 0 ... 9");
-  EXPECT_EQ(fault_of("G10 L2 P1 X1 J2"), "p.nc:1:14: error: J word with G10 L2");
+            "p.nc:1:11: error: Q-1; the tool orientation must be in 0 ... 9");
+  EXPECT_EQ(fault_of("G10 L2 P1 X1 J2"), "p.nc:1:14: error: J word is not allowed with G10 L2");
   EXPECT_EQ(fault_of("T1 M6\nG10 L0"),
             "p.nc:2:5: error: G10 L0 with tool T1 in the spindle; unload it (T0 M6) first");
   EXPECT_EQ(fault_of("G10 L1 P1 Z50\nG43.4 H1"),
-            "p.nc:2:1: error: G43.4: G10 has changed T1; tool-centre-point control and tilted "
-            "planes need the offset from the tool table");
+            "p.nc:2:1: error: G43.4: G10 has changed T1; TCP control and tilted planes require the "
+            "offset of the tool table");
 }
 
 }  // namespace

@@ -70,19 +70,18 @@ TEST(SingularDirection, IsSaidInOneSentence) {
   const Planned p(head_machine(), past_the_pole(0.01));
   ASSERT_EQ(p.tip.slowed.size(), 1U);
   const JointLayout& layout = p.machine.chain.layout;
-  EXPECT_EQ(
-      to_string(p.tip.slowed.front(), layout),
-      "the programmed feed needs C at 1.553e+06 deg/s^3, 0.57 deg from a singular direction of the "
-      "tool axis; it can do 1.146e+05: the feed falls to about 41.9 %");
+  EXPECT_EQ(to_string(p.tip.slowed.front(), layout),
+            "the programmed feed rate requires C at 1.553e+06 deg/s^3, 0.57 deg from a singular "
+            "direction of the tool axis; its limit is 1.146e+05: the feed rate is reduced to about "
+            "41.9 %");
   EXPECT_EQ(to_string({7, 4, 1369 * deg, 1200 * deg, 0.01}, layout),
-            "the programmed feed needs C at 1369 deg/s, 0.57 deg from a singular direction of the "
-            "tool axis; it can do 1200: the feed falls to 87.7 %");
-  EXPECT_EQ(
-      to_string({7, 0, 2.0, 1.0, 0.3, 2, 1}, layout),
-      "the programmed feed needs X at 2000 mm/s^2; it can do 1000: the feed falls to about 70.7 %, "
-      "and in one more block, too");
+            "the programmed feed rate requires C at 1369 deg/s, 0.57 deg from a singular direction "
+            "of the tool axis; its limit is 1200: the feed rate is reduced to 87.7 %");
+  EXPECT_EQ(to_string({7, 0, 2.0, 1.0, 0.3, 2, 1}, layout),
+            "the programmed feed rate requires X at 2000 mm/s^2; its limit is 1000: the feed rate "
+            "is reduced to about 70.7 %, and in one other block");
   EXPECT_EQ(to_string({7, 4, 1e6, 20.0, 0.0}, layout),
-            "in a singular direction of the tool axis the TCP waits while C turns");
+            "in a singular direction of the tool axis the TCP is at rest while C rotates");
 }
 
 // Half a turn of C in the time that the tip takes for 0.1 um is no matter of the tool axis.
@@ -91,7 +90,7 @@ TEST(TcpMotion, ATurnThatIsTooFastIsNoSingularDirection) {
     const Planned p(table_machine(), "G43.4 H1\nG0 " + tilt + "\nG1 X0.0001 C180 F1000\n");
     ASSERT_EQ(p.tip.slowed.size(), 1U);
     EXPECT_EQ(to_string(p.tip.slowed.front(), p.machine.chain.layout),
-              "the TCP waits while C turns");
+              "the TCP is at rest while C rotates");
   }
 }
 
@@ -131,8 +130,8 @@ TEST(InverseTime, BlocksThatAskTooMuchOfAnAxisAreCounted) {
   EXPECT_EQ(one->line, 4);
   EXPECT_EQ(one->others, 1U);
   EXPECT_EQ(to_string(*one, machine.chain.layout),
-            "the programmed feed needs C at 1500 deg/s; it can do 1200: the feed falls to 80 %, "
-            "and in one more block, too");
+            "the programmed feed rate requires C at 1500 deg/s; its limit is 1200: the feed rate "
+            "is reduced to 80 %, and in one other block");
   EXPECT_EQ(slowed("G93\nG1 X10 F6000\n")->joint, 0);
 }
 

@@ -280,7 +280,7 @@ TEST(TcpMotion, LeavingTheTravelIsSaidOnceALineAndJoint) {
   }
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0],
-            "p.nc:3: error: X moves to 23.6604 mm, outside the travel; must be <= 10.0000");
+            "p.nc:3: error: X moves to 23.6604 mm, outside its travel; must be <= 10.0000");
 }
 
 // The tool axis goes round the pole beyond the end of C.
@@ -298,14 +298,13 @@ TEST(TcpMotion, AnAxisAtItsEndCannotGoOn) {
     }
   };
   const std::string round = "G43.5 H1\nG0 X0 I0.342 J0.94 K2\nG1 I-0.342 J0.94 K2 F100\n";
-  EXPECT_EQ(
-      message(0.0, round),
-      "p.nc:3:1: error: during the move, the tool axis (0.000000, 0.425361, 0.905024) needs C = "
-      "180.0000 deg; must be <= 170.0000");
+  EXPECT_EQ(message(0.0, round),
+            "p.nc:3:1: error: during the move, the tool axis (0.000000, 0.425361, 0.905024) "
+            "requires C = 180.0000 deg; must be <= 170.0000");
   EXPECT_EQ(message(-120 * deg, round), "") << "A goes the other way from the begin";
   EXPECT_EQ(message(-120 * deg, "G0 A26 C160\nG43.5 H1\nG1 I-0.342 J0.94 K2 F100\n"),
-            "p.nc:3:1: error: C reaches its travel limit at 170.0000 deg, and otherwise would have "
-            "to jump from 170.0000 to -10.0000 deg");
+            "p.nc:3:1: error: C reaches its travel limit at 170.0000 deg; otherwise would have to "
+            "jump from 170.0000 to -10.0000 deg");
 }
 
 // Through the vertical A would go to the other side, but ends before.
@@ -317,8 +316,8 @@ TEST(TcpMotion, TheAxisThatIsAtItsEndIsNamed) {
     FAIL() << "A would have to pass its end, or C to jump";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "p.nc:3:1: error: A reaches its travel limit at -10.0000 deg, and otherwise C would "
-              "have to jump from 0.0000 to -180.0000 deg");
+              "p.nc:3:1: error: A reaches its travel limit at -10.0000 deg; otherwise C would have "
+              "to jump from 0.0000 to -180.0000 deg");
   }
 }
 

@@ -33,27 +33,27 @@ TEST(Travel, NamesLineAxisValueAndLimit) {
   program.line(0.1, 0, 0, 0.1).line(0.4005, 0, 0.001, 0.1);
   EXPECT_EQ(
       faults(program),
-      (Lines{"part.nc:2: error: X moves to 400.5000 mm, outside the travel; must be <= "
-             "400.0000",
-             "part.nc:2: error: Z moves to 1.0000 mm, outside the travel; must be <= 0.0000"}));
+      (Lines{"part.nc:2: error: X moves to 400.5000 mm, outside its travel; must be <= 400.0000",
+             "part.nc:2: error: Z moves to 1.0000 mm, outside its travel; must be <= 0.0000"}));
 }
 
 TEST(Travel, CountsRotaryAxesInDegreesAndLeavesEndlessOnesFree) {
   AxisWords to = AxisWords::Zero();
   to[4] = -122 * deg;
   to[5] = 1000 * deg;
-  EXPECT_EQ(faults(Program().line(to, 1.0)),
-            (Lines{"part.nc:1: error: B moves to -122.0000 deg, outside the travel; must be >= "
-                   "-121.0000"}));
+  EXPECT_EQ(
+      faults(Program().line(to, 1.0)),
+      (Lines{
+          "part.nc:1: error: B moves to -122.0000 deg, outside its travel; must be >= -121.0000"}));
 }
 
 TEST(Travel, SeesTheExtremePointOfAnArc) {
   Joints start = Joints::Zero();
   start.head<3>() << 0.39, -0.02, 0.0;
   const Eigen::Vector3d centre(0.39, 0, 0), to(0.39, 0.02, 0);
-  EXPECT_EQ(faults(Program(start).arc(centre, to, 2, 1, 0.1)),
-            (Lines{"part.nc:1: error: X moves to 410.0000 mm, outside the travel; must be <= "
-                   "400.0000"}));
+  EXPECT_EQ(
+      faults(Program(start).arc(centre, to, 2, 1, 0.1)),
+      (Lines{"part.nc:1: error: X moves to 410.0000 mm, outside its travel; must be <= 400.0000"}));
   EXPECT_EQ(faults(Program(start).arc(centre, to, 2, -1, 0.1)), Lines{});
 }
 
@@ -61,9 +61,9 @@ TEST(Travel, SeesTheFarthestPointOfASpline) {
   Joints start = Joints::Zero();
   start.head<3>() << 0.39, -0.02, 0.0;
   // an arch of the height 3/4 of that of its control points
-  EXPECT_EQ(faults(Program(start).spline(4, {{0.41, -0.02}, {0.41, 0.02}, {0.39, 0.02}}, 0.1)),
-            (Lines{"part.nc:1: error: X moves to 405.0000 mm, outside the travel; must be <= "
-                   "400.0000"}));
+  EXPECT_EQ(
+      faults(Program(start).spline(4, {{0.41, -0.02}, {0.41, 0.02}, {0.39, 0.02}}, 0.1)),
+      (Lines{"part.nc:1: error: X moves to 405.0000 mm, outside its travel; must be <= 400.0000"}));
   EXPECT_EQ(faults(Program(start).spline(4, {{0.4, -0.02}, {0.4, 0.02}, {0.39, 0.02}}, 0.1)),
             Lines{});
 }

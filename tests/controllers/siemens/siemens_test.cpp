@@ -47,9 +47,9 @@ TEST(Siemens, APoleEndsWithTheFrameThatSaveTakesBack) {
         "%_N_L1_SPF\nPROC L1 SAVE\nTRANS X10\nG111 X0 Y0\nM17\n");
     FAIL() << "no fault";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "t.mpf:4:1: error: AP and RP without a pole: program G111 before, in the same "
-                 "frame");
+    EXPECT_STREQ(
+        error.what(),
+        "t.mpf:4:1: error: AP and RP require a pole in the same frame; program G111 first");
   }
 }
 
@@ -95,32 +95,30 @@ TEST(Siemens, SettingsOfTheMachineChoose) {
 }
 
 TEST(Siemens, ReadingsAreWarnedOf) {
-  EXPECT_EQ(warnings_of("T1\nG0 X1\nM84\nRTLIOF\nG9\n"),
-            "t.mpf:1:1: T changes the tool at once: the program has no M6 (MD22550 = 0)\n"
-            "t.mpf:2:1: a move before any function of the groups of G17, G90, G71, G94, G64, G54: "
-            "taken as in force at the start\n"
-            "t.mpf:3:1: M84: a function of the machine builder; ignored: no effect on motion\n"
-            "t.mpf:4:1: RTLIOF: rapid moves are taken as straight lines, as with RTLION\n"
-            "t.mpf:5:1: G9: the exact stop at the end of single blocks is ignored; use G60\n"
-            "t.mpf:5: the program ends without M30: read as if it followed\n");
+  EXPECT_EQ(
+      warnings_of("T1\nG0 X1\nM84\nRTLIOF\nG9\n"),
+      "t.mpf:1:1: T is treated as a tool change: the program has no M6 (MD22550 = 0)\nt.mpf:2:1: a "
+      "motion block precedes G17, G90, G71, G94, G64, G54: assumed active at the start\nt.mpf:3:1: "
+      "M84 is ignored: machine-builder function; no effect on motion\nt.mpf:4:1: RTLIOF: treated "
+      "as RTLION, rapid moves in a straight line\nt.mpf:5:1: G9: non-modal exact stop is ignored; "
+      "use G60\nt.mpf:5: the program ends without M30: treated as if M30 followed\n");
 }
 
 TEST(Siemens, WordsThatArePassedOverAreWarnedOf) {
   EXPECT_EQ(
       warnings_of(with_frame("ACC[X]=50 OVRRAP=50\nG26 X100 S2000\nH5=3\nORIWKS\nSPOS=0\n"
                              "G641 ADIS=0.5\nG97\nG1 X1 F0.1 RND=0.1\nM8\nY1\n")),
-      "t.mpf:4:1: ACC: the acceleration stays that of the machine\n"
-      "t.mpf:4:1: OVRRAP: rapid moves keep the velocity of the machine\n"
-      "t.mpf:5:1: G25 and G26: limits of the working area are ignored\n"
-      "t.mpf:6:1: H: a function of the PLC; ignored: no effect on motion\n"
-      "t.mpf:7:1: ORIWKS: rotary axes are taken to move linearly between blocks, as with ORIAXES; "
-      "the tool then leaves the plane of its first and last direction\n"
-      "t.mpf:8:1: SPOS and M19: the spindle stops; its orientation is not simulated\n"
-      "t.mpf:9:1: G641: taken as G64: the tolerance is not read; CYCLE832 gives one\n"
-      "t.mpf:9:1: ADIS: the distance is not read; CYCLE832 gives a tolerance\n"
-      "t.mpf:10:1: G97: F counts per revolution, as with G95\n"
-      "t.mpf:12:1: F or an M function behind RND, CHF or CHR: taken as behind the corner, as with "
-      "bit 0 of MD20201; FRC gives the corner a feed\n");
+      "t.mpf:4:1: ACC: ignored: the acceleration limit of the machine applies\nt.mpf:4:1: OVRRAP: "
+      "ignored: rapid moves use the rapid velocity of the machine\nt.mpf:5:1: G25 and G26: limits "
+      "of the working area are ignored\nt.mpf:6:1: H: ignored: a PLC function without effect on "
+      "motion\nt.mpf:7:1: ORIWKS: treated as ORIAXES, linear interpolation of the rotary axes; the "
+      "tool leaves the plane of its start and end orientation\nt.mpf:8:1: SPOS and M19: the "
+      "spindle stops; its orientation is not simulated\nt.mpf:9:1: G641: treated as G64: the "
+      "smoothing tolerance is not evaluated; set it with CYCLE832\nt.mpf:9:1: ADIS: ignored: the "
+      "smoothing distance is not evaluated; set a tolerance with CYCLE832\nt.mpf:10:1: G97: F is "
+      "in mm/rev, as with G95\nt.mpf:12:1: F or an M function in the block of RND, CHF or CHR: "
+      "treated as effective after the corner, as with MD20201 bit 0 = 1; FRC sets the feed rate of "
+      "the corner\n");
 }
 
 // G60 is exact stop; CYCLE832 gives a tolerance, which G64 and G642 keep; SAVE restores the mode
@@ -178,10 +176,9 @@ TEST(Siemens, ASurveyGoesOnBehindCyclesOfTheControl) {
   ProgramSetup setup = example_setup();
   setup.accepts_unknown_positions = true;
   const std::string program = with_frame("POCKET3(5,0,2,-10,50,30,5)\nG0 X1 Y2 Z3\nX=IC(1)\n");
-  EXPECT_EQ(
-      warnings_of(program, setup),
-      "t.mpf:4:1: POCKET3: the path is internal to the control; have the CAM system output the "
-      "moves; extent and cycle time are without its moves\n");
+  EXPECT_EQ(warnings_of(program, setup),
+            "t.mpf:4:1: POCKET3: the path is internal to the control; have the CAM system output "
+            "the moves; extent and cycle time exclude its moves\n");
 }
 
 TEST(Siemens, BlocksWithASlashAreLeftOutOnRequest) {
@@ -194,7 +191,7 @@ TEST(Siemens, EndlessProgramsAreStopped) {
   ProgramSetup setup = example_setup();
   setup.most_jumps = 10;
   const char* const message =
-      ": error: 10 jumps: the program looks endless; raise --max-jumps if intended";
+      ": error: 10 jumps: the program appears to loop endlessly; raise --max-jumps if intended";
   EXPECT_EQ(fault_of("AGAIN: R1=1\nGOTOB AGAIN\n", setup), std::string("t.mpf:5:1") + message);
   EXPECT_EQ(fault_of("LOOP\nENDLOOP\n", setup), std::string("t.mpf:5:1") + message);
 }

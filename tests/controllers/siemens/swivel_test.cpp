@@ -97,18 +97,21 @@ TEST(Swivel, TipControl) {
 TEST(Swivel, Refusals) {
   const std::string plane = "CYCLE800(0,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0)\n";
   EXPECT_EQ(fault_of(plane + "G0 A5\n"),
-            "t.mpf:5:1: error: a rotary axis in a plane of CYCLE800; program CYCLE800() first");
+            "t.mpf:5:1: error: rotary axes cannot be programmed in a plane of CYCLE800; program "
+            "CYCLE800() first");
   EXPECT_EQ(fault_of(plane + "T2 M6\n"),
-            "t.mpf:5:1: error: a tool change in a plane of CYCLE800; program CYCLE800() first");
-  EXPECT_EQ(fault_of(plane + "TRAORI\n"),
-            "t.mpf:5:1: error: TRAORI in a plane of CYCLE800; end it first");
+            "t.mpf:5:1: error: a tool change is not allowed in a plane of CYCLE800; program "
+            "CYCLE800() first");
+  EXPECT_EQ(
+      fault_of(plane + "TRAORI\n"),
+      "t.mpf:5:1: error: TRAORI is not allowed in a plane of CYCLE800; program CYCLE800() first");
   EXPECT_EQ(fault_of("TRAORI\nCYCLE800()\n"),
-            "t.mpf:5:1: error: CYCLE800 with TRAORI; end it with TRAFOOF");
+            "t.mpf:5:1: error: CYCLE800 is not allowed with TRAORI; cancel it with TRAFOOF");
   EXPECT_EQ(fault_of("CYCLE800(0,\"TC\",0,192,0,0,0,30,0,0,0,0,0,1)\n"),
-            "t.mpf:4:1: error: CYCLE800: only swivelling axis by axis (_MODE up to 63) is "
-            "supported; solid angles, projection angles and rotary axes are not");
+            "t.mpf:4:1: error: CYCLE800: only axis-by-axis swivelling (_MODE up to 63) is "
+            "supported; solid angles, projection angles and direct rotary axes are not");
   EXPECT_EQ(fault_of("CYCLE800(0,\"TC\",1,57)\n"),
-            "t.mpf:4:1: error: CYCLE800: only new planes without tracking of the tip (_ST = 0) are "
+            "t.mpf:4:1: error: CYCLE800: only new planes without tool tip correction (_ST = 0) are "
             "supported");
 }
 

@@ -32,7 +32,7 @@ TEST(ControlTableRefusals, LinuxcncRefusesWhatItDoesNotLoad) {
   EXPECT_EQ(linuxcnc_fault("0 0 0\n1 1 x\n2 2 2\n"),
             "joint_0_x.comp:2: error: is not three numbers; LinuxCNC stops reading here");
   EXPECT_EQ(linuxcnc_fault("0 0 0\n0 0 0\n"),
-            "joint_0_x.comp:2: error: position does not exceed that of the previous point");
+            "joint_0_x.comp:2: error: the positions must increase");
   EXPECT_EQ(linuxcnc_fault("0 0 0\n"), "joint_0_x.comp: error: 1 points; must be >= 2");
   std::string many;
   for (int i = 0; i < 257; ++i) many += std::to_string(i) + " 0 0\n";
@@ -54,12 +54,12 @@ TEST(ControlTableRefusals, SiemensRefusesWhatItWouldTakeOtherwise) {
       "$AA_ENC_COMP[0,0,X1]=1\n$AA_ENC_COMP[0,1,X1]=0\n$AA_ENC_COMP[0,2,X1]=0\n";
   EXPECT_EQ(siemens_fault(points + step + max + "M17\n"), "read");
   EXPECT_EQ(siemens_fault(points + step + max), "A.INI:7: error: the file ends without M17");
-  EXPECT_EQ(siemens_fault(points + max + "M17\n"), "A.INI:1: error: the table assigns no MIN");
+  EXPECT_EQ(siemens_fault(points + max + "M17\n"), "A.INI:1: error: the table does not assign MIN");
   EXPECT_EQ(
       siemens_fault("$AA_ENC_COMP[0,0,X1]=1\n$AA_ENC_COMP[0,2,X1]=1\n" + step + max + "M17\n"),
       "A.INI:1: error: the table has no point 1 of 0 to 2");
   EXPECT_EQ(siemens_fault(points + "$AA_ENC_COMP[0,3,X1]=1\n" + step + max + "M17\n"),
-            "A.INI:4: error: the table ends with point 2");
+            "A.INI:4: error: the last point of the table is 2");
   EXPECT_EQ(siemens_fault(points + step +
                           "$AA_ENC_COMP_MAX[0,X1]=2\n$AA_ENC_COMP_IS_MODULO[0,X1]=1\nM17\n"),
             "A.INI:3: error: a periodic table must end with its first value");
@@ -125,8 +125,7 @@ TEST(ControlTableRefusals, HeidenhainRefusesRowsAndColumnsThatDoNotFit) {
   EXPECT_EQ(fault("AXISPOS Q\n0 0\n1 0\n"), "X.COM.txt:1: error: 'Q' is not an axis");
   EXPECT_EQ(fault("AXISPOS BACKLASH Z\n0 0 0\n1 0 0\n"),
             "X.COM.txt:1: error: BACKLASH without a column X");
-  EXPECT_EQ(fault("AXISPOS X\n1 0\n0 0\n"),
-            "X.COM.txt:3: error: position does not exceed that of the previous point");
+  EXPECT_EQ(fault("AXISPOS X\n1 0\n0 0\n"), "X.COM.txt:3: error: the positions must increase");
 }
 
 }  // namespace

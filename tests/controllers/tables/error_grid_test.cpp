@@ -47,15 +47,15 @@ TEST(ErrorGrid, NeedsOneRecordForEachCombination) {
   EXPECT_EQ(fault_of({{{0, 0}, 1, 2}, {{0, 0.01}, 2, 3}, {{far, 0}, 3, 4}, {{far, 0.01}, 3, 5}}),
             "none");
   EXPECT_EQ(fault_of({{{0, 0}, 1, 2}, {{0, 0.01}, 2, 3}, {{far, 0}, 3, 4}}),
-            "v.csv:1: error: EXX: 3 records, but their positions make a grid of 4 combinations; "
-            "Z = 100, X = 10 is the first without a record; interpolation GRID needs one for each");
+            "v.csv:1: error: EXX: 3 records, but their positions form a grid of 4 points; Z = 100, "
+            "X = 10 is the first without a record; interpolation GRID requires one for each");
   EXPECT_EQ(fault_of({{{far, 0}, 3, 4}, {{0, 0}, 1, 2}, {{0, 0.02}, 1, 2}, {{0, 0.01}, 2, 3}}),
-            "v.csv:1: error: EXX: 4 records, but their positions make a grid of 6 combinations; "
-            "Z = 100, X = 10 is the first without a record; interpolation GRID needs one for each");
+            "v.csv:1: error: EXX: 4 records, but their positions form a grid of 6 points; Z = 100, "
+            "X = 10 is the first without a record; interpolation GRID requires one for each");
   EXPECT_EQ(fault_of({{{0, 0}, 1, 2}, {{0, 0.01}, 2, 3}, {{0, 0.01}, 2, 4}, {{far, 0}, 3, 5}}),
             "v.csv:4: error: EXX appears twice at Z = 0, X = 10");
   EXPECT_EQ(fault_of({{{0, 0}, 1, 2}, {{0, 0.01}, 2, 3}}),
-            "v.csv:1: error: EXX: one position of Z; a grid must have at least two");
+            "v.csv:1: error: EXX: one position of Z; a grid requires at least two");
 }
 
 }  // namespace

@@ -97,28 +97,27 @@ TEST(IsgTable, RefusesTheSameErrorOverOneAndOverTwoAxes) {
 
 TEST(IsgTable, RefusesByNameWhatItDoesNotHold) {
   EXPECT_EQ(isg_fault("EXX\n0.1\n"),
-            "v.csv:1: error: EXX has no argument; must be a function of the position of an axis");
+            "v.csv:1: error: EXX has no argument; must be a function of an axis position");
   EXPECT_EQ(isg_fault("X C0Y\n0 1e-5\n10 1e-5\n"),
             "v.csv:1: error: C0Y is a function of X; only constant position errors are supported");
   EXPECT_EQ(isg_fault("C0Y\n1e-5\n1e-5\n"),
             "v.csv:3: error: C0Y: 2 records of a position error; must be one");
   EXPECT_EQ(isg_fault("VXC VYC VZC C0Y\n0 0.7 0.7 1e-5\n"),
-            "v.csv:2: error: VYC is not 0; axes of modified orientation are not supported");
+            "v.csv:2: error: VYC is not 0; axes with modified orientation are not supported");
   EXPECT_EQ(isg_fault("IDX C0Y\n5 1e-5\n"),
             "v.csv:2: error: IDX is not 0; offsets of the programmed values are not supported");
 }
 
 TEST(IsgTable, RefusesWhatIsNoTable) {
   EXPECT_EQ(isg_fault("X,EXX\n0,0\n1,0\n"),
-            "v.csv:1: error: contains a comma or a semicolon; the format separates columns by "
-            "blanks and uses decimal points");
+            "v.csv:1: error: contains a comma or a semicolon; columns must be separated by spaces "
+            "and numbers use decimal points");
   EXPECT_EQ(isg_fault("X EXX\n0 0,1\n"),
-            "v.csv:2: error: contains a comma or a semicolon; the format separates columns by "
-            "blanks and uses decimal points");
+            "v.csv:2: error: contains a comma or a semicolon; columns must be separated by spaces "
+            "and numbers use decimal points");
   EXPECT_EQ(isg_fault("X EXX EYX\n0 0\n"), "v.csv:2: error: 2 values for 3 columns");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n"), "v.csv:1: error: EXX: 1 points; must be >= 2");
-  EXPECT_EQ(isg_fault("X EXX\n0 0\n0 0\n"),
-            "v.csv:3: error: EXX: position does not exceed that of the previous point");
+  EXPECT_EQ(isg_fault("X EXX\n0 0\n0 0\n"), "v.csv:3: error: EXX: the positions must increase");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n1 nan\n"), "v.csv:3: error: 'nan' must be a number");
   EXPECT_EQ(isg_fault("X EXX EXX\n0 0 0\n1 0 0\n"), "v.csv:1: error: EXX appears twice");
   EXPECT_EQ(isg_fault("X EXX\n0 0\n1 0\n#\nX EXX\n0 0\n1 0\n"),
@@ -157,7 +156,7 @@ TEST(EtalonTable, RefusesWhatTheDocumentDoesNotHave) {
   EXPECT_EQ(etalon_fault("[EXY]\nGridpoints = {\n0 0\n1 0\n"),
             "v.exc:4: error: the file ends within Gridpoints");
   EXPECT_EQ(etalon_fault("[EXY]\nGridpoints = {\n0 0 0\n"),
-            "v.exc:3: error: 3 values; a grid point needs two");
+            "v.exc:3: error: 3 values; a grid point requires two");
   EXPECT_EQ(etalon_fault("[C0B]\nVALUE = 0\nVALUE = 1\n"),
             "v.exc:3: error: the block already has a value");
   EXPECT_EQ(etalon_fault("[C0B]\nVALUE = 0\n[C0B]\nVALUE = 1\n"),
