@@ -238,8 +238,8 @@ def identification_section(file):
     title = html.escape(str(file.attrs["name"]))
     rows = parameters(file["parameters"])
     out = [f"<h1>Identification: {title}</h1>",
-           "<p>&plusmn; is the expanded uncertainty (k = 2) that the colour of the residual allows; counting samples as if each were "
-           "independent would claim what stands in the last column.</p>", value_table(rows)]
+           "<p>&plusmn; is the expanded uncertainty (k = 2), which takes the autocorrelation of the residual into account; the last "
+           "column assumes independent samples.</p>", value_table(rows)]
     if rows:
         out.append(correlation(file["parameters"], rows))
     for name in sorted(key for key in file if key.startswith("recording_")):

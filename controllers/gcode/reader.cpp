@@ -32,8 +32,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      kAll,
      "grbl 1.1, protocol.c (codes up to that of the space); from memory: NUL and DEL of tapes are "
      "skipped"},
-    {open_comment, "a comment is not closed; ')' is missing",
-     "read as a comment to the end of the line", "grbl", kGrbl, "grbl 1.1, protocol.c"},
+    {open_comment, "a comment without ')'", "read as a comment to the end of the line", "grbl",
+     kGrbl, "grbl 1.1, protocol.c"},
     {nested_comment, "brackets within a comment", "read as part of the comment",
      "undocumented; no control accepts words there", kAll, "none found"},
     {slash_comment, "a line that begins with '//'", "read as a comment",
@@ -102,9 +102,8 @@ constexpr auto kRules = std::to_array<ReaderRuleEntry>({
      "read as rigid tapping, which starts the spindle", "Fanuc (M29), Haas", kFanuc | kHaas,
      "Fanuc B-63944EN, rigid tapping, from memory; Haas online manual, G84 (Group 09): it starts "
      "the spindle"},
-    {words_with_g80, "axis words are not allowed with G80", "read as a move by the last G0 or G1",
-     "Fanuc, Haas", kFanuc | kHaas,
-     "Fanuc B-63944EN, G80; groups 01 and 09 are separate (from memory)"},
+    {words_with_g80, "axis words with G80", "read as a move by the last G0 or G1", "Fanuc, Haas",
+     kFanuc | kHaas, "Fanuc B-63944EN, G80; groups 01 and 09 are separate (from memory)"},
     {motion_behind_cycle, "axis words after G80 without G0 or G1",
      "read as a move by the last G0 or G1", "Fanuc, Haas", kFanuc | kHaas,
      "Fanuc B-63944EN, G80; groups 01 and 09 are separate (from memory)"},

@@ -174,7 +174,7 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
   Plan out;
   out.set_ups = plan_candidates(machine, settings);
   if (out.set_ups.empty()) {
-    throw InputError({"--instruments"}, "none of them can measure anything on this machine");
+    throw InputError({"--instruments"}, "none of them applies to this machine");
   }
   const Unknowns unknowns = unknowns_of(machine);
   const ErrorEffects effects(machine.chain, unknowns);

@@ -134,11 +134,11 @@ std::string report(const Calibration& calibration) {
   const Adjustment& adjustment = calibration.adjustment;
   std::string out = group_table(calibration) + "\n" + error_table(calibration);
   out += fmt::format(
-      "\n{} numbers, {} unknowns, {} left out; whitened residuals {:.2f} (1 expected)\n",
+      "\n{} numbers, {} unknowns, {} excluded; whitened residuals {:.2f} (1 expected)\n",
       calibration.observations.all.size(), adjustment.unknowns.size(), adjustment.left_out.size(),
       adjustment.redundancy > 0.0 ? std::sqrt(adjustment.squares / adjustment.redundancy) : 0.0);
   for (const Smoothness& one : calibration.smoothness) {
-    out += fmt::format("{} of {} by cross-validation: {}; readings left out are predicted within",
+    out += fmt::format("{} of {} by cross-validation: {}; excluded readings are predicted within",
                        one.is_of_knots ? "number of knots" : "degree", one.form, one.chosen);
     for (const auto& [number, error] : one.errors) out += fmt::format(" {}: {:.2f}", number, error);
     out += " standard uncertainties\n";

@@ -83,7 +83,7 @@ class GridSeeker {
   void refuse_endless(const ErrorName& name, Axis axis, const std::array<double, 2>& travel) const {
     const bool is_known = readings_.lower.array().isFinite().any();
     if (is_linear(axis) || std::isfinite(travel[0]) || !is_known) return;
-    refuse(name, fmt::format("{} turns without limits; grids are over axes with limits of travel",
+    refuse(name, fmt::format("{} has no travel limits; grids require axes with travel limits",
                              letter(axis)));
   }
 

@@ -130,7 +130,7 @@ class Sentences {
     }
     for (const auto& [axis, names] : errors) {
       out_.push_back(
-          fmt::format("no group moves {}: nothing is known of {}", letter(axis), list(names)));
+          fmt::format("no group moves {}: cannot determine {}", letter(axis), list(names)));
     }
   }
 

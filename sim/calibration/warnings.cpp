@@ -45,16 +45,15 @@ std::string outlier_sentence(const Calibration& calibration, const Outlier& outl
 
 std::string ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
-      "{}: its residuals are {:.1f} times what its uncertainty of {} implies; the "
-      "uncertainty, the form of the errors (knots, a grid over another axis) or the set-up is not "
-      "as stated",
+      "{}: the residuals are {:.1f} times those expected from its uncertainty of {}; check the "
+      "uncertainty, the form of the errors (knots, a grid over another axis) and the set-up",
       placed_name(group), std::sqrt(result.ratio()), in_unit(result.uncertainty, group));
 }
 
 std::string small_ratio_sentence(const readings::Group& group, const GroupResult& result) {
   return fmt::format(
-      "{}: its residuals are {:.3g} of what its uncertainty of {} implies: readings in a larger "
-      "unit than stated (mm for um), copied rows, or an uncertainty that is stated too large",
+      "{}: the residuals are {:.3g} times those expected from its uncertainty of {}: readings in a "
+      "larger unit than stated (mm for um), copied rows, or an uncertainty stated too large",
       placed_name(group), std::sqrt(result.ratio()), in_unit(result.uncertainty, group));
 }
 
@@ -188,8 +187,8 @@ void add_reading_warnings(const Calibration& calibration, std::vector<std::strin
   for (const readings::Group& group : calibration.readings.groups) {
     if (group.directions_unused) {
       out.push_back(
-          fmt::format("{}: its column direction is not used; readings of kind {} tell "
-                      "it of axes where one rotary axis moves only",
+          fmt::format("{}: the column direction is not used; readings of kind {} define it only if "
+                      "a single rotary axis moves",
                       placed_name(group), readings::kKinds[static_cast<std::size_t>(group.kind)]));
     }
     if (has_temperature(group) && !group.expansion) {
@@ -214,7 +213,7 @@ void add_reading_warnings(const Calibration& calibration, std::vector<std::strin
     });
     out.push_back(fmt::format(
         "{}: positions of {} are read in one direction, or their rows do not state the direction: "
-        "lost motion of {} stays unknown; add a column direction, and runs in the other direction",
+        "lost motion of {} is unknown; add a column direction, and runs in the other direction",
         placed_name(*first), letter(axis), letter(axis)));
   }
 }
@@ -228,8 +227,8 @@ void refuse_contradictions(const Calibration& calibration) {
     sentences.push_back(suspect_sentence(calibration, suspect));
   }
   throw InputError({calibration.readings.path},
-                   fmt::format("readings contradict each other, no machine is written: {}; mend or "
-                               "remove them, or use --accept-contradictions",
+                   fmt::format("readings contradict each other, no machine is written: {}; correct "
+                               "or remove them, or use --accept-contradictions",
                                fmt::join(sentences, "; ")));
 }
 

@@ -31,6 +31,9 @@ int number_of(const plant::Stretch& stretch, DriveSteps& way) {
 
 }  // namespace
 
+// A stretch takes up to `most_stops` stops and the end of a step at once; equal stretches share
+// their matrices. Where there are more than kMaxStretches of them, single steps go from stop to
+// stop.
 DriveSteps drive_steps(const std::vector<model::Instant>& schedule, std::size_t most_stops) {
   DriveSteps way;
   const auto add_step = [&](Tick step) {

@@ -175,6 +175,9 @@ void RecordedRows::displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) cons
   p_WT = part.measured(p_WT, T - machine_.heat->reference);
 }
 
+// The order of the values is that of recorded_signals(). The contour error is measured where the
+// program is defined: at the TCP under TCP control, else in axis coordinates with the rotary axes
+// as programmed.
 void RecordedRows::make_row(const Snapshot& now, std::size_t place, double* to) {
   const std::size_t piece = pieces_[place];
   displace_tip(now, actual_[place].p_WT);

@@ -82,8 +82,8 @@ Signal whole_numbers(const char* name, const char* about) {
 // Signals of the cut: those of single teeth have an angle.
 void add_cut(bool teeth, const std::string& linear, std::vector<Signal>& all) {
   all.push_back({"cutting_force", "N",
-                 teeth ? "force of the workpiece on the teeth of the cutter, mean over a "
-                         "tooth step from here on, in the workpiece"
+                 teeth ? "force of the workpiece on the teeth of the cutter, mean over the tooth "
+                         "step that starts here, in the workpiece"
                        : "mean force of the workpiece on the cutter, in the workpiece",
                  "XYZ", kXyz});
   all.push_back({"structural_deflection", "um",

@@ -118,6 +118,9 @@ void ServoAxes::settle(const Joints& Q, const Joints& displacement, std::size_t 
   for (const int j : joints_) settle(lane(run, j), Q[j], displacement[j]);
 }
 
+// Steady state of one axis: the current balances the gravity load, integral parts hold that
+// current, and without them the slide is off by the standing error, so that the first tick causes
+// no motion.
 void ServoAxes::settle(std::size_t l, double Q, double d) {
   const model::MachineSettings& machine = machine_of(l);
   const auto j = static_cast<std::size_t>(axes_[l].joint);

@@ -211,7 +211,7 @@ ComparedRows compared_rows(const model::QuantitySpec& spec, CaseEvaluation& one,
   ComparedRows out{base != nullptr ? rows_with_counterpart(one.data, *base, all) : all,
                    is_thinned(one.data) ? "at the recorded rows (record.period_ms)" : ""};
   if (out.rows.size() < all.size()) {
-    out.note += fmt::format("{}{} of {} rows are not compared: {} left out its rows there",
+    out.note += fmt::format("{}{} of {} rows are not compared: {} has no rows there",
                             out.note.empty() ? "" : "; ", all.size() - out.rows.size(), all.size(),
                             base->name);
   }

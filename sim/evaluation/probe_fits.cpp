@@ -39,8 +39,9 @@ std::string missed_note(const CaseData& one, const Points& points, bool with_bas
   const std::string of = fmt::format("{} of {} points of '{}'{}", points.d.size(), all,
                                      points.feature->name, with_base ? " in both cases" : "");
   if (!points.d.empty()) return of;
-  return fmt::format("no point of '{}' met a cut surface{}: does the tool of case {} get there?",
-                     points.feature->name, with_base ? " in both cases" : "", one.name);
+  return fmt::format(
+      "no point of '{}' met a cut surface{}: check that the tool of case {} reaches it",
+      points.feature->name, with_base ? " in both cases" : "", one.name);
 }
 
 std::vector<Vector2d> seen_from_above(const Points& points) {

@@ -226,8 +226,7 @@ void add_notes(const PartSource& source, const metrology::ProbeSpec& probe,
   if (unmarked > 0) {
     notes.push_back(fmt::format(
         "{}: warning: case {}: {} of {} points of probe '{}' are neither on a wall cut by a flank "
-        "nor on a floor: "
-        "cmm.tooth_marks leaves out their marks",
+        "nor on a floor: cmm.tooth_marks excludes their marks",
         to_string(probe.place), source.case_name, unmarked, targets.size(), probe.name));
   }
 }

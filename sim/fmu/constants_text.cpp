@@ -64,7 +64,7 @@ std::string_view ConstantsReader::value_of(const std::string& key) {
 
 void ConstantsReader::finish() {
   next();  // the checksum
-  if (!rest_.empty()) fail("the file goes on behind its checksum");
+  if (!rest_.empty()) fail("the file continues after its checksum");
 }
 
 // Each text ends with the line of its checksum.

@@ -102,7 +102,7 @@ std::string why_not_exported(const KinematicConstants& kinematics,
   if (machine.heat) return fmt::format("its errors change with temperature{}", kNot);
   if (!machine.structural_modes.empty()) return fmt::format("its structure vibrates{}", kNot);
   if (!machine.inertial_compliances.empty()) {
-    return fmt::format("its structure bends under acceleration{}", kNot);
+    return fmt::format("its structure deflects under acceleration{}", kNot);
   }
   return {};
 }

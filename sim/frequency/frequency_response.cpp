@@ -31,6 +31,9 @@ Eigen::MatrixXd monodromy_of(AxisTestBench& stand) {
 
 }  // namespace
 
+// Input at t = 0 of exp(i w t). Derivatives of a setpoint are exact, those of an offset are
+// backward differences over the position period Tp, as the NC forms them. A force is held over a
+// step h: the factor (w h/2) / sin(w h/2) exp(i w h/2) removes gain and delay of this hold.
 StandInput sinusoid(Entry entry, Complex u, double w, double h, double Tp) {
   StandInput in;
   switch (entry) {

@@ -69,7 +69,7 @@ void refuse_idle(const Record& record, const Motion& m) {
     return std::sqrt(sum / static_cast<double>(x.size()));
   };
   if (rms(m.v) == 0.0 || rms(m.a) == 0.0) {
-    throw InputError({record.name}, "contains no motion; there is nothing to identify");
+    throw InputError({record.name}, "contains no motion; the identification requires motion");
   }
 }
 

@@ -25,7 +25,8 @@ std::optional<std::string> impossible(const Record& r) {
   const Range feedback = range_of(r.feedback);
   if (feedback.width() == 0.0) {
     return fmt::format(
-        "does not move: its feedback is {:g} from {:.4g} to {:.4g} s; there is nothing to identify",
+        "does not move: its feedback is {:g} from {:.4g} to {:.4g} s; the identification requires "
+        "motion",
         feedback.low, r.time(0), r.time(r.size() - 1));
   }
   if (r.command.empty()) return std::nullopt;
@@ -41,14 +42,14 @@ std::optional<std::string> impossible(const Record& r) {
   if (along < 0.0) {
     return fmt::format(
         "has a feedback that moves against the command, first at {:.4g} s: one of them has the "
-        "wrong sign; give it factor = -1",
+        "wrong sign; set factor = -1",
         r.time(fastest));
   }
   const double ratio = feedback.width() / command.width();
   if (ratio < kOtherUnit && ratio > 1.0 / kOtherUnit) return std::nullopt;
   return fmt::format(
       "has a feedback that moves {:.3g} times as far as the command, {:.4g} against {:.4g}: one of "
-      "them has another unit",
+      "them has the wrong unit",
       ratio, feedback.width(), command.width());
 }
 

@@ -171,7 +171,7 @@ class RecordReader {
     if (closed) needs(Role::command, "drives the loop");
     if (!closed) needs(Role::force, "drives the axis; or motor_current");
     if (use(Role::force).present && use(Role::motor_current).present) {
-      axis.fault("has both force and motor_current; name one of them");
+      axis.fault("has both force and motor_current; specify one of them");
     }
   }
 
@@ -241,7 +241,7 @@ class RecordReader {
       if (!counted) stretch = loop_.period / interval;
       if (!counted && std::abs(stretch - 1.0) > 1e-9) {
         out_.notes.push_back(
-            fmt::format("{}: sampled every {:.6g} ms, taken for the period of the loop, {:g} ms",
+            fmt::format("{}: sampled every {:.6g} ms, treated as the period of the loop, {:g} ms",
                         out_.record.name, interval * 1e3, loop_.period * 1e3));
       }
     } else if (interval > longest_gap_) {

@@ -47,9 +47,8 @@ std::string parameters(const Identification& result) {
                fmt::format("{:.2g}", 2.0 * result.uncertainty.counted[k])});
   }
   return table.text() +
-         "+- is what the colour of the residual allows; \"counted\" would be claimed if each "
-         "sample "
-         "were independent.\n";
+         "+- takes the autocorrelation of the residual into account; \"counted\" assumes "
+         "independent samples.\n";
 }
 
 std::string inverse_dynamics_table(const Identification& result) {
@@ -172,7 +171,7 @@ std::vector<std::string> unidentifiable_sentences(const Identification& result) 
   std::vector<std::string> out;
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     if (!std::isfinite(result.fit.scales[k])) {
-      out.push_back(fmt::format("{}: the recordings do not depend on it; it keeps its start value",
+      out.push_back(fmt::format("{}: the recordings do not depend on it; the start value is kept",
                                 parameter_name(result, k)));
     }
   }
@@ -220,8 +219,8 @@ std::vector<std::string> warnings(const Identification& result) {
       }
       if (share < kForeignLoop) continue;
       out.push_back(
-          fmt::format("{}: the model leaves {:.0f} % of the following error unexplained; "
-                      "the loop is not that of the recording, or the model lacks something",
+          fmt::format("{}: the model leaves {:.0f} % of the following error unexplained; the loop "
+                      "is not that of the recording, or the model is incomplete",
                       one.record->record.name, 100.0 * share));
     }
   }

@@ -18,8 +18,8 @@ std::optional<std::string> take_base(config::Value& root, const DocumentKind& ki
   if (bases_left == 0) {
     throw InputError(
         base->place,
-        fmt::format("based_on nested deeper than {}; is one of the {} based on itself?", kMaxBases,
-                    kind.several));
+        fmt::format("based_on nested deeper than {}; one of the {} may be based on itself",
+                    kMaxBases, kind.several));
   }
   std::string path = beside(base->place, base->text);
   if (!std::filesystem::exists(path)) {

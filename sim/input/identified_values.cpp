@@ -126,7 +126,7 @@ void refuse_other_values(config::Reader& table, const IdentifiedValues& identifi
     const double value = identified.values[k];
     const std::string& unit = identified.units[k];
     if (is_same_number(*set, key, value, unit)) continue;
-    table.fault("values", fmt::format("gives {} the value {}{}; line {} sets {}", key, value,
+    table.fault("values", fmt::format("sets {} to {}{}, but line {} sets it to {}", key, value,
                                       unit == kPlainNumber ? "" : " " + unit, set->place.line,
                                       config::inline_toml(*set)));
   }

@@ -43,7 +43,7 @@ constexpr KeyHelp kMachine[] = {
     {"machine.inertial_deflection", "XX",
      "direction of the deflection, and the axis that accelerates: XX, YX, ZC, ..."},
     {"machine.inertial_deflection.XX", "gain_um_per_m_s2",
-     "static deflection per acceleration of a linear axis; positive: the TCP lags behind"},
+     "static deflection per acceleration of a linear axis; positive: the TCP lags"},
     {"machine.inertial_deflection.XX", "gain_um_per_rad_s2",
      "static deflection per acceleration of a rotary axis"},
     {"machine.inertial_deflection.XX", "along",

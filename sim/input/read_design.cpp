@@ -66,7 +66,7 @@ class DesignReader {
           "{ design = \"latin_hypercube\", count = 100 }");
     }
     if (design_.sampled_dimensions == 0 && has_samples_ && table.faults() == 0) {
-      table.fault("samples", "has nothing to sample: no key has a distribution");
+      table.fault("samples", "has no key with a distribution to sample");
     }
     if (table.faults() == 0) refuse_too_many(table);
     return {std::move(design_), std::move(identified_)};

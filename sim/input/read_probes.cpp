@@ -256,7 +256,8 @@ metrology::Cmm read_cmm(config::Reader& root) {
   cmm.depth = table.real_or("search_mm", cmm.depth, config::kLength, {config::above(0.0)});
   cmm.tooth_marks = table.boolean_or("tooth_marks", false);
   if (cmm.tooth_marks && cmm.probe_radius > 0.0) {
-    table.fault("tooth_marks", "needs a point: a ball would bridge them (probe_radius_mm = 0)");
+    table.fault("tooth_marks",
+                "requires a point stylus: a ball would bridge them (probe_radius_mm = 0)");
   }
   return cmm;
 }
@@ -274,7 +275,7 @@ std::vector<metrology::ProbeSpec> read_probes(config::Reader& root, bool has_cut
     }
     if (!has_cutter && out.empty()) {
       probe.fault(
-          "has nothing to probe: nothing is cut, because no [[program.tool]] has a diameter_mm");
+          "cannot be probed: nothing is cut, because no [[program.tool]] has a diameter_mm");
     }
     out.push_back(std::move(spec));
   }

@@ -45,7 +45,7 @@ model::RecordWindows read_windows(config::Reader& record) {
   if (table.faults() > before) return out;
   if (!out.limited()) table.fault("needs sections or time_s, which select the rows to record");
   if (out.sections.empty() && table.has("every")) {
-    table.fault("every", "needs sections, whose passes it counts");
+    table.fault("every", "requires sections, whose passes it counts");
   }
   return out;
 }

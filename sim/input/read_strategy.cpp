@@ -24,8 +24,9 @@ void read_model(config::Reader& table, std::span<const std::string> error_models
   strategy.action = table.choice_or("action", 1, kActions) == 0 ? strategies::Action::impose
                                                                 : strategies::Action::compensate;
   if (strategy.action == strategies::Action::impose && !strategy.entry->imposes) {
-    table.fault("action", fmt::format("must be \"compensate\": the strategy {} imposes nothing",
-                                      strategy.entry->name));
+    table.fault("action",
+                fmt::format("must be \"compensate\": the strategy {} cannot impose errors",
+                            strategy.entry->name));
   }
   strategy.model = table.text("model");
   if (table.is("model", config::Value::Type::text)) {

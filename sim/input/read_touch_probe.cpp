@@ -133,7 +133,7 @@ std::shared_ptr<const model::TouchProbe> read_touch_probe(
   add_workpiece(table, stock, part, out);
   if (table.faults() == before && out.bodies.empty()) {
     table.fault(
-        "has nothing to meet: add a [[touch_probe.sphere]], plane or bore, a [[part.stock]] or "
+        "has no object to probe: add a [[touch_probe.sphere]], plane or bore, a [[part.stock]] or "
         "part.stl");
   }
   return std::make_shared<const model::TouchProbe>(std::move(out));

@@ -195,7 +195,7 @@ LimitReport check_limits(const recordings::Recording& recording,
         request.resolution ? *request.resolution / signal.unit : quantum_of(signal.x);
     if (!request.resolution && is_coarse(signal, quantum)) {
       out.notes.push_back(
-          fmt::format("{}: all samples are multiples of {:.6g} {}: taken for their resolution",
+          fmt::format("{}: all samples are multiples of {:.6g} {}: treated as their resolution",
                       out.layout.letter_of(signal.joint), quantum, signal.unit_name));
     }
     for (int order = std::max(1, signal.order); order <= 3; ++order) {

@@ -107,8 +107,7 @@ class LogReader {
         if (!fits(small(name), pattern) || !is_of_case(channel)) continue;
         if (found != nullptr) {
           throw InputError({recording_.file},
-                           fmt::format("'{}' and '{}' may both be meant; choose with --case or "
-                                       "--channel",
+                           fmt::format("'{}' and '{}' both match; choose with --case or --channel",
                                        found->name, channel.name));
         }
         found = &channel;
@@ -134,8 +133,8 @@ class LogReader {
     }
     if (out_.signals.empty()) {
       throw InputError({recording_.file},
-                       fmt::format("no channel is known as an axis by its name ({}); name them, "
-                                   "such as --channel \"X={} [mm]\"",
+                       fmt::format("no channel has the name of an axis ({}); assign them, such as "
+                                   "--channel \"X={} [mm]\"",
                                    fmt::join(all_names(), ", "), example_name()));
     }
     if (!missing.empty()) {
@@ -180,10 +179,11 @@ class LogReader {
       const config::ParsedUnit parsed = config::parse_unit(unit);
       const int order = parsed.unit ? order_of(parsed.unit->quantity, is_linear_joint) : -1;
       if (order < 0) {
-        throw InputError({recording_.file},
-                         fmt::format("channel '{}': '{}' is no unit of position, velocity or "
-                                     "acceleration of {}",
-                                     channel.name, unit, layout_.letter_of(joint)));
+        throw InputError(
+            {recording_.file},
+            fmt::format(
+                "channel '{}': '{}' is not a unit of position, velocity or acceleration of {}",
+                channel.name, unit, layout_.letter_of(joint)));
       }
       out.order = order;
       out.unit = parsed.unit->factor;
@@ -198,8 +198,7 @@ class LogReader {
     if (base.unit == "Hz") throw InputError({recording_.file}, "is a spectrum, not a motion");
     if (is_numbered && !request_.period) {
       throw InputError({recording_.file},
-                       "numbers its samples; --period gives the time between two of them, such as "
-                       "\"1 ms\"");
+                       "numbers its samples; set their period with --period, such as \"1 ms\"");
     }
     const Channel* lines = line_channel(channel);
     for (std::size_t k = 0; k < channel.samples.size(); ++k) {

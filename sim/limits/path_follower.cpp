@@ -41,8 +41,8 @@ PathFollower::PathFollower(const ProgrammedPath& program, const LoggedPath& log)
     if (!one.is_tip) continue;
     if (has_all_rotary(log, program.machine->chain().layout)) return;
     throw InputError({program.program, one.line},
-                     "controls the tool tip: the path needs the positions of the rotary axes, "
-                     "which the recording lacks");
+                     "uses TCP control: the path requires the positions of the rotary axes, which "
+                     "the recording lacks");
   }
 }
 

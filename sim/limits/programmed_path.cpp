@@ -47,8 +47,9 @@ class OffsetKnowledge {
   static void refuse_unknown_radius(const ExecutedBlock& block) {
     const controllers::Compensation& compensation = block.state->compensation;
     if (!compensation.is_on || !compensation.is_radius_unknown) return;
-    throw InputError({*block.file, block.line},
-                     "the diameter of the tool of G41 or G42 is not given: --tools gives it");
+    throw InputError(
+        {*block.file, block.line},
+        "the diameter of the tool of G41 or G42 is unknown; pass a tool table with --tools");
   }
 
   // G53 names machine coordinates; G28 and G30 go to places that the control has stored.
@@ -56,7 +57,7 @@ class OffsetKnowledge {
     constexpr int kG53 = 530;  // ten times
     if (programs::non_modal_code(block) == kG53 || given_.has_stored_places) return;
     throw InputError({*block.file, block.line},
-                     "goes to a place that the control has stored; --parameter-file gives it");
+                     "moves to a position stored in the control; pass it with --parameter-file");
   }
 
   void check_axis(const ExecutedBlock& block, Axis axis) const {
@@ -71,8 +72,8 @@ class OffsetKnowledge {
                                                                       block.frame->additional_system
                                                                 : state.work_system);
       throw InputError({*block.file, block.line},
-                       fmt::format("the place of {} on {} is not given: --work-offset, "
-                                   "--additional-offset or --parameter-file give it",
+                       fmt::format("the position of {} on {} is unknown; set it with "
+                                   "--work-offset, --additional-offset or --parameter-file",
                                    system, letter(axis)));
     }
     const int tool = state.tool_offset_number;
@@ -81,10 +82,10 @@ class OffsetKnowledge {
         given_.tool_lengths.contains(tool)) {
       return;
     }
-    throw InputError({*block.file, block.line},
-                     fmt::format("the length of tool {} is not given: --tools or --tool-length "
-                                 "give it",
-                                 tool));
+    throw InputError(
+        {*block.file, block.line},
+        fmt::format("the length of tool {} is unknown; set it with --tools or --tool-length",
+                    tool));
   }
 
   programs::GivenPlaces given_;
@@ -99,10 +100,10 @@ class MoveCollector {
 
   void add(const ExecutedBlock& block) {
     if (!block.unknown_moves.empty()) {
-      throw InputError({*block.file, block.line},
-                       fmt::format("the moves of {} are internal to the control: there is no path "
-                                   "to compare with",
-                                   block.unknown_moves));
+      throw InputError(
+          {*block.file, block.line},
+          fmt::format("the moves of {} are internal to the control: no path can be compared",
+                      block.unknown_moves));
     }
     offsets_.check(block);
     for (const Move& move : block.moves) moves_.push_back(move);
@@ -150,14 +151,14 @@ ProgrammedPath programmed_path(const ProgramRequest& request, const AxisWords& s
     out.tolerance.push_back(tolerance_of(move, program.machine.nc, request));
     if (is_said || !takes_tolerance_of_machine(move, request)) continue;
     is_said = true;
-    out.warnings.push_back(
-        {{request.placement.program_file, move.line},
-         fmt::format("no G64 P is in force: compared with nc.path_tolerance_um = {:g} of the "
-                     "machine file; --tolerance gives another one",
-                     program.machine.nc.path_tolerance / um)});
+    out.warnings.push_back({{request.placement.program_file, move.line},
+                            fmt::format("no G64 P is active: compared with nc.path_tolerance_um = "
+                                        "{:g} of the machine file; change it with --tolerance",
+                                        program.machine.nc.path_tolerance / um)});
   }
   if (out.path.size() == 0) {
-    throw InputError({request.placement.program_file}, "moves nothing: there is no path to follow");
+    throw InputError({request.placement.program_file},
+                     "contains no motion: there is no path to compare");
   }
   return out;
 }

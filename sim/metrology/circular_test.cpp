@@ -137,8 +137,8 @@ std::optional<std::string> why_no_turn(Points2 points, const Circle& nominal, do
   for (const Vector2d& p : points) {
     const double off = std::abs((p - nominal.centre).norm() - nominal.radius);
     if (off <= kNear * nominal.radius) continue;
-    return fmt::format("leaves the circle of radius {:.6g} mm by {:.4g} mm", nominal.radius / mm,
-                       off / mm);
+    return fmt::format("deviates from the circle of radius {:.6g} mm by {:.4g} mm",
+                       nominal.radius / mm, off / mm);
   }
   const Travel travel = travel_of(points, nominal.centre);
   if (travel.longest > spacing) {

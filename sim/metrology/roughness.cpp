@@ -67,7 +67,7 @@ std::optional<Roughness> roughness_of(std::span<const double> heights, double sp
     return std::nullopt;
   }
   if (spacing * kMinPointsOfCutoff > *cutoff) {
-    why_not = fmt::format("points {:.3g} um apart; a cut-off of {:g} mm needs {:g} um at most",
+    why_not = fmt::format("points {:.3g} um apart; a cut-off of {:g} mm requires at most {:g} um",
                           spacing / um, *cutoff / mm, *cutoff / kMinPointsOfCutoff / um);
     return std::nullopt;
   }

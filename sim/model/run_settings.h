@@ -55,7 +55,6 @@ struct RecordWindows {
 };
 
 /// Note of commands that run a scenario without them.
-inline constexpr const char* kWindowsLeftOut =
-    "record.windows are left out: every row is evaluated";
+inline constexpr const char* kWindowsLeftOut = "record.windows are ignored: every row is evaluated";
 
 }  // namespace servomill::sim::model

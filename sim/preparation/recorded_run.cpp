@@ -200,8 +200,8 @@ class Follower {
     }
     const bool linear = axis < kLinearJoints;
     refuse(
-        fmt::format("is no recording of {}: at {:.4g} s its reference of {} is {:.4g} {} off the "
-                    "planned path (line {})",
+        fmt::format("is not a recording of {}: at {:.4g} s its reference of {} is {:.4g} {} off "
+                    "the planned path (line {})",
                     path_.program, run_.t[worst_sample_], layout_.letter_of(axis),
                     std::abs(off[axis]) / (linear ? mm : deg), linear ? "mm" : "deg",
                     path_.lines[worst_instant_]));
@@ -226,8 +226,8 @@ class Follower {
     }
     if (std::abs(recorded - planned) <= kSameFeed * planned) return;
     refuse(
-        fmt::format("was made at another feed: its feed motion takes {:.4g} s, as planned "
-                    "{:.4g} s; set feed_share",
+        fmt::format("was made at a different feed rate: its feed motion takes {:.4g} s, the "
+                    "planned one {:.4g} s; set feed_share",
                     recorded, planned));
   }
 

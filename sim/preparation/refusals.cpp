@@ -45,7 +45,7 @@ void refuse_unnumbered_tools(const MoveRange& moves, const std::string& file) {
   });
   if (!found) return;
   throw InputError({file, found->line},
-                   "moves with a tool offset of G43.1 or G43.2; a simulation takes the tool from "
+                   "moves with a tool offset of G43.1 or G43.2; a simulation uses the tool of "
                    "[[program.tool]]: use G43 H");
 }
 
@@ -76,12 +76,12 @@ void refuse_turned_tip(const InterpretedProgram& program, const model::Scenario&
   const Move* tip = program.first_tip_move();
   const bool is_probed = !scenario.probes.empty();
   if (tip == nullptr || offset.tail<3>().isZero(0.0) || !(is_probed || spec.cutting)) return;
-  throw InputError(is_probed ? scenario.probes.front().place : scenario.cutting->place,
-                   fmt::format("case {}: a part is {} in the coordinates of its program; under "
-                               "tool-centre-point control ({}:{}) these do not rotate with the "
-                               "work_offset of a rotary axis: set that to 0",
-                               spec.name, is_probed ? "probed" : "cut from [[part.stock]]",
-                               scenario.program.file, tip->line));
+  throw InputError(
+      is_probed ? scenario.probes.front().place : scenario.cutting->place,
+      fmt::format("case {}: a part is {} in the coordinates of its program; under TCP control "
+                  "({}:{}) these do not rotate with the work_offset of a rotary axis: set it to 0",
+                  spec.name, is_probed ? "probed" : "cut from [[part.stock]]",
+                  scenario.program.file, tip->line));
 }
 
 void refuse_start_outside(const model::Scenario& scenario, const model::MachineSettings& machine,
@@ -132,18 +132,17 @@ void refuse_tip_moves(const model::StrategySpec& spec, const strategies::Strateg
   const Move* move = program.first_tip_move();
   if (move == nullptr) return;
   if (!strategy.rewrites_tip_moves()) {
-    throw InputError(spec.place,
-                     fmt::format("case {}: strategy {}: cannot rewrite moves under "
-                                 "tool-centre-point control or in a tilted work plane ({}:{})",
-                                 case_name, spec.entry->name, file, move->line));
+    throw InputError(spec.place, fmt::format("case {}: strategy {}: cannot rewrite moves under TCP "
+                                             "control or in a tilted work plane ({}:{})",
+                                             case_name, spec.entry->name, file, move->line));
   }
   for (const Move& other : program.moves) {
     const bool is_tip = is_motion(other.kind) && other.tool_control != ToolControl::none;
     if (!is_tip || program.tips.at(other.tool_offset) == program.first_tip) continue;
     throw InputError(
         spec.place,
-        fmt::format("case {}: strategy {}: rewrites moves under tool-centre-point control for one "
-                    "tool, the first of the program; here another one is used ({}:{})",
+        fmt::format("case {}: strategy {}: rewrites moves under TCP control only for the first "
+                    "tool of the program; a different one is used here ({}:{})",
                     case_name, spec.entry->name, file, other.line));
   }
 }
@@ -167,7 +166,7 @@ void refuse_second_correction(const model::StrategySpec& spec, const model::Case
     }
     throw InputError(spec.place,
                      fmt::format("case {}: strategy {} would correct the errors of model '{}' a "
-                                 "second time, after {}; give it a model of the rest (relative_to)",
+                                 "second time, after {}; use a model of the residual (relative_to)",
                                  one.name, spec.entry->name, spec.model, earlier.entry->name));
   }
 }
@@ -193,8 +192,8 @@ void refuse_other_tip(const model::StrategySpec& spec, const InterpretedProgram&
     before = move.end_machine;
     if (!other || !turns) continue;
     throw InputError(spec.place,
-                     fmt::format("case {}: strategy {}: follows the tip of the first tool of the "
-                                 "program; here rotary axes move with another one ({}:{})",
+                     fmt::format("case {}: strategy {}: uses the TCP of the first tool of the "
+                                 "program; rotary axes move with a different tool here ({}:{})",
                                  case_name, spec.entry->name, file, move.line));
   }
 }

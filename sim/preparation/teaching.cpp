@@ -38,7 +38,7 @@ class Lessons {
   void refuse() const {
     if (!spec_.recordings.empty()) {
       if (setup_.limit == strategies::OffsetLimit::slow) {
-        throw InputError({}, "limits = \"slow\" plans another path than the one that was recorded");
+        throw InputError({}, "limits = \"slow\" plans a path different from the recorded one");
       }
       recordings();
     }
@@ -152,8 +152,8 @@ class Lessons {
       const bool sees_tip =
           is_recorded() ? spec_.recordings.front().sees != model::SeenBy::scales : setup_.sees_tip;
       if (sees_tip || !displaces) continue;
-      throw InputError({}, fmt::format("sees = \"scales\" would take back what {} displaces; use "
-                                       "\"tip\", or one of the two",
+      throw InputError({}, fmt::format("sees = \"scales\" would cancel the displacement of {}; use "
+                                       "\"tip\", or only one of the two strategies",
                                        other.entry->name));
     }
   }
@@ -162,12 +162,13 @@ class Lessons {
     if (!spec_.machine || one_.spec.servo == model::ServoModel::ideal) return;
     const model::NominalFilter &known = spec_.machine->nc.filter, &actual = machine().nc.filter;
     if (known.length != actual.length || known.triangle != actual.triangle) {
-      throw InputError({}, "machine has another nominal-position filter than the NC of the case");
+      throw InputError({},
+                       "machine has a different position-setpoint filter from the NC of the case");
     }
     try {
       check_stability(*spec_.machine, one_.scenario.reading_delay_of(one_.spec), nullptr);
     } catch (const InputError& error) {
-      throw InputError({}, "the machine that it knows: " + error.faults().front().message);
+      throw InputError({}, "its identified machine: " + error.faults().front().message);
     }
   }
 

@@ -65,6 +65,9 @@ plant::CutterPosition ToolPasses::position(const Stage& stage, double share) {
   return {frame_.point(pose.p_WT), frame_.direction(pose.k_W).normalized()};
 }
 
+// Successive stages with the same cutter form one pass. `counts` maps each position of a stage to
+// the number of cutting positions up to it, so that the material at any point of the program is
+// known.
 plant::RemovedVolume ToolPasses::remove() {
   std::vector<plant::CutterPass> passes;
   const plant::Cutter* before = nullptr;

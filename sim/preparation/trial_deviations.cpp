@@ -93,8 +93,9 @@ strategies::TrialRun CaseTrials::recorded_run(const RecordedRun& run) const {
   if (longest * kSamplesPerSwing * setting_.setup.cutoff > 1.0 + 1e-6) {
     throw InputError(
         {run.file},
-        fmt::format("has samples {:.4g} ms apart; cutoff_Hz = {:g} needs {:.4g} ms", longest / ms,
-                    setting_.setup.cutoff, 1.0 / (kSamplesPerSwing * setting_.setup.cutoff) / ms));
+        fmt::format("has a sampling period of {:.4g} ms; cutoff_Hz = {:g} requires {:.4g} ms",
+                    longest / ms, setting_.setup.cutoff,
+                    1.0 / (kSamplesPerSwing * setting_.setup.cutoff) / ms));
   }
   const std::vector<double> instants = instants_of(run, path, actual().chain.layout);
   strategies::TrialRun out{run.sees == model::SeenBy::tip ? read_at_tip(run, instants, path)

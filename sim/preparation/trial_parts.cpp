@@ -36,8 +36,8 @@ std::string lines_text(const std::vector<UnprobedRun>& runs) {
 std::string unmatched(const CutSearch& search, int line, const std::string& program) {
   if (search.is_along) {
     return fmt::format(
-        "there the tool moves along the normal or its own axis (line {} of {}), and only what "
-        "deviates across the path is learnt; leave the point out",
+        "the tool moves there along the normal or its own axis (line {} of {}), but only "
+        "deviations normal to the path are learnt; omit the point",
         line, program);
   }
   const std::string where =
@@ -55,10 +55,9 @@ std::string unmatched(const CutSearch& search, int line, const std::string& prog
 InputError unknown_cutter(const std::string& file, int tool, const std::string& program) {
   const std::string which = tool == 0 ? fmt::format("{} calls no tool", program)
                                       : fmt::format("tool {} of {} has no diameter", tool, program);
-  return {{file},
-          which +
-              ", so that what was cut where is not known; give the tool diameter_mm in "
-              "[[program.tool]]"};
+  return {
+      {file},
+      which + ", so the cut surface is unknown; set diameter_mm of the tool in [[program.tool]]"};
 }
 
 }  // namespace
@@ -131,8 +130,7 @@ std::vector<ProbedCut> CaseTrials::probed_cuts(const RecordedRun& run,
 void CaseTrials::note_unprobed(const RecordedRun& run, const std::vector<UnprobedRun>& unprobed) {
   if (unprobed.empty()) return;
   notes_.push_back(
-      fmt::format("{} has no point of the feed motion in {} of {}, which gets no "
-                  "offset",
+      fmt::format("{} has no point of the feed motion in {} of {}, which receives no offset",
                   run.file, lines_text(unprobed), setting_.scenario.program.file));
 }
 

@@ -54,8 +54,8 @@ std::string trial_runs_not_made(const model::Scenario& scenario, int number) {
     }
   }
   return fmt::format(
-      "{} trial run{} from which strategies learn in case{} {}: what shows only there, "
-      "servomill run finds before the first case",
+      "{} trial run{} from which strategies learn in case{} {}: servomill run reports their errors "
+      "before the first case",
       number, number == 1 ? "" : "s", cases.size() == 1 ? "" : "s", fmt::join(cases, ", "));
 }
 

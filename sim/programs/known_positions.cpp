@@ -157,6 +157,9 @@ void KnownPositions::learn(const Move& move, const ExecutedBlock& block, bool is
   }
 }
 
+// Inverts the transformation of the interpreter, machine = R work + offset: the interpreter
+// computes with numbers for unknown positions, too, so that work and machine coordinates are
+// tracked as known or not.
 MoveKnowledge KnownPositions::next(const Move& move, const ExecutedBlock& block, bool is_last) {
   MoveKnowledge out;
   const double c = block.state->cos_rotation, s = block.state->sin_rotation;

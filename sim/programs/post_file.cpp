@@ -177,7 +177,8 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
       break;
     case controllers::PostMode::locations:
       text +=
-          "\none block per location: between them TCP and tool axis follow from the axis motion";
+          "\none block per location: between them TCP and tool axis follow from the axis "
+          "motion";
       break;
     case controllers::PostMode::tip:
       text += fmt::format("\nG43.4: X Y Z are the TCP; tool axis within {:g} urad", axis);

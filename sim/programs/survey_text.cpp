@@ -44,7 +44,7 @@ std::string in_time(double seconds) {
 
 std::string use_text(const FirstUse& use) {
   return use.line > 0 ? fmt::format("{} (line {})", use.word, use.line)
-                      : fmt::format("{} (in force at the start)", use.word);
+                      : fmt::format("{} (active at the start)", use.word);
 }
 
 class Text {
@@ -70,7 +70,7 @@ void add_units(const ProgramSurvey& survey, Text& text) {
     return text.add("units", "those of its G70, G71, G700 and G710");
   }
   if (survey.units.empty()) {
-    text.add("units", "no G20 or G21: unit of the control; taken as mm");
+    text.add("units", "no G20 or G21: unit of the control; mm is assumed");
   }
   for (const FirstUse& use : survey.units) text.add("units", unit_sentence(use));
   if (survey.units.size() > 1) text.add("units", "the program changes units");
@@ -175,8 +175,8 @@ void add_machine_extent(const ProgramSurvey& survey, Text& text) {
                                     range.is_known() ? in_units(range, axis) : "", unknown));
   }
   if (survey.tcp_controlled == 0) return;
-  text.add("machine", fmt::format("X, Y and Z unknown under tool-centre-point control and in a "
-                                  "tilted plane (line {}): a scenario simulates them",
+  text.add("machine", fmt::format("X, Y and Z unknown under TCP control and in a tilted plane "
+                                  "(line {}): simulate them with a scenario",
                                   survey.tcp_controlled));
 }
 

@@ -77,7 +77,7 @@ class PostReplay {
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError({file_, record_ != nullptr ? record_->line : 0, 0},
-                     fmt::format("not as verified: line {} of the program, '{}': {}", line_,
+                     fmt::format("verification failed: line {} of the program, '{}': {}", line_,
                                  text_of_line(), what));
   }
 
@@ -139,7 +139,7 @@ class PostReplay {
       if (move == nullptr) fail("the program ends before this location");
       if (move->kind != MoveKind::feed) fail("a rapid where the cutter locations have a feed");
       if (move->tool_offset != now_.tool) {
-        fail(fmt::format("length {} is in force with tool {}", move->tool_offset, now_.tool));
+        fail(fmt::format("length {} is active with tool {}", move->tool_offset, now_.tool));
       }
       check_rounding(*move);
       const PostBlock block = kinematics_.block_of(*move, now_);
@@ -158,7 +158,7 @@ class PostReplay {
     if (move.path_mode != PathMode::continuous) return;
     const bool is_bounded =
         move.path_tolerance > 0.0 && move.path_tolerance <= options_.tolerance.tip * (1.0 + kTime);
-    if (!is_bounded) fail("nothing keeps corners within the tolerance (G64 P)");
+    if (!is_bounded) fail("corners are not limited to the tolerance (G64 P)");
   }
 
   void check_time(const PostBlock& block, const ClRecord& record,

@@ -16,6 +16,8 @@ constexpr int kDigitsOfWord = 5;
 
 }  // namespace
 
+// Five digits, most significant first, are one 32-bit word (85^5 > 2^32), '.' is the word 0, and
+// two words, high one first, are an IEEE 754 double.
 std::vector<double> base85_doubles(std::string_view text, std::string& why) {
   std::vector<std::uint32_t> words;
   std::uint64_t word = 0;

@@ -66,7 +66,7 @@ Recording read_within_memory(const std::string& path, const std::function<Record
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
-  throw InputError({path}, "is damaged, or larger than the memory: an array in it cannot be held");
+  throw InputError({path}, "is damaged, or an array in it is larger than the memory");
 }
 
 // A text has no NUL; UTF-16 and binary files have.

@@ -97,9 +97,9 @@ MeasuredResponse local_polynomial(std::span<const double> input, std::span<const
                                   const LocalPolynomialSettings& s, const std::string& name) {
   const std::size_t window = 2 * s.half_width + 1;
   if (input.size() < 4 * window) {
-    throw InputError({name}, fmt::format("holds {} samples; the local polynomial method needs at "
-                                         "least {}",
-                                         input.size(), 4 * window));
+    throw InputError(
+        {name}, fmt::format("contains {} samples; the local polynomial method requires at least {}",
+                            input.size(), 4 * window));
   }
   const Spectrum U = transform(input), Y = transform(output);
   const std::vector<double> level = level_around(U, s.half_width);
@@ -137,7 +137,7 @@ MeasuredResponse local_polynomial(std::span<const double> input, std::span<const
     shares += fit.share;
     out.lines.push_back(line);
   }
-  if (out.lines.empty()) throw InputError({name}, "holds no excited line");
+  if (out.lines.empty()) throw InputError({name}, "contains no excited line");
   out.lines_per_estimate = std::max(static_cast<double>(out.lines.size()) / shares, 1.0);
   return out;
 }

@@ -216,8 +216,8 @@ RationalFit fit_rational(const MeasuredResponse& response, const RationalOrder& 
   const auto parameters = static_cast<std::size_t>(fitter.size());
   if (response.lines.size() < parameters) {
     throw InputError(
-        {name}, fmt::format("holds {} lines; {} of a numerator of degree {} and a "
-                            "denominator of degree {} need at least as many",
+        {name}, fmt::format("contains {} lines; {} of a numerator of degree {} and a denominator "
+                            "of degree {} require at least as many",
                             response.lines.size(), parameters, order.numerator, order.denominator));
   }
   // all lines alike first, then as exactly as they are measured

@@ -43,7 +43,7 @@ void store_lines(records::Hdf5Group group, const MeasuredResponse& response,
   columns.store(group, unit, "the response");
   group.list("variance", variance, {unit + " squared", "of the complex noise of the response"},
              "frequency");
-  group.list("radius_95", radius, {unit, "of the circle that holds the response with 95 %"},
+  group.list("radius_95", radius, {unit, "of the circle that contains the response with 95 %"},
              "frequency");
 }
 

@@ -94,9 +94,9 @@ std::vector<double> start_of(const MeasuredResponse& response, const std::string
   };
   const double fa = first(false, 0.0), fr = first(true, fa);
   if (!(fa > 0.0 && fr > fa)) {
-    throw InputError({name},
-                     "shows no antiresonance with a resonance above it: nothing of two masses "
-                     "to fit");
+    throw InputError(
+        {name},
+        "shows no antiresonance followed by a resonance: a two-mass model cannot be fitted");
   }
   const double ratio = std::pow(fr / fa, 2) - 1.0;  // J_l/J_m
   TwoMass model;

@@ -60,8 +60,8 @@ std::optional<std::string> unknown_spindle(const preparation::PreparedParts& one
       one.program.moves, [](const Move& move) { return move.synchronised != Synchronised::no; });
   if (!first) return std::nullopt;
   return fmt::format(
-      "{}:{}: warning: the acceleration of the spindle is not known: motion that it turns with is "
-      "planned as quick as the axes; set nc.spindle.acceleration_rpm_per_s of the machine",
+      "{}:{}: warning: the acceleration of the spindle is unknown: synchronised motion is planned "
+      "with the limits of the axes only; set nc.spindle.acceleration_rpm_per_s of the machine",
       one.scenario.program.file, first->line);
 }
 
@@ -179,7 +179,7 @@ std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
         return source.kind == model::HeatKind::motor || source.kind == model::HeatKind::friction;
       });
   if (!has_drives) return std::nullopt;
-  return fmt::format("case {}: an ideal servo has no current: motors and friction heat nothing",
+  return fmt::format("case {}: an ideal servo has no current: motors and friction generate no heat",
                      one.spec.name);
 }
 
@@ -187,8 +187,9 @@ std::optional<std::string> cold_drives(const preparation::PreparedParts& one) {
 std::optional<std::string> cut_off_path(const preparation::PreparedParts& one, double off_path) {
   if (off_path <= engine::DisplacedCut::kLargest) return std::nullopt;
   return fmt::format(
-      "warning: case {}: the tool was up to {:.3g} mm off its nominal path while it cut: forces "
-      "at the actual depth of cut are extended linearly from {:g} mm to {:g} mm, and held beyond",
+      "warning: case {}: the tool was up to {:.3g} mm off its nominal path while it cut: forces at "
+      "the actual depth of cut are extrapolated linearly from {:g} mm to {:g} mm, and constant "
+      "beyond",
       one.spec.name, off_path / mm, engine::DisplacedCut::kStep / mm,
       engine::DisplacedCut::kLargest / mm);
 }

@@ -23,7 +23,7 @@ namespace servomill::sim::run {
 
 /// Note of commands that run a scenario without its day.
 inline constexpr const char* kDayLeftOut =
-    "[day] is left out; servomill run computes it (a sweep does for quantities of the day)";
+    "[day] is omitted; servomill run computes it (a sweep does for quantities of the day)";
 
 /// True if a quantity of the scenario is one of its day: then sweeps compute it, too.
 bool is_day_asked_for(const model::Scenario& scenario);

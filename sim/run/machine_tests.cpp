@@ -253,8 +253,8 @@ std::optional<std::string> note_of_creep(const TestResult& result, double dwell)
   constexpr double kTurn = 0.1 * urad;       // the step of an autocollimator
   if (!(result.creep > (result.is_angle ? kTurn : kStandstill))) return std::nullopt;
   return fmt::format(
-      "test {}: the axis still moved by up to {:.2g} {} while the device was read, which counts "
-      "as its error; a dwell_s above {:g} lets it settle",
+      "test {}: the axis still moved by up to {:.2g} {} during the reading, which counts as its "
+      "error; increase dwell_s above {:g}",
       result.name, result.creep / um, result.is_angle ? "urad" : "um", dwell);
 }
 

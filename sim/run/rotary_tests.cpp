@@ -65,8 +65,9 @@ Values read_at(const MachineTest& test, const TestRows& rows, TurnRows& turn,
     last = std::move(now);
   }
   if (next == angles.size()) return out;
-  throw InputError(test.place, fmt::format("test {}: the recording holds {} of {} angles of a turn",
-                                           test.name, next, angles.size()));
+  throw InputError(test.place,
+                   fmt::format("test {}: the recording contains {} of {} angles of a turn",
+                               test.name, next, angles.size()));
 }
 
 std::vector<double> spaced(int count, double step) {

@@ -168,7 +168,8 @@ void StepStore::add(char axis, const frequency::StepSettings& settings,
        "velocity of the slide or table", unit},
       {"motor_speed", frequency::AxisSignal::motor_speed, "rad s-1", "motor speed", 1.0},
       {"current", frequency::AxisSignal::current, "A", "torque-forming current", 1.0},
-      {"reading", frequency::AxisSignal::reading, length, "what the position loop reads", unit},
+      {"reading", frequency::AxisSignal::reading, length, "position feedback of the position loop",
+       unit},
   };
   group.list("time", response.time, {"s", "time since the step"});
   for (const Column& column : columns) {

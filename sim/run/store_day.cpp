@@ -48,7 +48,8 @@ void write_cycles(records::Hdf5Group group, const DayCourse& day) {
     most.push_back(cycle.most / um);
   }
   group.list("begin", begin, {"h", "begin of each cycle since the start of the day"});
-  group.list("rms", rms, {"um", "rms along the path of what heat displaces the tip by, datum off"},
+  group.list("rms", rms,
+             {"um", "rms along the path of the thermal displacement of the TCP, without datum"},
              "begin");
   group.list("largest", most, {"um", "greatest of it"}, "begin");
   records::make_nexus_data(group, {"rms", {"begin"}, {"largest"}});

@@ -50,8 +50,8 @@ void check(const CircleTest& test, const std::string& file) {
                                     name, *why)});
     } else if (metrology::sense_of(turn.points, nominal) != turn.sense) {
       faults.push_back({{file},
-                        fmt::format("the {} circle runs the other way; put its rows in the order "
-                                    "of the motion, or correct the direction",
+                        fmt::format("the {} circle runs in the opposite direction; put its rows in "
+                                    "the order of the motion, or correct the direction",
                                     name)});
     }
   }
@@ -195,10 +195,10 @@ void add_outliers(const CirclePath& turn, Report& out) {
   for (std::size_t i = 0; i < n; ++i) {
     const double before = off[(i + n - 1) % n] / off[i], after = off[(i + 1) % n] / off[i];
     if (std::abs(off[i]) <= kFar * usual || before > -kOpposite || after > -kOpposite) continue;
-    out.remarks.push_back(fmt::format(
-        "{}: is {:.4g} um off its neighbours on the circle {}; it is kept in the evaluation: check "
-        "it at the machine",
-        to_string(turn.places[i]), off[i] / um, sense_name(turn.sense)));
+    out.remarks.push_back(
+        fmt::format("{}: is {:.4g} um off its neighbours on the circle {}; it is evaluated: check "
+                    "it at the machine",
+                    to_string(turn.places[i]), off[i] / um, sense_name(turn.sense)));
   }
 }
 

@@ -97,6 +97,9 @@ RotationTest rotation_of(std::string name, const Eigen::ArrayXd& theta,
   return out;
 }
 
+// Curves are drawn about the same centre as their values: without the first harmonic (LSC), or
+// about the polar chart centre for axial error motion, whose first harmonic is an error of the axis
+// itself.
 Report rotation_report(const RotationTest& test) {
   Report out;
   out.standard = "ISO 230-7";

@@ -101,11 +101,10 @@ class LogReader {
     const double last = std::max(targets.time.back(), positions.time.back());
     const auto all = standstills(targets, last, settings_.standstill);
     if (all.size() < 3) {
-      throw InputError(
-          {recording_.file},
-          fmt::format("has {} standstills of {} that last {:g} s or more; --standstill "
-                      "gives another time",
-                      all.size(), target.name, settings_.standstill));
+      throw InputError({recording_.file},
+                       fmt::format("has {} standstills of {} that last {:g} s or more; change the "
+                                   "time with --standstill",
+                                   all.size(), target.name, settings_.standstill));
     }
     for (std::size_t i = 1; i < all.size(); ++i) {
       const auto found = position_at(positions, all[i]);
@@ -135,7 +134,7 @@ class LogReader {
   double factor_of(const std::string& unit, const std::string& name, bool is_target,
                    double otherwise = mm) {
     if (unit.empty()) {
-      out_.remarks.push_back(fmt::format("{}: {} has no unit: taken as {}", recording_.file, name,
+      out_.remarks.push_back(fmt::format("{}: {} has no unit: {} is assumed", recording_.file, name,
                                          is_target ? "mm" : "that of the target"));
       return otherwise;
     }
@@ -147,8 +146,8 @@ class LogReader {
       if (angular == angular_) return found->factor;
     }
     throw InputError({recording_.file},
-                     fmt::format("{} is in \"{}\"; a length or an angle like the target is "
-                                 "expected; --unit gives that of the position",
+                     fmt::format("{} is in \"{}\"; expected a length or an angle like the target; "
+                                 "set the unit of the position with --unit",
                                  name, unit));
   }
 
@@ -165,7 +164,7 @@ class LogReader {
     for (const auto& [target, directions] : ways) {
       if (directions.size() == 2) continue;
       out_.remarks.push_back(
-          fmt::format("{}: target {:g} is approached in one direction only, {} times: taken as a "
+          fmt::format("{}: target {:g} is approached in one direction only, {} times: treated as a "
                       "reversal point, not evaluated",
                       recording_.file, target / factor, times[target]));
       std::erase_if(readings_, [&, target = target](const TargetReading& one) {

@@ -316,12 +316,12 @@ std::vector<std::string> outliers(const std::vector<TargetReading>& readings, bo
     if (group.size() < kFewestRuns) continue;
     const double off = one.deviation - median(group);
     if (std::abs(off) <= kFar * s) continue;
-    out.push_back(fmt::format(
-        "{}: target {}, {}, run {} is {:.4g} {} off the other runs, whose standard deviation is "
-        "typically {:.2g}; it is kept in the evaluation: check it at the machine",
-        to_string(one.place), target_text(one.target, angular), direction_name(one.direction),
-        one.run + 1, off / (angular ? urad : um), angular ? "urad" : "um",
-        s / (angular ? urad : um)));
+    out.push_back(
+        fmt::format("{}: target {}, {}, run {} is {:.4g} {} off the other runs, whose standard "
+                    "deviation is typically {:.2g}; it is evaluated: check it at the machine",
+                    to_string(one.place), target_text(one.target, angular),
+                    direction_name(one.direction), one.run + 1, off / (angular ? urad : um),
+                    angular ? "urad" : "um", s / (angular ? urad : um)));
   }
   return out;
 }

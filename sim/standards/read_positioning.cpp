@@ -143,7 +143,7 @@ class PositioningReader {
     }
     if (&column == target_) {
       remarks_.push_back(
-          fmt::format("{}: column {} has no unit: taken as mm; name it target_mm, or target_deg "
+          fmt::format("{}: column {} has no unit: mm is assumed; name it target_mm, or target_deg "
                       "for a rotary axis",
                       table_.file, column.written));
       return mm;
@@ -202,8 +202,8 @@ class PositioningReader {
     const auto lost = std::find(by_order_.begin(), by_order_.end(), 0);
     if (lost != by_order_.end()) {
       fault({table_.file, table_.rows[std::size_t(lost - by_order_.begin())].line},
-            fmt::format("the order of the rows does not tell its direction; a column direction "
-                        "does: it {}",
+            fmt::format("the order of the rows does not determine its direction; add a column "
+                        "direction: it {}",
                         kDirections));
       return;
     }

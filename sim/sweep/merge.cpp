@@ -108,7 +108,7 @@ class Owners {
       lacking.push_back(one_partition ? like.shard_of(point) : point + 1);
     }
     if (lacking.empty()) return {};
-    if (!one_partition) return fmt::format("no file holds the points {}", ranges(lacking));
+    if (!one_partition) return fmt::format("no file contains the points {}", ranges(lacking));
     std::sort(lacking.begin(), lacking.end());
     lacking.erase(std::unique(lacking.begin(), lacking.end()), lacking.end());
     return fmt::format("{} {} of {} {} missing", lacking.size() == 1 ? "shard" : "shards",

@@ -286,7 +286,7 @@ std::size_t verify_import(const ImportedColumns& imported, const plant::MachineC
                          double read) {
     ++positions;
     if (std::abs(read - wanted) <= kAgreement) return;
-    throw InputError({file, line}, fmt::format("not as verified: {} is {:.9g} in this file and "
+    throw InputError({file, line}, fmt::format("verification failed: {} is {:.9g} in this file and "
                                                "{:.9g} in the error model (m, rad)",
                                                name, wanted, read));
   };

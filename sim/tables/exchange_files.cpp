@@ -88,12 +88,12 @@ TextFile notes_file(const TableExport& e, std::string_view name, std::string_vie
       notes.end(),
       {"values: deviation of the tool relative to the workpiece, in mm and rad; arguments in mm "
        "and deg",
-       "tables over several axes lie on a grid: interpolation GRID, the default (P-VOLC-00014)",
+       "tables over several axes form a grid: interpolation GRID, the default (P-VOLC-00014)",
        fmt::format("compensation list: chain {}, workpiece_axes 0, alternative_model 0, file[0] "
                    "{}, file_format[0] {}; start-up list: vol_comp[0].max_records >= {}",
                    chain_text(e), name, format, records),
-       "workpiece_axes 0 counts every axis as carrying the tool; the errors of axes that carry the "
-       "workpiece are converted to that",
+       "workpiece_axes 0 treats every axis as carrying the tool; the errors of axes that carry the "
+       "workpiece are converted accordingly",
        "assumed, for no document found has it: the component errors belong to the body that the "
        "axis moves (ISO 230-1), angles of linear axes turn about the machine zero, those of rotary "
        "axes about their centre; beyond the first and last point values are constant",

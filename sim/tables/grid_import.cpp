@@ -220,8 +220,7 @@ std::string held_note(const ErrorGrid& grid, const ErrorGrid& covering) {
                         is_linear(grid.axes[k]) ? "mm" : "deg");
   }
   return fmt::format(
-      "assumed: {} keeps its values at the ends of the table ({}) to the ends of "
-      "the travel",
+      "assumed: {} is constant from the ends of the table ({}) to the ends of the travel",
       grid.name, text);
 }
 
@@ -302,10 +301,11 @@ std::size_t verify_grids(const ImportedColumns& imported, const plant::MachineCh
       const double read = poses.value(name.direction, q[index_of(name.axis)]);
       ++positions;
       if (std::abs(read - wanted) <= kAgreement) continue;
-      throw InputError({grid.file, grid.line},
-                       fmt::format("not as verified: {} is {:.9g} in this file and {:.9g} in the "
-                                   "error model (m, rad)",
-                                   grid.name, wanted, read));
+      throw InputError(
+          {grid.file, grid.line},
+          fmt::format("verification failed: {} is {:.9g} in this file and {:.9g} in the "
+                      "error model (m, rad)",
+                      grid.name, wanted, read));
     }
   }
   return positions;

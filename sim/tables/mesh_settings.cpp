@@ -173,8 +173,8 @@ std::vector<std::string> mesh_report(const TableExport& e) {
                       e.request.model, e.machine, mesh.nx, mesh.ny, mesh.range[0] / mm,
                       mesh.range[1] / mm, mesh.range[2] / mm, mesh.range[3] / mm,
                       e.source.reference[2] / mm),
-          fmt::format("Z of the tip beside the reference: off by up to {:.1f} um without the mesh, "
-                      "{:.1f} um with{}",
+          fmt::format("Z of the TCP away from the reference: off by up to {:.1f} um without the "
+                      "mesh, {:.1f} um with{}",
                       mesh.before / um, mesh.after / um,
                       mesh.uncertainty
                           ? fmt::format("; U(k = 2) up to {:.3g} um", *mesh.uncertainty / um)
@@ -195,7 +195,7 @@ TextFile mesh_file(const TableExport& e) {
   for (const std::string& line : with_unknown(mesh_report(e), e)) {
     text += fmt::format("{} {}\n", klipper ? '#' : ';', line);
   }
-  text += klipper ? fmt::format("# beside a section [bed_mesh]; BED_MESH_PROFILE LOAD={}\n",
+  text += klipper ? fmt::format("# in addition to a section [bed_mesh]; BED_MESH_PROFILE LOAD={}\n",
                                 e.request.model)
                   : "; needs a mesh of these points over this range in the firmware; M420 S1\n";
   return {file_name(format), text + (klipper ? klipper_text(e, mesh) : marlin_text(mesh))};
@@ -213,7 +213,7 @@ void verify_mesh(const TableExport& e, const std::vector<TextFile>& files, Table
   if (mesh.nx != e.mesh->nx || mesh.ny != e.mesh->ny ||
       (mesh.range && !std::equal(range.begin(), range.end(), mesh.range->begin(),
                                  [&](double a, double b) { return !is_far(a, b); }))) {
-    throw InputError({name}, "not as verified: points or range are others");
+    throw InputError({name}, "verification failed: points or range are others");
   }
   const Heights heights(e.source, e.skew);
   for (int j = 0; j < mesh.ny; ++j) {
@@ -225,7 +225,7 @@ void verify_mesh(const TableExport& e, const std::vector<TextFile>& files, Table
       ++out.positions;
       if (off <= 0.6 * kDigit) continue;
       throw InputError({name},
-                       fmt::format("not as verified: at X {:g}, Y {:g} mm Z is off by {:.3f} "
+                       fmt::format("verification failed: at X {:g}, Y {:g} mm Z is off by {:.3f} "
                                    "um",
                                    x / mm, y / mm, off / um));
     }

@@ -252,7 +252,7 @@ std::vector<std::string> skew_report(const TableExport& e) {
   }
   const auto others = other_errors(e);
   out.push_back(others.empty()
-                    ? "not in this correction: nothing"
+                    ? "not in this correction: none"
                     : fmt::format("not in this correction: {}", fmt::join(others, ", ")));
   out.push_back(
       fmt::format("TCP at poses all over the travel of X, Y and Z, relative to the reference: off "
@@ -273,7 +273,7 @@ std::vector<TextFile> skew_files(const TableExport& e) {
   if (klipper) {
     text += fmt::format("# after a restart: SKEW_PROFILE LOAD={}\n", e.request.model);
   } else if (e.request.format == TableFormat::marlin) {
-    text += "; needs SKEW_CORRECTION_GCODE and SKEW_CORRECTION_FOR_Z; M500 keeps it\n";
+    text += "; requires SKEW_CORRECTION_GCODE and SKEW_CORRECTION_FOR_Z; M500 stores it\n";
   }
   return {{name, text + setting_text(e)}};
 }
@@ -291,9 +291,10 @@ TableVerification verify_skew(const TableExport& e, const std::vector<TextFile>&
     const double off = std::abs(G(i, j));
     out.angle = std::max(out.angle, off);
     if (off <= e.rules().angle_step * (1.0 + kDigitSlack)) continue;
-    throw InputError({files.at(0).name, setting.line},
-                     fmt::format("not as verified: {} and {} move at {:.4f} urad off a right angle",
-                                 "XYZ"[i], "XYZ"[j], off / urad));
+    throw InputError(
+        {files.at(0).name, setting.line},
+        fmt::format("verification failed: {} and {} move at {:.4f} urad off a right angle",
+                    "XYZ"[i], "XYZ"[j], off / urad));
   }
   return out;
 }

@@ -57,16 +57,17 @@ void TableComparison::check_points(const TableLine& line, const std::string& fil
   const double unit = line.joint < kLinearJoints ? mm : deg;
   const char* name = line.joint < kLinearJoints ? "mm" : "deg";
   if (points.size() != line.points) {
-    throw InputError({file}, fmt::format("not as verified: {} points; {} are needed", points.size(),
-                                         line.points));
+    throw InputError({file}, fmt::format("verification failed: {} points; {} are needed",
+                                         points.size(), line.points));
   }
   // last digit of positions: mm, deg
   const double digit = e_.request.format == TableFormat::heidenhain ? 1e-4 : 1e-6;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (std::abs(points[i].position - line.entry(i)) <= 0.501 * digit * unit) continue;
-    throw InputError({file, points[i].line},
-                     fmt::format("not as verified: position {:.6f} {}; point {} must be at {:.6f}",
-                                 points[i].position / unit, name, i, line.entry(i) / unit));
+    throw InputError(
+        {file, points[i].line},
+        fmt::format("verification failed: position {:.6f} {}; point {} must be at {:.6f}",
+                    points[i].position / unit, name, i, line.entry(i) / unit));
   }
 }
 
@@ -89,13 +90,12 @@ std::function<double(double)> TableComparison::chords(const TableLine& line, con
 void TableComparison::fail(const TableLine& line, const Comparison& c, double q, int direction,
                            double read, double wanted) const {
   const bool is_linear_base = line.joint < kLinearJoints;
-  throw InputError(
-      {c.file, c.line_at(q)},
-      fmt::format("not as verified: {} at {}{:.6g} {}, travelling {}: the file gives {}, the error "
-                  "model {}",
-                  c.title, e_.letter(line.joint), q / (is_linear_base ? mm : deg),
-                  is_linear_base ? "mm" : "deg", direction > 0 ? "up" : "down",
-                  exact_size(c.is_angle, read), exact_size(c.is_angle, wanted)));
+  throw InputError({c.file, c.line_at(q)},
+                   fmt::format("verification failed: {} at {}{:.6g} {}, travelling {}: the file "
+                               "gives {}, the error model {}",
+                               c.title, e_.letter(line.joint), q / (is_linear_base ? mm : deg),
+                               is_linear_base ? "mm" : "deg", direction > 0 ? "up" : "down",
+                               exact_size(c.is_angle, read), exact_size(c.is_angle, wanted)));
 }
 
 }  // namespace servomill::sim::tables

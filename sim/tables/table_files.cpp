@@ -156,8 +156,7 @@ std::vector<TextFile> heidenhain_files(const TableExport& e) {
              "direction "
              "of traverse, where it differs"
            : "columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS "
-             "from the machine datum; BACKLASH stays empty: no positioning depends on the "
-             "direction",
+             "from the machine datum; BACKLASH is empty: no positioning depends on the direction",
        "these are listings for the table editor of the control: the documents give the columns, "
        "not "
        "the text of the files",

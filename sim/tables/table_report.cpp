@@ -77,7 +77,7 @@ void add_base(const TableExport& e, std::vector<std::string>& out) {
 
 void add_table_residuals(const TableExport& e, std::vector<std::string>& out) {
   if (e.left.empty()) {
-    out.push_back("not in these tables: nothing");
+    out.push_back("not in these tables: none");
     return;
   }
   out.push_back(
@@ -164,7 +164,7 @@ void note_reversals(const TableExport& e, const TableLine& line, std::vector<std
         to_string(name), size_of(!is_linear(direction), most),
         has_table(e, line, name)
             ? directions_in(e, line)
-            : fmt::format("there is no table {} over {}: half of it, {}, stays in each direction",
+            : fmt::format("there is no table {} over {}: half of it, {}, remains in each direction",
                           letter(direction), e.letter(line.joint),
                           size_of(!is_linear(direction), 0.5 * most))));
   }
@@ -263,8 +263,8 @@ void add_unheld(const TableExport& e, std::vector<std::string>& out) {
   out.push_back(
       has_reversal && e.rules().direction == DirectionRule::none
           ? "not in these tables: the dependence on the direction of travel (notes)"
-          : fmt::format("not in these tables: nothing{}",
-                        is_interpolated(e) ? " but what linear interpolation leaves" : ""));
+          : fmt::format("not in these tables: none{}",
+                        is_interpolated(e) ? " except the residual of linear interpolation" : ""));
 }
 
 }  // namespace

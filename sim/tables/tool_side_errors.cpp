@@ -65,12 +65,12 @@ void refuse_undocumented_axes(const plant::MachineChain& chain, const plant::Err
     if (!has_error) continue;
     const bool is_table = axis.sense == plant::Sense::table;
     if (!is_table && !axis.is_inclined) continue;
-    throw InputError(
-        at, fmt::format("{} cannot represent errors of the {} axis {}: {}", format,
-                        is_table ? "rotary" : "inclined", letter(axis.axis),
-                        is_table ? "it counts as its table turns, and no document found defines "
-                                   "the signs of the errors of workpiece_axes"
-                                 : "no document found defines the frame of its errors"));
+    throw InputError(at,
+                     fmt::format("{} cannot represent errors of the {} axis {}: {}", format,
+                                 is_table ? "rotary" : "inclined", letter(axis.axis),
+                                 is_table ? "its direction is that of the table rotation, and the "
+                                            "signs of the errors of workpiece_axes are undocumented"
+                                          : "no document found defines the frame of its errors"));
   }
 }
 

@@ -54,7 +54,7 @@ void refuse_unknown(const TableExport& e) {
 
 std::vector<std::string> with_unknown(std::vector<std::string> lines, const TableExport& e) {
   if (!e.request.unknown.empty()) {
-    lines.push_back("note: not determined by the calibration, taken as 0: " +
+    lines.push_back("note: not determined by the calibration, assumed to be 0: " +
                     model::list_of(e.request.unknown));
   }
   return lines;

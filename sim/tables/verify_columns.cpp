@@ -63,7 +63,7 @@ class Columns {
       });
       if (is_wanted) continue;
       throw InputError({one.file, one.points.front().line},
-                       fmt::format("not as verified: {} is not needed", one.name));
+                       fmt::format("verification failed: {} is unexpected", one.name));
     }
     for (const controllers::ErrorGrid& one : columns_.grids) {
       if (std::any_of(e_.grids.begin(), e_.grids.end(),
@@ -72,7 +72,7 @@ class Columns {
       }
       throw InputError(
           {one.file, one.line},
-          fmt::format("not as verified: {} over several axes is not needed", one.name));
+          fmt::format("verification failed: {} over several axes is unexpected", one.name));
     }
   }
 
@@ -83,11 +83,11 @@ class Columns {
                      [&](const auto& one) { return one.name == to_string(table.name); });
     if (grid == columns_.grids.end()) {
       throw InputError({file_},
-                       fmt::format("not as verified: {} is missing", to_string(table.name)));
+                       fmt::format("verification failed: {} is missing", to_string(table.name)));
     }
     if (grid->axes != table.points.axes) {
       throw InputError({grid->file, grid->line},
-                       fmt::format("not as verified: {} has other arguments", grid->name));
+                       fmt::format("verification failed: {} has other arguments", grid->name));
     }
     const double digit = table.is_angle() ? e_.rules().angle_step : e_.rules().length_step;
     const plant::ErrorModel errors = errors_of(table.name.axis);
@@ -144,7 +144,7 @@ class Columns {
     if (std::abs(read - needed) <= within * (1.0 + kDigitSlack)) return;
     throw InputError(
         {grid.file, grid.line},
-        fmt::format("not as verified: {}: the file gives {}, the error model {}", grid.name,
+        fmt::format("verification failed: {}: the file gives {}, the error model {}", grid.name,
                     exact_size(table.is_angle(), read), exact_size(table.is_angle(), needed)));
   }
 
@@ -206,8 +206,8 @@ class Columns {
     if (std::abs(read - wanted) <= digit * (1.0 + kDigitSlack)) return;
     throw InputError(
         {location_file(), is_there ? found->second.line : 0},
-        fmt::format("not as verified: {}: the file gives {}, the error model {}", to_string(name),
-                    exact_size(is_angle, read), exact_size(is_angle, wanted)));
+        fmt::format("verification failed: {}: the file gives {}, the error model {}",
+                    to_string(name), exact_size(is_angle, read), exact_size(is_angle, wanted)));
   }
 
   std::string location_file() const { return e_.rules().tool_side ? file_ : "locations.csv"; }

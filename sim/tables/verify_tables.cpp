@@ -124,7 +124,7 @@ class Displacements {
       if (line == nullptr || !line->wanted ||
           !e_.source.chain.layout.joint_of(table.compensated_axis)) {
         throw InputError({table.file, table.points.front().line},
-                         fmt::format("not as verified: a table {} over {} is not needed",
+                         fmt::format("verification failed: a table {} over {} is unexpected",
                                      letter(table.compensated_axis), letter(table.base_axis)));
       }
       check_.check_points(*line, table.file, table.points);
@@ -167,7 +167,7 @@ class Displacements {
       if (table.base != line.joint || table.output != output) continue;
       if (!tables.empty()) {
         throw InputError({tables.front()->file, tables.front()->points.front().line},
-                         fmt::format("not as verified: a table {} over {} is not needed",
+                         fmt::format("verification failed: a table {} over {} is unexpected",
                                      letter(compensated), letter(base)));
       }
       if (table.uncertainty) return;

@@ -160,7 +160,7 @@ class Way(unittest.TestCase):
         self.run_in("router", "calibrate", "plan/readings.toml", "--make-up", "taken", "--machine-errors", "measured")
         taken = self.run_in("router", "calibrate", "taken/readings.toml").stdout
         self.assertIn("EC0Y", taken)
-        self.assertIn("'lasr' is not one of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
+        self.assertIn("'lasr' is not allowed; must be one of laser", self.run_in("router", "plan-calibration", "--machine", machine, "--instruments", "lasr", status=2).stderr)
 
     def test_a_plan_for_the_probe_writes_programs_for_four_controls(self):
         machine = "../../machines/generic_trunnion_ac.toml"
@@ -209,7 +209,7 @@ class Way(unittest.TestCase):
         self.assertIn('"ball bar XY 2" contradicts the other groups; with the opposite sign it would agree', warnings)
         refused = self.run_in("wrong", "calibrate", "readings.toml", "-q", "-o", "out.toml", status=2).stderr
         self.assertRegex(refused, r'readings.toml: error: readings contradict each other, no machine is written: readings.toml:\d+: "ball bar XY 2" contradicts '
-                         r"the other groups; with the opposite sign it would agree with them: check the sign of its readings; mend or remove them, or use "
+                         r"the other groups; with the opposite sign it would agree with them: check the sign of its readings; correct or remove them, or use "
                          "--accept-contradictions")
         self.assertFalse(os.path.exists(self.path("wrong", "out.toml")))
         self.run_in("wrong", "calibrate", "readings.toml", "-q", "-o", "out.toml", "--accept-contradictions")

@@ -106,7 +106,7 @@ M30
         arguments = ["--tools", "tool.tbl", "--machine", "router.toml", "--work-offset", "X=100,Y=0,Z=-200"]
         self.assertSays(program, f"""
   units          mm, G21 (line 1)
-  work offsets   G54 (in force at the start)
+  work offsets   G54 (active at the start)
   tools          T1 (line 2): length 50 mm, diameter 6 mm; used: M6, length
   extent G54     X 10.000 ... 60.000 mm; feeds 10.000 ... 60.000 mm
                  Y 20.000 mm; feeds 20.000 mm
@@ -124,17 +124,17 @@ M30
         self.assertEqual(time["left_out_lines"], [3, 4])
 
     def test_units(self):
-        self.assertEqual(self.lines("G0 X1\nM2\n", "units"), ["no G20 or G21: unit of the control; taken as mm"])
+        self.assertEqual(self.lines("G0 X1\nM2\n", "units"), ["no G20 or G21: unit of the control; mm is assumed"])
         self.assertEqual(self.lines("G20 G0 X1\nM2\n", "units"), ["inch, G20 (line 1)"])
         self.assertEqual(self.lines("G20 G0 X1\nG21 X1\nG20\nM2\n", "units"),
                          ["inch, G20 (line 1)", "mm, G21 (line 2)", "the program changes units"])
         self.assertEqual(self.lines("G20 G0 X1\nM2\n", "extent G54"), ["X 25.400 mm"])
 
     def test_work_offsets(self):
-        self.assertEqual(self.lines("G0 X1\nM2\n", "work offsets"), ["G54 (in force at the start)"])
+        self.assertEqual(self.lines("G0 X1\nM2\n", "work offsets"), ["G54 (active at the start)"])
         self.assertEqual(self.lines("G54\nG55\nG0 X1\nG59.3\nX2\nM2\n", "work offsets"), ["G55 (line 2), G59.3 (line 4)"])
         self.assertEqual(self.lines("G10 L2 P1 X5\nG52 Y1\nG92 Z0\nG0 X1\nM2\n", "work offsets"),
-                         ["G54 (in force at the start)", "changed by G10 (line 1)", "changed by G52 (line 2)",
+                         ["G54 (active at the start)", "changed by G10 (line 1)", "changed by G52 (line 2)",
                           "changed by G92 (line 3)"])
         self.assertEqual(self.lines("G53 G0 X1\nM2\n", "work offsets"), ["none"])
 
@@ -205,7 +205,7 @@ M30
                    "CYCL DEF 251 RECTANGULAR POCKET Q218=9\nL X+10 Y+5 FMAX M99\nL X+20 Y+5 Z+9 FMAX\n"
                    "END PGM P MM\n")
         self.assertEqual(self.lines(program, "units"), ["mm, BEGIN PGM MM (line 1)"])
-        self.assertEqual(self.lines(program, "work offsets"), ["preset 1 (in force at the start)"])
+        self.assertEqual(self.lines(program, "work offsets"), ["preset 1 (active at the start)"])
         self.assertEqual(self.lines(program, "tools"),
                          ["T1 (line 2): unknown: no tool table given; used: TOOL CALL, length"])
         self.assertEqual(self.lines(program, "preset 1"),
@@ -216,7 +216,7 @@ M30
         self.assertEqual(found["units"], [{"word": "BEGIN PGM MM", "line": 1}])
         self.assertEqual(list(found["extent"]["work"]), ["preset 1"])
         warnings = self.check(program).stderr
-        self.assertIn("extent and cycle time are without its moves", warnings)
+        self.assertIn("extent and cycle time exclude its moves", warnings)
         self.assertNotIn("LinuxCNC", warnings)
 
     # What a pocket cycle moves is not known, so neither is the time: 10 mm at F600 is a part of it.
@@ -347,10 +347,10 @@ name = "cycle_time"
         self.assertEqual(self.lines(program, "not in it", *fanuc), ["Z moves to an unknown position (line 8)", "moves in a tilted work plane (line 8)"])
         machine = self.lines(program, "machine", "--work-offset", "X=0,Y=0,Z=0,B=0", "--tool-length", "1=50", *fanuc)
         self.assertEqual(machine[0], "X 1.000 ... 7.000 mm; unknown from line 8 on: needs --work-offset")
-        self.assertEqual(machine[-1], "X, Y and Z unknown under tool-centre-point control and in a tilted plane (line 8): "
-                                      "a scenario simulates them")
+        self.assertEqual(machine[-1], "X, Y and Z unknown under TCP control and in a tilted plane (line 8): "
+                                      "simulate them with a scenario")
         self.assertIn("fanuc", self.lines(program, "read by", *fanuc)[0])
-        self.assertIn("G43.5 without I J K in its first move",
+        self.assertIn("G43.5 requires I J K in its first move",
                       self.check("G21 G90\nT1 M6\nG43.5 H1\nG1 X1. F100.\nM30\n", *fanuc, status=2).stderr)
 
     # M140 MB MAX goes to the end of travel, which only a machine file has.
@@ -383,7 +383,7 @@ name = "cycle_time"
         self.assertEqual(faults(""), refused[refused.index("part.ngc:2:1: error"):])
         self.assertNotIn("error", faults('ignore_codes = ["M82"]\n'))
         self.assertIn('scenario.toml:4:16: error: program.ignore_codes', faults('ignore_codes = ["M3"]\n'))
-        self.assertIn("M3: has its own meaning, which cannot be ignored", faults('ignore_codes = ["M3"]\n'))
+        self.assertIn("M3: is a standard code and cannot be ignored", faults('ignore_codes = ["M3"]\n'))
         self.assertIn("82: must be an M code of the machine builder, such as M82", faults('ignore_codes = ["82"]\n'))
         self.assertNotIn("error", faults("", 'ignore_codes = ["M82"]\n'))
         self.assertIn("part.ngc:2:1: error", faults("ignore_codes = []\n", 'ignore_codes = ["M82"]\n'))

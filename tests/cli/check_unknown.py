@@ -70,8 +70,8 @@ class Unknown(in_folder.InFolder):
         # the arc about (280, 0) from (260, 0) through (300, 0) to (280, -20), in the machine 10 mm to the right
         program = "G21 G90 G17\nG0 X-20. Y0.\nG0 X260.\nG2 X280. Y-20. I20. J0. F600.\nM30\n"
         given = ["--machine", "router.toml", "--work-offset", "X=10,Y=0"]
-        expected = ("part.ngc:2: error: X moves to -10.0000 mm, outside the travel; must be >= 0.0000\n"
-                    "part.ngc:4: error: X moves to 310.0000 mm, outside the travel; must be <= 300.0000\n")
+        expected = ("part.ngc:2: error: X moves to -10.0000 mm, outside its travel; must be >= 0.0000\n"
+                    "part.ngc:4: error: X moves to 310.0000 mm, outside its travel; must be <= 300.0000\n")
         self.assertEqual(self.check(program, *given, status=2).stderr, expected)
         self.assertEqual(self.check(program, *given, "--quiet", status=2).stderr, expected)
         faults = json.loads(self.check(program, *given, "--json", status=2).stdout)[0]["faults"]
@@ -83,7 +83,7 @@ class Unknown(in_folder.InFolder):
     def test_compensation_for_an_unknown_diameter_leaves_positions_unknown(self):
         program = "G21 G90 G17\nG0 X0. Y0. Z5.\nG41 D1\nG1 X10. F600.\nY20.\nZ-1.\nG40 X30.\nM30\n"
         self.assertEqual(self.check(program).stderr, "part.ngc:3:1: warning: G41: the diameter of tool 1 is unknown; the programmed path is "
-                                                     "read, not that of the tool; pass a tool table with --tools\n")
+                                                     "used without compensation; pass a tool table with --tools\n")
         self.assertEqual(self.lines(program, "extent G54"), ["X 0.000 ... 30.000 mm; feeds 0.000 ... 30.000 mm", "Y 0.000 ... 20.000 mm; feeds 0.000 ... 20.000 mm",
                                                              "Z -1.000 ... 5.000 mm; feeds -1.000 ... 5.000 mm"])
         self.assertEqual(self.lines(program, "not in it"), ["X moves to an unknown position (line 4)", "Y moves to an unknown position (line 5)"])

@@ -178,7 +178,7 @@ class Way(in_folder.InScenarios):
     def test_the_report_names_values_intervals_and_the_residual(self):
         self.assertRegex(self.printed, r"axis\.Y\.moving_mass +64\d\.\d +[\d.]+ +kg")
         self.assertRegex(self.printed, r"recording\.csv +estimation +6\.65 s +0\.5\d* um")
-        self.assertIn("if each sample were independent", self.printed)
+        self.assertIn("assumes independent samples", self.printed)
 
     def test_results_do_not_depend_on_the_number_of_threads(self):
         one = self.run_in_folder("identify", "identify.toml", "--threads", "1").stdout

@@ -83,8 +83,8 @@ class Limits(in_folder.InFolder):
     def test_halsampler_needs_the_period_and_the_channels(self):
         X = trapezoid(a=2.0)
         log = "".join(f"{k} {x * 1e3:.6f} {0.0:.6f} \n" for k, x in enumerate(X))
-        self.assertIn("numbers its samples; --period gives the time", self.limits(log, "--channel", "X=column 2 [mm]", status=2).stderr)
-        self.assertIn("no channel is known as an axis by its name (column 2, column 3)", self.limits(log, "--period", "1 ms", status=2).stderr)
+        self.assertIn("numbers its samples; set their period with --period", self.limits(log, "--channel", "X=column 2 [mm]", status=2).stderr)
+        self.assertIn("no channel has the name of an axis (column 2, column 3)", self.limits(log, "--period", "1 ms", status=2).stderr)
         one = self.results(log, "--period", "1 ms", "--channel", "X=column 2 [mm]", status=1)["X", "acceleration"]
         self.assertAlmostEqual(one["factor"], 2.0, delta=0.03)
 
@@ -93,7 +93,7 @@ class Limits(in_folder.InFolder):
         self.assertAlmostEqual(found["X", "velocity"]["factor"], 1.0, delta=1e-4)
         noted = json.loads(self.limits(self.csv(trapezoid(), "X"), "--json").stdout)["notes"]
         self.assertIn("channel 'X' has no unit: taken for a position in mm", noted)
-        self.assertIn("is no unit of position, velocity or acceleration of X", self.limits(self.csv(trapezoid(), "X [A]"), status=2).stderr)
+        self.assertIn("is not a unit of position, velocity or acceleration of X", self.limits(self.csv(trapezoid(), "X [A]"), status=2).stderr)
 
     def test_names_may_end_with_their_unit(self):
         log = self.csv(trapezoid(), "X_mm").replace("time [s]", "time_s")
@@ -103,8 +103,8 @@ class Limits(in_folder.InFolder):
 
     def test_a_time_is_not_proposed_as_an_axis(self):
         log = self.csv(trapezoid(), "slide").replace("time [s]", "time of day")
-        self.assertEqual(self.limits(log, status=2).stderr, "log.csv: error: no channel is known as an axis by its name (time of day, slide); "
-                         'name them, such as --channel "X=slide [mm]"\n')
+        self.assertEqual(self.limits(log, status=2).stderr, "log.csv: error: no channel has the name of an axis (time of day, slide); "
+                         'assign them, such as --channel "X=slide [mm]"\n')
 
     def test_a_velocity_is_derived_once_less(self):
         speed = 0.05 * np.sin(1.5 * A / 0.05 * T * np.arange(1000))
@@ -128,7 +128,7 @@ class Limits(in_folder.InFolder):
 
     def test_the_step_of_the_samples_is_named_and_can_be_given(self):
         log = self.csv(np.round(trapezoid() / 20e-6) * 20e-6)
-        self.assertIn("  note: X: all samples are multiples of 0.02 mm: taken for their resolution\n", self.limits(log).stdout)
+        self.assertIn("  note: X: all samples are multiples of 0.02 mm: treated as their resolution\n", self.limits(log).stdout)
         narrow = self.results(log, "--resolution", "1 um", status=1)["X", "acceleration"]  # which it is not
         self.assertLess(narrow["window_s"], self.results(log)["X", "acceleration"]["window_s"])
 

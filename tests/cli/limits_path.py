@@ -97,7 +97,7 @@ class Path(in_folder.InFolder):
 
     def test_a_tolerance_of_the_machine_file_is_said(self):
         places = samples([(0, 0, 0), (10, 0, 0)])
-        message = "no G64 P is in force: compared with nc.path_tolerance_um = 10 of the machine file; --tolerance gives another one"
+        message = "no G64 P is active: compared with nc.path_tolerance_um = 10 of the machine file; change it with --tolerance"
         self.assertIn(f"part.ngc:2: {message}", self.path("G21 G90 G64\nG1 X10 F3000\nM2\n", places)["notes"])
         for program, arguments in (("G21 G90 G64 P0.05\nG1 X10 F3000\nM2\n", ()), ("G21 G90 G61\nG1 X10 F3000\nM2\n", ()),
                                    ("G21 G90 G64\nG1 X10 F3000\nM2\n", ("--tolerance", "35 um"))):
@@ -106,7 +106,7 @@ class Path(in_folder.InFolder):
     # the tool of G41 is not the programmed path
     def test_compensation_for_an_unknown_diameter_is_refused(self):
         done = self.limits("G21 G90 G64 P0.05\nG41 D1\nG1 X10 F3000\nM2\n", samples([(0, 0, 0), (10, 0, 0)]), status=2)
-        self.assertEqual(done.stderr, "part.ngc:3: error: the diameter of the tool of G41 or G42 is not given: --tools gives it\n")
+        self.assertEqual(done.stderr, "part.ngc:3: error: the diameter of the tool of G41 or G42 is unknown; pass a tool table with --tools\n")
 
     def test_both_sides_of_the_tolerance(self):
         shifted = samples([(0, 0, 0), (20, 0, 0)])
@@ -151,7 +151,7 @@ class Path(in_folder.InFolder):
 
     def test_what_nobody_has_given_is_unknown(self):
         program, places = "G21 G90 G64 P0.05\nG1 X10 F3000\nM2\n", samples([(0, 0, 0), (10, 0, 0)])
-        self.assertIn("part.ngc:2: error: the place of G54 on X is not given: --work-offset, --additional-offset or --parameter-file give it",
+        self.assertIn("part.ngc:2: error: the position of G54 on X is unknown; set it with --work-offset, --additional-offset or --parameter-file",
                       self.limits(program, places, status=2, offset=()).stderr)
         self.assertLess(self.path(program, places, offset=("--work-offset", "X=0"))["deviation_mm"], 1e-12)  # Y and Z do not move
         off = self.path(program, places, offset=("--work-offset", "X=1,Y=0.2,Z=0"))
@@ -163,10 +163,10 @@ class Path(in_folder.InFolder):
         taught = "G21 G90 G64 P0.05\nG10 L20 P1 X0\nG1 X10 F3000\nM2\n"
         self.assertEqual(self.path(taught, samples([(3, 0, 0), (13, 0, 0)]), offset=())["share_passed"], 1.0)
         long = "G21 G90 G64 P0.05\nG43 H7\nG1 Z10 F3000\nM2\n"
-        self.assertIn("part.ngc:3: error: the length of tool 7 is not given: --tools or --tool-length give it",
+        self.assertIn("part.ngc:3: error: the length of tool 7 is unknown; set it with --tools or --tool-length",
                       self.limits(long, samples([(0, 0, 0), (0, 0, 10)]), status=2).stderr)
         self.assertEqual(self.path(long, samples([(0, 0, 0), (0, 0, 60)]), "--tool-length", "7=50")["share_passed"], 1.0)
-        self.assertIn("goes to a place that the control has stored", self.limits("G21\nG28\nM2\n", places, status=2).stderr)
+        self.assertIn("moves to a position stored in the control", self.limits("G21\nG28\nM2\n", places, status=2).stderr)
 
     def test_what_cannot_be_compared_is_refused(self):
         self.write("part.ngc", "G21\nG0 X1\nM2\n")
@@ -174,7 +174,7 @@ class Path(in_folder.InFolder):
         flat = ("limits", "flat.csv", "--machine", "router.toml")
         self.assertIn("no channel is a position of Z", self.servomill(*flat, "--program", "part.ngc", status=2).stderr)
         self.assertIn("--tolerance: error: needs --program PROGRAM", self.servomill(*flat, "--tolerance", "1 um", status=2).stderr)
-        self.assertIn("moves nothing: there is no path to follow", self.limits("G21\nM2\n", samples([(0, 0, 0), (1, 0, 0)]), status=2).stderr)
+        self.assertIn("contains no motion: there is no path to compare", self.limits("G21\nM2\n", samples([(0, 0, 0), (1, 0, 0)]), status=2).stderr)
 
     # Tip and rotary axes: the tip stands still in the workpiece while C turns, which only the kinematics tells.
     def test_the_tip_under_TCP_control_is_that_in_the_workpiece(self):
@@ -202,7 +202,7 @@ class Path(in_folder.InFolder):
         self.write("tcp.ngc", "G21 G90 G64 P0.01\nG43.4 H1\nG1 X10 F2000\nM2\n")
         self.write("log.csv", "time [s],X [mm],Y [mm],Z [mm]\n0,0,0,0\n0.001,0,0,0\n0.002,0,0,0\n")
         refused = self.servomill("limits", "log.csv", "--machine", machine, "--program", "tcp.ngc", "--tool-length", "1=50", *ZERO, status=2)
-        self.assertIn("tcp.ngc:3: error: controls the tool tip: the path needs the positions of the rotary axes, which the recording lacks", refused.stderr)
+        self.assertIn("tcp.ngc:3: error: uses TCP control: the path requires the positions of the rotary axes, which the recording lacks", refused.stderr)
 
         self.write("half.csv", "time [s],X [mm],Y [mm],Z [mm],B [deg]\n0,0,0,0,0\n0.001,0,0,0,0\n0.002,0,0,0,0\n")  # C is unknown, not 0
         refused = self.servomill("limits", "half.csv", "--machine", machine, "--program", "tcp.ngc", "--tool-length", "1=50", *ZERO, status=2)

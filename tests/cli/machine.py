@@ -209,7 +209,7 @@ class LinuxCnc(Machine):
                           "settings: error: does not give the largest acceleration of Y: [AXIS_Y] MAX_ACCELERATION"])
         self.assertEqual(self.faults(INI.replace("X Y Z", "X Y Z A B C") + "".join(
             f"[AXIS_{axis}]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 1\n" for axis in "ABC")),
-            ["settings: error: has three rotary axes, and a machine two at most: choose them with --structure"])
+            ["settings: error: has three rotary axes, but at most two are supported: choose them with --structure"])
 
     @unittest.skipUnless(os.path.isdir(SAMPLES), "linuxcnc-uspace is not installed")
     def test_sample_configurations_of_linuxcnc_are_read(self):
@@ -258,7 +258,7 @@ class Others(Machine):
         self.assertIn("M204 T, along the path, line 7", done.stdout)
         self.assertIn("note: M566 X500 Y500 Z50 (settings:4:1): instantaneous changes of speed", done.stderr)
         self.assertEqual(self.faults(RRF.replace("Y6000.00", "Y{var.fast}")), ["settings:5:12: error: M203 Y = {var.fast}; must be a number"])
-        self.assertIn("G20: settings in inches are not read", self.faults("G20\n" + RRF)[0])
+        self.assertIn("G20: settings in inches are not supported", self.faults("G20\n" + RRF)[0])
 
     def test_choices_replace_assumptions(self):
         done = self.text(RRF, "--acceleration-time", "20 ms", "--path-tolerance", "50 um", "--structure", "[w X' b Y Z (C1) t]")

@@ -199,7 +199,7 @@ class Totals(Case):
         timed = self.json(program, *START, machine="timed.toml")
         self.assertEqual(timed["tool_changes"], {"count": 2, "time_s": 16})
         self.assertEqual(timed["spindle_changes"], {"count": 4, "time_s": 10})
-        self.assertEqual(timed["unknown"], ["1 stop until the operator goes on"])
+        self.assertEqual(timed["unknown"], ["1 stop until the operator continues"])
         self.assertAlmostEqual(timed["at_least_s"], timed["time_s"] + 26.0, places=6)
 
     def test_a_probing_move_is_planned_to_its_end_and_said_so(self):

@@ -195,8 +195,8 @@ TEST(Contour, RefusesToTurnWithAnotherTool) {
   const std::string change = "T1 M6\nG43 H1\nG1 X10 F1000\nT2 M6\nG43 H2\nG1 X20\n";
   EXPECT_EQ(refusal(tools + contour(""), change + "M2\n"), "none");
   EXPECT_EQ(refusal(tools + contour(""), change + "G1 C10\nM2\n"),
-            "case one: strategy contour: follows the tip of the first tool of the program; here "
-            "rotary axes move with another one (small.ngc:7)");
+            "case one: strategy contour: uses the TCP of the first tool of the program; rotary "
+            "axes move with a different tool here (small.ngc:7)");
 }
 
 TEST(Contour, WarnsWithAnIdealServo) {

@@ -143,7 +143,7 @@ std::size_t choice_option(const Options& options, const std::string& name,
   const auto& word = options.get<std::string>(name);
   const auto found = std::find(words.begin(), words.end(), word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-  throw InputError({"--" + name}, fmt::format("'{}' is not one of {}{}", word,
+  throw InputError({"--" + name}, fmt::format("'{}' is not allowed; must be one of {}{}", word,
                                               fmt::join(words, ", "), did_you_mean(word, words)));
 }
 

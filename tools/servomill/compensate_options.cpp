@@ -125,8 +125,8 @@ std::vector<std::string> absent_functions(const Options& options) {
     const std::string_view name = rest.substr(0, end);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       throw InputError({"--without"},
-                       fmt::format("'{}' is not one of {}{}", name, fmt::join(names, ", "),
-                                   did_you_mean(name, names)));
+                       fmt::format("'{}' is not allowed; must be one of {}{}", name,
+                                   fmt::join(names, ", "), did_you_mean(name, names)));
     }
     out.emplace_back(name);
     if (end == rest.size()) return out;

@@ -60,8 +60,8 @@ calibration::PlanSettings settings_of(const Options& options) {
     const auto found = std::find(names.begin(), names.end(), word);
     if (found == names.end()) {
       throw InputError({"--instruments"},
-                       fmt::format("'{}' is not one of {}{}", word, fmt::join(names, ", "),
-                                   did_you_mean(word, names)));
+                       fmt::format("'{}' is not allowed; must be one of {}{}", word,
+                                   fmt::join(names, ", "), did_you_mean(word, names)));
     }
     out.instruments.push_back(static_cast<calibration::PlanInstrument>(found - names.begin()));
   }

@@ -209,10 +209,9 @@ class LinuxCnc {
       return;
     }
     if (module == "trivkins") return;
-    out_.notes.push_back(
-        fmt::format("[KINS] KINEMATICS = {} ({}): joints are not axes, limits of "
-                    "joints are left out",
-                    kinematics->value, to_string(kinematics->place)));
+    out_.notes.push_back(fmt::format(
+        "[KINS] KINEMATICS = {} ({}): joints are not axes, limits of joints are omitted",
+        kinematics->value, to_string(kinematics->place)));
     joints_are_axes_ = false;
   }
 
@@ -248,7 +247,7 @@ class LinuxCnc {
       const auto axis = axis_of(letters_[joint]);
       if (!axis) {
         out_.notes.push_back(
-            fmt::format("axis {} is left out: a machine has X Y Z A B C", letters_[joint]));
+            fmt::format("axis {} is omitted: a machine has X Y Z A B C", letters_[joint]));
         continue;
       }
       ControlAxis& limits = out_.axes[*axis];

@@ -111,7 +111,7 @@ class Draft {
     for (const auto& [axis, limits] : settings_.axes) {
       if (layout.joint_of(axis)) continue;
       axes_.erase(axis);
-      out_.notes.push_back(fmt::format("axis {} is left out: not in the structure", letter(axis)));
+      out_.notes.push_back(fmt::format("axis {} is omitted: not in the structure", letter(axis)));
     }
   }
 
@@ -121,9 +121,9 @@ class Draft {
     constexpr int kMaxRotary = 2;
     if (std::count_if(axes_.begin(), axes_.end(),
                       [](const auto& one) { return !is_linear(one.first); }) > kMaxRotary) {
-      faults.push_back({{settings_.file},
-                        "has three rotary axes, and a machine two at most: choose them with "
-                        "--structure"});
+      faults.push_back(
+          {{settings_.file},
+           "has three rotary axes, but at most two are supported: choose them with --structure"});
     }
     for (const auto& one : axes_) {
       const auto need = [&](const std::optional<CitedValue>& value, const char* what,
@@ -268,10 +268,9 @@ class Draft {
     line(text, fmt::format("assumed: acceleration rises within {:g} ms", time / ms));
     if (is_jerk_assumed_) return;
     is_jerk_assumed_ = true;
-    out_.assumptions.push_back(
-        fmt::format("j_max: acceleration rises within {:g} ms, as {}; --acceleration-time gives "
-                    "another one",
-                    time / ms, settings_.acceleration_reason));
+    out_.assumptions.push_back(fmt::format(
+        "j_max: acceleration rises within {:g} ms, as {}; change it with --acceleration-time",
+        time / ms, settings_.acceleration_reason));
   }
 
   const ControlSettings& settings_;

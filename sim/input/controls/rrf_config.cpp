@@ -65,7 +65,7 @@ class Rrf {
     if (words.empty()) return;
     const std::string code = fmt::format("{}{}", words[0].letter, words[0].value);
     if (code == "G20") {
-      faults_.add(line.place, "G20: settings in inches are not read; give them in mm");
+      faults_.add(line.place, "G20: settings in inches are not supported; use mm");
     } else if (code == "M203") {
       take_axes(words, line, code, 1.0 / minute, &ControlAxis::v_max);
     } else if (code == "M201") {
@@ -75,10 +75,9 @@ class Rrf {
     } else if (code == "M204") {
       take_path_acceleration(words, line);
     } else if (code == "M566" || code == "M205") {
-      out_.notes.push_back(
-          fmt::format("{} ({}): instantaneous changes of speed at corners, which "
-                      "no key of a machine holds",
-                      without_comment(line.text), to_string(line.place)));
+      out_.notes.push_back(fmt::format(
+          "{} ({}): instantaneous changes of speed at corners, for which machine files have no key",
+          without_comment(line.text), to_string(line.place)));
     } else if (code == "M550") {
       take_name(words);
     }

@@ -55,8 +55,7 @@ std::vector<Fault> warnings_of(const CompensateRequest& request, const Summary& 
   if (summary.outside) {
     out.push_back(
         {{request.program_file, summary.outside->line},
-         fmt::format("ends outside the travel of the machine, at {}{}; are the work "
-                     "offsets right?",
+         fmt::format("ends outside the travel of the machine, at {}{}; check the work offsets",
                      words_text(summary.outside->machine, layout),
                      summary.outside_count == 1
                          ? ""

@@ -50,6 +50,7 @@ void ProgramCorrector::warn_of_travel(const Step& step) {
   }
 }
 
+// F is kept, so that the time of a corrected block scales with its length; G93 fixes it instead.
 void ProgramCorrector::count(const Step& step) {
   const Move& move = *step.move;
   ++summary_.blocks_before;

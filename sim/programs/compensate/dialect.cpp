@@ -92,7 +92,7 @@ std::string DialectPrinter::rate(double x, int decimals, std::string_view name) 
 void DialectPrinter::check_positions(const DialectMotion& motion, double most) const {
   for (const auto& [axis, value] : motion.words) {
     if (std::abs(value) <= most) continue;
-    throw Unsayable{fmt::format("goes to {}{:g}; at most {} is allowed", letter(axis), value,
+    throw Unsayable{fmt::format("moves to {}{:g}; at most {} is allowed", letter(axis), value,
                                 controllers::fixed_text(most, 4))};
   }
 }

@@ -35,12 +35,12 @@ void DialectWriter::write_reference(const Move& move, const Block& block, bool i
     if (axis != Axis::Z && !request.has(letter(axis))) continue;
     if (axis == Axis::Z && request.has('Z')) continue;
     throw Unsayable{
-        fmt::format("{} of axes other than Z goes to positions stored in LinuxCNC; program G53 G0 "
+        fmt::format("{} of axes other than Z moves to positions stored in LinuxCNC; program G53 G0 "
                     "X... Y... with the positions of this machine",
                     is_G28 ? "G28" : "G30")};
   }
   if (block.state->is_incremental && request['Z'] != 0.0) {
-    throw Unsayable{"returns to reference by an incremental move; program Z0 under G91"};
+    throw Unsayable{"returns to the reference point with an incremental move; program Z0 with G91"};
   }
   if (!is_last) {
     if (block.state->is_incremental) return;
@@ -156,7 +156,7 @@ void DialectWriter::check_place(const Step& step, const AxisWords& on_grid) cons
       continue;
     }
     throw Unsayable{
-        fmt::format("goes to {}{:.7g} of the machine, which has more digits than the "
+        fmt::format("moves to {}{:.7g} in machine coordinates, which has more digits than the "
                     "resolution of {:g} um (--resolution)",
                     letter(axis), target / printer_->unit(axis), settings_.resolution / um)};
   }

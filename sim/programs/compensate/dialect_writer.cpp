@@ -73,7 +73,7 @@ struct Remedy {
 
 constexpr std::array kRemedies = {
     Remedy{false, 100, 100, "enter tools and their lengths at the control"},
-    Remedy{false, 281, 301, "program G53 G0 where the program goes to the stored position"},
+    Remedy{false, 281, 301, "program G53 G0 in place of the move to the stored position"},
     Remedy{false, 431, 432, "program G43 H with a length number of the control"},
     Remedy{false, 434, 435, kWriteAxes},
     Remedy{false, 531, 531, kWriteAxes},
@@ -319,7 +319,7 @@ void DialectWriter::restate_spindle_and_coolant() {
 std::vector<std::string> DialectWriter::warnings() const {
   std::vector<std::string> out = printer_->warnings();
   if (has_overrides_) {
-    out.emplace_back("M48 ... M51 are omitted: the operator keeps the override switches");
+    out.emplace_back("M48 ... M51 are omitted: the override switches remain active");
   }
   if (moves_work_systems_) {
     out.emplace_back(

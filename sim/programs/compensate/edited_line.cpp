@@ -210,6 +210,8 @@ void insert(EditedLine& line, std::string_view word) {
   }
 }
 
+// Replaces motion words in place, drops those that the corrected motion lacks, and appends new ones
+// after the last of them: comments and other words keep their position in the line.
 void weave(EditedLine& line, MotionWords motion, bool needs_code) {
   std::size_t last = 0;
   bool has_code = false;

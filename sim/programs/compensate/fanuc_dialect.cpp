@@ -86,7 +86,7 @@ class Fanuc final : public IsoDialect {
       // EVO, No. 5001#6, = 0 only a new G43 H restores it (M)
       if (modes_.length != motion.length) {
         add_word(prefix, fmt::format("G43 H{}", motion.length));
-        assume(fmt::format("H{} holds the length of tool {}", motion.length, motion.tool));
+        assume(fmt::format("H{} contains the length of tool {}", motion.length, motion.tool));
       }
       modes_.length = motion.length;
     }
@@ -110,7 +110,8 @@ class Fanuc final : public IsoDialect {
     if (!reports_) put("POPEN");
     reports_ = true;
     put("DPRNT[X#5061[53]*Y#5062[53]*Z#5063[53]]");
-    assume("custom macro B puts #5061 to #5063, where the skip signal came, out to the interface");
+    assume(
+        "custom macro B outputs #5061 to #5063, the position at the skip signal, to the interface");
   }
   void end_report() override { put("PCLOS"); }
 
@@ -154,7 +155,7 @@ class Fanuc final : public IsoDialect {
   void end_optional() override {
     IsoDialect::end_optional();
     if (normal_axis_ != normal_before_) {
-      throw Unsayable{"leaves another plane after blocks with '/'; program arcs in G17 there"};
+      throw Unsayable{"the active plane depends on blocks with '/'; program arcs in G17 there"};
     }
     for (std::size_t i = 0; i < rotary_.size(); ++i) {
       if (rotary_[i] != rotary_before_[i]) rotary_[i].reset();
@@ -220,9 +221,9 @@ class Fanuc final : public IsoDialect {
       const double way = before ? std::abs(origin + value - *before) : 0.0;
       if (way >= kHalfTurn) {
         throw Unsayable{
-            fmt::format("rotates {} by {:g} deg in one block, for which a control whose axes roll "
-                        "over (No. 1008#0, ROA, is 1) takes the shorter direction; split it, or "
-                        "pass --without rollover if ROA is 0",
+            fmt::format("rotates {} by {:g} deg in one block, for which a control with rollover "
+                        "axes (No. 1008#0, ROA = 1) takes the shorter direction; split it, or pass "
+                        "--without rollover if ROA = 0",
                         letter(axis), way)};
       }
       before = origin + value;
@@ -264,8 +265,8 @@ class Fanuc final : public IsoDialect {
     const bool is_in_force = motion.is_Z_known && modes_.length != 0;
     if (!motion.is_rapid || motion.words.size() > 1 || is_in_force) {
       throw Unsayable{
-          "moves Z without the tool length that was in force (G49 after G43), which the control "
-          "cancels safely only on a retract; program G53 G0 Z... before G49"};
+          "moves Z after the tool length was cancelled (G49 after G43), which is safe on the "
+          "control only after a retract; program G53 G0 Z... before G49"};
     }
     retract();
   }

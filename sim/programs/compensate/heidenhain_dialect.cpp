@@ -161,7 +161,7 @@ class Heidenhain final : public DialectPrinter {
   void coolant(int code) override {
     if (code == 7)
       throw Unsayable{
-          "switches mist (M7), which is up to the machine builder; use M8, or remove it"};
+          "switches mist (M7), which is defined by the machine builder; use M8, or remove it"};
     put(fmt::format("L M{}", code));
   }
   void dwell(double seconds) override {
@@ -246,7 +246,7 @@ class Heidenhain final : public DialectPrinter {
                       motion.length, motion.tool)};
     }
     if (motion.length != 0) {
-      assume(fmt::format("the tool table holds the length of tool {}", motion.length));
+      assume(fmt::format("the tool table contains the length of tool {}", motion.length));
     }
   }
 
@@ -269,9 +269,7 @@ class Heidenhain final : public DialectPrinter {
   std::string feed_word(const DialectMotion& motion) {
     if (motion.is_rapid) return "FMAX";
     if (motion.feed_mode == FeedMode::inverse_time) {
-      warn(
-          "G93 is written as FT, in seconds, which no manual found describes: test it before "
-          "relying on it");
+      warn("G93 is output as FT, in seconds, which is undocumented: test it before use");
       F_.reset();
       return "FT" + rate(60.0 / motion.feed, kDecimals, "FT");
     }

@@ -26,7 +26,7 @@ void HighestZ::refuse_above(double retract, const std::string& file) const {
   constexpr double kSame = 1e-6;  // m
   if (Z_ <= retract + kSame) return;
   throw InputError({file, line_},
-                   fmt::format("goes to machine Z{:.3f}, above the retract height Z{:g}; raise "
+                   fmt::format("moves to machine Z{:.3f}, above the retract height Z{:g}; raise "
                                "--retract, or check --work-offset and the tool length",
                                Z_ / mm, retract / mm));
 }

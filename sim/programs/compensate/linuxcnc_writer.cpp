@@ -294,7 +294,7 @@ void LinuxCncWriter::end_exact_path() {
 std::vector<std::string> LinuxCncWriter::assumptions() const {
   if (!assumes_G64_) return {};
   return {
-      "G64 without a tolerance is in force at the start (no other path mode in "
+      "G64 without a tolerance is active at the start (no other path mode in "
       "RS274NGC_STARTUP_CODE): it is restored after canned cycles"};
 }
 

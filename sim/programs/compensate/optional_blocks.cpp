@@ -18,8 +18,8 @@ using controllers::Group;
 
 constexpr auto kZ = static_cast<std::size_t>(2);
 constexpr std::string_view kUnwrittenSlash =
-    "no manual found specifies blocks with '/' for this control; remove the slash, or omit these "
-    "blocks with --block-delete";
+    "blocks with '/' are undocumented for this control; remove the slash, or omit these blocks "
+    "with --block-delete";
 
 // Whole parts of a program depend on these.
 bool decides_about_the_rest(const controllers::ExecutedBlock& block) {

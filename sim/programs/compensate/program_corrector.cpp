@@ -122,11 +122,11 @@ void ProgramCorrector::refuse_unknown_begin(const Move& move, const ExecutedBloc
     throw InputError(
         {options_.file, move.line},
         is_mixed
-            ? fmt::format("moves under a rotated work offset while the position of {0} is unknown; "
+            ? fmt::format("moves with a rotated work offset while the position of {0} is unknown; "
                           "program X and Y together",
                           name)
             : fmt::format(
-                  "incremental move of {0} from an unknown position; program {0} under G90 first",
+                  "incremental move of {0} from an unknown position; program {0} with G90 first",
                   name));
   }
 }
@@ -146,10 +146,10 @@ void ProgramCorrector::refuse_unknown_height(const ExecutedBlock& block,
 
 void ProgramCorrector::refuse(const Move& move, const AxisFlags& was_known) const {
   if (move.tool_control != ToolControl::none) {
-    throw InputError({options_.file, move.line},
-                     fmt::format("moves under tool-centre-point control or in a tilted work plane "
-                                 "cannot be compensated; {}",
-                                 kWriteAxes));
+    throw InputError(
+        {options_.file, move.line},
+        fmt::format("moves under TCP control or in a tilted work plane cannot be compensated; {}",
+                    kWriteAxes));
   }
   if (move.synchronised != Synchronised::no) {
     throw InputError({options_.file, move.line},

@@ -102,7 +102,7 @@ void refuse_unmodelled(const CompensateRequest& request, const controllers::Prog
     refuse("--parameter-file", "give the place of G54 by --work-offset");
   }
   if (!request.inputs.subroutine_folders.empty()) {
-    refuse("--subs", "put the subroutines beside the program");
+    refuse("--subs", "put the subroutines next to the program");
   }
   if (!request.inputs.additional_offsets.empty()) {
     refuse("--additional-offset", "the model runs programs in G54");

@@ -31,7 +31,7 @@ std::string figures_json(const ServoFigures& one) {
 
 std::vector<std::string> ServoPrediction::report() const {
   return {
-      fmt::format("against what {} predicts up to {:g} Hz, from {} runs of the model", model,
+      fmt::format("against the prediction by {} up to {:g} Hz, from {} runs of the model", model,
                   cutoff, runs),
       "predicted " + change("largest contour error", before.contour, after.contour),
       "predicted " + change("largest deviation of the tip at the same place of the path",

@@ -61,9 +61,7 @@ class Siemens final : public IsoDialect {
     // 6FC5398-2EP40-0BA0 p. 181: G0 under G64 is a line, under G60 where RTLION is in force
     if (stops_at_ends_ && motion.may_leave_its_line()) {
       assume(
-          "rapids of several axes are collision-free off their line (G60; RTLIOF "
-          "may be in "
-          "force)");
+          "rapids of several axes are collision-free off their line (G60; RTLIOF may be active)");
     }
     if (motion.is_place) return place(motion);
     if (modes_.work_system != motion.work_system) work_system(motion.work_system);
@@ -75,7 +73,7 @@ class Siemens final : public IsoDialect {
       if (modes_.length != wanted) prefix = fmt::format("D{}", wanted);
       modes_.length = wanted;
       if (wanted != 0) {
-        assume(fmt::format("D1 of tool {} holds its length", motion.tool));
+        assume(fmt::format("D1 of tool {} contains its length", motion.tool));
       }
     }
     if (motion.arc && !motion.arc->is_in_XY()) return put_through_point(motion);

@@ -121,9 +121,10 @@ std::string SmoothedFeeds::text() const {
   if (!has_limits_)
     return allowed + " (not simulated: the machine file gives no v_max, a_max, j_max)";
   if (blocks_ == 0) return allowed;
-  return fmt::format("{}; simulated{}: by {:.1f} um, {:.1f} s at feed; held to {:g} um: {:.1f} s",
-                     allowed, is_cut_short_ ? fmt::format(" for the first {} blocks", blocks_) : "",
-                     smoothed_.distance / um, smoothed_.time, tolerance_ / um, held_.time);
+  return fmt::format(
+      "{}; simulated{}: by {:.1f} um, {:.1f} s at feed; limited to {:g} um: {:.1f} s", allowed,
+      is_cut_short_ ? fmt::format(" for the first {} blocks", blocks_) : "",
+      smoothed_.distance / um, smoothed_.time, tolerance_ / um, held_.time);
 }
 
 }  // namespace servomill::sim::programs

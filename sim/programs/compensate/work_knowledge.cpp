@@ -62,8 +62,9 @@ void add_work_offset(const std::string& text, const JointLayout* layout, GivenWo
   const std::string name = colon == std::string::npos ? "G54" : text.substr(0, colon);
   const auto found = std::find(kWorkSystems.begin(), kWorkSystems.end(), name);
   if (found == kWorkSystems.end()) {
-    throw InputError({"--work-offset " + text},
-                     fmt::format("'{}' is not one of {}", name, fmt::join(kWorkSystems, ", ")));
+    throw InputError(
+        {"--work-offset " + text},
+        fmt::format("'{}' is not allowed; must be one of {}", name, fmt::join(kWorkSystems, ", ")));
   }
   const AxisValues values = axis_values(
       "--work-offset", std::string_view(text).substr(colon == std::string::npos ? 0 : colon + 1),

@@ -55,7 +55,7 @@ std::vector<std::string> CycleTimeReport::unknown() const {
         " of G33 or G33.1, planned as if the spindle were as quick as the axes: no nc.spindle in "
         "the machine file");
   }
-  add(accounts.stops, "stop", " until the operator goes on");
+  add(accounts.stops, "stop", " until the operator continues");
   add(accounts.probings, "probing move", ", planned to the programmed end");
   add(unknown_dwells, "dwell", " in a unit that controls do not agree on");
   add(static_cast<int>(left_out.size()), "move",

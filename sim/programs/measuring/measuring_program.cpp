@@ -156,7 +156,7 @@ class MeasuringComparison {
     bool has_ended = false;
     for (const MachineAction& action : actions) {
       if (action.kind == ActionKind::spindle && action.direction != 0) {
-        fail(action, "turns the spindle, in which the probe is");
+        fail(action, "rotates the spindle, which holds the probe");
       }
       has_ended = has_ended || action.kind == ActionKind::end;
       if (is_motion(action.kind)) take(action);
@@ -188,7 +188,7 @@ class MeasuringComparison {
 
   void take(const MachineAction& action) {
     if (action.is_machine_position || action.is_to_reference) return retract(action);
-    if (at_ == moves_.steps.size()) fail(action, "moves behind the last move");
+    if (at_ == moves_.steps.size()) fail(action, "moves after the last move");
     const MeasuringStep& step = moves_.steps[at_];
     if (feeds_by_table_ && step.is_probe && action.kind == ActionKind::rapid) return stay(action);
     ++at_;

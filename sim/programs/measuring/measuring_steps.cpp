@@ -40,10 +40,10 @@ void require_turning_table(const model::MachineSettings& machine) {
     if ((tool - spindle).norm() > 1e-9) {
       throw InputError(
           {"plan-calibration"},
-          fmt::format("writes measuring programs for machines whose rotary axes carry "
-                      "the table; {} carries the spindle: a stylus that turns swings about the "
-                      "sphere, and its pre-travel turns with it; neither a clear path "
-                      "nor that is covered. --instruments without probe plans the rest",
+          fmt::format("writes measuring programs only for machines whose rotary axes carry the "
+                      "table; {} carries the spindle, whose rotation swings the stylus about the "
+                      "sphere and changes its pre-travel direction, which is not supported; use "
+                      "--instruments without probe for the other measurements",
                       letter(axis)));
     }
   }
@@ -75,7 +75,7 @@ class Moves {
     if (!targets.empty()) rapid({{2, top_}});
     for (const Target& target : targets) measure(target);
     for (const auto& [why, count] : left_out_) {
-      out_.notes.push_back(fmt::format("{}, at {} poses that are left out", why, count));
+      out_.notes.push_back(fmt::format("{}, at {} poses that are omitted", why, count));
     }
     return std::move(out_);
   }
@@ -157,14 +157,14 @@ class Moves {
   }
 
   std::optional<std::string> why_not(const Vector3d& centre, const Vector3d& up) const {
-    if (up.z() < kSteepest) return "the table is turned by more than 60 deg from the spindle";
+    if (up.z() < kSteepest) return "the table is rotated by more than 60 deg from the spindle";
     if (centre.z() + reach() > top_) return "Z does not rise above the sphere";
     for (int axis = 0; axis < 3; ++axis) {
       const double room = axis == 2 ? 0.0 : reach();
       const double offset = axis == 2 ? length_ : 0.0;
       if (centre[axis] - room + offset < machine_.nc.lower[axis] ||
           centre[axis] + room + offset > machine_.nc.upper[axis]) {
-        return fmt::format("the sides of the sphere lie outside the travel of {}", "XYZ"[axis]);
+        return fmt::format("the sides of the sphere are outside the travel of {}", "XYZ"[axis]);
       }
     }
     return std::nullopt;

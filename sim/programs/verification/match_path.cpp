@@ -142,12 +142,13 @@ void ReplayComparison::check_piece(const OriginalAction& action, const Corrected
     const double t = t_begin + u * (t_end - t_begin);
     const double d = curve.distance(position, t);
     if (d > tolerance) {
-      fail(fmt::format("leaves the corrected path by {:.2f} um, at {}", d / um, place(position)));
+      fail(fmt::format("deviates from the corrected path by {:.2f} um, at {}", d / um,
+                       place(position)));
     }
     largest_ = std::max(largest_, d);
     const double turn = curve.turn(position, t);
     if (turn > limits_.tolerance_turn + limits_.grid_turn) {
-      fail(fmt::format("leaves the path of the rotary axes by {:.5f} deg", turn / deg));
+      fail(fmt::format("deviates from the path of the rotary axes by {:.5f} deg", turn / deg));
     }
   }
   if (is_approach && piece.length() > begin_off + 2.0 * tolerance) {

@@ -67,7 +67,7 @@ TEST(Findings, ChoosesTheSmoothnessThatPredictsTargetsLeftOut) {
   // above 1: what predicts a target is uncertain, too
   EXPECT_GT(found.smoothness[0].errors[3].second, 1.0);
   EXPECT_LT(found.smoothness[0].errors[3].second, 2.5);
-  EXPECT_NE(report(found).find("degree of linear by cross-validation: 4; readings left out"),
+  EXPECT_NE(report(found).find("degree of linear by cross-validation: 4; excluded readings"),
             std::string::npos);
 }
 
@@ -199,8 +199,7 @@ TEST(Findings, NamesTheErrorsOfAnAxisThatNoGroupMoves) {
   make_up(all, gantry(), {}, 31);
   const Calibration found = calibrated(all);
   const auto sentences = unidentifiable_sentences(found);
-  EXPECT_EQ(sentences.back(),
-            "no group moves Z: nothing is known of EXZ, EYZ, EZZ, EAZ, EBZ and ECZ");
+  EXPECT_EQ(sentences.back(), "no group moves Z: cannot determine EXZ, EYZ, EZZ, EAZ, EBZ and ECZ");
   const auto keys = identified_errors(found, "found").values.unidentifiable;
   EXPECT_EQ(std::count(keys.begin(), keys.end(), "errors.found.EZZ"), 1);
   EXPECT_EQ(std::count(keys.begin(), keys.end(), "errors.found.EXX"), 0);
@@ -221,8 +220,9 @@ TEST(Findings, NamesResidualsThatAreFarTooSmall) {
   CalibrationSettings settings;
   settings.form_linear.degree = 1;
   constexpr const char* kSmall =
-      "of what its uncertainty of 0.3 um implies: readings in a larger unit than stated (mm for "
-      "um), copied rows, or an uncertainty that is stated too large";
+      "times those expected from its uncertainty of 0.3 um: readings in a larger unit than stated "
+      "(mm for "
+      "um), copied rows, or an uncertainty stated too large";
   EXPECT_FALSE(warns(calibrated(all, settings), kSmall));
   for (readings::Reading& row : all.groups[0].rows) row.deviation /= 1000.0;
   EXPECT_TRUE(warns(calibrated(all, settings), kSmall));

@@ -114,7 +114,7 @@ TEST(Plan, RefusesMachinesWithoutTravelAndInstrumentsWithoutUse) {
   PlanSettings settings = a_day();
   settings.instruments = {PlanInstrument::probe};
   EXPECT_EQ(fault_messages([&] { plan_calibration(machine, settings, nullptr); }),
-            "none of them can measure anything on this machine\n");
+            "none of them applies to this machine\n");
   machine.nc.upper.setZero();
   EXPECT_EQ(fault_messages([&] { plan_calibration(machine, a_day(), nullptr); }),
             "has no travel_mm in the machine file; a plan needs it\n");

@@ -179,9 +179,9 @@ TEST(SoughtGrids, RefuseAxesThatTurnOnAndAxesThatStood) {
   add_spheres(turning, trunnion());
   turning.lower.head<4>().setConstant(-2.0);
   turning.upper.head<4>().setConstant(2.0);
-  EXPECT_EQ(fault_messages([&] { calibrate(turning, trunnion(), with_grid("EXA"_err, Axis::C)); }),
-            "adjustment.form.EXA.grid: C turns without limits; grids are over axes with limits of "
-            "travel\n");
+  EXPECT_EQ(
+      fault_messages([&] { calibrate(turning, trunnion(), with_grid("EXA"_err, Axis::C)); }),
+      "adjustment.form.EXA.grid: C has no travel limits; grids require axes with travel limits\n");
 }
 
 }  // namespace

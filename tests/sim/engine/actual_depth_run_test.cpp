@@ -103,7 +103,7 @@ TEST(ActualDepth, beyond_its_range_is_reported) {
     return std::any_of(all.begin(), all.end(), [](const std::string& note) {
       return note.find(
                  "mm off its nominal path while it cut: forces at the actual depth of cut "
-                 "are extended linearly from 0.02 mm to 0.1 mm, and held beyond") !=
+                 "are extrapolated linearly from 0.02 mm to 0.1 mm, and constant beyond") !=
              std::string::npos;
     });
   };

@@ -151,7 +151,7 @@ TEST(ProbedPart, TellsWhatIsMissed) {
   EXPECT_EQ(output.comparison[0].note, "3 of 5 points of 'beyond'");
   EXPECT_LT(output.comparison[0].value, kPerfect);
   const std::string none =
-      "no point of 'inside' met a cut surface: does the tool of case one get there?";
+      "no point of 'inside' met a cut surface: check that the tool of case one reaches it";
   for (const std::size_t i : {1U, 2U}) {
     EXPECT_TRUE(std::isnan(output.comparison[i].value));
     EXPECT_EQ(output.comparison[i].note, none);

@@ -100,7 +100,8 @@ TEST(ProbedTeeth, need_the_angle_of_the_spindle_and_a_point) {
             "cmm.tooth_marks = true; needs cutting.force = \"instantaneous\"");
   EXPECT_EQ(
       refusal("[cmm]\ntooth_marks = true\nprobe_radius_mm = 1.0\n", "force = \"instantaneous\"\n"),
-      "cmm.tooth_marks = true; needs a point: a ball would bridge them (probe_radius_mm = 0)");
+      "cmm.tooth_marks = true; requires a point stylus: a ball would bridge them (probe_radius_mm "
+      "= 0)");
   EXPECT_EQ(refusal("[cmm]\ntooth_marks = true\n", "force = \"instantaneous\"\n"), "");
 }
 

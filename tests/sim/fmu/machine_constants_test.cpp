@@ -102,7 +102,7 @@ TEST(MachineConstants, AreNotExportedOfMachinesThatChangeOtherwise) {
   other = machine;
   other.inertial_compliances.emplace_back();
   EXPECT_EQ(why_not_exported(rigid, other),
-            "its structure bends under acceleration, which an FMU does not contain");
+            "its structure deflects under acceleration, which an FMU does not contain");
 }
 
 }  // namespace

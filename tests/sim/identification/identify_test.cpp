@@ -154,7 +154,7 @@ key = "axis.Y.moving_mass"
   EXPECT_EQ(
       unidentifiable_sentences(found),
       (std::vector<std::string>{
-          "axis.Y.moving_mass: the recordings do not depend on it; it keeps its start value"}));
+          "axis.Y.moving_mass: the recordings do not depend on it; the start value is kept"}));
 }
 
 TEST(Identify, AForeignLoopShowsInTheResidual) {

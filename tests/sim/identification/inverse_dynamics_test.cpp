@@ -39,7 +39,7 @@ TEST(InverseDynamics, NeedsAForceAMotionAndSomeTime) {
   Record still = record;
   still.feedback.assign(still.size(), 0.1);
   EXPECT_EQ(fault_messages([&] { inverse_dynamics(still, false); }),
-            "contains no motion; there is nothing to identify\n");
+            "contains no motion; the identification requires motion\n");
   Record brief = record;
   brief.feedback.resize(300);
   brief.force.resize(300);

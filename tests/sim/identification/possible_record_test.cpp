@@ -19,19 +19,19 @@ TEST(PossibleRecord, IsOneThatFollows) { EXPECT_EQ(impossible(record(0.98, 7.0))
 
 TEST(PossibleRecord, RefusesStandstill) {
   EXPECT_EQ(impossible(record(0.0, 2.0)),
-            "does not move: its feedback is 2 from 0 to 0.3 s; there is nothing to identify");
+            "does not move: its feedback is 2 from 0 to 0.3 s; the identification requires motion");
 }
 
 TEST(PossibleRecord, RefusesTheWrongSignWithItsInstant) {
   EXPECT_EQ(impossible(record(-1.0)),
             "has a feedback that moves against the command, first at 0.2 s: one of them has the "
-            "wrong sign; give it factor = -1");
+            "wrong sign; set factor = -1");
 }
 
 TEST(PossibleRecord, RefusesAnotherUnit) {
   EXPECT_EQ(impossible(record(1000.0)),
             "has a feedback that moves 1e+03 times as far as the command, 4000 against 4: one of "
-            "them has another unit");
+            "them has the wrong unit");
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_F(ReadExperiment, RefusesAFeedbackOfTheWrongSign) {
   Record wrong = recorded(ramps(0.5), {small_axis(), small_loop()});
   for (double& y : wrong.feedback) y = -y;
   files_.write_recording(wrong);
-  EXPECT_NE(faults(kMass).find("one of them has the wrong sign; give it factor = -1"),
+  EXPECT_NE(faults(kMass).find("one of them has the wrong sign; set factor = -1"),
             std::string::npos);
 }
 
@@ -85,16 +85,15 @@ TEST_F(ReadExperiment, RefusesAFeedbackInAnotherUnit) {
   Record wrong = recorded(ramps(0.5), {small_axis(), small_loop()});
   for (double& y : wrong.feedback) y *= 1000.0;
   files_.write_recording(wrong);
-  EXPECT_NE(faults(kMass).find("one of them has another unit"), std::string::npos);
+  EXPECT_NE(faults(kMass).find("one of them has the wrong unit"), std::string::npos);
 }
 
 TEST_F(ReadExperiment, RefusesARecordingWithoutMotion) {
   Record still = recorded(ramps(0.5), {small_axis(), small_loop()});
   still.feedback.assign(still.size(), 0.25);
   files_.write_recording(still);
-  EXPECT_NE(faults(kMass).find(
-                "does not move: its feedback is 0.25 from 0 to 0.499 s; there is nothing to "
-                "identify"),
+  EXPECT_NE(faults(kMass).find("does not move: its feedback is 0.25 from 0 to 0.499 s; the "
+                               "identification requires motion"),
             std::string::npos);
 }
 

@@ -279,8 +279,7 @@ TEST(ReadSweep, RefusesSamplesWithoutDistributionAndTheOtherWayRound) {
             "s.toml:1:1: error: sweep: samples is missing: keys with a distribution need, for "
             "example, samples = { design = \"latin_hypercube\", count = 100 }");
   EXPECT_EQ(refusal("samples = { design = \"sobol\", count = 3 }\na = [1]\n"),
-            "s.toml:2:11: error: sweep.samples = {...}; has nothing to "
-            "sample: no key has a distribution");
+            "s.toml:2:11: error: sweep.samples = {...}; has no key with a distribution to sample");
   EXPECT_EQ(refusal("samples = { design = \"sobl\", count = 0 }\na = { normal = [1.0, 0.1] }\n"),
             "s.toml:2:22: error: sweep.samples.design = \"sobl\"; must be one of random, "
             "latin_hypercube, sobol; did you mean 'sobol'?\n"

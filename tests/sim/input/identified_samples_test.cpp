@@ -249,9 +249,9 @@ TEST_F(IdentifiedSamplesOfFiles, RefuseACovarianceOfZeros) {
       "identified.toml",
       "based_on = \"machine.toml\"\n[axis.X]\nmoving_mass = 700\n[identified]\n"
       "keys = [\"axis.X.moving_mass\"]\nunits = [\"kg\"]\nvalues = [700]\ncovariance = [[0.0]]\n");
-  EXPECT_EQ(refusal("identified.toml", "samples = { from = \"identified.toml\", count = 5 }\n"),
-            "scenario.toml:7:11: error: sweep.samples = {...}; has nothing to sample: no key has a "
-            "distribution");
+  EXPECT_EQ(
+      refusal("identified.toml", "samples = { from = \"identified.toml\", count = 5 }\n"),
+      "scenario.toml:7:11: error: sweep.samples = {...}; has no key with a distribution to sample");
 }
 
 }  // namespace

@@ -72,8 +72,8 @@ TEST(MachineOverride, HoldsForThePlanOfTheMotion) {
   EXPECT_GT(second, 2.0);
   EXPECT_LT(first, 1.5);
   EXPECT_EQ(message("machine_override.axis.X.travel_mm = [-10.0, 40.0]\n"),
-            "2: case second: X moves to 50.0000 mm, outside the travel; must be <= 40.0000\n"
-            "4: case second: X moves to 50.0000 mm, outside the travel; must be <= 40.0000\n");
+            "2: case second: X moves to 50.0000 mm, outside its travel; must be <= 40.0000\n4: "
+            "case second: X moves to 50.0000 mm, outside its travel; must be <= 40.0000\n");
 }
 
 TEST(MachineOverride, SurvivesWritingAndReading) {

@@ -234,7 +234,7 @@ TEST(CircularTest, WantsPointsCloseTogetherAndOnTheCircle) {
   for (int i = 0; i < 120; ++i) coarse.push_back(radial_turn([](double) { return 0.0; })[30 * i]);
   EXPECT_EQ(why_no_turn(coarse, kNominal), "has samples 3 deg apart; must be <= 2 deg");
   EXPECT_EQ(why_no_turn(radial_turn([](double) { return -6.0 * mm; }), kNominal),
-            "leaves the circle of radius 50 mm by 6 mm");
+            "deviates from the circle of radius 50 mm by 6 mm");
 }
 
 }  // namespace

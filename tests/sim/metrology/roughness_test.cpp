@@ -88,7 +88,7 @@ TEST(Roughness, SaysWhatALineLacks) {
   EXPECT_FALSE(roughness_of(std::vector<double>(101, 0.0), 4 * um, why_not));
   EXPECT_EQ(why_not, "a line of 0.4 mm is shorter than 6 cut-offs of 0.08 mm");
   EXPECT_FALSE(roughness_of(std::vector<double>(501, 0.0), 3 * um, why_not));
-  EXPECT_EQ(why_not, "points 3 um apart; a cut-off of 0.25 mm needs 2.5 um at most");
+  EXPECT_EQ(why_not, "points 3 um apart; a cut-off of 0.25 mm requires at most 2.5 um");
 }
 
 }  // namespace

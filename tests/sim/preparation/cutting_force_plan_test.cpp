@@ -101,11 +101,10 @@ TEST(CuttingErrors, tell_of_stock_that_turns_without_its_program) {
   const auto message = [&](const std::string& keys) {
     return message_of(program, kTool + kBlock + kSteel + one_case("cut", keys));
   };
-  EXPECT_NE(
-      message(turned).find(": case cut: a part is cut from [[part.stock]] in the coordinates of "
-                           "its program; under tool-centre-point control (small.ngc:4) these do "
-                           "not rotate with the work_offset of a rotary axis: set that to 0\n"),
-      std::string::npos)
+  EXPECT_NE(message(turned).find(": case cut: a part is cut from [[part.stock]] in the coordinates "
+                                 "of its program; under TCP control (small.ngc:4) these do not "
+                                 "rotate with the work_offset of a rotary axis: set it to 0\n"),
+            std::string::npos)
       << message(turned);
   EXPECT_EQ(message(turned + "cutting = false\n"), "") << "in air";
   EXPECT_EQ(message("work_offset = { X_mm = 5.0 }\n"), "");

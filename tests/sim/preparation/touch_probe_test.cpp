@@ -237,7 +237,7 @@ TEST(TouchProbe, ThatCannotBeginIsRefusedWhereItStands) {
   EXPECT_EQ(fault_of("G0 Z0\nG38.4 X0\n", kSphere),
             "touch.ngc:5:1: error: G38.4: the probe is not in contact where the move starts");
   EXPECT_EQ(fault_of("G0 Z30\nG38.2 X40\n", kSphere),
-            "touch.ngc:5:1: error: G38.2: the probe touches nothing before the end of the move");
+            "touch.ngc:5:1: error: G38.2: the probe makes no contact before the end of the move");
 }
 
 TEST(TouchProbe, ThatIsDescribedWronglyIsRefused) {
@@ -247,7 +247,7 @@ TEST(TouchProbe, ThatIsDescribedWronglyIsRefused) {
     return text.substr(text.find(": error: ") + 9);
   };
   EXPECT_EQ(message(""),
-            "touch_probe: has nothing to meet: add a [[touch_probe.sphere]], plane or bore, a "
+            "touch_probe: has no object to probe: add a [[touch_probe.sphere]], plane or bore, a "
             "[[part.stock]] or part.stl");
   EXPECT_EQ(message("workpiece = \"stock\"\n" + kSphere),
             "touch_probe.workpiece = \"stock\"; needs a [[part.stock]]");

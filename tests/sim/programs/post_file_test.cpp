@@ -44,10 +44,10 @@ TEST(PostFile, ShippedProgramsArePostedFromShippedLocations) {
   EXPECT_EQ(post_processed.program, shipped("example1.ngc"));
   ASSERT_EQ(post_processed.warnings.size(), 2u);
   EXPECT_EQ(post_processed.warnings[0].message,
-            "tool axis has length 1.00199; taken as a unit vector");
+            "tool axis has length 1.00199; normalised to a unit vector");
   EXPECT_EQ(post_processed.warnings[1].message,
-            "between the previous location and this one the TCP leaves the straight line by 0.156 "
-            "mm; only --classical inserts no points");
+            "between the previous location and this one the TCP deviates from the straight line by "
+            "0.156 mm; --classical inserts no points");
 
   PostRequest table32 = request_of("table32.csv");
   table32.options.feed = 300 * mm_per_min;

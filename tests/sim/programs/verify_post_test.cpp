@@ -247,12 +247,13 @@ TEST(VerifyPost, DangerousWaysToTheSamePlacesAreFound) {
     return std::size_t{0};
   };
   // X and Y together with Z: a diagonal down to the part
-  EXPECT_EQ(edited([&](auto& lines) {
-              lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 X")));
-            }),
-            "p.cls:6: error: not as verified: line 12 of the program, 'G0 X32.9588272 Y10.9862757 "
-            "Z34.3696194 A-18.4111219 C-71.5650512': the tool moves below the retract height, but "
-            "not along its axis");
+  EXPECT_EQ(
+      edited([&](auto& lines) {
+        lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 X")));
+      }),
+      "p.cls:6: error: verification failed: line 12 of the program, 'G0 X32.9588272 Y10.9862757 "
+      "Z34.3696194 A-18.4111219 C-71.5650512': the tool moves below the retract height, but "
+      "not along its axis");
   // rotary axes after the descent
   EXPECT_NE(edited([&](auto& lines) {
               lines.erase(lines.begin() + static_cast<long>(index_of(lines, "G54 G0 A")));
@@ -289,7 +290,7 @@ TEST(VerifyPost, CornersWithoutATolerance) {
     for (const std::string& line : lines_of(w.program)) {
       if (!line.starts_with("G64")) without += line + "\n";
     }
-    EXPECT_NE(fault_of(w, without).find("nothing keeps corners within the tolerance (G64 P)"),
+    EXPECT_NE(fault_of(w, without).find("corners are not limited to the tolerance (G64 P)"),
               std::string::npos);
   }
 }
@@ -320,7 +321,7 @@ TEST(VerifyPost, RotaryAxesAtZeroAreNotAssumed) {
   std::string mutant = program;
   mutant.erase(mutant.find("G54 G0 A0 C0\n"), 13);
   EXPECT_EQ(fault_of(w, mutant),
-            "p.cls:3: error: not as verified: line 8 of the program, 'G0 X0 Y0 Z30 A0 C0': a "
+            "p.cls:3: error: verification failed: line 8 of the program, 'G0 X0 Y0 Z30 A0 C0': a "
             "rotary axis moves below the retract height");
 }
 

@@ -144,7 +144,7 @@ TEST(LocalPolynomial, RefusesShortAndUnexcitedRecords) {
   EXPECT_EQ(fault_messages([&] { local_polynomial(nothing, nothing, settings(), "a.csv"); }),
             "has an input without excitation\n");
   EXPECT_EQ(fault_messages([&] { local_polynomial(little, little, settings(), "a.csv"); }),
-            "holds 20 samples; the local polynomial method needs at least 52\n");
+            "contains 20 samples; the local polynomial method requires at least 52\n");
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ TEST(RationalFit, RefusesMoreParametersThanLines) {
   MeasuredResponse few = measured(0.01, 1);
   few.lines.resize(4);
   EXPECT_EQ(fault_messages([&] { fit_rational(few, kOrder, "a.csv"); }),
-            "holds 4 lines; 7 of a numerator of degree 2 and a denominator of degree 3 need at "
-            "least as many\n");
+            "contains 4 lines; 7 of a numerator of degree 2 and a denominator of degree 3 require "
+            "at least as many\n");
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(TwoMassFit, RefusesAResponseOfOneMass) {
     one.lines.push_back({.frequency = static_cast<double>(f), .value = -1.0 / (f * f)});
   }
   EXPECT_EQ(fault_messages([&] { fit_two_mass(one, "x"); }),
-            "shows no antiresonance with a resonance above it: nothing of two masses to fit\n");
+            "shows no antiresonance followed by a resonance: a two-mass model cannot be fitted\n");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string strategy(const std::string& type, const std::string& model = "machin
 TEST(Combinations, ThatCorrectAModelTwiceAreRefused) {
   EXPECT_EQ(refusal(strategy("table") + strategy("gcode")),
             "small.toml:14:8: error: case one: strategy gcode would correct the errors of model "
-            "'machine' a second time, after table; give it a model of the rest (relative_to)");
+            "'machine' a second time, after table; use a model of the residual (relative_to)");
   EXPECT_EQ(refusal(strategy("gcode")), "accepted");
 }
 
@@ -71,10 +71,9 @@ TEST(Combinations, OfARewrittenProgramAndAStrategyThatLearnsKeepTheProgrammedPat
 TEST(Combinations, ThatALearningStrategyWouldTakeBackAreRefused) {
   const std::string scales =
       "[[case.strategy]]\ntype = \"learning\"\nsees = \"scales\"\nupdates = 1\n";
-  EXPECT_EQ(
-      refusal(strategy("table") + scales),
-      "small.toml:15:8: error: case one: strategy learning: sees = \"scales\" would take back "
-      "what table displaces; use \"tip\", or one of the two");
+  EXPECT_EQ(refusal(strategy("table") + scales),
+            "small.toml:15:8: error: case one: strategy learning: sees = \"scales\" would cancel "
+            "the displacement of table; use \"tip\", or only one of the two strategies");
   EXPECT_EQ(refusal("[[case.strategy]]\ntype = \"contour\"\n" + scales), "accepted");
   EXPECT_EQ(refusal(strategy("gcode") + "action = \"impose\"\n[[case.strategy]]\n"
                                         "type = \"learning\"\nupdates = 1\n"),

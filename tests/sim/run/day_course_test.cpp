@@ -175,7 +175,7 @@ TEST(DayCourse, NotesThatIdealAxesHeatNothing) {
       small_scenario(kStrokes, "[[case]]\nname = \"one\"\nservo = \"ideal\"\n" + heat(motor)),
       "one");
   EXPECT_EQ(out.notes.back(),
-            "case one: an ideal servo has no current: motors and friction heat nothing");
+            "case one: an ideal servo has no current: motors and friction generate no heat");
 }
 
 // --- repeated cycles ----------------------------------------------------------------------------

@@ -34,8 +34,8 @@ TEST(Spindle, OfUnknownAccelerationIsTold) {
   };
   EXPECT_EQ(note("[machine_override.nc.spindle]\nacceleration_rpm_per_s = 5000.0\n"), "none");
   EXPECT_EQ(note(""),
-            "small.ngc:3: warning: the acceleration of the spindle is not known: motion that it "
-            "turns with is planned as quick as the axes; set nc.spindle.acceleration_rpm_per_s of "
+            "small.ngc:3: warning: the acceleration of the spindle is unknown: synchronised motion "
+            "is planned with the limits of the axes only; set nc.spindle.acceleration_rpm_per_s of "
             "the machine");
 }
 

@@ -118,8 +118,8 @@ TEST(NoteOfCreep, SaysThatTheAxisStillMovedWhenItWasRead) {
   EXPECT_EQ(note_of_creep(result, 0.1), std::nullopt);
   result.creep = 0.4 * um;
   EXPECT_EQ(note_of_creep(result, 0.1),
-            "test X: the axis still moved by up to 0.4 um while the device was read, which counts "
-            "as its error; a dwell_s above 0.1 lets it settle");
+            "test X: the axis still moved by up to 0.4 um during the reading, which counts as its "
+            "error; increase dwell_s above 0.1");
   EXPECT_LT(tested("EXX = { um_per_m = 100.0 }").creep, 20 * kRounding);
   EXPECT_GT(tested("EXX = { um_per_m = 100.0 }", "", "servo = \"cascade\"\n").creep, 1 * nm);
 }

@@ -298,8 +298,8 @@ TEST_F(PartLearning, TellsWhatNoPointWasProbedOf) {
   csv("part.csv", "50,0,-5,0,-1,0,12\n100,20,-5,1,0,0,12\n");
   const RunOutput output = run(scenario("[errors.machine]\n" + learning(part("part.csv"))));
   const std::string note = fmt::format(
-      "case next: strategy learning: {} has no point of the feed motion in lines "
-      "14-15, 18-21, 24-25 of small.ngc, which gets no offset",
+      "case next: strategy learning: {} has no point of the feed motion in lines 14-15, 18-21, "
+      "24-25 of small.ngc, which receives no offset",
       path("part.csv"));
   const auto& notes = output.cases[0].notes;
   EXPECT_EQ(std::count(notes.begin(), notes.end(), note), 1) << fmt::format("{}", notes.at(0));
@@ -335,16 +335,16 @@ TEST_F(PartLearning, RefusesPointsThatTheProgramHasNotCut) {
             "normal points");
   csv("end.csv", "154,50,-10,-1,0,0,12\n");
   EXPECT_EQ(refusal(part("end.csv")),
-            "end.csv:2: error: point X154 Y50 Z-10: there the tool moves along the normal or its "
-            "own axis (line 18 of small.ngc), and only what deviates across the path is learnt; "
-            "leave the point out");
+            "end.csv:2: error: point X154 Y50 Z-10: the tool moves there along the normal or its "
+            "own axis (line 18 of small.ngc), but only deviations normal to the path are learnt; "
+            "omit the point");
 }
 
 TEST_F(PartLearning, RefusesAToolWithoutDiameter) {
   csv("part.csv", "50,0,-5,0,-1,0,12\n");
   EXPECT_EQ(refusal(part("part.csv"), "[[program.tool]]\nnumber = 1\nlength_mm = 110.0\n"),
-            "part.csv: error: tool 1 of small.ngc has no diameter, so that what was cut where is "
-            "not known; give the tool diameter_mm in [[program.tool]]");
+            "part.csv: error: tool 1 of small.ngc has no diameter, so the cut surface is unknown; "
+            "set diameter_mm of the tool in [[program.tool]]");
 }
 
 TEST_F(PartLearning, RefusesWhatAPartDoesNotHave) {

@@ -340,7 +340,7 @@ TEST(Precompensation, RefusesToKnowAnotherMachine) {
 TEST(Precompensation, RefusesToImposeAndToOccurTwice) {
   EXPECT_EQ(refusal(one_case("one", "machine", precompensated("action = \"impose\"\n"))),
             "small.toml:9:10: error: case[0].strategy[0].action = \"impose\"; must be "
-            "\"compensate\": the strategy precompensation imposes nothing");
+            "\"compensate\": the strategy precompensation cannot impose errors");
   EXPECT_EQ(refusal(one_case("one", "machine", precompensated() + precompensated())),
             "small.toml:7:8: error: case one: strategy precompensation appears twice; each would "
             "correct the whole");

@@ -291,7 +291,7 @@ TEST_F(RecordedLearning, RefusesARecordingOfAnotherProgram) {
   std::string other = kProgram;
   other.replace(other.find("X30"), 3, "X31");
   EXPECT_TRUE(refusal(csv("run.csv"), other)
-                  .starts_with("run.csv: error: is no recording of small.ngc: at "))
+                  .starts_with("run.csv: error: is not a recording of small.ngc: at "))
       << refusal(csv("run.csv"), other);
 }
 
@@ -300,7 +300,8 @@ TEST_F(RecordedLearning, RefusesARecordingAtAnotherFeed) {
   faster.replace(faster.find("F3000"), 5, "F3600");
   export_csv(run(kPlain, "plain", faster), "fast.csv", 0.0, 5);
   const std::string text = refusal(csv("fast.csv"));
-  EXPECT_TRUE(text.starts_with("fast.csv: error: was made at another feed: its feed motion takes "))
+  EXPECT_TRUE(text.starts_with(
+      "fast.csv: error: was made at a different feed rate: its feed motion takes "))
       << text;
   EXPECT_TRUE(text.ends_with("; set feed_share")) << text;
 }
@@ -315,7 +316,7 @@ TEST_F(RecordedLearning, RefusesWhatIsNotWhole) {
             "begin.csv: error: begins after the program: it must begin at its start");
   export_csv(plain, "slow.csv", 0.0, 40);
   EXPECT_EQ(refusal(csv("slow.csv")),
-            "slow.csv: error: has samples 8 ms apart; cutoff_Hz = 60 needs 4.167 ms");
+            "slow.csv: error: has a sampling period of 8 ms; cutoff_Hz = 60 requires 4.167 ms");
 }
 
 TEST_F(RecordedLearning, RefusesWhatIsNotKnown) {
@@ -341,8 +342,8 @@ TEST_F(RecordedLearning, RefusesKeysThatRecordingsStandFor) {
             "small.toml:13:11: error: case[0].strategy[0].updates = 3; is not used with "
             "[[case.strategy.recording]]: the recordings are the runs");
   EXPECT_EQ(refusal("limits = \"slow\"\n" + csv("run.csv")),
-            "small.toml:13:10: error: case one: strategy learning: limits = \"slow\" plans another "
-            "path than the one that was recorded");
+            "small.toml:13:10: error: case one: strategy learning: limits = \"slow\" plans a path "
+            "different from the recorded one");
   EXPECT_EQ(refusal("[[case.strategy.recording]]\nfile = \"a.csv\"\nmeasured = { X = \"a\" }\n"
                     "reference = { Y = \"b\" }\n"),
             "small.toml:16:13: error: case[0].strategy[0].recording[0].reference = {...}; "

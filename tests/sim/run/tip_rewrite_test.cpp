@@ -98,8 +98,8 @@ TEST(RewrittenTipMoves, AreRefusedInTiltedPlanesAndWithASecondTool) {
             "case gcode: moves in a tilted work plane cannot be rewritten");
   EXPECT_EQ(
       fault_of("T1 M6\nG43.4 H1\nG1 X10 Z10 A10 F500\nG49\nT2 M6\nG43.4 H2\nG1 X20 Z10\nM30\n"),
-      "case gcode: strategy gcode: rewrites moves under tool-centre-point control for one tool, "
-      "the first of the program; here another one is used (small.ngc:7)");
+      "case gcode: strategy gcode: rewrites moves under TCP control only for the first tool of the "
+      "program; a different one is used here (small.ngc:7)");
 }
 
 }  // namespace

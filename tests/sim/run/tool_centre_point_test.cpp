@@ -73,13 +73,14 @@ TEST(ToolCentrePoint, TellsWhatTheNcPutRightAndWhereItSlowedDown) {
       "ideal");
   ASSERT_EQ(output.notes.size(), 3U);
   EXPECT_NE(output.notes[0].find("small.ngc:2:13: warning: the tool axis I J K has length 1.04408; "
-                                 "taken as a unit vector"),
+                                 "normalised to a unit vector"),
             std::string::npos)
       << output.notes[0];
-  EXPECT_NE(output.notes[2].find("small.ngc:3: warning: the programmed feed needs C at 1.31e+07 "
-                                 "deg/s^3, 0.57 deg from a singular direction of the tool axis; it "
-                                 "can do 1.146e+05: the feed falls to about 20.6 %"),
-            std::string::npos)
+  EXPECT_NE(
+      output.notes[2].find("small.ngc:3: warning: the programmed feed rate requires C at 1.31e+07 "
+                           "deg/s^3, 0.57 deg from a singular direction of the tool axis; its "
+                           "limit is 1.146e+05: the feed rate is reduced to about 20.6 %"),
+      std::string::npos)
       << output.notes[2];
 }
 
@@ -94,15 +95,15 @@ std::string fault_of(const std::string& program, const std::string& toml) {
 
 TEST(ToolCentrePoint, IsNotStraightened) {
   EXPECT_EQ(fault_of(kTip, "[[case]]\nname = \"g\"\n[[case.strategy]]\ntype = \"exact\"\n" + kTool),
-            "case g: strategy exact: cannot rewrite moves under tool-centre-point control or in a "
-            "tilted work plane (small.ngc:2)");
+            "case g: strategy exact: cannot rewrite moves under TCP control or in a tilted work "
+            "plane (small.ngc:2)");
 }
 
 TEST(ToolCentrePoint, SaysWhereTheTravelEnds) {
   EXPECT_EQ(fault_of("G43.4 H1\nG0 X-40 Y10 Z20\nG1 Z-450 B60 F1000\nM2\n", kCases),
-            "Z moves to -169.9960 mm, outside the travel; must be >= -100.0000");
+            "Z moves to -169.9960 mm, outside its travel; must be >= -100.0000");
   EXPECT_EQ(fault_of("G43.5 H1\nG0 X0 Z20 I-1 J0 K-1\nM2\n", kCases),
-            "the tool axis (-0.707107, 0.000000, -0.707107) needs B = -135.0000 deg; must be >= "
+            "the tool axis (-0.707107, 0.000000, -0.707107) requires B = -135.0000 deg; must be >= "
             "-121.0000");
 }
 

@@ -125,8 +125,8 @@ TEST(CircleTest, WrongTurns) {
       "readings.csv: error: the ccw circle covers 199 deg of the circle; must be a full circle, "
       "360 deg; remove the feed-in and feed-out arcs, and check the radius and its unit");
   EXPECT_EQ(message(wrong_way),
-            "readings.csv: error: the cw circle runs the other way; put its rows in the order "
-            "of the motion, or correct the direction");
+            "readings.csv: error: the cw circle runs in the opposite direction; put its rows in "
+            "the order of the motion, or correct the direction");
   EXPECT_EQ(message("direction,angle_deg,deviation_um\nccw,0,100003\nleft,1,0\n"),
             "readings.csv:2:7: error: deviation of 100.003 mm; must be at most 5 mm: check the "
             "unit, and that it is a deviation from the nominal radius\n"
@@ -179,9 +179,9 @@ TEST(CircleTest, NamesAPointOffItsNeighbours) {
   };
   const Report report = report_of(ball_bar(radial));
   ASSERT_EQ(report.remarks.size(), 1u);
-  EXPECT_TRUE(report.remarks[0].ends_with(
-      ":39: is 20 um off its neighbours on the circle ccw; it is kept in the evaluation: check it "
-      "at the machine"))
+  EXPECT_TRUE(
+      report.remarks[0].ends_with(":39: is 20 um off its neighbours on the circle ccw; it is "
+                                  "evaluated: check it at the machine"))
       << report.remarks[0];
 }
 

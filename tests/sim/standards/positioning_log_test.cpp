@@ -67,14 +67,14 @@ TEST(PositioningLog, NamesWhatItLeavesOut) {
   std::string all;
   for (const std::string& one : remarks) all += one + "\n";
   EXPECT_EQ(all,
-            "log.txt: ioc:M1-PosSet has no unit: taken as mm\n"
-            "log.txt: ioc:Enc01-PosAct has no unit: taken as that of the target\n"
+            "log.txt: ioc:M1-PosSet has no unit: mm is assumed\n"
+            "log.txt: ioc:Enc01-PosAct has no unit: that of the target is assumed\n"
             "log.txt: 25 standstills of ioc:M1-PosSet; the first one, -5, has no direction and "
             "does not count\n"
-            "log.txt: target -5 is approached in one direction only, 3 times: taken as a reversal "
-            "point, not evaluated\n"
-            "log.txt: target 25 is approached in one direction only, 3 times: taken as a reversal "
-            "point, not evaluated\n");
+            "log.txt: target -5 is approached in one direction only, 3 times: treated as a "
+            "reversal point, not evaluated\n"
+            "log.txt: target 25 is approached in one direction only, 3 times: treated as a "
+            "reversal point, not evaluated\n");
 }
 
 TEST(PositioningLog, TakesTheZeroOfTheInstrumentAwayAndItsUnit) {
@@ -97,8 +97,8 @@ TEST(PositioningLog, RefusesChannelsThatAreNotThereAndUnitsThatCannotBe) {
   EXPECT_EQ(fault_messages([] {
               positioning_of(Log().recording(), {"PosSet", "PosAct", "", 30.0});
             }),
-            "has 0 standstills of ioc:M1-PosSet that last 30 s or more; --standstill gives another "
-            "time\n");
+            "has 0 standstills of ioc:M1-PosSet that last 30 s or more; change the time with "
+            "--standstill\n");
 }
 
 TEST(PositioningLog, ReadsListsOfAssignments) {

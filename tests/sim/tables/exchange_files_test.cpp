@@ -155,10 +155,9 @@ TEST(ExchangeFiles, AxesThatNoDocumentDefinesAreRefusedByName) {
   errors.component("EXX"_err) = plant::polynomial({0.0, 1e-4});
   EXPECT_EQ(refusal(errors, machine), "exported");
   errors.location("EX0C"_err) = 5.0 * um;
-  EXPECT_EQ(
-      refusal(errors, machine),
-      "isg cannot represent errors of the rotary axis C: it counts as its table turns, and no "
-      "document found defines the signs of the errors of workpiece_axes");
+  EXPECT_EQ(refusal(errors, machine),
+            "isg cannot represent errors of the rotary axis C: its direction is that of the table "
+            "rotation, and the signs of the errors of workpiece_axes are undocumented");
   plant::incline(machine.chain.at(Axis::C), {0.0, 1.0, 1.0});
   machine.chain.at(Axis::C).sense = plant::Sense::tool;
   EXPECT_EQ(

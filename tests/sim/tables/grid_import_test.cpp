@@ -82,8 +82,8 @@ TEST(GridImport, KeepsTheValuesAtTheEndsToTheEndsOfTheTravel) {
     cover_travel(columns, machine, notes);
     ASSERT_EQ(notes.size(), 6U);
     EXPECT_EQ(notes[0],
-              "assumed: EXX keeps its values at the ends of the table (Z 0 to 100 mm, X 0 to 10 "
-              "mm) to the ends of the travel");
+              "assumed: EXX is constant from the ends of the table (Z 0 to 100 mm, X 0 to 10 mm) "
+              "to the ends of the travel");
     const ErrorImport imported = import_errors(columns, machine.chain);
     const config::Document document = config::Document::from_text(
         errors_toml(imported.errors, "measured", imported.notes), "errors.toml");

@@ -87,10 +87,9 @@ TEST(GridTables, AChangedDigitOfARecordIsFound) {
   auto files = table_files(e);
   std::string& text = files.at(0).text;
   text.replace(text.find("-0.002000"), 9, "-0.002002");
-  EXPECT_EQ(
-      fault_of(e, files),
-      "volcomp.csv:2: error: not as verified: EZX: the file gives -2.0020 um, the error model "
-      "-2.0000 um");
+  EXPECT_EQ(fault_of(e, files),
+            "volcomp.csv:2: error: verification failed: EZX: the file gives -2.0020 um, the error "
+            "model -2.0000 um");
 }
 
 TEST(GridTables, AMissingOrFurtherGridIsFound) {
@@ -103,7 +102,7 @@ TEST(GridTables, AMissingOrFurtherGridIsFound) {
   text.replace(at, 7, "Z X EAX");
   EXPECT_EQ(fault_of(e, files),
             "volcomp.csv:" + std::to_string(std::count(text.begin(), text.begin() + at, '\n') + 1) +
-                ": error: not as verified: EAX over several axes is not needed");
+                ": error: verification failed: EAX over several axes is unexpected");
 }
 
 TEST(GridTables, OtherFormatsOfErrorsRefuseThemByName) {

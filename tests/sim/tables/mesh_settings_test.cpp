@@ -112,7 +112,7 @@ TEST(MeshSettings, ReadersRefuseWhatTheyDoNotKnow) {
                    "axis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
                    "X,Y,0,10,0,10,-1,10,10,2,2\n0.001, 0\n0.001, 0.002\n",
                    SkewFirmware::reprapfirmware),
-            "a point that was not probed\n");
+            "the mesh contains a point that was not probed\n");
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ not in these tables, or only on their lines (largest value; its residual within 
   EAX   20.000 urad; tip 0.224 um, tool axis 20.000 urad
 TCP at poses all over the travel, relative to the reference: off by up to 7.257 um without these tables, 0.651 um with
 values: error in mm or deg, positive where the axis travels too far, entered with its sign
-columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from the machine datum; BACKLASH stays empty: no positioning depends on the direction
+columns: [axis of the column of *.COM] = F([axis of the column of *.CMA]); AXISPOS from the machine datum; BACKLASH is empty: no positioning depends on the direction
 these are listings for the table editor of the control: the documents give the columns, not the text of the files
 check the sign at one point before relying on it
 )");
@@ -231,7 +231,7 @@ tables:
   EXX over X: 3 points, 10 mm apart from 0 mm, up to 2.000 um; linear interpolation and rounding leave up to 0.000 um
   EYX over X: 3 points, 10 mm apart from 0 mm, up to 8.000 um; linear interpolation and rounding leave up to 0.500 um
   EAX over X: 3 points, 10 mm apart from 0 mm, up to 20.000 urad; linear interpolation and rounding leave up to 0.000 urad
-not in these tables: nothing but what linear interpolation leaves
+not in these tables: none except the residual of linear interpolation
 sign: deviation of the tool side relative to the workpiece side, along X, Y, Z and about A, B, C right-handed; the columns are functions of the first one
 )");
 }

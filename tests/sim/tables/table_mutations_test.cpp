@@ -196,13 +196,12 @@ TEST(TableMutations, TellsWhereAndByHowMuch) {
   request.spacing = 100.0 * mm;
   const TableExport tables = export_tables(machine_of("[w X b Y Z t]"), errors, request);
   const auto files = table_files(tables);
-  EXPECT_EQ(
-      fault_of(tables,
-               with(files, "joint_0_x.comp", "100.009999 100.009999", "100.009999 99.990001")),
-      "joint_0_x.comp:2: error: not as verified: X over X at X0.1001 mm, travelling down: the "
-      "file gives 0.0100 um, the error model -0.0100 um");
+  EXPECT_EQ(fault_of(tables, with(files, "joint_0_x.comp", "100.009999 100.009999",
+                                  "100.009999 99.990001")),
+            "joint_0_x.comp:2: error: verification failed: X over X at X0.1001 mm, travelling "
+            "down: the file gives 0.0100 um, the error model -0.0100 um");
   EXPECT_EQ(fault_of(tables, with(files, "joint_0_x.comp", "0.000000 0.000000 0.000000\n", "")),
-            "joint_0_x.comp: error: not as verified: 2 points; 3 are needed");
+            "joint_0_x.comp: error: verification failed: 2 points; 3 are needed");
   EXPECT_EQ(to_string(verify_tables(tables, files)),
             "verified: 6000 positions, largest difference to the error model 0.0000 um");
 }

@@ -47,10 +47,11 @@ TEST(TableResiduals, TablesThatMakeTheMachineWorseAreRefused) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_NE(what.find("these tables would make the machine worse: TCP off by up to "),
+    EXPECT_NE(what.find("these tables would increase the error of the machine: TCP off by up to "),
               std::string::npos)
         << what;
-    EXPECT_NE(what.find("; Y over Y: points 7 mm apart leave "), std::string::npos) << what;
+    EXPECT_NE(what.find("; Y over Y: points 7 mm apart leave a residual of "), std::string::npos)
+        << what;
     EXPECT_NE(what.find(" of an error of +-12.000 um; it needs 0."), std::string::npos) << what;
   }
 }
@@ -90,13 +91,13 @@ TEST(TableResiduals, ReversalWithoutATableIsReportedAsLost) {
   plant::ErrorModel errors = reversal_of_x();
   errors.component("EYX"_err) = plant::reversal({2.0 * um}, 0.1 * mm);
   for (const TableFormat format : {TableFormat::linuxcnc, TableFormat::heidenhain}) {
-    EXPECT_EQ(notes(format, errors),
-              (std::vector<std::string>{
-                  "note: EXX depends on the direction of travel, by 4.000 um at the ends of the "
-                  "travel; both directions are contained in X over X",
-                  "note: EYX depends on the direction of travel, by 2.000 um at the ends of the "
-                  "travel; there is no table Y over X: half of it, 1.000 um, stays in each "
-                  "direction"}));
+    EXPECT_EQ(
+        notes(format, errors),
+        (std::vector<std::string>{
+            "note: EXX depends on the direction of travel, by 4.000 um at the ends of the "
+            "travel; both directions are contained in X over X",
+            "note: EYX depends on the direction of travel, by 2.000 um at the ends of the travel; "
+            "there is no table Y over X: half of it, 1.000 um, remains in each direction"}));
   }
 }
 

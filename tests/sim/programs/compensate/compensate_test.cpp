@@ -384,8 +384,8 @@ TEST(Compensate, RefusesMovesOfTheTip) {
   trial.request.retract_Z = 0.0;
   trial.request.program_number = 7;
   EXPECT_EQ(refusal(trial),
-            "part.ngc:5: error: moves under tool-centre-point control or in a tilted work plane "
-            "cannot be compensated; " +
+            "part.ngc:5: error: moves under TCP control or in a tilted work plane cannot be "
+            "compensated; " +
                 remedy);
   for (const Dialect dialect : {Dialect::fanuc, Dialect::siemens, Dialect::heidenhain}) {
     trial.request.dialect = dialect;

@@ -164,9 +164,9 @@ TEST(DialectMotion, EndlessAxesOfFanucTurnByLessThanHalfATurn) {
   EXPECT_NE(body(trial).find("C350.\nC500.\nM0\nC10.\n"), std::string::npos) << body(trial);
   trial.request.program_file = written("plate.ngc", start + "C100\nM2\n");
   EXPECT_EQ(refusal(trial),
-            "plate.ngc:4: error: rotates C by 250 deg in one block, for which a control whose axes "
-            "roll over (No. 1008#0, ROA, is 1) takes the shorter direction; split it, or pass "
-            "--without rollover if ROA is 0; it cannot be expressed in fanuc");
+            "plate.ngc:4: error: rotates C by 250 deg in one block, for which a control with "
+            "rollover axes (No. 1008#0, ROA = 1) takes the shorter direction; split it, or pass "
+            "--without rollover if ROA = 0; it cannot be expressed in fanuc");
   trial.request.without = {"rollover"};
   EXPECT_NE(body(trial).find("C350.\nC100.\n"), std::string::npos) << body(trial);
 }

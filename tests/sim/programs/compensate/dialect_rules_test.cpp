@@ -102,7 +102,7 @@ TEST(DialectRules, ReturnsToTheReferenceBecomeTheControlsOwnOrTheRetractedHeight
             "D1 Z5\n");
   EXPECT_EQ(
       refusal(Dialect::fanuc, kDialectStart + "G28\nM2\n"),
-      "plate.ngc:5: error: G28 of axes other than Z goes to positions stored in LinuxCNC; program "
+      "plate.ngc:5: error: G28 of axes other than Z moves to positions stored in LinuxCNC; program "
       "G53 G0 X... Y... with the positions of this machine; it cannot be expressed in fanuc");
 }
 
@@ -143,9 +143,9 @@ TEST(DialectRules, FanucCancelsTheLengthWithG53Only) {
       << text;
   EXPECT_EQ(
       refusal(Dialect::fanuc, kDialectStart + "G0 X1 Y1 Z5\nG1 Z-1 F100\nG49\nG1 X2 Z-2\nM2\n"),
-      "plate.ngc:8: error: moves Z without the tool length that was in force (G49 after G43), "
-      "which the control cancels safely only on a retract; program G53 G0 Z... before G49; it "
-      "cannot be expressed in fanuc");
+      "plate.ngc:8: error: moves Z after the tool length was cancelled (G49 after G43), which is "
+      "safe on the control only after a retract; program G53 G0 Z... before G49; it cannot be "
+      "expressed in fanuc");
 }
 
 // G20 and G21 change origin offsets: the unit of the program stays.
@@ -194,11 +194,11 @@ TEST(DialectRules, NumbersStayWithinTheFormatsOfTheControl) {
             "plate.ngc:5: error: dwells for 4000 s, more than 3600 s; it cannot be expressed in "
             "heidenhain");
   EXPECT_EQ(refusal(Dialect::heidenhain, kDialectStart + "G0 X200000 Y0\nM2\n"),
-            "plate.ngc:5: error: goes to X200000; at most 99999.9999 is allowed; it cannot be "
+            "plate.ngc:5: error: moves to X200000; at most 99999.9999 is allowed; it cannot be "
             "expressed in heidenhain");
   EXPECT_EQ(refusal(Dialect::fanuc, "G21 G90\nG53 G0 Z-1.0005\nM2\n"),
-            "plate.ngc:2: error: goes to Z-1.0005 of the machine, which has more digits than the "
-            "resolution of 1 um (--resolution); it cannot be expressed in fanuc");
+            "plate.ngc:2: error: moves to Z-1.0005 in machine coordinates, which has more digits "
+            "than the resolution of 1 um (--resolution); it cannot be expressed in fanuc");
 }
 
 TEST(DialectRules, LongProgramsNumberEveryThousandthBlock) {
@@ -218,9 +218,9 @@ TEST(DialectRules, WhatTheOperatorHasToMakeSureOfIsWrittenAndWarnedOf) {
                        [&](const Fault& fault) { return fault.message == message; });
   };
   EXPECT_TRUE(warned("assumes that T and M6 in one block change the tool, T first"));
-  EXPECT_TRUE(warned("assumes that H1 holds the length of tool 1"));
+  EXPECT_TRUE(warned("assumes that H1 contains the length of tool 1"));
   EXPECT_TRUE(warned("assumes that machine coordinates have the same zero as in the original"));
-  EXPECT_NE(done.program.find("(ASSUMED: H1 HOLDS THE LENGTH OF TOOL 1)\n"), std::string::npos);
+  EXPECT_NE(done.program.find("(ASSUMED: H1 CONTAINS THE LENGTH OF TOOL 1)\n"), std::string::npos);
   Trial heidenhain = dialect_trial(Dialect::heidenhain, kDialectStart + "G0 X1 Y1\nM2\n");
   EXPECT_NE(heidenhain.run().program.find(
                 "; assumed: the active preset is G54\n"
@@ -256,8 +256,8 @@ TEST(DialectRules, OverridesStayTheOperators) {
   const Trial trial =
       linuxcnc_trial(Dialect::fanuc, kDialectStart + "M49\nG0 X1 Y1 Z5\nM48\nM50 P0\nM2\n");
   EXPECT_TRUE(body(trial).ends_with("G0 X1. Y1.\nG43 H1 Z5.\n")) << body(trial);
-  EXPECT_NE(trial.run().program.find("(WARNING: M48 ... M51 ARE OMITTED: THE OPERATOR KEEPS THE "
-                                     "OVERRIDE SWITCHES)\n"),
+  EXPECT_NE(trial.run().program.find("(WARNING: M48 ... M51 ARE OMITTED: THE OVERRIDE SWITCHES "
+                                     "REMAIN ACTIVE)\n"),
             std::string::npos);
 }
 
@@ -274,9 +274,9 @@ TEST(DialectRules, WorkSystemsThatTheProgramMovesAreInTheNumbers) {
 
 TEST(DialectRules, G49BehindAMoveWithALengthIsRefusedInItsOwnWords) {
   EXPECT_EQ(refusal(Dialect::fanuc, kDialectStart + "G0 X1 Y1\nZ5\nG49\nG0 Z60\nM2\n"),
-            "plate.ngc:8: error: moves Z without the tool length that was in force (G49 after "
-            "G43), which the control cancels safely only on a retract; program G53 G0 Z... before "
-            "G49; it cannot be expressed in fanuc");
+            "plate.ngc:8: error: moves Z after the tool length was cancelled (G49 after G43), "
+            "which is safe on the control only after a retract; program G53 G0 Z... before G49; it "
+            "cannot be expressed in fanuc");
   EXPECT_EQ(refusal(Dialect::fanuc, kDialectStart + "G0 X1 Y1\nZ5\nG53 G0 Z-2\nG49\nG0 Z60\nM2\n"),
             "taken");
 }

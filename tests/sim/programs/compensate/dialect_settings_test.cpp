@@ -86,7 +86,7 @@ TEST(DialectSettings, SmoothingIsSimulated) {
     trial.request.smoothing = smoothing;
     const std::string line = trial.run().report[2];
     const auto part =
-        Pattern(".*simulated: by ([0-9.]+) um, ([0-9.]+) s at feed; held to 1 um: ([0-9.]+) s")
+        Pattern(".*simulated: by ([0-9.]+) um, ([0-9.]+) s at feed; limited to 1 um: ([0-9.]+) s")
             .parts_of(line);
     EXPECT_EQ(part.size(), 4U) << line;
     return std::array<double, 3>{std::stod(part.at(1)), std::stod(part.at(2)),
@@ -149,7 +149,7 @@ TEST(DialectSettings, RetractsThatGoDownAreRefused) {
   Trial trial = with_errors(Dialect::siemens, program);
   trial.request.retract_Z = -60 * mm;
   EXPECT_EQ(refusal(trial),
-            "plate.ngc:6: error: goes to machine Z-5.000, above the retract height Z-60; raise "
+            "plate.ngc:6: error: moves to machine Z-5.000, above the retract height Z-60; raise "
             "--retract, or check --work-offset and the tool length");
 }
 

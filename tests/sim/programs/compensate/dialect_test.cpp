@@ -174,8 +174,8 @@ TEST(Dialect, WhatItCannotExpressIsRefusedWithItsPlace) {
       "plate.ngc:5:1: error: G10 cannot be expressed in siemens; enter tools and their lengths at "
       "the control");
   EXPECT_EQ(refusal(Dialect::heidenhain, start + "M7\nM2\n"),
-            "plate.ngc:5: error: switches mist (M7), which is up to the machine builder; use M8, "
-            "or remove it; it cannot be expressed in heidenhain");
+            "plate.ngc:5: error: switches mist (M7), which is defined by the machine builder; use "
+            "M8, or remove it; it cannot be expressed in heidenhain");
   EXPECT_EQ(refusal(linuxcnc_trial(Dialect::fanuc, start + "M52 P1\nM2\n")),
             "plate.ngc:5:1: error: M52 cannot be expressed in fanuc; adaptive feed and feed stop "
             "are inputs of LinuxCNC; remove it");

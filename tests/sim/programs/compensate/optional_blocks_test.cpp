@@ -126,8 +126,8 @@ TEST(OptionalBlocks, AreRefusedWhereTheRestDependsOnThem) {
     EXPECT_EQ(why(dialect, "/M30\nG0 X20\nM2\n"), slash);
   }
   EXPECT_EQ(why(Dialect::heidenhain, "/G0 X20\nG0 X30 Y30\nM2\n"),
-            "plate.ngc:6:1: error: no manual found specifies blocks with '/' for this control; "
-            "remove the slash, or omit these blocks with --block-delete");
+            "plate.ngc:6:1: error: blocks with '/' are undocumented for this control; remove the "
+            "slash, or omit these blocks with --block-delete");
 }
 
 TEST(OptionalBlocks, AreRefusedWhereTheyLeaveAnotherState) {

@@ -47,7 +47,7 @@ TEST(WrittenPathMode, ThatNobodyHasNamedIsAssumedBehindACycle) {
   const Compensated done = trial.run();
   EXPECT_NE(done.program.find("\nG64\nG80\n"), std::string::npos) << done.program;
   const std::string assumed =
-      "assumes that G64 without a tolerance is in force at the start (no other path mode in "
+      "assumes that G64 without a tolerance is active at the start (no other path mode in "
       "RS274NGC_STARTUP_CODE): it is restored after canned cycles";
   EXPECT_TRUE(std::any_of(done.warnings.begin(), done.warnings.end(),
                           [&](const Fault& one) { return one.message == assumed; }));

@@ -163,8 +163,8 @@ TEST(MeasuringSteps, LeavesOutWhatItCannotReachAndSaysSo) {
   const model::MachineSettings machine = trunnion();
   const auto moves = measuring_moves(plan_of(machine, {0.0, 1.2}), machine, {}, kLength);
   EXPECT_EQ(moves.notes,
-            std::vector<std::string>{"sphere 1: the table is turned by more than 60 deg from the "
-                                     "spindle, at 4 poses that are left out"});
+            std::vector<std::string>{"sphere 1: the table is rotated by more than 60 deg from the "
+                                     "spindle, at 4 poses that are omitted"});
 }
 
 TEST(MeasuringSteps, RefusesMachinesWhoseSpindleTurns) {
