@@ -161,8 +161,8 @@ std::optional<std::string> too_coarse(const TableExport& e, const TableLine& lin
   const double needed = (line.to - line.from) * stride / FineLine::kIntervals;
   if (needed >= line.spacing) return {};
   return fmt::format(
-      "{} over {}: points {:g} {} apart leave a residual of {} of an error of +-{}; {:.3g} {} "
-      "required",
+      "{} over {}: points {:g} {} apart leave a residual of {} of an error of +-{}; required: "
+      "{:.3g} {}",
       e.letter(output), e.letter(line.joint), line.spacing / unit_of(line.joint),
       unit_name_of(line.joint), size_of(is_angle, missed), size_of(is_angle, span),
       needed / unit_of(line.joint), unit_name_of(line.joint));
@@ -189,8 +189,7 @@ std::vector<std::string> too_coarse_components(const TableExport& e) {
     if (!is_coarser_than(0.1)(table) || table.residual <= step) continue;
     const int j = table.line.joint;
     out.push_back(fmt::format(
-        "{} over {}: points {:g} {} apart leave a residual of a residual of {} of an error of up "
-        "to {}",
+        "{} over {}: points {:g} {} apart leave a residual of {} of an error of up to {}",
         to_string(*table.component), e.letter(j), table.line.spacing / unit_of(j), unit_name_of(j),
         size_of(table.is_angle(), table.residual), size_of(table.is_angle(), table.largest())));
   }

@@ -227,7 +227,7 @@ TEST(DefaultSpacing, IsFineEnoughForAScrew) {
   given.spacing = 5.0 * mm;  // as asked for, and reported
   const TableExport e = export_tables(machine, errors, given);
   EXPECT_EQ(e.tables[0].line.spacing, 5.0 * mm);
-  EXPECT_TRUE(reports(report(e), "note: EXX over X: points 5 mm apart leave 12.0"));
+  EXPECT_TRUE(reports(report(e), "note: EXX over X: points 5 mm apart leave a residual of 12.0"));
   // 256 points at most: the report tells
   const TableExport few = export_tables(machine, errors, request_of(TableFormat::linuxcnc));
   EXPECT_TRUE(reports(report(few), "note: X over X: points 5 mm apart leave "));
