@@ -1,16 +1,17 @@
 #!/usr/bin/python3
-"""Writes long three-axis programs, as long as they are asked for.
+"""Writes long programs, as long as they are asked for.
 
-    long_programs.py mould|short LINES [SEED] > program.ngc
+    long_programs.py mould|short|five LINES [SEED] > program.ngc
 
 mould   finishing of a mould: rows of chords of 0.6 to 4 mm at 10 mm/s; 70 000 lines are 4.5 h of motion
 short   the same surface in chords of 0.05 to 0.2 mm at 50 mm/s, as a CAM system with a small tolerance writes it
+five    the same chords while axes B and C swivel
 """
 import math
 import random
 import sys
 
-KINDS = {"mould": ((0.6, 4.0), 600), "short": ((0.05, 0.2), 3000)}  # chords, mm; feed, mm/min
+KINDS = {"mould": ((0.6, 4.0), 600), "short": ((0.05, 0.2), 3000), "five": ((0.05, 0.2), 3000)}  # chords, mm; feed, mm/min
 ROW, STEP_OVER = 200.0, 0.3  # mm
 
 
@@ -34,7 +35,8 @@ def program(kind, lines, seed=1):
             step = chance.uniform(*chords)
             ends_row = abs(to - x) < step
             x = to if ends_row else x + math.copysign(step, to - x)
-        yield f"G1 X{x:.4f} Y{y:.4f} Z{surface(x, y):.4f}"
+        swivel = f" B{8 * math.sin(x / 40) * math.cos(y / 30):.4f} C{10 * math.cos(x / 35 + y / 50):.4f}" if kind == "five" else ""
+        yield f"G1 X{x:.4f} Y{y:.4f} Z{surface(x, y):.4f}{swivel}"
         written += 1
     yield "M2"
 
