@@ -94,13 +94,35 @@ double median_interval(const std::vector<double>& t) {
   return steps[steps.size() / 2];
 }
 
+// The file that was read last: the recordings of several axes are often parts of one.
+class LastFile {
+ public:
+  const recordings::Recording& read(const std::string& path, const std::string& time_unit) {
+    if (!recording_ || path != path_ || time_unit != time_unit_) {
+      recording_.reset();  // memory for one is enough
+      recording_ = recordings::read_recording(path, time_unit);
+      path_ = path;
+      time_unit_ = time_unit;
+    }
+    return *recording_;
+  }
+
+ private:
+  std::string path_, time_unit_;
+  std::optional<recordings::Recording> recording_;
+};
+
 // Reads one item of the list `recording`.
 class RecordReader {
  public:
   /// @param file  in place of the one that the table names, as the user names it; empty: none
   RecordReader(config::Reader& table, const model::MachineSettings& machine,
-               const LoopSettings& loop, std::string file)
-      : table_(table), machine_(machine), loop_(loop), own_file_(std::move(file)) {}
+               const LoopSettings& loop, LastFile& last_file, std::string file)
+      : table_(table),
+        machine_(machine),
+        loop_(loop),
+        last_file_(last_file),
+        own_file_(std::move(file)) {}
 
   std::optional<AxisRecord> read() {
     const std::size_t before = table_.faults();  // of other recordings
@@ -120,7 +142,7 @@ class RecordReader {
         table_.real_or("longest_gap_ms", 1.5 * loop_.period, config::kTime, {config::above(0.0)});
     const std::string unit = table_.text_or("time_unit", "");
     if (table_.faults() > before) return refused();
-    recording_ = recordings::read_recording(path, unit);
+    recording_ = &last_file_.read(path, unit);
     read_roles();
     if (table_.faults() > before) return refused();
     sample();
@@ -186,7 +208,7 @@ class RecordReader {
     const config::Quantity quantity = quantity_of(role, linear);
     if (axis.is(key, config::Value::Type::text)) {
       one.channel = axis.text(key);
-      const recordings::Channel* channel = find_channel(axis, key, recording_, one.channel);
+      const recordings::Channel* channel = find_channel(axis, key, *recording_, one.channel);
       if (channel == nullptr || channel->unit.empty()) return;
       const config::ParsedUnit unit = config::parse_unit(channel->unit);
       if (unit.unit && unit.unit->quantity == quantity) {
@@ -205,7 +227,7 @@ class RecordReader {
     const recordings::Channel* channel =
         optional && channel_named(one.channel) == nullptr
             ? nullptr
-            : find_channel(table, "channel", recording_, one.channel);
+            : find_channel(table, "channel", *recording_, one.channel);
     if (optional && channel == nullptr) {
       one.present = false;
       out_.notes.push_back(fmt::format("{}: has no channel '{}' for {}, which is optional",
@@ -223,7 +245,7 @@ class RecordReader {
   // Brings the channels to the clock of the loop.
   void sample() {
     const recordings::Channel& feedback = *channel_of(Role::feedback);
-    const recordings::Base& base = recording_.bases[feedback.base];
+    const recordings::Base& base = recording_->bases[feedback.base];
     const bool counted = base.unit == "1";  // sample numbers: one a period
     if (base.values.size() < 16) {
       table_.fault("file", "has fewer than 16 samples of the feedback");
@@ -254,7 +276,7 @@ class RecordReader {
   }
 
   const recordings::Channel* channel_named(const std::string& name) const {
-    for (const recordings::Channel& channel : recording_.channels) {
+    for (const recordings::Channel& channel : recording_->channels) {
       if (channel.name == name) return &channel;
     }
     return nullptr;
@@ -269,7 +291,7 @@ class RecordReader {
     for (std::size_t role = 0; role < kRoles.size(); ++role) {
       const recordings::Channel* channel = channel_of(static_cast<Role>(role));
       if (channel == nullptr) continue;
-      signals[role].emplace(*channel, recording_.bases[channel->base], uses_[role], stretch);
+      signals[role].emplace(*channel, recording_->bases[channel->base], uses_[role], stretch);
       if (signals[role]->empty()) {
         table_.fault("file", fmt::format("has no sample of {}", channel->name));
         return;
@@ -309,7 +331,7 @@ class RecordReader {
     for (const Role role : {Role::feedback, Role::force, Role::motor_current}) {
       const recordings::Channel* channel = channel_of(role);
       if (channel == nullptr) continue;
-      const recordings::Base& base = recording_.bases[channel->base];
+      const recordings::Base& base = recording_->bases[channel->base];
       for (const recordings::Clipping& one : recordings::clipping(*channel)) {
         out_.notes.push_back(
             fmt::format("{}: {} is clipped at {:g} in {} samples, first at {}; if the drive limits "
@@ -340,10 +362,11 @@ class RecordReader {
   config::Reader& table_;
   const model::MachineSettings& machine_;
   const LoopSettings& loop_;
+  LastFile& last_file_;
   AxisRecord out_;
   std::string own_file_;
   double from_ = 0.0, to_ = 0.0, longest_gap_ = 0.0;
-  recordings::Recording recording_;
+  const recordings::Recording* recording_ = nullptr;
   std::array<ChannelUse, kRoles.size()> uses_;
 };
 
@@ -363,8 +386,9 @@ std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineS
                                      const LoopSettings& loop, const RecordingFiles& files) {
   std::vector<AxisRecord> out;
   std::vector<config::Reader> tables = root.tables("recording");
+  LastFile last_file;
   const auto read = [&](config::Reader& table, const std::string& file, bool validates) {
-    auto record = RecordReader(table, machine, loop, file).read();
+    auto record = RecordReader(table, machine, loop, last_file, file).read();
     if (!record) return;
     record->record.validation |= validates;
     out.push_back(std::move(*record));

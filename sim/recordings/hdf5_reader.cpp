@@ -101,10 +101,14 @@ class Hdf5Walk {
     } else if (shape.size() == 2) {
       const std::string labels =
           file_.has_attribute(dataset, "columns") ? file_.text(dataset, "columns") : "";
+      const std::vector<double> rows =
+          file_.values(dataset);  // each column alone would decompress all
       for (std::size_t c = 0; c < shape[1]; ++c) {
         const std::string label =
             labels.size() == shape[1] ? std::string(1, labels[c]) : fmt::format("{}", c + 1);
-        add(own_name + "_" + label, dataset, file_.column(dataset, c, 0, shape[0]));
+        std::vector<double> column(shape[0]);
+        for (std::size_t k = 0; k < shape[0]; ++k) column[k] = rows[k * shape[1] + c];
+        add(own_name + "_" + label, dataset, std::move(column));
       }
     } else {
       out_.notes.push_back(fmt::format("'{}' has {} dimensions: skipped", dataset, shape.size()));
