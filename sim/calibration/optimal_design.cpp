@@ -12,6 +12,7 @@
 namespace servomill::sim::calibration {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 
 // The mean of order q of the variances stands for the largest one; q grows while it settles.
@@ -25,7 +26,7 @@ constexpr double kMinCount = 1e-9;  // of a candidate that is still looked at
 
 // Variances, and the gain of the weighted variance by time spent on each candidate.
 struct DesignProblem::State {
-  MatrixXd covariance;
+  MatrixXd spread;  // covariance times the rows of all quantities
   std::vector<double> variances;
   double worst = 0.0;
 
@@ -53,7 +54,14 @@ DesignProblem::DesignProblem(std::vector<Candidate> candidates, MatrixXd known,
                              std::vector<MatrixXd> quantities)
     : candidates_(std::move(candidates)),
       known_(std::move(known)),
-      quantities_(std::move(quantities)) {}
+      quantities_(std::move(quantities)),
+      first_{0} {
+  for (const MatrixXd& K : quantities_) first_.push_back(first_.back() + K.rows());
+  rows_.resize(known_.rows(), first_.back());
+  for (std::size_t p = 0; p < quantities_.size(); ++p) {
+    rows_.middleCols(first_[p], quantities_[p].rows()) = quantities_[p].transpose();
+  }
+}
 
 double DesignProblem::total_time(const std::vector<double>& counts) const {
   double out = 0.0;
@@ -67,10 +75,13 @@ DesignProblem::State DesignProblem::state_of(const std::vector<double>& counts) 
     if (counts[i] > 0.0) M += counts[i] * candidates_[i].information;
   }
   State out;
-  out.covariance = numerics::inverse_of_definite(M);
-  for (const MatrixXd& K : quantities_) {
-    out.variances.push_back((K * out.covariance).cwiseProduct(K).sum());
-    out.worst = std::max(out.worst, out.variances.back());
+  out.spread.noalias() = numerics::inverse_of_definite(M) * rows_;
+  for (std::size_t p = 0; p < quantities_.size(); ++p) {
+    double variance = 0.0;
+    for (Index k = first_[p]; k < first_[p + 1]; ++k)
+      variance += out.spread.col(k).dot(rows_.col(k));
+    out.variances.push_back(variance);
+    out.worst = std::max(out.worst, variance);
   }
   return out;
 }
@@ -125,14 +136,19 @@ Design DesignProblem::relaxed(double time) const {
 DesignProblem::Gains DesignProblem::gains_of(const State& state, double q,
                                              const std::vector<double>& counts, double time) const {
   const std::vector<double> weights = state.weights(q);
-  MatrixXd Q = MatrixXd::Zero(known_.rows(), known_.cols());
+  MatrixXd weighted(rows_.rows(),
+                    rows_.cols());  // columns that count, by the roots of their weights
+  Index columns = 0;
   double V = 0.0;
   for (std::size_t p = 0; p < quantities_.size(); ++p) {
     if (weights[p] < kMinCount) continue;
-    const MatrixXd KC = quantities_[p] * state.covariance;
-    Q.noalias() += weights[p] * KC.transpose() * KC;
+    for (Index k = first_[p]; k < first_[p + 1]; ++k) {
+      weighted.col(columns++) = std::sqrt(weights[p]) * state.spread.col(k);
+    }
     V += weights[p] * state.variances[p];
   }
+  weighted.conservativeResize(Eigen::NoChange, columns);
+  const MatrixXd Q = weighted * weighted.transpose();
   Gains out;
   double spent = 0.0;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {

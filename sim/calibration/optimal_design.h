@@ -57,6 +57,8 @@ class DesignProblem {
   std::vector<Candidate> candidates_;
   Eigen::MatrixXd known_;
   std::vector<Eigen::MatrixXd> quantities_;
+  Eigen::MatrixXd rows_;             // rows of all quantities, transposed: n x rows
+  std::vector<Eigen::Index> first_;  // row of each quantity, and the end
 };
 
 }  // namespace servomill::sim::calibration
