@@ -13,7 +13,7 @@
 #include "sim/identification/channel_signal.h"
 #include "sim/identification/possible_record.h"
 #include "sim/input/scenario_document.h"
-#include "sim/recordings/read_recording.h"
+#include "sim/recordings/last_recording.h"
 #include "sim/recordings/survey.h"
 #include "sim/system/counted.h"
 
@@ -94,30 +94,12 @@ double median_interval(const std::vector<double>& t) {
   return steps[steps.size() / 2];
 }
 
-// The file that was read last: the recordings of several axes are often parts of one.
-class LastFile {
- public:
-  const recordings::Recording& read(const std::string& path, const std::string& time_unit) {
-    if (!recording_ || path != path_ || time_unit != time_unit_) {
-      recording_.reset();  // memory for one is enough
-      recording_ = recordings::read_recording(path, time_unit);
-      path_ = path;
-      time_unit_ = time_unit;
-    }
-    return *recording_;
-  }
-
- private:
-  std::string path_, time_unit_;
-  std::optional<recordings::Recording> recording_;
-};
-
 // Reads one item of the list `recording`.
 class RecordReader {
  public:
   /// @param file  in place of the one that the table names, as the user names it; empty: none
   RecordReader(config::Reader& table, const model::MachineSettings& machine,
-               const LoopSettings& loop, LastFile& last_file, std::string file)
+               const LoopSettings& loop, recordings::LastRecording& last_file, std::string file)
       : table_(table),
         machine_(machine),
         loop_(loop),
@@ -362,7 +344,7 @@ class RecordReader {
   config::Reader& table_;
   const model::MachineSettings& machine_;
   const LoopSettings& loop_;
-  LastFile& last_file_;
+  recordings::LastRecording& last_file_;
   AxisRecord out_;
   std::string own_file_;
   double from_ = 0.0, to_ = 0.0, longest_gap_ = 0.0;
@@ -386,7 +368,7 @@ std::vector<AxisRecord> read_records(config::Reader& root, const model::MachineS
                                      const LoopSettings& loop, const RecordingFiles& files) {
   std::vector<AxisRecord> out;
   std::vector<config::Reader> tables = root.tables("recording");
-  LastFile last_file;
+  recordings::LastRecording last_file;
   const auto read = [&](config::Reader& table, const std::string& file, bool validates) {
     auto record = RecordReader(table, machine, loop, last_file, file).read();
     if (!record) return;
