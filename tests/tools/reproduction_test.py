@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """tools/reproduction: every row of the papers finds its value, verdicts follow from values and stored tolerances on both
 sides of each, and what is missing is said and never counts. Usage: reproduction_test.py SERVOMILL"""
+import functools
 import html.parser
 import math
 import pathlib
@@ -50,11 +51,19 @@ class Values(WithResults):
                 ({"run": "example1", "case": "none"}, "um", "no value for example1, none")):
             self.assertEqual(values.find(row(here=here, unit=unit), results), values.Value(None, reason))
 
+    @functools.cache
+    def result_of(self, scenario, changes):
+        """Result file of a scenario with changes, run once a test."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name) / "result.h5"
+        servomill("run", SCENARIOS / scenario, "-q", "-o", path, *(word for change in changes for word in ("--set", change)))
+        return path
+
     def verdict_after(self, row_id, run, scenario, *changes):
         """Verdict over a row once its scenario has been run with changes."""
         with tempfile.TemporaryDirectory() as folder:
-            servomill("run", SCENARIOS / scenario, "-q", "-o", pathlib.Path(folder) / f"{run}.h5",
-                      *(word for change in changes for word in ("--set", change)))
+            (pathlib.Path(folder) / f"{run}.h5").symlink_to(self.result_of(scenario, changes))
             (line,) = self.lines(lambda one: one.id == row_id, self.other_results(folder))
             self.assertIn(f"| {line.verdict} |", report.markdown([line], [], ""))
             return line.verdict
