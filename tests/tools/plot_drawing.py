@@ -28,7 +28,7 @@ class Drawing(WithFiles):
             f"{self.sweep}: 2 figures skipped: the file lacks their data (--why)"]))
 
     def test_all_that_a_run_holds_is_drawn_and_the_rest_explained_where_one_asks(self):
-        done = plot(self.side, "-o", self.out, "--why", dpi=style.DPI)
+        done = plot(self.side, "-o", self.out, "--why")
         self.assertEqual(done.returncode, 0, done.stderr)
         names = ["circular", "deviations", "figure10", "figure11", "figure6", "figure9",
                  "reversals"]
@@ -51,7 +51,9 @@ class Drawing(WithFiles):
         self.assertEqual(sorted(done.stdout.split()), sorted(str(p) for p in self.out.iterdir()))
         for path in self.out.iterdir():
             self.assertGreater(path.stat().st_size, SMALLEST_PNG, path)
-        with Image.open(self.out / "side-figure9.png") as picture:
+        done = plot(self.side, "-o", self.out / "fine", "--figures", "figure9", dpi=style.DPI)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with Image.open(self.out / "fine" / "side-figure9.png") as picture:
             self.assertAlmostEqual(picture.info["dpi"][0], 150.0, delta=0.1)
             colours = {rgb for _, rgb in picture.convert("RGB").getcolors()}
         for name in ("nominal", "table", "feedback", "gcode"):
