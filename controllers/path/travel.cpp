@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/spline_curve.h"
@@ -53,6 +54,41 @@ Range<Joints> range_of(const Move& move, const Joints& from, const JointLayout& 
   return {layout.joints(range.low), layout.joints(range.high)};
 }
 
+// A program of millions of lines may lie outside: of all but the first faults only the number.
+class ShownFaults {
+ public:
+  explicit ShownFaults(const std::string& file) : file_(file) {}
+
+  void add(int line, std::string message) {
+    if (faults_.size() == kShown) {
+      ++more_;
+      last_line_ = line;
+      return;
+    }
+    put(line, std::move(message));
+  }
+  std::vector<Fault> take() {
+    if (more_ > 0) {
+      put(last_line_, fmt::format("the last of {} more motions outside the travel", more_));
+    }
+    return std::move(faults_);
+  }
+
+ private:
+  static constexpr std::size_t kShown = 1000;
+
+  void put(int line, std::string message) {
+    Fault& fault = faults_.emplace_back();  // in place: a temporary here confuses g++ 12
+    fault.place = {file_, line, 0};
+    fault.message = std::move(message);
+  }
+
+  const std::string& file_;
+  std::vector<Fault> faults_;
+  std::size_t more_ = 0;
+  int last_line_ = 0;
+};
+
 std::string message(char name, bool rotary, double value, double limit, bool above) {
   const double unit = rotary ? deg : mm;
   return fmt::format("{} moves to {:.4f} {}, outside its travel; must be {} {:.4f}", name,
@@ -72,7 +108,7 @@ std::string outside_travel(const JointLayout& layout, int joint, double low, dou
 std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layout,
                                  const Joints& start, const Joints& lower, const Joints& upper,
                                  const std::string& file, const TipMotions& tip) {
-  std::vector<Fault> faults;
+  ShownFaults faults(file);
   Joints at = start;
   std::size_t next = 0;
   for (const Move& move : moves) {
@@ -90,13 +126,10 @@ std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layo
     for (int k = 0; k < kJoints; ++k) {
       if (!layout.has(k)) continue;
       std::string message = outside_travel(layout, k, low[k], high[k], lower[k], upper[k]);
-      if (message.empty()) continue;
-      Fault& fault = faults.emplace_back();  // in place: a temporary here confuses g++ 12
-      fault.place = {file, move.line, 0};
-      fault.message = std::move(message);
+      if (!message.empty()) faults.add(move.line, std::move(message));
     }
   }
-  return faults;
+  return faults.take();
 }
 
 }  // namespace servomill::controllers

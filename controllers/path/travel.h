@@ -17,7 +17,8 @@ namespace servomill::controllers {
 std::string outside_travel(const JointLayout& layout, int joint, double low, double high,
                            double lower, double upper);
 
-/// Every move that leaves the travel, one fault a joint, arcs with their extreme points.
+/// Every move that leaves the travel, one fault a joint, arcs with their extreme points; of more
+/// than a thousand their number and the last.
 /// @param start         joints before the first move (5; m, rad)
 /// @param lower, upper  (5; m, rad), infinite for an endless axis; the bounds belong to the travel
 /// @param file          of the program, for the place of the faults

@@ -12,7 +12,7 @@ import random
 import sys
 
 KINDS = {"mould": ((0.6, 4.0), 600), "short": ((0.05, 0.2), 3000), "five": ((0.05, 0.2), 3000)}  # chords, mm; feed, mm/min
-ROW, STEP_OVER = 200.0, 0.3  # mm
+ROW, STEP_OVER, DEPTH = 200.0, 0.3, 250.0  # mm; rows go to and fro within the depth
 
 
 def surface(x, y):
@@ -26,11 +26,12 @@ def program(kind, lines, seed=1):
     yield "G21 G90 G17 G64 P0.01"
     yield "G0 X0 Y0 Z5"
     yield f"G1 Z{surface(0, 0):.4f} F{feed}"
-    x, y, to = 0.0, 0.0, ROW
+    x, y, way, to = 0.0, 0.0, 0.0, ROW
     written, ends_row = 3, False
     while written < lines - 1:
         if ends_row:
-            y, to, ends_row = y + STEP_OVER, ROW - to, False
+            way, to, ends_row = way + STEP_OVER, ROW - to, False
+            y = DEPTH - abs(way % (2 * DEPTH) - DEPTH)
         else:
             step = chance.uniform(*chords)
             ends_row = abs(to - x) < step

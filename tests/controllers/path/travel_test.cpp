@@ -37,6 +37,16 @@ TEST(Travel, NamesLineAxisValueAndLimit) {
              "part.nc:2: error: Z moves to 1.0000 mm, outside its travel; must be <= 0.0000"}));
 }
 
+TEST(Travel, CountsWhatComesBehindAThousandFaults) {
+  Program program;
+  for (int n = 0; n < 1500; ++n) program.line(0.41, 0.1 * mm * n, 0.0, 0.1);
+  const Lines all = faults(program);
+  ASSERT_EQ(all.size(), 1001U);
+  EXPECT_EQ(all[999],
+            "part.nc:1000: error: X moves to 410.0000 mm, outside its travel; must be <= 400.0000");
+  EXPECT_EQ(all[1000], "part.nc:1500: error: the last of 500 more motions outside the travel");
+}
+
 TEST(Travel, CountsRotaryAxesInDegreesAndLeavesEndlessOnesFree) {
   AxisWords to = AxisWords::Zero();
   to[4] = -122 * deg;
