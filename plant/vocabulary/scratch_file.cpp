@@ -7,12 +7,22 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "plant/vocabulary/system_error.h"
 
 namespace servomill {
 namespace {
+
+std::string folder_of_temporary_files(const std::string& contents) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (!error) return folder.string();
+  const char* named = std::getenv("TMPDIR");
+  throw SystemError(named != nullptr ? named : "/tmp", contents + " cannot be stored there",
+                    error.message());
+}
 
 int open_without_name(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -26,7 +36,7 @@ int open_without_name(const std::string& folder) {
 }  // namespace
 
 ScratchFile::ScratchFile(std::string folder, std::string contents)
-    : folder_(folder.empty() ? std::filesystem::temp_directory_path().string() : std::move(folder)),
+    : folder_(folder.empty() ? folder_of_temporary_files(contents) : std::move(folder)),
       contents_(std::move(contents)),
       descriptor_(open_without_name(folder_)) {
   if (descriptor_ < 0) {

@@ -1,4 +1,4 @@
-/// What memory is not to hold, on the disk.
+/// Bytes that memory is not to hold, on the disk.
 #pragma once
 
 #include <cstdint>

@@ -34,6 +34,13 @@ int index_of_section(std::vector<std::string>& sections, const std::string& name
   return static_cast<int>(sections.size()) - 1;
 }
 
+// A vector that grows holds its elements twice for a while: of 10^7 moves half a gigabyte.
+std::size_t motions_of(const MoveRange& moves) {
+  std::size_t count = 0;
+  for (const Move& move : moves) count += is_motion(move.kind) ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
@@ -44,6 +51,7 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
   std::optional<Piece> before;
   int section = 0;
   std::optional<int> tool;
+  pieces_.reserve(motions_of(moves));
   for (const Move& move : moves) {
     if (move.kind == MoveKind::tool) tool = move.number;
     if (move.kind == MoveKind::message) {
@@ -71,7 +79,6 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
     before = piece;
     at = move.end_machine;
   }
-  pieces_.shrink_to_fit();
 }
 
 // @param move  of which the curve is; nullptr: straight from the end of the piece before

@@ -18,7 +18,7 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 LEARNING = os.path.join(HERE, "..", "..", "scenarios", "precompensation", "s_part.toml")
 LONG = ["-j1", "--set", "program.feed_override=0.0002", "--set", "record.period_ms=50"]
-MANY = ["-j1", "--set", 'sweep={"program.feed_override"=[%s]}' % ",".join(f"{0.002 + 0.0001 * n:.4f}" for n in range(8))]
+MANY = ["-j1", "--set", 'sweep={"program.feed_override"=[%s]}' % ",".join(f"{0.002 + 0.0001 * n:.4f}" for n in range(24))]
 DELAY = 2.0  # s, before anything is shown
 MAX_END = 0.5  # s, after an interrupt
 PATIENCE = 120  # s

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
 
 #include "plant/vocabulary/system_error.h"
@@ -35,6 +36,12 @@ TEST(ScratchFile, SaysWhatCannotBeStoredOrRead) {
   };
   EXPECT_EQ(message([] { ScratchFile("/nowhere/at/all", "numbers"); }),
             "/nowhere/at/all: error: numbers cannot be stored there: No such file or directory");
+  const char* named = std::getenv("TMPDIR");
+  const std::string before = named != nullptr ? named : "";
+  ::setenv("TMPDIR", "/nowhere", 1);
+  EXPECT_EQ(message([] { ScratchFile("", "numbers"); }),
+            "/nowhere: error: numbers cannot be stored there: No such file or directory");
+  before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
   ScratchFile file("", "numbers");
   std::vector<int> read(3);
   EXPECT_NE(message([&] { file.read(0, bytes_of(read)); }).find("numbers cannot be read"),
