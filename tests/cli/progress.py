@@ -18,12 +18,19 @@ SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
 LEARNING = os.path.join(HERE, "..", "..", "scenarios", "precompensation", "s_part.toml")
 LONG = ["-j1", "--set", "program.feed_override=0.0002", "--set", "record.period_ms=50"]
-MANY = ["-j1", "--set", 'sweep={"program.feed_override"=[%s]}' % ",".join(f"{0.002 + 0.0001 * n:.4f}" for n in range(24))]
 DELAY = 2.0  # s, before anything is shown
 MAX_END = 0.5  # s, after an interrupt
 PATIENCE = 120  # s
 BAR = r"\[=* *\] +\d+ %"
 PROGRESS = BAR + r"|so far|[\d.]+ (s|min|h) left"
+
+
+def sweep_of(points):
+    feeds = ",".join(f"{0.002 + 0.0001 * n:.4f}" for n in range(points))
+    return ["-j1", "--set", 'sweep={"program.feed_override"=[%s]}' % feeds]
+
+
+MANY, MORE = sweep_of(8), sweep_of(24)
 
 
 class Terminal:
@@ -132,7 +139,7 @@ class Shown(Watched):
 
     def quiet(self, *arguments, stdout=None):
         """True if no progress was on the terminal after four seconds."""
-        terminal = self.start("sweep", SCENARIO, *MANY, *arguments, stdout=stdout)
+        terminal = self.start("sweep", SCENARIO, *MORE, *arguments, stdout=stdout)
         if terminal.process.stdout:
             self.addCleanup(terminal.process.stdout.close)
         end = time.monotonic() + 4.0
