@@ -32,14 +32,13 @@ bool LawEnds::is_even(std::size_t phase) const {
   return law_.phases[phase].a == 0.0 && law_.phases[phase].v > 0.0;
 }
 
-// On an even phase only the begin lies where the speed does not change, unless the whole phase
-// does.
 LawEnds::Place LawEnds::place_on(std::size_t phase, double s) const {
   const Phase& p = law_.phases[phase];
   return {phase, s, p.t + (s - p.s) / p.v, p.v};
 }
 
-// Between the near and the far end of a phase the place nearest to `near` that is reached.
+// Between the near and the far end of a phase the place nearest to `near` that is reached. A phase
+// with jerk has zero acceleration at its begin alone.
 template <class Reaches>
 std::optional<LawEnds::Place> LawEnds::place_reached(std::size_t phase, double near, double far,
                                                      Reaches reaches) const {

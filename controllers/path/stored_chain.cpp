@@ -17,25 +17,37 @@ std::size_t size_of(const Chain& chain) {
          size_of(chain.plan->law.phases) + size_of(chain.spans) + size_of(chain.shares);
 }
 
+// The part that remains in memory.
+Chain head_of(const Chain& chain) {
+  Chain head;
+  head.t = chain.t;
+  head.duration = chain.duration;
+  head.begin = chain.begin;
+  head.end = chain.end;
+  return head;
+}
+
 }  // namespace
+
+template <class T>
+StoredChain::Part StoredChain::write(const std::vector<T>& values) {
+  return {file_->append(bytes_of(values)), values.size()};
+}
+
+template <class T>
+void StoredChain::read(const Part& part, std::vector<T>& values) const {
+  values.resize(part.count);
+  file_->read(part.place, bytes_of(values));
+}
 
 StoredChain::StoredChain(std::shared_ptr<ScratchFile> file, const Chain& chain)
     : file_(std::move(file)),
-      pieces_(chain.plan->path.pieces.size()),
-      vertices_(chain.plan->path.s.size()),
-      phases_(chain.plan->law.phases.size()),
-      spans_(chain.spans.size()),
-      shares_(chain.shares.size()) {
-  head_.t = chain.t;
-  head_.duration = chain.duration;
-  head_.begin = chain.begin;
-  head_.end = chain.end;
-  place_ = file_->append(bytes_of(chain.plan->path.pieces));
-  for (const auto& bytes : {bytes_of(chain.plan->path.s), bytes_of(chain.plan->law.phases),
-                            bytes_of(chain.spans), bytes_of(chain.shares)}) {
-    file_->append(bytes);
-  }
-}
+      head_(head_of(chain)),
+      pieces_(write(chain.plan->path.pieces)),
+      vertices_(write(chain.plan->path.s)),
+      phases_(write(chain.plan->law.phases)),
+      spans_(write(chain.spans)),
+      shares_(write(chain.shares)) {}
 
 std::shared_ptr<const Chain> StoredChain::read() const {
   const std::scoped_lock lock(mutex_);
@@ -43,18 +55,11 @@ std::shared_ptr<const Chain> StoredChain::read() const {
   const auto chain = std::make_shared<Chain>(head_);
   const auto plan = std::make_shared<Chain::Plan>();
   plan->law.duration = head_.duration;
-  std::uint64_t place = place_;
-  const auto take = [&](auto& values, std::size_t count) {
-    values.resize(count);
-    const auto bytes = bytes_of(values);
-    file_->read(place, bytes);
-    place += bytes.size();
-  };
-  take(plan->path.pieces, pieces_);
-  take(plan->path.s, vertices_);
-  take(plan->law.phases, phases_);
-  take(chain->spans, spans_);
-  take(chain->shares, shares_);
+  read(pieces_, plan->path.pieces);
+  read(vertices_, plan->path.s);
+  read(phases_, plan->law.phases);
+  read(spans_, chain->spans);
+  read(shares_, chain->shares);
   chain->plan = plan;
   in_use_ = chain;
   return chain;
@@ -69,11 +74,7 @@ Chain ChainStore::keep(Chain chain) {
     return chain;
   }
   if (file_ == nullptr) file_ = std::make_shared<ScratchFile>("", "the planned motion");
-  Chain head;
-  head.t = chain.t;
-  head.duration = chain.duration;
-  head.begin = chain.begin;
-  head.end = chain.end;
+  Chain head = head_of(chain);
   head.stored = std::make_shared<const StoredChain>(file_, chain);
   return head;
 }

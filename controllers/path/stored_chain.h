@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/scratch_file.h"
@@ -21,10 +22,18 @@ class StoredChain {
   std::shared_ptr<const Trajectory::Chain> read() const;
 
  private:
+  struct Part {
+    std::uint64_t place = 0;
+    std::size_t count = 0;
+  };
+  template <class T>
+  Part write(const std::vector<T>& values);
+  template <class T>
+  void read(const Part& part, std::vector<T>& values) const;
+
   std::shared_ptr<ScratchFile> file_;
   Trajectory::Chain head_;  // without what is in the file
-  std::uint64_t place_ = 0;
-  std::size_t pieces_, vertices_, phases_, spans_, shares_;
+  Part pieces_, vertices_, phases_, spans_, shares_;
   mutable std::mutex mutex_;
   mutable std::weak_ptr<const Trajectory::Chain> in_use_;
 };

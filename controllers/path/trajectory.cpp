@@ -32,6 +32,15 @@ std::shared_ptr<const Trajectory::Chain> Trajectory::chain(std::size_t index) co
   return {std::shared_ptr<void>(), &chain};
 }
 
+std::size_t Trajectory::weight() const {
+  std::size_t weight = 0;
+  for (const Chain& chain : chains_) {
+    if (chain.plan == nullptr) continue;
+    weight += chain.plan->law.phases.size() + chain.plan->path.pieces.size();
+  }
+  return weight;
+}
+
 const Trajectory::Chain& Trajectory::read(Cursor& c) const {
   const Chain& chain = chains_[c.chain];
   if (chain.stored == nullptr) return chain;

@@ -83,6 +83,8 @@ class Trajectory {
   std::size_t chains() const { return chains_.size(); }
   /// Complete; valid as long as both this and the pointer live.
   std::shared_ptr<const Chain> chain(std::size_t index) const;
+  /// Phases and pieces in memory; those on the disk do not count.
+  std::size_t weight() const;
   double rotary_radius() const { return rotary_radius_; }
 
  private:

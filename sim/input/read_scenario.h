@@ -18,8 +18,8 @@ class InputFiles;
 model::Scenario read_scenario(const std::string& path,
                               const std::vector<std::string>& changes = {});
 
-/// The same from a resolved document and the program beside it (as stored in a result file). Short
-/// programs are part of the document as well, of long ones it has the checksum.
+/// Reads a resolved document and the program stored with it in a result file. The document contains
+/// a short program itself, and the checksum of a long one.
 /// @param program  none: a long program is read from its file
 model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,
                                        std::optional<std::string> program = {});

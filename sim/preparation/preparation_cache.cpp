@@ -12,13 +12,7 @@ std::size_t weight_of(const MoveList& moves) { return moves.size() + 1; }
 
 // An arc is one move and hundreds of phases and pieces.
 std::size_t weight_of(const PlannedMotion& motion) {
-  std::size_t weight = weight_of(*motion.moves);
-  for (std::size_t n = 0; n < motion.trajectory.chains(); ++n) {
-    const auto chain = motion.trajectory.chain(n);
-    if (chain->plan == nullptr) continue;
-    weight += chain->plan->law.phases.size() + chain->plan->path.pieces.size();
-  }
-  return weight;
+  return weight_of(*motion.moves) + motion.trajectory.weight();
 }
 
 void add(system::MemoKey& key, const controllers::ToolTable& tools) {

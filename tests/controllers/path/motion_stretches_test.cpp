@@ -65,7 +65,7 @@ void expect_same_bits(const Trajectory::Chain& one, const Trajectory::Chain& oth
   }
 }
 
-// Whatever comes later: a stretch has its bits as soon as the one behind it is read.
+// The plan of a stretch is final once the next stretch is known.
 TEST(LongMotion, AStretchDependsOnItsNeighboursAlone) {
   constexpr std::size_t kStretch = 1000;
   const Trajectory one = planned(surface(6000), kStretch);

@@ -42,6 +42,7 @@ TEST(StoredChain, IsSampledAsInMemory) {
     ASSERT_EQ(disk.chains(), memory.chains());
     ASSERT_GT(disk.chains(), 8U);
     EXPECT_EQ(disk.duration(), memory.duration());
+    EXPECT_LT(disk.weight(), memory.weight());
     Trajectory::Cursor one, other;
     for (double t = -0.1; t < memory.duration() + 0.1; t += 3 * ms) {
       expect_same(disk.at(t, one), memory.at(t, other));
