@@ -6,6 +6,7 @@
 
 #include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/parameters.h"
+#include "strategies/displaced_axes.h"
 #include "strategies/strategy.h"
 
 namespace servomill::strategies {
@@ -14,10 +15,6 @@ enum class Iterations : std::uint8_t { one, converged };
 
 /// Reads "1" or "converged".
 Iterations iterations_of(const Parameters& parameters);
-
-/// Which axes are displaced: X, Y, Z, which can correct the position of the tip, or all, which can
-/// correct the tool axis, too (strategies/pose_compensation.h).
-enum class DisplacedAxes : std::uint8_t { linear, all };
 
 /// Reads "linear" or "all".
 DisplacedAxes displaced_axes_of(const Parameters& parameters);

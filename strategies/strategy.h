@@ -16,6 +16,8 @@
 #include "plant/vocabulary/joint_lanes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/setpoint_entry.h"
+#include "strategies/residual.h"
+#include "strategies/saturation.h"
 
 namespace servomill::strategies {
 
@@ -105,15 +107,6 @@ class PositionLoopPart {
   virtual std::string_view failure() const { return {}; }
 };
 
-/// Saturation of the virtual displacement of one axis during one run.
-struct Saturation {
-  int joint = 0;
-  bool of_rate = false;  // its rate of change was held back, else its size
-  double limit = 0.0;    // m, rad or these per s
-  double first = 0.0;    // s, since it was settled: when it began to act
-  double time = 0.0;     // s, in all
-};
-
 /// Offset of the position feedback: the NC reads x_measured + d, hence moves the axis by -d.
 /// Advances once per model period of the feedback hardware. Has the state of up to eight runs,
 /// side by side in lanes; a run gives the same bits in any lane, alone and among others.
@@ -159,12 +152,6 @@ class FeedbackPart {
     for (int j = 0; j < kJoints; ++j) one[j][0] = Q_meas[j];
     return advance(one, 1, lane);
   }
-};
-
-/// Residual of a correction: true minus ideal pose by the identified model.
-struct Residual {
-  double tip = 0.0;   // m
-  double axis = 0.0;  // rad, of the direction of the tool; turns about itself do not count
 };
 
 /// Position at which a compensation table ends.

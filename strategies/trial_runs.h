@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
+#include "strategies/lesson.h"
 #include "strategies/path_offset.h"
 
 namespace servomill::strategies {
@@ -60,18 +61,6 @@ class TrialRuns {
   /// Runs the program with an offset. Each run has noise of its own. Recorded runs come in their
   /// order, whatever the offset.
   virtual TrialRun run(const std::shared_ptr<const PathOffset>& offset) = 0;
-};
-
-/// Deviation in one run.
-struct TrialFigures {
-  double rms = 0.0;      // m, of the linear joints in feed motion
-  double largest = 0.0;  // m
-};
-
-/// The offset that was learnt.
-struct Lesson {
-  std::shared_ptr<const PathOffset> offset;
-  std::vector<TrialFigures> trials;  // run after run
 };
 
 /// A strategy that has the program run before it acts. Before it has learnt it displaces nothing.

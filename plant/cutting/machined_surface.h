@@ -7,15 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "plant/cutting/probe_target.h"
 #include "plant/cutting/removed_volume.h"
 
 namespace servomill::plant {
-
-/// A nominal point of the part and the normal there.
-struct ProbeTarget {
-  Eigen::Vector3d point;   // m
-  Eigen::Vector3d normal;  // unit, out of the part
-};
 
 /// End of a probe's way inwards along the normal.
 struct Meeting {

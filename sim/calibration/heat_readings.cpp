@@ -11,6 +11,7 @@
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/input_error.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
 #include "sim/readings/columns.h"
 
 namespace servomill::sim::calibration {

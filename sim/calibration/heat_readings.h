@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::calibration {
 

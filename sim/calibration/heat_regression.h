@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plant/geometry/error_model.h"
+#include "plant/kinematics/chain.h"
 #include "sim/calibration/heat_readings.h"
 #include "sim/input/write_identified.h"
 

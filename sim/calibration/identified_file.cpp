@@ -7,8 +7,8 @@
 
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/report.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
-#include "sim/input/read_machine.h"
 #include "sim/input/write_identified.h"
 #include "sim/system/write_file.h"
 

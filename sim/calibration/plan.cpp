@@ -14,6 +14,7 @@
 #include "sim/calibration/information.h"
 #include "sim/calibration/measurable.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/model/machine.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"
 

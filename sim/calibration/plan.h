@@ -7,7 +7,7 @@
 
 #include "sim/calibration/calibration.h"
 #include "sim/calibration/optimal_design.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::calibration {
 

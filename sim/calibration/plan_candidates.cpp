@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::calibration {
 namespace {

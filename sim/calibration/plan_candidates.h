@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/calibration/plan.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::calibration {
 

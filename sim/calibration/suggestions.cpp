@@ -12,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/information.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/model/machine.h"
 #include "sim/numerics/dense_solver.h"
 
 namespace servomill::sim::calibration {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/calibration/calibration.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::calibration {
 

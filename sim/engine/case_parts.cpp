@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/engine/engaged_teeth.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 

@@ -11,6 +11,7 @@
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/recorder.h"
 #include "sim/engine/simulate.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
+#include "sim/engine/stop_flag.h"
 #include "sim/records/series.h"
-#include "strategies/strategy.h"
+#include "strategies/saturation.h"
 
 namespace servomill::sim::engine {
 
@@ -21,9 +21,6 @@ struct Outcome {
   char axis = '-';
   double time = 0.0;  // s
 };
-
-/// Set from outside to end a run early; a case that sees it stops as "interrupted".
-using StopFlag = std::atomic<bool>;
 
 /// Heat of a case, step after step of its thermal network.
 struct HeatCourse {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/model/machine.h"
+
 namespace servomill::sim::engine {
 
 std::vector<model::Rate> loop_rates(const model::LoopPeriods& p, Tick reading_delay) {

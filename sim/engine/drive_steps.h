@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plant/drives/prepared_drives.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/model/schedule.h"
 
 namespace servomill::sim::engine {

@@ -8,6 +8,7 @@
 
 #include "plant/heat/temperature.h"
 #include "plant/sensing/noise.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 namespace {

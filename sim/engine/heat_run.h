@@ -12,8 +12,8 @@
 #include "plant/heat/thermal_network.h"
 #include "plant/vocabulary/ticks.h"
 #include "sim/engine/case_result.h"
+#include "sim/model/forward.h"
 #include "sim/model/heat.h"
-#include "sim/model/machine.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::engine {

@@ -6,6 +6,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/recorded_signals.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "plant/drives/feed_drive.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 namespace {

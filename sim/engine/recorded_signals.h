@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/engine/run_outputs.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/series.h"
 

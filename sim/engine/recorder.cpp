@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/engine/recorded_signals.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine {
 namespace {

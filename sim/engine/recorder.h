@@ -12,7 +12,7 @@
 #include "sim/engine/recording_windows.h"
 #include "sim/engine/run_outputs.h"
 #include "sim/engine/snapshot.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
 #include "sim/records/series.h"

@@ -11,7 +11,7 @@
 #include "controllers/path/trajectory.h"
 #include "controllers/servo/setpoint_correction.h"
 #include "sim/engine/servo_axes.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::engine {

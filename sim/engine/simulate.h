@@ -17,7 +17,7 @@
 #include "sim/engine/program_path.h"
 #include "sim/engine/recording_windows.h"
 #include "sim/engine/run_outputs.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/model/run_settings.h"
 #include "sim/records/row_keeper.h"
 #include "strategies/strategy.h"

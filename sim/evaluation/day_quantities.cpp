@@ -2,6 +2,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/case_evaluation.h"
+#include "sim/model/quantity_spec.h"
 
 namespace servomill::sim::evaluation {
 namespace {

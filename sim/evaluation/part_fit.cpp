@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "sim/evaluation/probed_part.h"
+#include "sim/metrology/triangle_mesh.h"
 
 namespace servomill::sim::evaluation {
 namespace {

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "sim/metrology/best_fit.h"
-#include "sim/metrology/triangle_mesh.h"
+
+namespace servomill::sim::metrology {
+class TriangleMesh;
+}  // namespace servomill::sim::metrology
 
 namespace servomill::sim::evaluation {
 

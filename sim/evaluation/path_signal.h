@@ -7,6 +7,7 @@
 
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::evaluation {
 

@@ -11,6 +11,7 @@
 #include "sim/evaluation/case_samples.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/metrology/r_test.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::evaluation {
 

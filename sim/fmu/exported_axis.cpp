@@ -4,6 +4,7 @@
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::fmu {
 

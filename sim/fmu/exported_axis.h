@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/fmu/machine_constants.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::fmu {
 

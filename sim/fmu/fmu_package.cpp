@@ -5,6 +5,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "sim/fmu/machine_constants.h"
+
 namespace servomill::sim::fmu {
 namespace {
 

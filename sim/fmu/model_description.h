@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "sim/fmu/machine_constants.h"
-
 namespace servomill::sim::fmu {
+
+struct MachineConstants;  // sim/fmu/machine_constants.h
 
 enum class FmiVersion : std::uint8_t { fmi2, fmi3 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"
 

@@ -10,8 +10,9 @@
 #pragma once
 
 #include "plant/vocabulary/added_gain.h"
+#include "plant/vocabulary/ticks.h"
 #include "sim/frequency/margins.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
 

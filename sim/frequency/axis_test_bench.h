@@ -9,23 +9,9 @@
 #include <vector>
 
 #include "sim/engine/servo_axes.h"
+#include "sim/frequency/axis_signals.h"
 
 namespace servomill::sim::frequency {
-
-/// Measured signal. Those marked (sampled) exist at the instants of their loop only.
-enum class AxisSignal : std::uint8_t {
-  position,        // m, rad: slide or table
-  velocity,        // m/s: slide or table
-  motor_speed,     // rad/s
-  current,         // A
-  reading,         // m: what the position loop reads (sampled)
-  position_error,  // m: setpoint less reading (sampled)
-  measured_speed,  // rad/s: what the velocity loop reads (sampled)
-  speed_error,     // rad/s: command less measured speed (sampled)
-};
-inline constexpr std::size_t kAxisSignals = 8;
-using AxisSignals = std::array<double, kAxisSignals>;
-constexpr std::size_t index_of(AxisSignal signal) { return static_cast<std::size_t>(signal); }
 
 /// Due bit of the loop at whose instants a signal exists; 0: at any time.
 constexpr std::uint8_t sampled_by(AxisSignal signal) {
@@ -41,11 +27,6 @@ struct StandInput {
   double q = 0.0;              // m, rad: setpoint
   double dq = 0.0, ddq = 0.0;  // m/s, m/s^2: fed forward
   engine::Injection added = {};
-};
-
-enum class PositionLoop : std::uint8_t {
-  closed,
-  open,  // not run: the velocity command is what is injected
 };
 
 /// The axis moves tick by tick, so that inputs may change and signals be seen at each of them; of a

@@ -7,6 +7,9 @@
 #include <span>
 
 #include "plant/vocabulary/progress.h"
+#include "sim/frequency/axis_dynamics.h"
+#include "sim/frequency/frequency_response.h"
+#include "sim/frequency/measured_response.h"
 #include "sim/model/scenario.h"
 
 namespace servomill::sim::frequency {

@@ -5,12 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/ticks.h"
+#include "sim/frequency/axis_signals.h"
 #include "sim/frequency/margins.h"
-#include "sim/frequency/measured_response.h"
-
-namespace servomill::sim::model {
-struct Scenario;
-}  // namespace servomill::sim::model
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
 

@@ -8,16 +8,6 @@
 
 namespace servomill::sim::frequency {
 
-using Complex = std::complex<double>;
-
-/// Fundamental of every signal as a complex amplitude.
-using Response = std::array<Complex, kAxisSignals>;
-
-/// Output over input.
-inline Complex ratio(const Response& response, AxisSignal output, AxisSignal input) {
-  return response[index_of(output)] / response[index_of(input)];
-}
-
 /// Mean of y(t) exp(-j w t) over the instants at which each signal exists: every base tick, or
 /// those of its loop.
 class Fundamental {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "plant/vocabulary/interrupt.h"
+#include "sim/frequency/axis_signals.h"
 
 namespace servomill::sim::frequency {
 namespace {

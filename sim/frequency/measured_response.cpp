@@ -6,8 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include "plant/drives/feed_drive.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
+#include "sim/frequency/axis_dynamics.h"
+#include "sim/frequency/axis_test_bench.h"
+#include "sim/frequency/frequency_response.h"
 
 namespace servomill::sim::frequency {
 namespace {

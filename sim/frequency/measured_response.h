@@ -7,14 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/frequency/frequency_response.h"
+#include "plant/vocabulary/ticks.h"
+#include "sim/frequency/axis_signals.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
-
-enum class Method : std::uint8_t {
-  sine,        // one frequency after the other
-  multi_sine,  // all at once, phases after Schroeder
-};
 
 struct Measurement {
   Entry entry = Entry::setpoint;

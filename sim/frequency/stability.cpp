@@ -31,6 +31,11 @@ model::MachineSettings linearised(const model::MachineSettings& machine) {
   return linear;
 }
 
+std::shared_ptr<const model::MachineSettings> shared_linearised(
+    const model::MachineSettings& machine) {
+  return std::make_shared<const model::MachineSettings>(linearised(machine));
+}
+
 double spectral_radius(const model::MachineSettings& machine, int joint, Tick reading_delay) {
   const model::MachineSettings linear = linearised(machine);
   const std::vector<model::Instant> schedule =

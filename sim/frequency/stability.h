@@ -1,13 +1,20 @@
 /// Stability of an axis' servo loops as they are sampled: before a run, not after it went wrong.
 #pragma once
 
-#include "sim/model/machine.h"
+#include <memory>
+
+#include "plant/vocabulary/ticks.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
 
 /// The machine without what is not linear: friction other than viscous, backlash, cogging, constant
 /// load, limits, quantisation.
 model::MachineSettings linearised(const model::MachineSettings& machine);
+
+/// The same, for those who only pass it on.
+std::shared_ptr<const model::MachineSettings> shared_linearised(
+    const model::MachineSettings& machine);
 
 /// Largest eigenvalue magnitude of the linear closed loop of one axis over one common multiple of
 /// its periods (position, velocity and current loop with drive, reading delay included); below 1

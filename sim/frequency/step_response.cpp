@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
+#include "sim/frequency/axis_test_bench.h"
 
 namespace servomill::sim::frequency {
 namespace {

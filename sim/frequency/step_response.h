@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/frequency/axis_test_bench.h"
+#include "plant/vocabulary/ticks.h"
+#include "sim/frequency/axis_signals.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
 

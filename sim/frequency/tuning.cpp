@@ -12,6 +12,7 @@
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/added_gain.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"
@@ -297,6 +298,11 @@ model::MachineSettings with_gains(const model::MachineSettings& machine, int joi
   c.Ki = gains.Tn > 0.0 ? c.Kp / gains.Tn : 0.0;
   c.Kv = gains.Kv;
   return out;
+}
+
+std::shared_ptr<const model::MachineSettings> shared_with_gains(
+    const model::MachineSettings& machine, int joint, const Gains& gains) {
+  return std::make_shared<const model::MachineSettings>(with_gains(machine, joint, gains));
 }
 
 bool keeps(const Assessment& a, const TuneSettings& wanted) {

@@ -1,13 +1,15 @@
 /// Gains of one axis for wanted margins, on the exact multirate model.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/ticks.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/margins.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::frequency {
 
@@ -20,6 +22,10 @@ struct Gains {
 Gains gains_of(const model::MachineSettings& machine, int joint);
 model::MachineSettings with_gains(const model::MachineSettings& machine, int joint,
                                   const Gains& gains);
+
+/// The same, for those who only pass it on.
+std::shared_ptr<const model::MachineSettings> shared_with_gains(
+    const model::MachineSettings& machine, int joint, const Gains& gains);
 
 struct TuneSettings {
   double phase_margin = 60.0 * deg;  // rad, least, of both loops

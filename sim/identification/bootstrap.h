@@ -6,17 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "sim/identification/identify.h"
 #include "sim/identification/uncertainty.h"
 
 namespace servomill::sim::identification {
-
-/// Fewest replicas of which 2.5 % are a number.
-inline constexpr int kFewestReplicas = 100;
-
-struct BootstrapSettings {
-  std::size_t replicas = 0;
-  std::uint64_t seed = 1;
-};
 
 /// Values of estimates from recordings made up of the fit and its shuffled residual.
 struct Bootstrap {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/report.h"
 
 namespace servomill::sim::identification {

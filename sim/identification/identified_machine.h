@@ -3,10 +3,12 @@
 
 #include <string>
 
-#include "sim/identification/identify.h"
 #include "sim/input/write_identified.h"
 
 namespace servomill::sim::identification {
+
+struct Experiment;      // sim/identification/experiment.h
+struct Identification;  // sim/identification/identification.h
 
 /// The machine file: values of the machine (not of the recording's loop) with their
 /// covariance; the unidentifiable by name only.

@@ -212,4 +212,10 @@ Identification identify(const Experiment& experiment, unsigned threads,
   return out;
 }
 
+std::shared_ptr<const Identification> shared_identification(const Experiment& experiment,
+                                                            unsigned threads,
+                                                            const IntervalSettings& intervals) {
+  return std::make_shared<const Identification>(identify(experiment, threads, intervals));
+}
+
 }  // namespace servomill::sim::identification

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/identify.h"
 
 namespace servomill::sim::identification {

@@ -8,13 +8,13 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/config/key_log.h"
+#include "sim/config/written_number.h"
 #include "sim/identification/experiment.h"
 #include "sim/identification/parameter_space.h"
 #include "sim/identification/read_records.h"
 #include "sim/input/input_files.h"
 #include "sim/input/read_servo.h"
 #include "sim/input/scenario_document.h"
-#include "sim/model/design.h"
 
 namespace servomill::sim::identification {
 namespace {
@@ -34,18 +34,18 @@ const config::Value* value_at(const config::Value& root, const std::string& key)
   return at;
 }
 
-model::WrittenNumber read_number(config::Reader& table, std::string_view key) {
+config::WrittenNumber read_number(config::Reader& table, std::string_view key) {
   const config::Value* value = table.raw(key);
-  const auto number = model::written_number(value->written);
+  const auto number = config::written_number(value->written);
   if (!number) table.fault(key, "must be a number, or a string such as \"20 N\"");
-  return number.value_or(model::WrittenNumber{});
+  return number.value_or(config::WrittenNumber{});
 }
 
 // A bound in the unit of the start.
 double read_bound(config::Reader& table, std::string_view key, const std::string& unit,
                   double fallback) {
   if (!table.has(key)) return fallback;
-  const model::WrittenNumber bound = read_number(table, key);
+  const config::WrittenNumber bound = read_number(table, key);
   if (bound.unit != unit) {
     table.fault(key, fmt::format("must be in the unit of the start, \"{}\"", unit));
   }
@@ -53,8 +53,8 @@ double read_bound(config::Reader& table, std::string_view key, const std::string
 }
 
 // The start as written, or the machine's own value.
-model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
-                                const config::Document& document) {
+config::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
+                                 const config::Document& document) {
   if (table.has("start")) return read_number(table, "start");
   if (estimate.keys.empty()) return {};
   const config::Value* value = value_at(document.root(), document_key(estimate.keys.front()));
@@ -63,11 +63,11 @@ model::WrittenNumber read_start(config::Reader& table, const Estimate& estimate,
                             estimate.keys.front()));
     return {};
   }
-  const auto number = model::written_number(value->written);
+  const auto number = config::written_number(value->written);
   if (!number) {
     table.fault(fmt::format("{} = {} is not a number", estimate.keys.front(), value->written));
   }
-  return number.value_or(model::WrittenNumber{});
+  return number.value_or(config::WrittenNumber{});
 }
 
 // Unit of a number without one: that of its key, or SI; empty for a ratio.
@@ -130,7 +130,7 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
     } else {
       one.keys = {table.text("key")};
     }
-    const model::WrittenNumber start = read_start(table, one, document);
+    const config::WrittenNumber start = read_start(table, one, document);
     one.start = start.value;
     one.unit = start.unit;
     one.lower = read_bound(table, "min", one.unit, one.lower);

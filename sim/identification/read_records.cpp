@@ -9,10 +9,12 @@
 #include <optional>
 #include <set>
 
+#include "plant/vocabulary/axes.h"
 #include "sim/config/quantity.h"
 #include "sim/identification/channel_signal.h"
 #include "sim/identification/possible_record.h"
 #include "sim/input/scenario_document.h"
+#include "sim/model/machine.h"
 #include "sim/recordings/last_recording.h"
 #include "sim/recordings/survey.h"
 #include "sim/system/counted.h"

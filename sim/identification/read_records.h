@@ -5,7 +5,7 @@
 
 #include "sim/config/reader.h"
 #include "sim/identification/experiment.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::identification {
 

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/identification/identify.h"
-
 namespace servomill::sim::identification {
+
+struct Experiment;      // sim/identification/experiment.h
+struct Identification;  // sim/identification/identification.h
 
 /// Everything that `servomill identify` prints.
 std::string report(const Experiment& experiment, const Identification& result);

@@ -3,6 +3,9 @@
 #include <limits>
 #include <string_view>
 
+#include "plant/vocabulary/axes.h"
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/report.h"
 #include "sim/system/json.h"
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plant/drives/drive_bank.h"
+#include "plant/sensing/quantise.h"
 #include "sim/identification/nc_loop.h"
 #include "sim/system/worker_thread.h"
 

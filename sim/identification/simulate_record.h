@@ -8,7 +8,7 @@
 #include "plant/drives/feed_drive.h"
 #include "sim/identification/record.h"
 #include "sim/identification/sampled_loop.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::identification {
 

@@ -4,6 +4,10 @@
 
 #include <vector>
 
+#include "plant/vocabulary/axes.h"
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 

@@ -4,9 +4,10 @@
 
 #include <string>
 
-#include "sim/identification/identify.h"
-
 namespace servomill::sim::identification {
+
+struct Experiment;      // sim/identification/experiment.h
+struct Identification;  // sim/identification/identification.h
 
 /// Writes the result as HDF5. Layout: README.md of this room.
 /// @throws InputError if the file exists and `force` is not set, SystemError

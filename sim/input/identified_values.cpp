@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "sim/config/quantity.h"
-#include "sim/model/design.h"
+#include "sim/config/written_number.h"
 #include "sim/model/joint_normal.h"
 
 namespace servomill::sim::input {
@@ -105,7 +105,7 @@ std::optional<double> value_in(const config::Value& value, std::string_view key,
     return *number * (own ? own->factor : 1.0) / wanted.factor;
   }
   if (value.type != config::Value::Type::text) return std::nullopt;
-  const auto written = model::written_number(value.written);
+  const auto written = config::written_number(value.written);
   if (!written) return std::nullopt;
   if (written->unit == unit) return written->value;
   const config::Unit own = *config::parse_unit(written->unit).unit;

@@ -7,7 +7,13 @@
 #include <numbers>
 #include <vector>
 
+#include "controllers/servo/cascade.h"
+#include "controllers/servo/current_loop.h"
+#include "plant/drives/feed_drive.h"
+#include "plant/drives/friction.h"
+#include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 namespace {

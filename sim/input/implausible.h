@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

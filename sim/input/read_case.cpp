@@ -14,6 +14,9 @@
 #include "sim/input/read_program.h"
 #include "sim/input/read_strategy.h"
 #include "sim/input/scenario_document.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario.h"
+#include "strategies/entry.h"
 
 namespace servomill::sim::input {
 namespace {

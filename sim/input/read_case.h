@@ -8,7 +8,7 @@
 
 #include "sim/config/document.h"
 #include "sim/config/reader.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

@@ -4,7 +4,9 @@
 
 #include <utility>
 
+#include "plant/cutting/material.h"
 #include "sim/input/read_vector.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -3,8 +3,9 @@
 
 #include <optional>
 
+#include "plant/cutting/stock.h"
 #include "sim/config/reader.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

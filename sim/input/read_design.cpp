@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/config/written_number.h"
 #include "sim/input/drawn_errors.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/scenario_document.h"
@@ -279,8 +280,8 @@ class DesignReader {
                                        std::string_view rule) {
     const config::Value* value = form.raw(word);
     const bool two = value->type == config::Value::Type::list && value->children.size() == 2;
-    const auto a = two ? model::written_number(plain_toml(value->children[0])) : std::nullopt;
-    const auto b = two ? model::written_number(plain_toml(value->children[1])) : std::nullopt;
+    const auto a = two ? config::written_number(plain_toml(value->children[0])) : std::nullopt;
+    const auto b = two ? config::written_number(plain_toml(value->children[1])) : std::nullopt;
     if (a && b && a->unit == b->unit) return Pair{a->value, b->value, a->unit};
     form.fault(word, fmt::format("must be two numbers, {}, in one unit", rule));
     return std::nullopt;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
 
@@ -252,7 +253,7 @@ std::map<std::string, plant::ErrorModel> read_error_file(const std::string& path
                                                          const MachineAxes& machine) {
   if (is_machine_file(path)) {  // with its own errors
     MachineDescription described = read_machine_description(path);
-    if (described.machine.chain.layout == machine.layout) return std::move(described.errors);
+    if (described.machine->chain.layout == machine.layout) return std::move(described.errors);
     throw InputError({path}, "contains the errors of a machine with other axes");
   }
   const config::Document document = config::Document::from_file(path);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 namespace {

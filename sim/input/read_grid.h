@@ -4,7 +4,7 @@
 #include "plant/geometry/error_function.h"
 #include "plant/vocabulary/axes.h"
 #include "sim/config/reader.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

@@ -15,6 +15,7 @@
 #include "sim/input/known_name.h"
 #include "sim/input/read_errors.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 namespace {

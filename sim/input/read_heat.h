@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "sim/config/reader.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

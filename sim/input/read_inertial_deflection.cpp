@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "plant/structure/inertial_compliance.h"
 #include "sim/config/reader.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

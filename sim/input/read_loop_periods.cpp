@@ -6,7 +6,9 @@
 #include <cmath>
 #include <string_view>
 
+#include "plant/vocabulary/ticks.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -12,6 +12,7 @@
 #include "plant/drives/drive_rates.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_bed.h"
 #include "sim/input/read_drive.h"
@@ -23,6 +24,7 @@
 #include "sim/input/read_program.h"
 #include "sim/input/read_servo.h"
 #include "sim/input/read_structural_modes.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -329,8 +331,10 @@ MachineDescription described(const config::Document& document) {
   config::Reader root(document);
   MachineDescription out;
   out.has_drives = describes_drives(document);
-  out.machine = out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors);
-  const bool has_axes = out.machine.chain.layout != JointLayout{};  // not with a faulty structure
+  const auto machine = std::make_shared<const model::MachineSettings>(
+      out.has_drives ? read_machine(root, &out.errors) : read_geometry(root, &out.errors));
+  out.machine = machine;
+  const bool has_axes = machine->chain.layout != JointLayout{};  // not with a faulty structure
   if (has_axes && root.has("axis") && root.table("axis").has("Z")) {
     config::Reader Z = root.table("axis").table("Z");
     if (Z.has(kRetractKey)) out.retract_Z = Z.real(kRetractKey, config::kLength);

@@ -18,6 +18,7 @@
 #include "sim/input/read_machine.h"
 #include "sim/input/scenario_document.h"
 #include "sim/input/subroutine_files.h"
+#include "sim/model/scenario.h"
 #include "sim/system/utf8.h"
 
 namespace servomill::sim::input {

@@ -8,9 +8,8 @@
 #include "plant/vocabulary/axes.h"
 #include "sim/config/reader.h"
 #include "sim/input/input_files.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/model/machine_test.h"
-#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 

@@ -15,6 +15,8 @@
 #include "sim/evaluation/r_test_quantities.h"
 #include "sim/input/known_name.h"
 #include "sim/input/r_test_keys.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/config/reader.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

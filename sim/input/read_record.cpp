@@ -7,6 +7,9 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_ticks.h"
+#include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/input/scenario_document.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 namespace {

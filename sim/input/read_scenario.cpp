@@ -32,6 +32,8 @@
 #include "sim/input/test_faults.h"
 #include "sim/input/uncertain_errors.h"
 #include "sim/metrology/circular_test.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario.h"
 #include "sim/model/schedule.h"
 #include "sim/system/base64.h"
 #include "strategies/registry.h"
@@ -330,6 +332,11 @@ model::Scenario read_document(ScenarioDocument scenario, const std::string& name
 
 model::Scenario read_scenario(const std::string& path, const std::vector<std::string>& changes) {
   return ScenarioSource(path, changes).at();
+}
+
+std::shared_ptr<const model::Scenario> shared_scenario(const std::string& path,
+                                                       const std::vector<std::string>& changes) {
+  return std::make_shared<const model::Scenario>(read_scenario(path, changes));
 }
 
 model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,

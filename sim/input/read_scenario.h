@@ -1,11 +1,12 @@
 /// Reads scenarios and machine files.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 
@@ -17,6 +18,10 @@ class InputFiles;
 /// @throws InputError with all faults of a file at once
 model::Scenario read_scenario(const std::string& path,
                               const std::vector<std::string>& changes = {});
+
+/// The same, for those who only pass it on.
+std::shared_ptr<const model::Scenario> shared_scenario(
+    const std::string& path, const std::vector<std::string>& changes = {});
 
 /// Reads a resolved document and the program stored with it in a result file. The document contains
 /// a short program itself, and the checksum of a long one.

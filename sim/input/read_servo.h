@@ -1,8 +1,11 @@
 /// Reads the servo loops of the axes of a machine, as its NC has them.
 #pragma once
 
+#include "controllers/servo/cascade.h"
+#include "controllers/servo/filters.h"
+#include "controllers/servo/position_feedback.h"
 #include "sim/config/reader.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

@@ -11,6 +11,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/input/known_name.h"
 #include "sim/input/read_recorded_runs.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "strategies/registry.h"
 
 namespace servomill::sim::input {

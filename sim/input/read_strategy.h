@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/config/reader.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

@@ -6,6 +6,7 @@
 #include "sim/input/machine_document.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/scenario_document.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/input/read_scenario.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::input {
 

@@ -10,6 +10,8 @@
 #include "sim/config/reader.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_errors.h"
+#include "sim/model/machine.h"
+#include "sim/model/tip_uncertainty.h"
 
 namespace servomill::sim::input {
 namespace {
@@ -93,16 +95,18 @@ std::optional<model::UncertainErrors> uncertain_errors(const config::Value& erro
   return out;
 }
 
-std::optional<model::UncertainErrors> uncertain_errors_of_file(const std::string& path,
-                                                               const std::string& model,
-                                                               const JointLayout& layout) {
-  if (!is_machine_file(path)) return std::nullopt;
+std::shared_ptr<const model::UncertainErrors> uncertain_errors_of_file(const std::string& path,
+                                                                       const std::string& model,
+                                                                       const JointLayout& layout) {
+  if (!is_machine_file(path)) return nullptr;
   InputFiles files;
   const MachineDocument machine = machine_document(path, files);
   const config::Value* errors = machine.document.root().find("errors");
   errors = errors == nullptr ? nullptr : errors->find(model);
-  if (!machine.identified || errors == nullptr) return std::nullopt;
-  return uncertain_errors(*errors, model, *machine.identified, layout);
+  if (!machine.identified || errors == nullptr) return nullptr;
+  auto found = uncertain_errors(*errors, model, *machine.identified, layout);
+  if (!found) return nullptr;
+  return std::make_shared<const model::UncertainErrors>(*std::move(found));
 }
 
 }  // namespace servomill::sim::input

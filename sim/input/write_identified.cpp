@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "sim/config/value.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
-#include "sim/input/read_machine.h"
 #include "sim/system/write_file.h"
 
 namespace servomill::sim::input {

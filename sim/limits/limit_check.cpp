@@ -10,6 +10,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/limits/mean_derivative.h"
 #include "sim/limits/path_check.h"
+#include "sim/model/machine.h"
 #include "sim/system/counted.h"
 
 namespace servomill::sim::limits {

@@ -10,7 +10,7 @@
 #include "sim/limits/log_signals.h"
 #include "sim/limits/path_report.h"
 #include "sim/limits/program_request.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::limits {
 

@@ -5,6 +5,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/limits/limit_check.h"
+#include "sim/model/machine.h"
 #include "sim/system/counted.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"

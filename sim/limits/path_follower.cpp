@@ -6,6 +6,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/tool_axis.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::limits {
 namespace {

@@ -9,6 +9,7 @@
 #include "controllers/path/path_limits.h"
 #include "plant/vocabulary/units.h"
 #include "sim/preparation/case_program.h"
+#include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/known_positions.h"
 #include "sim/programs/named_axes.h"
 #include "sim/programs/placed_program.h"

@@ -10,6 +10,7 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/triangle_mesh.h"
 #include "sim/numerics/decompositions.h"
 
 namespace servomill::sim::metrology {

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "sim/metrology/points.h"
-#include "sim/metrology/triangle_mesh.h"
 
 namespace servomill::sim::metrology {
+
+class TriangleMesh;  // sim/metrology/triangle_mesh.h
 
 struct BestFit {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // measured -> nominal

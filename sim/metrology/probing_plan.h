@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plant/cutting/machined_surface.h"
+#include "plant/cutting/probe_target.h"
 #include "plant/vocabulary/input_error.h"
 
 namespace servomill::sim::metrology {

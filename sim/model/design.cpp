@@ -10,8 +10,8 @@
 #include <set>
 #include <string_view>
 
-#include "sim/config/quantity.h"
 #include "sim/config/value.h"
+#include "sim/config/written_number.h"
 
 namespace servomill::sim::model {
 namespace {
@@ -82,32 +82,6 @@ std::string value_on_grid(const SweepKey& key, std::uint64_t index) {
 
 }  // namespace
 
-std::optional<WrittenNumber> written_number(const std::string& toml) {
-  const bool quoted = !toml.empty() && (toml.front() == '"' || toml.front() == '\'');
-  const char* begin = toml.c_str() + (quoted ? 1 : 0);
-  char* end = nullptr;
-  const double value = std::strtod(begin, &end);
-  if (end == begin || !std::isfinite(value)) return std::nullopt;
-  if (!quoted) {
-    if (*end != '\0') return {};
-    return WrittenNumber{value, ""};
-  }
-  std::string unit(end);
-  if (unit.empty() || unit.back() != toml.front()) return {};
-  unit.pop_back();
-  unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty() || !config::parse_unit(unit).unit) return {};
-  return WrittenNumber{value, unit};
-}
-
-double number_of(const std::string& toml) {
-  const std::size_t begin = toml.find_first_not_of("\"'");
-  if (begin == std::string::npos) return std::numeric_limits<double>::quiet_NaN();
-  char* end = nullptr;
-  const double value = std::strtod(toml.c_str() + begin, &end);
-  return end == toml.c_str() + begin ? std::numeric_limits<double>::quiet_NaN() : value;
-}
-
 std::uint64_t SweepDesign::size() const {
   std::uint64_t points = sampled_dimensions > 0 ? samples.count : 1;
   for (const std::uint64_t length : grid) points *= length;
@@ -141,9 +115,9 @@ SweepColumn SweepDesign::column(std::size_t key) const {
     return {true, number->unit, {}};
   if (const auto* member = std::get_if<JointMember>(&values)) return {true, member->unit, {}};
   const auto& texts = std::get<ValueTexts>(values);
-  const auto first = written_number(texts.front());
+  const auto first = config::written_number(texts.front());
   const auto is_alike = [&](const std::string& text) {
-    const auto number = written_number(text);
+    const auto number = config::written_number(text);
     return number && number->unit == first->unit;
   };
   if (first && std::all_of(texts.begin(), texts.end(), is_alike)) return {true, first->unit, {}};

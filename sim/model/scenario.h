@@ -22,19 +22,15 @@
 #include "sim/metrology/probing_plan.h"
 #include "sim/model/design.h"
 #include "sim/model/machine.h"
+#include "sim/model/quantity_spec.h"
 #include "sim/model/run_settings.h"
 #include "sim/model/tip_uncertainty.h"
-#include "sim/model/tolerance.h"
 #include "sim/model/touch_probe.h"
 #include "strategies/entry.h"
 
 namespace servomill::sim::evaluation {
 struct NominalPart;  // sim/evaluation/nominal_part.h
 }  // namespace servomill::sim::evaluation
-
-namespace servomill::sim::metrology {
-class TriangleMesh;
-}  // namespace servomill::sim::metrology
 
 namespace servomill::sim::model {
 
@@ -105,38 +101,6 @@ struct CaseSpec {
 
   /// Tells if one of its strategies passes its signals through the feedback hardware.
   bool needs_feedback_hardware() const;
-};
-
-/// Ball in the spindle and sensors on the table, as a quantity needs them.
-struct BallSpec {
-  std::vector<Eigen::Vector3d> bar_centres;    // m, in the workpiece: of a ball bar, for each of
-                                               // the sections; none: a nest of three sensors
-  bool tcp_is_known = false;                   // the ball lies where the program has the tip
-  std::optional<plant::ErrorName> error = {};  // location_error: which
-};
-
-/// Features of the probed part that a quantity needs.
-struct PartSpec {
-  std::vector<std::string> probes;  // features, each the name of a [[probe]]
-  bool minimum_zone = true;         // of the fit, where there is a choice; else least squares
-  std::shared_ptr<const metrology::TriangleMesh>
-      nominal;  // of a best fit; none: to the faces at the probes
-};
-
-/// One line of the comparison, for one or several cases.
-struct QuantitySpec {
-  std::string name;       // one of quantity_names()
-  char axis = '\0';       // X, Y, Z, ...; '\0' where the quantity has none
-  std::string statistic;  // max, rms, mean, range
-  std::vector<std::string> cases;
-  std::string baseline;               // case compared with, for differences
-  std::vector<std::string> sections;  // of the program; empty: all
-  Place sections_place;
-  std::string reference;  // the paper's number with unit, or empty
-  std::string basis;      // fitted, predicted, assumed, upper_bound or empty
-  std::optional<Tolerance> tolerance = {};
-  std::optional<BallSpec> ball = {};
-  std::optional<PartSpec> part = {};
 };
 
 /// Recording: signals, period and storage.

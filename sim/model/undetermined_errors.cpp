@@ -4,9 +4,18 @@
 
 #include <algorithm>
 
+#include "plant/geometry/error_function.h"
+#include "plant/geometry/error_model.h"
+#include "sim/model/tip_uncertainty.h"
+
 namespace servomill::sim::model {
 
 using plant::ErrorName;
+
+bool is_of_model(const std::shared_ptr<const UncertainErrors>& identified,
+                 const std::string& model) {
+  return identified && identified->model == model;
+}
 
 std::string list_of(const std::vector<ErrorName>& names) {
   std::vector<std::string> out;

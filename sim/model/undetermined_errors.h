@@ -2,13 +2,20 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "plant/geometry/error_model.h"
-#include "sim/model/tip_uncertainty.h"
+#include "plant/geometry/error_name.h"
+#include "plant/vocabulary/axes.h"
+
+namespace servomill::plant {
+struct ErrorModel;  // plant/geometry/error_model.h
+}  // namespace servomill::plant
 
 namespace servomill::sim::model {
+
+struct UncertainErrors;  // sim/model/tip_uncertainty.h
 
 /// Squarenesses of XY, XZ and YZ, as turns of either axis.
 inline constexpr std::array<std::array<plant::ErrorName, 2>, 3> kSquarenesses = {{
@@ -25,6 +32,10 @@ std::vector<plant::ErrorName> components_of(const JointLayout& layout, Axis axis
 std::vector<plant::ErrorName> undetermined_errors(const plant::ErrorModel& errors,
                                                   const UncertainErrors& identified,
                                                   const JointLayout& layout);
+
+/// True if there are identified errors, those of the model of this name.
+bool is_of_model(const std::shared_ptr<const UncertainErrors>& identified,
+                 const std::string& model);
 
 /// "ECY, ECZ"
 std::string list_of(const std::vector<plant::ErrorName>& names);

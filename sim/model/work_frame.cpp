@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 
 namespace servomill::sim::model {

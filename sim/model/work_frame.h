@@ -5,8 +5,11 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "plant/kinematics/chain.h"
 #include "plant/vocabulary/axes.h"
+
+namespace servomill::plant {
+struct MachineChain;  // plant/kinematics/chain.h
+}  // namespace servomill::plant
 
 namespace servomill::sim::model {
 

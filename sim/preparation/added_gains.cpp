@@ -11,6 +11,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/added_gain.h"
 #include "sim/frequency/stability.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/stability_check.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plant/vocabulary/added_gain.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::preparation {
 

@@ -8,7 +8,7 @@
 
 #include "controllers/path/trajectory.h"
 #include "plant/geometry/volumetric.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/touch_probe.h"
 #include "strategies/strategy.h"

@@ -6,6 +6,8 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "sim/input/subroutine_files.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::preparation {
 

@@ -10,6 +10,8 @@
 #include "plant/structure/structural_deflection.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/lobes.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::preparation {
 

@@ -13,7 +13,7 @@
 #include "plant/kinematics/chain.h"
 #include "plant/structure/inertial_compliance.h"
 #include "plant/vocabulary/input_error.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::preparation {
 

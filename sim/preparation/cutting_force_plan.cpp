@@ -12,6 +12,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/depth_of_cut.h"
 #include "sim/engine/engaged_teeth.h"
+#include "sim/model/machine.h"
 #include "sim/preparation/chatter_check.h"
 #include "sim/preparation/tool_passes.h"
 

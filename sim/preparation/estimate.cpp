@@ -15,6 +15,8 @@
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/probed_part.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/cutting_force_plan.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/system/worker_thread.h"

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/system/shared_cache.h"
 #include "strategies/identified_heat.h"
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/interrupt.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/margins.h"
 #include "sim/frequency/stability.h"

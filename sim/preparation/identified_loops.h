@@ -3,7 +3,8 @@
 
 #include <memory>
 
-#include "sim/model/machine.h"
+#include "plant/vocabulary/ticks.h"
+#include "sim/model/forward.h"
 #include "sim/system/shared_cache.h"
 #include "strategies/identified_loops.h"
 

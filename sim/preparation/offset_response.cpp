@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/interrupt.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/frequency_response.h"
 
 namespace servomill::sim::preparation {

@@ -7,7 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "sim/model/machine.h"
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/ticks.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::preparation {
 

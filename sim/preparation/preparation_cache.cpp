@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "controllers/servo/filters.h"
 #include "sim/frequency/margins.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
 
 namespace servomill::sim::preparation {

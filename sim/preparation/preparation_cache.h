@@ -16,7 +16,7 @@
 #include "plant/vocabulary/move_list.h"
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/circular_sections.h"
 #include "sim/preparation/touch_probe.h"
 #include "sim/system/shared_cache.h"

@@ -5,6 +5,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/progress.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/refusals.h"

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "sim/model/forward.h"
 #include "sim/preparation/prepared_case.h"
 
 namespace servomill::sim::preparation {

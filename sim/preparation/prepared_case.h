@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "strategies/strategy.h"
 #include "strategies/trial_runs.h"
 

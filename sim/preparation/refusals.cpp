@@ -6,9 +6,12 @@
 #include <stdexcept>
 
 #include "controllers/gcode/modal_state.h"
+#include "controllers/servo/position_feedback.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/quantity.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim::preparation {

@@ -8,7 +8,7 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "strategies/strategy.h"
 
 namespace servomill::sim::preparation {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"
 #include "sim/input/implausible.h"

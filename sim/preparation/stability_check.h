@@ -1,7 +1,8 @@
 /// Refuses gains with which an axis diverges, and says which one to lower.
 #pragma once
 
-#include "sim/model/machine.h"
+#include "plant/vocabulary/ticks.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::preparation {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/case_preparation.h"
 #include "strategies/trial_runs.h"
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "plant/vocabulary/ticks.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
+#include "sim/model/run_settings.h"
 
 namespace servomill::sim::preparation {
 

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "plant/vocabulary/axes.h"
-#include "plant/vocabulary/move_list.h"
+
+namespace servomill {
+class MoveList;  // plant/vocabulary/move_list.h
+}  // namespace servomill
 
 namespace servomill::sim::preparation {
 

@@ -10,6 +10,7 @@
 #include "controllers/gcode/modal_state.h"
 #include "plant/sensing/noise.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/move_list.h"
 #include "plant/vocabulary/units.h"
 #include "sim/metrology/location_errors.h"
 

@@ -15,9 +15,10 @@
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/parameter_file.h"
 #include "sim/config/document.h"
+#include "sim/config/written_number.h"
 #include "sim/input/implausible.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
-#include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/subroutine_files.h"
 #include "sim/model/scenario.h"
@@ -107,7 +108,7 @@ void add_additional_offset(const std::string& text, controllers::ProgramSetup& s
   const std::string option = "--additional-offset";
   const std::size_t colon = text.find(':');
   const double P = text.starts_with('P') && colon != std::string::npos
-                       ? model::number_of(text.substr(1, colon - 1))
+                       ? config::number_of(text.substr(1, colon - 1))
                        : std::nan("");
   if (!(P >= 1.0) || P != std::floor(P) || P > 300.0) {
     throw InputError({option + " " + text},
@@ -179,14 +180,15 @@ controllers::ProgramSetup program_setup(const ProgramInputs& inputs,
     setup.work_system = controllers::work_system_of(setup.stored);
   }
   if (!inputs.machine.empty()) {
-    const model::MachineSettings machine = input::read_machine_description(inputs.machine).machine;
-    setup.machine = preparation::tool_centre_point(machine);
-    nc = machine.nc;
+    const auto machine = input::read_machine_description(inputs.machine).machine;
+    setup.machine = preparation::tool_centre_point(*machine);
+    nc = machine->nc;
   }
   for (const std::string& parameter : inputs.parameters) {
     const std::size_t equals = parameter.find('=');
-    const double value =
-        equals == std::string::npos ? std::nan("") : model::number_of(parameter.substr(equals + 1));
+    const double value = equals == std::string::npos
+                             ? std::nan("")
+                             : config::number_of(parameter.substr(equals + 1));
     if (!std::isfinite(value)) {
       throw InputError({"--parameter " + parameter}, "must be #N=NUMBER, such as '#101=1394'");
     }

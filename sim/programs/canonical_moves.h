@@ -10,7 +10,7 @@
 
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/input_error.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::programs {
 

@@ -1,5 +1,6 @@
 #include "sim/programs/given_setup.h"
 
+#include "sim/model/machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
 
 namespace servomill::sim::programs {

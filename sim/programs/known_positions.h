@@ -9,7 +9,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/modal_state.h"
-#include "sim/programs/compensate/program_corrector.h"
+#include "sim/programs/axis_flags.h"
 
 namespace servomill::sim::programs {
 

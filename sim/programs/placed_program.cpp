@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "plant/vocabulary/interrupt.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
 #include "sim/preparation/case_program.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/line_stage.h"
@@ -19,9 +19,9 @@ void PlacedProgram::begin_at(const AxisWords& start) {
 
 PlacedProgram placed_program(const ProgramPlacement& placement) {
   PlacedProgram out;
-  input::MachineDescription described =
+  const input::MachineDescription described =
       input::read_machine_description(placement.inputs.machine, placement.changes);
-  out.machine = std::move(described.machine);
+  out.machine = *described.machine;
   out.has_drives = described.has_drives;
   const JointLayout& layout = out.machine.chain.layout;
   out.given = given_setup(placement.program_file, placement.inputs, placement.work_offsets,

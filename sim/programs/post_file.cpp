@@ -11,7 +11,8 @@
 
 #include "controllers/gcode/printer.h"
 #include "plant/vocabulary/units.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/verify_post.h"
 #include "sim/system/read_file.h"
@@ -146,12 +147,12 @@ void refuse_unknown_place(const PostRequest& request, const plant::MachineChain&
 
 // Z of the machine from which every way down is free.
 double retract_height(const PostRequest& request, const input::MachineDescription& machine) {
-  const JointLayout& layout = machine.machine.chain.layout;
+  const JointLayout& layout = machine.machine->chain.layout;
   constexpr int kZ = 2;
   if (!layout.has(kZ)) {
     throw InputError({request.machine_file}, "the machine has no axis Z; use --approach direct");
   }
-  const double lower = machine.machine.nc.lower[kZ], upper = machine.machine.nc.upper[kZ];
+  const double lower = machine.machine->nc.lower[kZ], upper = machine.machine->nc.upper[kZ];
   const double Z = request.retract_Z.value_or(machine.retract_Z.value_or(upper));
   if (!std::isfinite(Z)) {
     throw InputError({request.machine_file},
@@ -205,7 +206,7 @@ std::string header(const PostRequest& request, const controllers::PostOptions& o
 PostProcessedFile post_file(PostRequest request, std::vector<controllers::Warning>* of_refused) {
   const input::MachineDescription described =
       input::read_machine_description(request.machine_file, request.changes);
-  const model::MachineSettings& machine = described.machine;
+  const model::MachineSettings& machine = *described.machine;
   std::vector<controllers::Warning> ignored;
   std::vector<controllers::Warning>& warnings = of_refused != nullptr ? *of_refused : ignored;
   const controllers::ClData data = controllers::read_cl_data(

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controllers/path/travel.h"
+#include "sim/model/machine.h"
 #include "sim/preparation/case_program.h"
 
 namespace servomill::sim::programs {

@@ -15,7 +15,7 @@
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::programs {
 

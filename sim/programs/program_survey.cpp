@@ -14,7 +14,8 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/given_setup.h"
 #include "sim/programs/line_stage.h"
@@ -31,7 +32,7 @@ using controllers::ProgramText;
 using controllers::translation::Language;
 
 struct SurveyInputs : GivenSetup {
-  std::optional<model::MachineSettings> machine;
+  std::shared_ptr<const model::MachineSettings> machine;
 };
 
 SurveyInputs read_inputs(const SurveyRequest& request) {

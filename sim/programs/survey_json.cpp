@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/programs/program_survey.h"
 #include "sim/system/json.h"
 

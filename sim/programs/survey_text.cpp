@@ -7,6 +7,7 @@
 
 #include "controllers/gcode/reader.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/programs/compensate/work_knowledge.h"
 #include "sim/programs/program_survey.h"
 #include "sim/system/counted.h"

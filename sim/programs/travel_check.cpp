@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "controllers/path/travel.h"
+#include "sim/model/machine.h"
 #include "sim/programs/program_extent.h"
 
 namespace servomill::sim::programs {

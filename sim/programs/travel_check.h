@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/programs/known_positions.h"
 
 namespace servomill::sim::programs {

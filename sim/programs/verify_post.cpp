@@ -11,6 +11,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/post_functions.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "controllers/gcode/post_processor.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::programs {
 

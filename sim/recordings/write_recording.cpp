@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/recordings/hdf5_reader.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 #include "sim/system/write_file.h"

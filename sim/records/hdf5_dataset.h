@@ -9,14 +9,9 @@
 #include <vector>
 
 #include "sim/records/hdf5_object.h"
+#include "sim/records/meaning.h"
 
 namespace servomill::sim::records {
-
-/// Description of a dataset, for readers and plots.
-struct Meaning {
-  std::string units;      // as CF has them: "mm", "s", "1"
-  std::string long_name;  // a phrase for the label of a plot
-};
 
 class Hdf5Dataset : public Hdf5Object {
  public:

@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/records/hdf5_library.h"
 #include "sim/records/nexus.h"
 
 namespace servomill::sim::records {
@@ -19,12 +20,15 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   const std::string why = why_unreadable(path_);
   if (!why.empty()) fail(fmt::format("cannot be read: {}", why));
   if (H5Fis_hdf5(path_.c_str()) <= 0) fail("is not an HDF5 file");
-  file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (file_.get() < 0) {
+  file_ = std::make_unique<Hdf5Handle>(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (file_->get() < 0) {
     refuse_if_locked(path_);
     fail(fmt::format("cannot be read: {}", hdf5_reason()));
   }
 }
+
+InputFile::~InputFile() = default;
+InputFile::InputFile(InputFile&&) noexcept = default;
 
 void InputFile::fail(const std::string& message) const { throw InputError({path_}, message); }
 
@@ -34,7 +38,7 @@ bool InputFile::has(const std::string& object) const {
     end = object.find('/', end + 1);
     const std::string above = object.substr(0, end);
     if (above == "/" || above.empty()) continue;
-    if (H5Lexists(file_.get(), above.c_str(), H5P_DEFAULT) <= 0) return false;
+    if (H5Lexists(file_->get(), above.c_str(), H5P_DEFAULT) <= 0) return false;
   }
   return true;
 }
@@ -42,7 +46,7 @@ bool InputFile::has(const std::string& object) const {
 Hdf5Handle InputFile::open(const std::string& object) const {
   const Hdf5Lock lock;
   if (!has(object)) fail(fmt::format("has no '{}'", object));
-  Hdf5Handle id(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT));
+  Hdf5Handle id(H5Oopen(file_->get(), object.c_str(), H5P_DEFAULT));
   if (id.get() < 0) fail(fmt::format("'{}' cannot be read: {}", object, hdf5_reason()));
   return id;
 }

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "sim/records/hdf5_dataset.h"
-#include "sim/records/hdf5_library.h"
+#include "sim/records/meaning.h"
 
 namespace servomill::sim::records {
+
+class Hdf5Handle;  // sim/records/hdf5_library.h
 
 /// A file to read. Paths are absolute: "/cases/table/servo/time".
 /// All members throw InputError that names the file and what it lacks.
@@ -16,6 +18,8 @@ class InputFile {
  public:
   /// @throws SystemError if another process writes it
   explicit InputFile(std::string path);
+  ~InputFile();
+  InputFile(InputFile&&) noexcept;
 
   const std::string& path() const { return path_; }
   bool has(const std::string& object) const;
@@ -54,7 +58,7 @@ class InputFile {
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
 
   std::string path_;
-  Hdf5Handle file_;
+  std::unique_ptr<Hdf5Handle> file_;
 };
 
 }  // namespace servomill::sim::records

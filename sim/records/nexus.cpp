@@ -2,6 +2,9 @@
 
 #include <cassert>
 
+#include "sim/records/hdf5_dataset.h"
+#include "sim/records/hdf5_group.h"
+
 namespace servomill::sim::records {
 namespace {
 

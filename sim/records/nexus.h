@@ -10,9 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/records/hdf5_group.h"
-
 namespace servomill::sim::records {
+
+class Hdf5Group;  // sim/records/hdf5_group.h
+struct Meaning;   // sim/records/meaning.h
 
 /// Dimension of a plotted signal that has no numeric axis, as that of the letters "XYZ".
 inline constexpr const char* kNoAxis = ".";

@@ -8,10 +8,13 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/records/hdf5_group.h"
+#include "sim/records/hdf5_library.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 
@@ -41,11 +44,13 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   if (force_) refuse_to_cut_locked(partial_path_);
   const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
-  file_ = Hdf5Handle(H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
-  if (file_.get() < 0) throw system::SystemError(partial_path_, "cannot be created", hdf5_reason());
+  file_ = std::make_unique<Hdf5Handle>(
+      H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
+  if (file_->get() < 0)
+    throw system::SystemError(partial_path_, "cannot be created", hdf5_reason());
 }
 
-OutputFile::OutputFile(std::string path, bool force, Hdf5Handle file)
+OutputFile::OutputFile(std::string path, bool force, std::unique_ptr<Hdf5Handle> file)
     : path_(std::move(path)),
       partial_path_(path_ + ".partial"),
       force_(force),
@@ -56,8 +61,9 @@ OutputFile OutputFile::resumed(std::string path, bool force) {
   prepare_hdf5();
   const Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  Hdf5Handle file(H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
-  if (file.get() < 0) {
+  auto file = std::make_unique<Hdf5Handle>(
+      H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
+  if (file->get() < 0) {
     refuse_if_locked(path + ".partial");
     throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}", hdf5_reason()));
   }
@@ -91,16 +97,16 @@ void OutputFile::remove_unless_committed() {
 
 Hdf5Group OutputFile::root() {
   const Hdf5Lock lock;
-  return Hdf5Group(Hdf5Handle(written(H5Gopen2(file_.get(), "/", H5P_DEFAULT), file_.get())));
+  return Hdf5Group(Hdf5Handle(written(H5Gopen2(file_->get(), "/", H5P_DEFAULT), file_->get())));
 }
 
 void OutputFile::commit() {
   const Hdf5Lock lock;
-  assert(file_.get() >= 0);
-  written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), file_.get());
-  const herr_t closed = H5Fclose(file_.get());
+  assert(file_->get() >= 0);
+  written(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL), file_->get());
+  const herr_t closed = H5Fclose(file_->get());
   if (closed < 0) throw system::SystemError(partial_path_, "cannot be written", hdf5_reason());
-  file_ = Hdf5Handle();
+  *file_ = Hdf5Handle();
 
   // the data must be on the disk before the name says that they are
   const int descriptor = open(partial_path_.c_str(), O_RDONLY | O_CLOEXEC);

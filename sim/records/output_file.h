@@ -4,13 +4,14 @@
 #include <memory>
 #include <string>
 
-#include "sim/records/hdf5_group.h"
-
 namespace servomill::sim::system {
 class TemporaryFile;
 }  // namespace servomill::sim::system
 
 namespace servomill::sim::records {
+
+class Hdf5Group;   // sim/records/hdf5_group.h
+class Hdf5Handle;  // sim/records/hdf5_library.h
 
 /// A file under construction: it is called `path` + ".partial" until `commit()`. Without a commit
 /// that file stays, readable up to the last flush.
@@ -46,13 +47,13 @@ class OutputFile {
   void commit();
 
  private:
-  OutputFile(std::string path, bool force, Hdf5Handle file);
+  OutputFile(std::string path, bool force, std::unique_ptr<Hdf5Handle> file);
 
   std::string path_;
   std::string partial_path_;
   bool force_;
   std::unique_ptr<system::TemporaryFile> temporary_;  // where nothing stays without a commit
-  Hdf5Handle file_;                                   // closed before that one is removed
+  std::unique_ptr<Hdf5Handle> file_;                  // closed before that one is removed
 };
 
 }  // namespace servomill::sim::records

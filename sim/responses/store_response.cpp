@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 

@@ -12,10 +12,15 @@
 #include <utility>
 
 #include "plant/vocabulary/progress.h"
+#include "sim/engine/case_result.h"
 #include "sim/evaluation/path_signal.h"
 #include "sim/evaluation/statistic.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/at_places.h"
+#include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 
 namespace servomill::sim::run {
 namespace {

@@ -10,10 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/engine/stop_flag.h"
+#include "sim/model/forward.h"
+#include "sim/model/quantity_spec.h"
 #include "sim/records/stored_signal.h"
 #include "sim/run/budget_causes.h"
 #include "sim/run/budget_estimate.h"
-#include "sim/run/run.h"
 
 namespace servomill::sim::run {
 

@@ -4,10 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "plant/drives/feed_drive.h"
+#include "plant/sensing/encoder.h"
+#include "plant/vocabulary/parameters.h"
+#include "plant/vocabulary/ticks.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/machine.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario.h"
 #include "sim/run/budget.h"
+#include "strategies/entry.h"
 
 namespace servomill::sim::run {
 namespace {

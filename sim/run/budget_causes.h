@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::run {
 

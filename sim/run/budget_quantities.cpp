@@ -5,6 +5,8 @@
 
 #include "sim/evaluation/path_signal.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::run {
 namespace {

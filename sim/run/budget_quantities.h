@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 
 namespace servomill::sim::run {
 

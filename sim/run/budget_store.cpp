@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_dataset.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/run/store.h"
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 
+#include "sim/model/forward.h"
 #include "sim/records/output_file.h"
 #include "sim/run/budget.h"
 

@@ -13,6 +13,8 @@
 #include "sim/evaluation/probed_part.h"
 #include "sim/input/implausible.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/residual_errors.h"
 

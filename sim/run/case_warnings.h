@@ -9,8 +9,12 @@
 
 #include "sim/engine/case_result.h"
 #include "sim/evaluation/part_fit.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/prepared_case.h"
+
+namespace servomill::sim::evaluation {
+struct NominalPart;  // sim/evaluation/nominal_part.h
+}  // namespace servomill::sim::evaluation
 
 namespace servomill::sim::run {
 

@@ -6,12 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/vocabulary/parameters.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/quantity.h"
+#include "sim/engine/case_result.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/day_course.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 #include "sim/run/test_sheet.h"
 #include "sim/system/json.h"
 #include "sim/system/text_table.h"

@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/evaluation/comparison_row.h"
 #include "sim/input/scenario_source.h"
+#include "sim/model/forward.h"
 #include "sim/run/run.h"
 
 namespace servomill::sim::run {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/identified_heat.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"

@@ -11,6 +11,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/engine/heat_run.h"
 #include "sim/evaluation/quantity.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/model/working_day.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"

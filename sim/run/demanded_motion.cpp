@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "sim/engine/setpoint.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 
 namespace servomill::sim::run {

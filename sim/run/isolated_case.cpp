@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sim/engine/case_parts.h"
+#include "sim/model/scenario.h"
 #include "sim/run/result_stream.h"
 #include "sim/system/system_error.h"
 

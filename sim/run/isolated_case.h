@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/engine/simulate.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/prepared_case.h"
 #include "strategies/plugin_child.h"
 

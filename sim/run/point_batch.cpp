@@ -12,9 +12,13 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/engine/simulate.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/evaluation/outputs_read.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepare_cases.h"
+#include "sim/run/run_case.h"
 #include "sim/run/run_identity.h"
 #include "sim/run/test_comparison.h"
 #include "sim/system/memory_limit.h"
@@ -210,7 +214,9 @@ BatchResult compared(Point& point, Keep keep) {
   std::move(of_tests.begin(), of_tests.end(), std::back_inserter(result.rows));
   result.status = stopped.empty() ? PointStatus::done : PointStatus::stopped;
   result.reason = fmt::format("{}", fmt::join(stopped, "; "));
-  if (keep == Keep::series) result.cases = std::move(outputs);
+  if (keep == Keep::series) {
+    result.cases = std::make_shared<const std::vector<CaseOutput>>(std::move(outputs));
+  }
   return result;
 }
 

@@ -8,40 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "sim/engine/case_result.h"
-#include "sim/evaluation/comparison.h"
-#include "sim/model/scenario.h"
-#include "sim/run/run_case.h"
+#include "sim/engine/stop_flag.h"
+#include "sim/model/forward.h"
+#include "sim/run/point_result.h"
 
+namespace servomill {
+class InputError;
+}  // namespace servomill
 namespace servomill::sim::preparation {
 struct PreparationCache;
 }
 
 namespace servomill::sim::run {
-
-/// How a point of a sweep ended. The numbers stand in result files.
-enum class PointStatus : std::uint8_t {
-  not_run = 0,  // or interrupted
-  done = 1,
-  stopped = 2,  // ran, but in some case the machine stopped
-  refused = 3,  // the input is wrong there
-  failed = 4,   // the program or the system failed there
-};
-inline constexpr std::size_t kPointStatuses = 5;
-
-/// "not_run", "done", ...
-std::string_view name_of(PointStatus status);
-
-/// Result of one point.
-struct BatchResult {
-  PointStatus status = PointStatus::not_run;
-  std::string reason;                           // why it is not `done`, in one line
-  std::vector<evaluation::ComparisonRow> rows;  // of what ran: `done` or `stopped`
-  std::vector<CaseOutput> cases = {};           // with their signals, where they are kept
-};
-
-/// Data to keep of the cases of a batch.
-enum class Keep : std::uint8_t { comparison, series };
 
 /// A point of a batch, by its place there, that has ended.
 struct EndedPoint {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/run/build_identity.h"

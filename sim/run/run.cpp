@@ -10,9 +10,14 @@
 #include <utility>
 
 #include "plant/vocabulary/progress.h"
+#include "sim/evaluation/comparison.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "sim/preparation/stability_check.h"
 #include "sim/run/isolated_case.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 #include "sim/system/worker_thread.h"
 #include "strategies/plugin_child.h"
 #include "strategies/plugin_watch.h"
@@ -71,6 +76,15 @@ RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutpu
 }
 
 }  // namespace
+
+std::shared_ptr<const RunOutput> shared_run(const model::Scenario& scenario,
+                                            const RunControl& control) {
+  return std::make_shared<const RunOutput>(run_scenario(scenario, control));
+}
+
+const std::vector<evaluation::ComparisonRow>& comparison_of(const RunOutput& output) {
+  return output.comparison;
+}
 
 preparation::RunEstimate check_scenario(const model::Scenario& scenario) {
   const std::vector<preparation::PreparedCase> prepared = preparation::prepare_untaught(scenario);

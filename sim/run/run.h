@@ -2,22 +2,26 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/engine/stop_flag.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/estimate.h"
-#include "sim/run/run_case.h"
-
-namespace servomill::sim::model {
-struct MachineSettings;
-struct Scenario;
-}  // namespace servomill::sim::model
 
 namespace servomill::sim::preparation {
 struct PreparationCache;
 }  // namespace servomill::sim::preparation
 
+namespace servomill::sim::evaluation {
+struct ComparisonRow;  // sim/evaluation/comparison_row.h
+}  // namespace servomill::sim::evaluation
+
 namespace servomill::sim::run {
+
+struct CaseOutput;  // sim/run/run_case.h
+struct RunOutput;   // sim/run/run_output.h
 
 struct RunControl {
   unsigned threads = 0;  // 0: as many as there are cores
@@ -34,14 +38,15 @@ struct RunControl {
       case_done;  // called from one thread, in order of the cases
 };
 
-struct RunOutput {
-  std::vector<CaseOutput> cases;
-  std::vector<evaluation::ComparisonRow> comparison;
-  double wall_time = 0.0;  // s
-};
-
 /// @throws InputError before anything is simulated
 RunOutput run_scenario(const model::Scenario& scenario, const RunControl& control);
+
+/// The same, for those who only pass it on.
+std::shared_ptr<const RunOutput> shared_run(const model::Scenario& scenario,
+                                            const RunControl& control);
+
+/// Its comparison.
+const std::vector<evaluation::ComparisonRow>& comparison_of(const RunOutput& output);
 
 /// Prepares every case as for a run, but for runs from which strategies learn, and returns what it
 /// would take on one thread.

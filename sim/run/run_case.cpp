@@ -6,6 +6,7 @@
 #include "sim/evaluation/cutter_path.h"
 #include "sim/evaluation/spindle_quantities.h"
 #include "sim/model/machine_test.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/case_warnings.h"
 #include "sim/run/day_course.h"

@@ -11,10 +11,13 @@
 #include "sim/evaluation/comparison.h"
 #include "sim/evaluation/part_fit.h"
 #include "sim/evaluation/probed_part.h"
-#include "sim/model/tip_uncertainty.h"
 #include "sim/model/work_frame.h"
 #include "sim/preparation/touch.h"
-#include "strategies/trial_runs.h"
+#include "strategies/lesson.h"
+
+namespace servomill::sim::model {
+struct UncertainErrors;
+}  // namespace servomill::sim::model
 namespace servomill::sim::preparation {
 class PreparedCase;
 }  // namespace servomill::sim::preparation

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "sim/engine/simulate.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 
 namespace servomill::sim::run {

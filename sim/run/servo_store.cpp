@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/run/store.h"
 
@@ -138,7 +140,8 @@ void BodeStore::add(char axis, const frequency::BodeResult& result) {
 }
 
 StepStore::StepStore(const std::string& path, bool force, const model::Scenario& scenario)
-    : machine_(scenario.machine), file_(writable_name(path, force), force) {
+    : machine_(std::make_shared<const model::MachineSettings>(scenario.machine)),
+      file_(writable_name(path, force), force) {
   file_.remove_unless_committed();
   records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "step", "step");
@@ -154,7 +157,7 @@ void StepStore::add(char axis, const frequency::StepSettings& settings,
   const bool linear = is_linear_axis(axis);
   const std::string length = linear ? "mm" : "deg";
   const double unit = linear ? mm : deg;
-  of_axis.attribute("travel_per_radian", travel_per_radian(machine_, axis) / unit);
+  of_axis.attribute("travel_per_radian", travel_per_radian(*machine_, axis) / unit);
   struct Column {
     const char* name;
     frequency::AxisSignal signal;

@@ -7,7 +7,7 @@
 
 #include "sim/frequency/bode.h"
 #include "sim/frequency/step_response.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/records/output_file.h"
 
 namespace servomill::sim::run {
@@ -36,7 +36,7 @@ class StepStore {
   void commit() { file_.commit(); }
 
  private:
-  model::MachineSettings machine_;
+  std::shared_ptr<const model::MachineSettings> machine_;
   records::OutputFile file_;
 };
 

@@ -1,4 +1,4 @@
-/// Results on disk: what a run leaves behind, and reading it back.
+/// Results on disk: what a run leaves behind.
 #pragma once
 
 #include <memory>
@@ -6,13 +6,22 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/model/forward.h"
 #include "sim/records/output_file.h"
-#include "sim/run/day_comparison.h"
 #include "sim/run/result_file.h"
-#include "sim/run/run.h"
-#include "sim/run/store_series.h"
+
+namespace servomill::sim::records {
+class Hdf5Group;
+}  // namespace servomill::sim::records
+
+namespace servomill::sim::evaluation {
+struct ComparisonRow;
+}  // namespace servomill::sim::evaluation
 
 namespace servomill::sim::run {
+
+struct CaseOutput;    // sim/run/run_case.h
+struct SeriesFormat;  // sim/run/store_series.h
 
 /// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
@@ -27,6 +36,8 @@ class RunStore {
   /// @throws InputError if the file exists and `force` is not set, SystemError
   RunStore(const std::string& path, bool force, const model::Scenario& scenario,
            unsigned threads = 0);
+  RunStore(RunStore&&) noexcept;
+  ~RunStore();
   void add(const CaseOutput& one);
   /// Writes the comparison and gives the file its final name.
   void commit(const std::vector<evaluation::ComparisonRow>& comparison);
@@ -37,20 +48,7 @@ class RunStore {
   records::OutputFile file_;
   std::string shown_;  // first case of the scenario: that of the default plot
   bool has_case_ = false;
-  SeriesFormat format_;
+  std::unique_ptr<const SeriesFormat> format_;
 };
-
-/// A run read back.
-struct StoredRun {
-  std::string scenario_name, title;
-  std::vector<std::unique_ptr<records::Series>> series;
-  std::vector<std::unique_ptr<std::vector<evaluation::ProbedFeature>>> probes;
-  std::vector<evaluation::CaseData> cases;      // point into `series` and `probes`
-  std::vector<model::QuantitySpec> quantities;  // of the stored scenario
-  std::vector<NamedDay> days;                   // of the cases that have one
-};
-
-/// @throws InputError if the file is none of ours or of another schema version
-StoredRun read_run(const std::string& path);
 
 }  // namespace servomill::sim::run

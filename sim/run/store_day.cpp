@@ -7,6 +7,7 @@
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"

@@ -5,7 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/geometry/error_function.h"
+#include "plant/geometry/error_model.h"
+#include "plant/geometry/grid_function.h"
+#include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 

@@ -1,7 +1,7 @@
 /// Error models in result files, for figures and for people.
 #pragma once
 
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/records/hdf5_group.h"
 
 namespace servomill::sim::run {

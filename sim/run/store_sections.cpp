@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/records/series.h"
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/records/output_file.h"
 #include "sim/run/machine_tests.h"

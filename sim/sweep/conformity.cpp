@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/model/scenario.h"
 #include "sim/sweep/statistics.h"
 
 namespace servomill::sim::sweep {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "sim/records/input_file.h"
 #include "sim/run/build_identity.h"
 #include "sim/run/result_file.h"
 

@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <system_error>
 
+#include "sim/model/scenario.h"
 #include "sim/records/input_file.h"
 #include "sim/run/build_identity.h"
+#include "sim/run/run_case.h"
 #include "sim/run/store.h"
+#include "sim/sweep/sweep.h"
 #include "sim/system/system_error.h"
 
 namespace servomill::sim::sweep {
@@ -38,12 +41,12 @@ bool has_point_series(const std::string& folder, const Sweep& sweep, std::uint64
 }
 
 void write_point_series(const std::string& folder, const Sweep& sweep, const SweepPoint& point) {
-  if (point.result.cases.empty()) return;
+  if (!point.result.cases || point.result.cases->empty()) return;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw system::SystemError(folder, "cannot be created", error.message());
   run::RunStore store(series_name(folder, point.index), true, sweep.at(point.index));
-  for (const run::CaseOutput& one : point.result.cases) store.add(one);
+  for (const run::CaseOutput& one : *point.result.cases) store.add(one);
   store.commit(point.result.rows);
 }
 

@@ -14,8 +14,12 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/preparation/preparation_cache.h"
+#include "sim/run/point_batch.h"
+#include "sim/sweep/selection.h"
+#include "sim/sweep/sweep.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::sweep {

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "sim/run/point_batch.h"
-#include "sim/sweep/selection.h"
-#include "sim/sweep/sweep.h"
 
 namespace servomill::sim::sweep {
+
+class Sweep;       // sim/sweep/sweep.h
+struct Selection;  // sim/sweep/selection.h
 
 /// One point that was run.
 struct SweepPoint {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/config/written_number.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/records/input_file.h"
 #include "sim/sweep/table_header.h"
@@ -48,7 +49,7 @@ std::optional<model::Tolerance> tolerance_of(const TableColumn& column) {
   const std::string lower = attribute_of(column, "tolerance_lower");
   if (lower.empty()) return std::nullopt;
   const std::string upper = attribute_of(column, "tolerance_upper");
-  return model::Tolerance{model::number_of(lower), model::number_of(upper)};
+  return model::Tolerance{config::number_of(lower), config::number_of(upper)};
 }
 
 std::string shown_number(double value) {

@@ -11,8 +11,11 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "sim/config/document.h"
+#include "sim/evaluation/comparison.h"
 #include "sim/input/identified_values.h"
 #include "sim/input/scenario_document.h"
+#include "sim/model/design.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/day_course.h"
 #include "sim/run/run.h"
@@ -143,16 +146,27 @@ Sweep::Sweep(std::string scenario_path, std::vector<std::string> changes,
              std::optional<std::string> text)
     : path_(std::move(scenario_path)),
       changes_(std::move(changes)),
-      source_(path_, changes_, std::move(text)),
-      base_(source_.at()) {
-  if (base_.sweep.empty()) {
+      source_(path_, changes_, std::move(text)) {
+  const auto base = std::make_shared<model::Scenario>(source_.at());
+  base_ = base;
+  if (base->sweep.empty()) {
     throw InputError({path_},
                      "has no [sweep] table; add one such as [sweep] "
                      "\"program.feed_override\" = [0.5, 1.0]");
   }
-  refuse_swept(changes_, base_);
-  refuse_other_machine(base_);
-  base_.swept_files = swept_files();
+  refuse_swept(changes_, *base);
+  refuse_other_machine(*base);
+  base->swept_files = swept_files();
+}
+
+const model::SweepDesign& Sweep::design() const { return base_->sweep; }
+const std::string& Sweep::name() const { return base_->name; }
+
+std::vector<std::string> Sweep::left_out() const {
+  std::vector<std::string> notes;
+  if (base_->day && !run::is_day_asked_for(*base_)) notes.emplace_back(run::kDayLeftOut);
+  if (base_->record.windows.limited()) notes.emplace_back(model::kWindowsLeftOut);
+  return notes;
 }
 
 std::vector<evaluation::ComparisonRow> quantities_of(const model::Scenario& scenario) {
@@ -208,7 +222,7 @@ InputError Sweep::at_the_list(const InputError& error,
       if (fault.place.file != "--set " + assignment(k, values[k])) continue;
       const model::SweepKey& key = design().keys[k];
       if (fault.message.ends_with("is not known")) {
-        fault.message += near_key(base_.resolved, key.key);
+        fault.message += near_key(base_->resolved, key.key);
       }
       fault.place = key.place;
       fault.message = fmt::format("sweep.\"{}\": {}", key.key, fault.message);
@@ -221,7 +235,7 @@ bool Sweep::draws_probing_noise() const {
   const auto& keys = design().keys;
   const bool is_swept =
       std::any_of(keys.begin(), keys.end(), [](const auto& one) { return one.key == "cmm.seed"; });
-  return design().sampled_dimensions > 0 && base_.cmm.uncertainty > 0.0 && !is_swept;
+  return design().sampled_dimensions > 0 && base_->cmm.uncertainty > 0.0 && !is_swept;
 }
 
 model::Scenario Sweep::at(std::uint64_t point) const {
@@ -230,7 +244,7 @@ model::Scenario Sweep::at(std::uint64_t point) const {
   for (std::size_t k = 0; k < values.size(); ++k) changes.push_back(assignment(k, values[k]));
   if (draws_probing_noise()) {
     const std::uint64_t sample = point % design().samples.count;
-    changes.push_back(fmt::format("cmm.seed={}", base_.cmm.seed + sample));
+    changes.push_back(fmt::format("cmm.seed={}", base_->cmm.seed + sample));
   }
   try {
     model::Scenario scenario = source_.at(changes);
@@ -242,7 +256,7 @@ model::Scenario Sweep::at(std::uint64_t point) const {
   }
 }
 
-std::vector<evaluation::ComparisonRow> Sweep::quantities() const { return quantities_of(base_); }
+std::vector<evaluation::ComparisonRow> Sweep::quantities() const { return quantities_of(*base_); }
 
 std::optional<preparation::RunEstimate> Sweep::refuse_hopeless() const {
   const auto probes = spread(design().size(), kProbes);

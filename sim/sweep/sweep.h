@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/comparison.h"
+#include "plant/vocabulary/input_error.h"
+#include "sim/evaluation/comparison_row.h"
 #include "sim/input/scenario_source.h"
-#include "sim/model/design.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/preparation/estimate.h"
 
 namespace servomill::sim::sweep {
@@ -31,8 +32,12 @@ class Sweep {
   /// and its samples name, and the machines that these are based on, one line each: "CHECKSUM
   /// NAME", or "unreadable NAME"; sorted. They belong to what the sweep is: a table of it is not
   /// gone on with when they have changed.
-  const model::Scenario& base() const { return base_; }
-  const model::SweepDesign& design() const { return base_.sweep; }
+  const model::Scenario& base() const { return *base_; }
+  const model::SweepDesign& design() const;
+  /// Name of the scenario.
+  const std::string& name() const;
+  /// Notes on parts of the scenario that a sweep omits: its day, windows of the recording.
+  std::vector<std::string> left_out() const;
 
   /// Reads the scenario with the values of a point set as --set would. Names of files among the
   /// values are relative to the scenario that holds the list. Sample n is probed with a noise of
@@ -64,7 +69,7 @@ class Sweep {
   std::string path_;
   std::vector<std::string> changes_;
   input::ScenarioSource source_;
-  model::Scenario base_;
+  std::shared_ptr<const model::Scenario> base_;
 };
 
 }  // namespace servomill::sim::sweep

@@ -18,6 +18,10 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/config/written_number.h"
+#include "sim/records/hdf5_dataset.h"
+#include "sim/records/hdf5_group.h"
+#include "sim/records/input_file.h"
 #include "sim/records/nexus.h"
 #include "sim/run/build_identity.h"
 #include "sim/run/store.h"
@@ -300,7 +304,7 @@ double value_in(const TableColumn& column, std::size_t c, const SweepPoint& poin
     const std::size_t q = c - point.values.size();
     return q < point.result.rows.size() ? point.result.rows[q].value : kNoNumber;
   }
-  if (column.texts.empty()) return model::number_of(point.values[c]);
+  if (column.texts.empty()) return config::number_of(point.values[c]);
   const auto text = std::find(column.texts.begin(), column.texts.end(), point.values[c]);
   assert(text != column.texts.end());
   return static_cast<double>(text - column.texts.begin());

@@ -11,11 +11,16 @@
 #include <vector>
 
 #include "plant/vocabulary/simd.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "sim/records/output_file.h"
 #include "sim/sweep/run_sweep.h"
 #include "sim/sweep/selection.h"
 #include "sim/sweep/table_columns.h"
+
+namespace servomill::sim::records {
+class Hdf5Dataset;
+class InputFile;
+}  // namespace servomill::sim::records
 
 namespace servomill::sim::sweep {
 

@@ -5,6 +5,10 @@
 #include <set>
 
 #include "sim/evaluation/comparison.h"
+#include "sim/model/design.h"
+#include "sim/model/scenario.h"
+#include "sim/records/input_file.h"
+#include "sim/records/nexus.h"
 #include "sim/run/result_file.h"
 #include "sim/sweep/sweep.h"
 

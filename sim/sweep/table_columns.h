@@ -7,10 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "sim/model/scenario.h"
-#include "sim/records/hdf5_dataset.h"
-#include "sim/records/input_file.h"
-#include "sim/records/nexus.h"
+#include "sim/model/forward.h"
+#include "sim/records/chunk_encoder.h"
+#include "sim/records/meaning.h"
+
+namespace servomill::sim::records {
+class InputFile;
+struct Plot;  // sim/records/nexus.h
+}  // namespace servomill::sim::records
 
 namespace servomill::sim::sweep {
 

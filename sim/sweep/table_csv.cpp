@@ -13,6 +13,7 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/model/scenario.h"
 #include "sim/records/input_file.h"
 #include "sim/run/point_batch.h"
 #include "sim/sweep/table_columns.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/input/read_scenario.h"
+#include "sim/records/input_file.h"
 #include "sim/run/result_file.h"
 #include "sim/sweep/table_columns.h"
 

@@ -5,8 +5,11 @@
 #include <string>
 
 #include "sim/model/scenario.h"
-#include "sim/records/input_file.h"
 #include "sim/sweep/selection.h"
+
+namespace servomill::sim::records {
+class InputFile;
+}  // namespace servomill::sim::records
 
 namespace servomill::sim::sweep {
 

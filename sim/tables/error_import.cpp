@@ -11,6 +11,7 @@
 #include "plant/geometry/travelling_errors.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/grid_import.h"
 #include "sim/tables/tool_side_errors.h"
 #include "sim/tables/tool_side_poses.h"

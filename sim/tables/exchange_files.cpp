@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::tables {
 namespace {

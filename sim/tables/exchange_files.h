@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "sim/tables/table_export.h"
 #include "sim/tables/table_files.h"
 
 namespace servomill::sim::tables {

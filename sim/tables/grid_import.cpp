@@ -9,6 +9,7 @@
 #include "plant/geometry/travelling_errors.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/for_all_points.h"
 #include "sim/tables/tool_side_errors.h"
 #include "sim/tables/tool_side_poses.h"

@@ -6,7 +6,7 @@
 
 #include "plant/geometry/error_model.h"
 #include "plant/kinematics/chain.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/tables/error_import.h"
 
 namespace servomill::sim::tables {

@@ -9,6 +9,7 @@
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/model/propagation.h"
 #include "sim/tables/table_uncertainty.h"
 #include "sim/tables/unknown_errors.h"

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/tables/bed_mesh.h"
+#include "sim/tables/table_export.h"
 #include "sim/tables/table_files.h"
 #include "sim/tables/verify_tables.h"
 

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/model/propagation.h"
 #include "sim/model/undetermined_errors.h"
 #include "sim/tables/table_comparison.h"

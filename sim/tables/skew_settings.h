@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/tables/skew.h"
+#include "sim/tables/table_export.h"
 #include "sim/tables/table_files.h"
 #include "sim/tables/verify_tables.h"
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "controllers/tables/control_table.h"
+#include "sim/tables/compensation_tables.h"
+#include "sim/tables/table_export.h"
 #include "sim/tables/verify_tables.h"
 
 namespace servomill::sim::tables {

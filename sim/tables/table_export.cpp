@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "sim/tables/table_uncertainty.h"
@@ -262,6 +263,12 @@ TableExport export_tables(const model::MachineSettings& machine, const plant::Er
   e.coarse = too_coarse(e);
   refuse_harm(e);
   return e;
+}
+
+std::shared_ptr<const TableExport> shared_export(const model::MachineSettings& machine,
+                                                 const plant::ErrorModel& errors,
+                                                 const TableRequest& request) {
+  return std::make_shared<const TableExport>(export_tables(machine, errors, request));
 }
 
 }  // namespace servomill::sim::tables

@@ -5,37 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/machine.h"
-#include "sim/model/tip_uncertainty.h"
+#include "sim/model/forward.h"
 #include "sim/tables/bed_mesh.h"
 #include "sim/tables/compensation_tables.h"
 #include "sim/tables/grid_tables.h"
 #include "sim/tables/skew.h"
+#include "sim/tables/table_request.h"
 #include "sim/tables/table_residuals.h"
 
 namespace servomill::sim::tables {
-
-struct TableRequest {
-  struct AxisRequest {
-    bool wanted = true;               // a table over this axis
-    std::optional<double> reference;  // m, rad; absent: middle of travel (linear), 0 (rotary)
-    std::optional<double> from, to;   // m, rad; absent: travel of the machine
-  };
-  TableFormat format = TableFormat::linuxcnc;
-  std::string model;                       // name of the error model, for the reader
-  double tool_length = 0.0;                // m, from the spindle nose to the tip
-  std::optional<double> spacing;           // m; absent: the smallest round one that fits
-  std::optional<double> rotary_spacing;    // rad
-  std::optional<std::size_t> most_points;  // absent: what the format takes
-  int comp_file_type = 0;                  // of LinuxCNC: 0 positions, 1 trims
-  std::optional<std::array<int, 2>> mesh;  // points along X and Y of a bed mesh, of firmwares
-  std::array<AxisRequest, kJoints> axes;
-  /// Errors that the readings of a calibrated machine leave undetermined
-  /// (sim/model/undetermined_errors.h).
-  std::vector<plant::ErrorName> unknown;
-  /// Numbers that a calibration has identified, with their covariance; none: values as given.
-  std::optional<model::UncertainErrors> identified;
-};
 
 struct TableExport {
   TableRequest request;
@@ -62,8 +40,5 @@ struct TableExport {
 ///         or the format can hold nothing of this model
 TableExport export_tables(const model::MachineSettings& machine, const plant::ErrorModel& errors,
                           const TableRequest& request);
-
-/// Report of what the tables correct and leave uncorrected: lines of text without line ends.
-std::vector<std::string> report(const TableExport& tables);
 
 }  // namespace servomill::sim::tables

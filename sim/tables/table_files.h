@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/tables/table_export.h"
-
 namespace servomill::sim::tables {
+
+struct TableExport;  // sim/tables/table_export.h
 
 struct TextFile {
   std::string name;  // without folder

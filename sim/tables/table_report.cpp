@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "sim/tables/table_uncertainty.h"

@@ -10,6 +10,7 @@
 #include "plant/geometry/travelling_errors.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/table_comparison.h"
 #include "sim/tables/tool_side_poses.h"
 

@@ -8,8 +8,11 @@
 #include "plant/drives/drive_bank.h"
 #include "plant/geometry/volumetric.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
 
 namespace servomill::sim {
 namespace {

@@ -159,6 +159,21 @@ class Readings(unittest.TestCase):
         self.assertEqual(found["at_20"][1][:2], ["readings are taken back to 20 degC with 11.5 um/m/K",
                                                  "drift is not removed: the standard evaluates readings as they were taken"])
 
+    def test_the_machine_of_readings_needs_no_drives(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "bare.toml"), "w", encoding="utf-8") as file:
+                file.write('structure = "[w b X Y Z (C1) t]"\n[axis.X]\ntravel_mm = [0, 1000]\n')
+            rows = [f"{x},{direction},{0.3 * x}" for direction, xs in (("forward", range(0, 1001, 100)), ("backward", range(1000, -1, -100)))
+                    for x in xs]
+            with open(os.path.join(folder, "x.csv"), "w", encoding="utf-8") as file:
+                file.write("X_mm,direction,deviation_um\n" + "\n".join(rows) + "\n")
+            with open(os.path.join(folder, "readings.toml"), "w", encoding="utf-8") as file:
+                file.write('machine = "bare.toml"\n[[group]]\nname = "X"\nkind = "positioning"\naxis = "X"\nreadings = "x.csv"\n'
+                           'at = { Y_mm = 0, Z_mm = -50 }\npoint_mm = [0, 0, -60]\nuncertainty_um = 1\n')
+            (report,) = json.loads(evaluate(os.path.join(folder, "readings.toml"), "--standard", "iso230-2", "--json").stdout)
+            found = {value["parameter"]: value["value"] for value in report["parameters"]}
+            self.assertAlmostEqual(found["M"], 300e-6, delta=1e-9)
+
     def test_a_standard_without_its_groups_is_refused(self):
         said = evaluate(self.ROUTER, "--standard", "10791-6", status=2).stderr
         self.assertIn("has no group for iso10791-6", said)

@@ -7,6 +7,7 @@
 
 #include <numbers>
 
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::circle_test {

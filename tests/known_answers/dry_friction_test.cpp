@@ -9,6 +9,7 @@
 #include "sim/frequency/axis_test_bench.h"
 #include "sim/input/read_scenario.h"
 #include "sim/metrology/circular_test.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::dry_friction_test {

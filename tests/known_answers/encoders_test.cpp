@@ -4,8 +4,12 @@
 
 #include <numbers>
 
+#include "plant/drives/screw_error.h"
+#include "plant/sensing/reference_marks.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/run/run_output.h"
 #include "tests/pattern.h"
 #include "tests/sim/small_scenario.h"
 

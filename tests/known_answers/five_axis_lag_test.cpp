@@ -13,6 +13,8 @@
 #include "plant/kinematics/chain.h"
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/comparison.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "strategies/pose_compensation.h"
 #include "tests/sim/five_axis_program.h"
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::integrator_test {

@@ -12,7 +12,7 @@ import statistics
 import sys
 
 ROOMS = ("plant", "controllers", "strategies", "sim", "tools")
-MAX = 100
+MAX = 39
 
 
 def included(text):

@@ -6,6 +6,9 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 

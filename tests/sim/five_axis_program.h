@@ -9,7 +9,11 @@
 #include <numbers>
 #include <string>
 
+#include "sim/evaluation/comparison.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/quantity_spec.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_case.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim {

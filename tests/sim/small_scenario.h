@@ -10,8 +10,11 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
+#include "sim/records/series.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
 
 namespace servomill::sim {
 

@@ -11,6 +11,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::strategies::contour_reversal_test {

@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
 #include "tests/strategies/identified_machines.h"

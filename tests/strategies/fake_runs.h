@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/axis_signals.h"
 #include "strategies/trial_runs.h"
 #include "tests/strategies/identified_machines.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fake_runs.h"
+#include "strategies/lesson.h"
 
 namespace servomill::strategies::learning_strategies_test {
 namespace {

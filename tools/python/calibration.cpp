@@ -12,7 +12,9 @@
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/report.h"
 #include "sim/calibration/suggestions.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine.h"
+#include "sim/model/machine_parts.h"
 #include "sim/readings/readings.h"
 #include "sim/system/output_name.h"
 #include "tools/python/computing.h"
@@ -43,14 +45,14 @@ Calibrated calibrated(const CalibrateRequest& request) {
   }
   const std::string file = tools::measured_machine(request.machine, request.readings);
   const sim::input::MachineDescription description = sim::input::read_machine_description(file);
-  const auto& chain = description.machine.chain;
-  const auto [lower, upper] = tools::travel_of(description.machine);
+  const auto& chain = sim::model::chain_of(*description.machine);
+  const auto [lower, upper] = sim::model::travel_of(*description.machine);
   Calibrated out{
       calibration::calibrate(sim::readings::read_readings(request.readings, chain, lower, upper,
                                                           sim::readings::Numbers::required),
                              chain, calibration::read_settings(request.readings, chain.layout)),
       {}};
-  out.suggestions = calibration::suggestions(out.result, description.machine);
+  out.suggestions = calibration::suggestions(out.result, *description.machine);
   if (!request.output.empty()) {
     if (!request.accept_contradictions) calibration::refuse_contradictions(out.result);
     calibration::write_identified_errors(request.output, out.result, file, request.model,

@@ -7,6 +7,7 @@
 
 #include "sim/model/scenario.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tools/python/computing.h"
 
 namespace servomill::python {

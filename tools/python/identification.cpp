@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/identified_machine.h"
 #include "sim/identification/identify.h"
 #include "sim/identification/report.h"

@@ -9,8 +9,11 @@
 
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/user_file.h"
+#include "sim/engine/case_result.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
 #include "tools/python/comparison.h"
 #include "tools/python/computing.h"

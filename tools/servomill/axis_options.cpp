@@ -12,6 +12,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/config/option_value.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::tools {
 
@@ -43,10 +45,11 @@ void restrict_to_case(const Options& options, sim::model::Scenario& scenario) {
   scenario.cases = {one};
 }
 
-sim::model::Scenario scenario_for_axes(const Options& options) {
+std::shared_ptr<const sim::model::Scenario> scenario_for_axes(const Options& options) {
   load_plugins(options);
-  sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
-  restrict_to_case(options, scenario);
+  const auto scenario = std::make_shared<sim::model::Scenario>(
+      sim::input::read_scenario(options.word(), options.list("set")));
+  restrict_to_case(options, *scenario);
   return scenario;
 }
 

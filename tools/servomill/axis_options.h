@@ -1,12 +1,16 @@
 /// Options of the commands that look at the servo loops of one axis.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/axes.h"
+#include "plant/vocabulary/ticks.h"
 #include "sim/config/quantity.h"
-#include "sim/model/scenario.h"
+#include "sim/model/forward.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -20,7 +24,7 @@ void restrict_to_case(const Options& options, sim::model::Scenario& scenario);
 
 /// The scenario of the command, its machine and feedback hardware as --case has them.
 /// @throws InputError for a case that there is not
-sim::model::Scenario scenario_for_axes(const Options& options);
+std::shared_ptr<const sim::model::Scenario> scenario_for_axes(const Options& options);
 
 /// Joints that --axis names: one, several ("X,Y") or all.
 /// @throws InputError for an axis that the machine lacks

@@ -8,6 +8,8 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/bode.h"
+#include "sim/model/machine_parts.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/run/servo_store.h"
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
@@ -169,7 +171,7 @@ void add_json(const sim::frequency::BodeResult& result, char axis, JsonList& lis
 void print_result(const sim::frequency::BodeResult& result,
                   const sim::model::MachineSettings& machine, int joint, const Options& options,
                   JsonList& list) {
-  const char axis = machine.chain.layout.letter_of(joint);
+  const char axis = sim::model::layout_of(machine).letter_of(joint);
   if (result.fault) {
     fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n", axis,
                sim::run::name_of(result.loop), *result.fault);
@@ -180,7 +182,7 @@ void print_result(const sim::frequency::BodeResult& result,
   }
   if (options.has("quiet")) return;
   for (const sim::frequency::BodeCurve& curve : result.curves) print_curve(result, curve, joint);
-  print_summary(result, joint, machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+  print_summary(result, joint, sim::model::current_limit_of(machine, joint));
 }
 
 }  // namespace
@@ -199,15 +201,15 @@ int bode_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   ProgressLine line(options);
-  const sim::model::Scenario scenario = scenario_for_axes(options);
-  const sim::model::MachineSettings& machine = scenario.machine;
+  const auto scenario = scenario_for_axes(options);
+  const sim::model::MachineSettings& machine = sim::model::machine_of(*scenario);
   const std::vector<BodeTask> tasks = bode_tasks(options, machine);
   std::optional<sim::run::BodeStore> store;
   if (options.has("output")) {
-    store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
+    store.emplace(options.get<std::string>("output"), options.has("force"), *scenario);
   }
   const bool is_table = !options.has("quiet") && !options.has("json");
-  const Tick delay = sim::frequency::reading_delay_of(scenario);
+  const Tick delay = sim::frequency::reading_delay_of(*scenario);
   JsonList list;
   bool stable = true;
   int headed = -1;
@@ -215,7 +217,7 @@ int bode_command(const Arguments& arguments) {
   for (const auto& [joint, settings] : tasks) {
     const sim::frequency::BodeResult result = sim::frequency::bode(machine, joint, delay, settings);
     stable &= result.stable && !result.fault;
-    if (store) store->add(machine.chain.layout.letter_of(joint), result);
+    if (store) store->add(sim::model::layout_of(machine).letter_of(joint), result);
     loops.advance();
     const auto hidden = line.hidden();
     if (is_table && joint != headed) fmt::print("{}\n", axis_headline(machine, joint, delay));

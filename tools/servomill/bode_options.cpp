@@ -7,6 +7,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/design.h"
+#include "sim/model/machine.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/frequency/bode.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {

@@ -7,6 +7,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_quantities.h"
@@ -292,8 +294,8 @@ void add_budget_options(Options& options) {
 // Names parts of the scenario that have no budget.
 void tell_parts_without_budget(const sim::model::Scenario& scenario, ProgressLine& line) {
   const auto hidden = line.hidden();
-  if (scenario.day) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
-  if (scenario.record.windows.limited()) {
+  if (sim::model::has_day(scenario)) fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
+  if (sim::model::has_windows(scenario)) {
     fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
   }
 }
@@ -323,8 +325,8 @@ int budget_command(const Arguments& arguments) {
   load_plugins(options);
 
   ProgressLine line(options);
-  const sim::model::Scenario scenario =
-      sim::input::read_scenario(options.word(), options.list("set"));
+  const auto read = sim::input::shared_scenario(options.word(), options.list("set"));
+  const sim::model::Scenario& scenario = *read;
   const std::vector<sim::model::QuantitySpec> quantities = chosen(scenario, options);
   tell_parts_without_budget(scenario, line);
   std::optional<sim::run::BudgetStore> store;
@@ -350,7 +352,7 @@ int budget_command(const Arguments& arguments) {
     print_interrupted("");
     return kInterrupted;
   }
-  if (!options.has("json")) fmt::print("{}\n", scenario.title);
+  if (!options.has("json")) fmt::print("{}\n", sim::model::title_of(scenario));
   bool all = true;
   JsonList list;
   for (const sim::run::Budget& budget : budgets) {

@@ -6,7 +6,8 @@
 #include "sim/calibration/report.h"
 #include "sim/calibration/suggestions.h"
 #include "sim/calibration/write_readings.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine_parts.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/progress_line.h"
 #include "tools/servomill/readings_options.h"
@@ -81,8 +82,8 @@ int calibrate_command(const Arguments& arguments) {
   const std::string file = options.word(), machine_file = measured_machine(options, options.word());
   const sim::input::MachineDescription description =
       sim::input::read_machine_description(machine_file);
-  const plant::MachineChain& chain = description.machine.chain;
-  const auto [lower, upper] = travel_of(description.machine);
+  const plant::MachineChain& chain = sim::model::chain_of(*description.machine);
+  const auto [lower, upper] = sim::model::travel_of(*description.machine);
   sim::readings::Readings readings = sim::readings::read_readings(
       file, chain, lower, upper,
       options.has("make-up") ? sim::readings::Numbers::ignored : sim::readings::Numbers::required);
@@ -101,7 +102,7 @@ int calibrate_command(const Arguments& arguments) {
   const calibration::Calibration result =
       calibration::calibrate(std::move(readings), chain, settings);
   const bool json = options.has("json"), prints = !options.has("quiet") && !json;
-  const auto suggestions = json || prints ? calibration::suggestions(result, description.machine)
+  const auto suggestions = json || prints ? calibration::suggestions(result, *description.machine)
                                           : std::vector<std::string>();
   line.end();
   if (json) {

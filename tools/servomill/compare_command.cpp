@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/model/scenario.h"
+#include "sim/model/quantity_spec.h"
 #include "sim/run/day_comparison.h"
 #include "sim/run/day_course.h"
 #include "sim/run/day_report.h"
-#include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/json_list.h"
 #include "tools/servomill/progress_line.h"

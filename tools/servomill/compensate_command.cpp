@@ -60,7 +60,7 @@ int compensate_command(const Arguments& arguments) {
   line.end();
   if (!to_stdout) sim::system::write_text_file(name, done.program, force);
   if (const std::string points = output_of(options, "point-uncertainty", ".csv"); !points.empty()) {
-    sim::system::write_text_file(points, done.uncertainty->csv(), force);
+    sim::system::write_text_file(points, sim::programs::points_csv(done), force);
   }
   if (options.has("record")) {
     done.record.write(options.get<std::string>("record"), force,

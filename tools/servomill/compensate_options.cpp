@@ -9,7 +9,8 @@
 #include <filesystem>
 
 #include "plant/vocabulary/units.h"
-#include "sim/model/design.h"
+#include "sim/config/written_number.h"
+#include "sim/model/machine.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/program_options.h"
 
@@ -105,7 +106,7 @@ double resolution_of(const Options& options) {
 std::optional<int> preset_of(const Options& options) {
   if (!options.has("preset")) return std::nullopt;
   const auto& text = options.get<std::string>("preset");
-  const double number = sim::model::number_of(text);
+  const double number = sim::config::number_of(text);
   if (number >= 0.0 && number <= 9999.0 && number == std::floor(number)) {
     return static_cast<int>(number);
   }

@@ -8,6 +8,7 @@
 #include "sim/input/key_list.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/scenario_name.h"
+#include "sim/model/scenario.h"
 #include "tools/servomill/command_pages.h"
 
 namespace servomill::tools {

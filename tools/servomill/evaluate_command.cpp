@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/input/read_scenario.h"
 #include "sim/recordings/read_recording.h"
 #include "sim/standards/ball_test.h"
 #include "sim/standards/circle_test.h"
@@ -192,9 +191,8 @@ std::vector<Report> reports_of_groups(const std::string& file, Standard standard
                      "iso230-7 is evaluated from a CSV file of sensors; see "
                      "sim/standards/README.md");
   }
-  const auto machine = sim::input::read_machine_file(measured_machine(options, file));
-  const auto [lower, upper] = travel_of(machine);
-  const auto all = sim::readings::read_readings(file, machine.chain, lower, upper);
+  const MeasuredMachine machine = read_measured_machine(options, file);
+  const auto all = sim::readings::read_readings(file, machine.chain, machine.lower, machine.upper);
   const JointLayout& layout = machine.chain.layout;
   std::vector<Report> out;
   std::vector<standards::PositioningFile> runs;

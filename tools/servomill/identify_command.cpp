@@ -3,10 +3,13 @@
 #include <numeric>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/identification/experiment.h"
 #include "sim/identification/identified_machine.h"
+#include "sim/identification/identify.h"
 #include "sim/identification/make_up.h"
 #include "sim/identification/report.h"
 #include "sim/identification/store_identification.h"
+#include "sim/input/write_identified.h"
 #include "sim/run/result_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/progress_line.h"
@@ -119,8 +122,9 @@ int identify_command(const Arguments& arguments) {
     if (!options.has("quiet")) fmt::print("written to {}\n", made_up);
     return kDone;
   }
-  const sim::identification::Identification result = sim::identification::identify(
-      experiment, thread_count(options), intervals_of(options, experiment));
+  const auto found = sim::identification::shared_identification(experiment, thread_count(options),
+                                                                intervals_of(options, experiment));
+  const sim::identification::Identification& result = *found;
   line.end();
   const bool prints = !options.has("quiet") && !options.has("json");
   if (options.has("json")) {

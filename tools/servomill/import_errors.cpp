@@ -4,8 +4,9 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/config/document.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_errors.h"
-#include "sim/input/read_machine.h"
+#include "sim/model/machine.h"
 #include "sim/system/read_file.h"
 #include "sim/system/write_file.h"
 #include "sim/tables/error_import.h"
@@ -76,21 +77,21 @@ int import_errors(const Options& options) {
   sim::system::refuse_unwritable_text(path, options.has("force"));
   const auto described = sim::input::read_machine_description(options.get<std::string>("machine"),
                                                               options.list("set"));
-  const plant::MachineChain& chain = described.machine.chain;
+  const plant::MachineChain& chain = described.machine->chain;
 
   sim::tables::ImportedColumns columns = read_files(options);
   std::vector<std::string> assumptions;
-  sim::tables::cover_travel(columns, described.machine, assumptions);
+  sim::tables::cover_travel(columns, *described.machine, assumptions);
   const sim::tables::ErrorImport imported = sim::tables::import_errors(columns, chain);
   std::vector<std::string> comments = {
-      fmt::format("errors of {} from {}", described.machine.name,
+      fmt::format("errors of {} from {}", described.machine->name,
                   fmt::join(options.list("import"), ", ")),
       fmt::format("document: {}", sim::tables::rules_of(columns.format).document)};
   comments.insert(comments.end(), imported.notes.begin(), imported.notes.end());
   comments.insert(comments.end(), assumptions.begin(), assumptions.end());
   const std::string text = sim::tables::errors_toml(imported.errors, name, comments);
   const std::size_t positions = sim::tables::verify_import(
-      columns, chain, read_back(text, path, name, sim::input::MachineAxes(described.machine)));
+      columns, chain, read_back(text, path, name, sim::input::MachineAxes(*described.machine)));
   sim::system::write_text_file(path, text, options.has("force"));
 
   if (options.has("quiet")) return kDone;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
 #include "sim/limits/limit_check.h"
 #include "sim/recordings/read_recording.h"
 #include "tools/servomill/axis_options.h"
@@ -116,7 +116,7 @@ int limits_command(const Arguments& arguments) {
           .machine;
   ProgressLine line(options);
   const auto recording = sim::recordings::read_recording(options.word(), text_of("time-unit"));
-  const sim::limits::LimitReport report = sim::limits::check_limits(recording, machine, request);
+  const sim::limits::LimitReport report = sim::limits::check_limits(recording, *machine, request);
   line.end();
   const auto shown = static_cast<std::size_t>(top);
   if (options.has("json")) {

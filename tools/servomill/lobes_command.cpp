@@ -8,13 +8,12 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/lobes.h"
-#include "sim/input/machine_document.h"
-#include "sim/input/read_machine.h"
-#include "sim/input/read_scenario.h"
+#include "sim/model/design.h"
 #include "sim/system/json.h"
 #include "sim/system/worker_thread.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
+#include "tools/servomill/lobes_inputs.h"
 #include "tools/servomill/progress_line.h"
 
 namespace servomill::tools {
@@ -28,50 +27,8 @@ constexpr int kMaxPoints = 2000;
 constexpr int kMaxTeeth = 100;
 constexpr std::array<std::string_view, 3> kMillings = {"slot", "up", "down"};
 
-// Data of a machine or a scenario; options override them.
-struct Given {
-  std::vector<plant::StructuralMode> modes;
-  std::optional<plant::CuttingCoefficients> coefficients;
-  plant::Cutter cutter = {.teeth = 0};  // radius 0, teeth 0: none
-};
-
-plant::Cutter tool_of(const Options& options, const sim::model::ProgramSpec& program) {
-  if (!options.has("tool")) {
-    if (program.cutters.size() == 1) return program.cutters.begin()->second;
-    if (program.cutters.empty()) return {.teeth = 0};
-  }
-  std::vector<std::string> numbers;
-  for (const auto& [number, cutter] : program.cutters) numbers.push_back(std::to_string(number));
-  const std::string there_are =
-      fmt::format("the scenario has {} with a diameter_mm", fmt::join(numbers, ", "));
-  if (!options.has("tool")) throw InputError({"--tool"}, "is missing; " + there_are);
-  const int tool = options.get<int>("tool");
-  const auto found = program.cutters.find(tool);
-  if (found == program.cutters.end()) {
-    throw InputError({"--tool"}, fmt::format("no tool {}; {}", tool, there_are));
-  }
-  return found->second;
-}
-
-Given read_files(const Options& options) {
-  Given out;
-  if (options.words().empty()) return out;
-  const std::string path = options.word();
-  if (sim::input::is_machine_file(path)) {
-    if (options.has("tool")) throw InputError({"--tool"}, "needs a scenario, which has tools");
-    out.modes =
-        sim::input::read_machine_description(path, options.list("set")).machine.structural_modes;
-    return out;
-  }
-  const sim::model::Scenario scenario = scenario_for_axes(options);
-  out.modes = scenario.machine.structural_modes;
-  if (scenario.cutting) out.coefficients = scenario.cutting->coefficients;
-  out.cutter = tool_of(options, scenario.program);
-  return out;
-}
-
 // The mode of --stiffness, --frequency, --damping and --mode-angle, or those of the file.
-std::vector<plant::StructuralMode> modes_of(const Options& options, const Given& given) {
+std::vector<plant::StructuralMode> modes_of(const Options& options, const LobesInputs& given) {
   constexpr std::array<const char*, 3> kNeeded = {"stiffness", "frequency", "damping"};
   const auto has = [&](const char* name) { return options.has(name); };
   if (std::none_of(kNeeded.begin(), kNeeded.end(), has)) {
@@ -105,7 +62,7 @@ std::vector<plant::StructuralMode> modes_of(const Options& options, const Given&
   return {mode};
 }
 
-plant::CuttingCoefficients coefficients_of(const Options& options, const Given& given) {
+plant::CuttingCoefficients coefficients_of(const Options& options, const LobesInputs& given) {
   plant::CuttingCoefficients K = given.coefficients.value_or(plant::CuttingCoefficients{});
   bool is_given = given.coefficients.has_value();
   if (options.has("material")) {
@@ -150,7 +107,7 @@ void set_engagement(const Options& options, plant::FlankEngagement& cut) {
   }
 }
 
-plant::FlankEngagement engagement_of(const Options& options, const Given& given) {
+plant::FlankEngagement engagement_of(const Options& options, const LobesInputs& given) {
   plant::FlankEngagement cut{.coefficients = coefficients_of(options, given),
                              .teeth = given.cutter.teeth,
                              .helix = given.cutter.helix,
@@ -176,7 +133,7 @@ plant::FlankEngagement engagement_of(const Options& options, const Given& given)
 }
 
 sim::frequency::LobesRequest request_of(const Options& options) {
-  const Given given = read_files(options);
+  const LobesInputs given = lobes_inputs(options);
   sim::frequency::LobesRequest out;
   const double feed = *quantity_option(options, "feed-angle", sim::config::kAngle, "deg");
   const Eigen::Vector3d e1(std::cos(feed), std::sin(feed), 0.0);

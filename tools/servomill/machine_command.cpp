@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/input/controls/machine_draft.h"
+#include "sim/model/machine.h"
 #include "sim/system/read_file.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"

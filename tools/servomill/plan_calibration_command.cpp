@@ -11,7 +11,8 @@
 #include "plant/vocabulary/units.h"
 #include "sim/calibration/plan.h"
 #include "sim/calibration/write_readings.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine_parts.h"
 #include "sim/programs/measuring/measuring_program.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/progress_line.h"
@@ -162,11 +163,13 @@ int plan_calibration_command(const Arguments& arguments) {
     refuse_unwritable_plan(options.get<std::string>("output"), options.has("force"));
   }
   ProgressLine line(options);
-  const auto machine = sim::input::read_machine_description(machine_file).machine;
+  const auto described = sim::input::read_machine_description(machine_file);
+  const sim::model::MachineSettings& machine = *described.machine;
+  const plant::MachineChain& chain = sim::model::chain_of(machine);
   std::optional<sim::readings::Readings> taken;
   if (has_readings) {
-    const auto [lower, upper] = travel_of(machine);
-    taken = sim::readings::read_readings(options.word(), machine.chain, lower, upper);
+    const auto [lower, upper] = sim::model::travel_of(machine);
+    taken = sim::readings::read_readings(options.word(), chain, lower, upper);
   }
   const calibration::Plan plan =
       calibration::plan_calibration(machine, settings, taken ? &*taken : nullptr);
@@ -178,7 +181,7 @@ int plan_calibration_command(const Arguments& arguments) {
     const auto& folder = options.get<std::string>("output");
     std::filesystem::create_directories(folder);
     const sim::readings::Readings planned = calibration::planned_readings(plan);
-    calibration::write_plan(folder, planned, machine.chain, machine_file, options.has("force"));
+    calibration::write_plan(folder, planned, chain, machine_file, options.has("force"));
     write_programs(folder, planned, machine, probing, controls, options);
     if (!json) fmt::print("written to {}\n", folder);
   }

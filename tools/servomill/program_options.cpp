@@ -1,6 +1,7 @@
 #include "tools/servomill/program_options.h"
 
 #include "sim/model/design.h"
+#include "sim/model/machine.h"
 #include "tools/servomill/axis_options.h"
 
 namespace servomill::tools {

@@ -1,8 +1,9 @@
 #include "tools/servomill/readings_options.h"
 
-#include <limits>
-
 #include "plant/vocabulary/input_error.h"
+#include "sim/input/machine_description.h"
+#include "sim/model/machine.h"
+#include "sim/model/machine_parts.h"
 #include "sim/readings/readings.h"
 
 namespace servomill::tools {
@@ -22,14 +23,10 @@ std::string measured_machine(const std::string& machine, const std::string& read
   throw InputError({readings}, "has no machine; add machine = \"FILE\", or pass --machine");
 }
 
-std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine) {
-  Joints lower = machine.nc.lower, upper = machine.nc.upper;
-  for (int j = 0; j < kJoints; ++j) {
-    if (lower[j] < upper[j]) continue;
-    lower[j] = -std::numeric_limits<double>::infinity();
-    upper[j] = std::numeric_limits<double>::infinity();
-  }
-  return {lower, upper};
+MeasuredMachine read_measured_machine(const Options& options, const std::string& readings) {
+  const auto described = sim::input::read_machine_description(measured_machine(options, readings));
+  const auto [lower, upper] = sim::model::travel_of(*described.machine);
+  return {sim::model::chain_of(*described.machine), lower, upper};
 }
 
 }  // namespace servomill::tools

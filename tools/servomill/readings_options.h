@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 
-#include "sim/model/machine.h"
+#include "plant/vocabulary/axes.h"
+#include "sim/readings/readings.h"
 #include "tools/servomill/command.h"
 
 namespace servomill::tools {
@@ -17,7 +17,14 @@ std::string measured_machine(const Options& options, const std::string& readings
 /// The same of `machine`, if it is not empty.
 std::string measured_machine(const std::string& machine, const std::string& readings);
 
-/// Travel of a machine (5 and 5; m, rad); infinite for an axis without one.
-std::pair<Joints, Joints> travel_of(const sim::model::MachineSettings& machine);
+/// The machine that was measured; its file needs no drives.
+struct MeasuredMachine {
+  plant::MachineChain chain;
+  Joints lower, upper;  // m, rad; travel, infinite for an axis without one
+};
+
+/// Reads the machine that measured_machine() names.
+/// @throws InputError
+MeasuredMachine read_measured_machine(const Options& options, const std::string& readings);
 
 }  // namespace servomill::tools

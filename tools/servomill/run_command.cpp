@@ -1,26 +1,23 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <mutex>
+#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "sim/input/plugins.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/preparation/estimate.h"
 #include "sim/run/run.h"
 #include "sim/run/store.h"
-#include "sim/run/touch_record.h"
 #include "sim/system/system_error.h"
-#include "sim/system/write_file.h"
 #include "tools/servomill/command.h"
 #include "tools/servomill/interrupt.h"
-#include "tools/servomill/json_list.h"
+#include "tools/servomill/kept_cases.h"
 #include "tools/servomill/progress_line.h"
 #include "tools/servomill/run_reports.h"
 
@@ -28,111 +25,6 @@ namespace servomill::tools {
 namespace {
 
 namespace po = boost::program_options;
-
-// Notes on what the NC corrected or could not do as programmed, once for all cases.
-void print_notes(const sim::run::RunOutput& output) {
-  std::set<std::string> said;
-  for (const sim::run::CaseOutput& one : output.cases) {
-    for (const std::string& note : one.notes) {
-      if (said.insert(note).second) fmt::print(stderr, "{}\n", note);
-    }
-  }
-}
-
-void print_outcomes(const sim::run::RunOutput& output) {
-  for (const sim::run::CaseOutput& one : output.cases) {
-    const sim::engine::CaseResult& result = one.result;
-    if (result.outcome.finished) {
-      fmt::print("{:<12} {:8.2f} s of motion in {:6.2f} s ({:.0f} x real time), {:.0f} blocks\n",
-                 one.name, result.simulated_time, result.wall_time,
-                 result.simulated_time / result.wall_time, one.blocks);
-    } else {
-      fmt::print("{:<12} stopped: {}\n", one.name, result.outcome.reason);
-    }
-  }
-}
-
-// Output that a run leaves behind when it does not end. For any thread.
-class Kept {
- public:
-  explicit Kept(const sim::model::Scenario& scenario) {
-    for (const sim::model::CaseSpec& one : scenario.cases) incomplete_.push_back(one.name);
-  }
-  void in(const std::string& partial_path) {
-    const std::scoped_lock lock(mutex_);
-    partial_path_ = partial_path;
-  }
-  void add(const sim::run::CaseOutput& one) {
-    const std::scoped_lock lock(mutex_);
-    if (one.result.outcome.interrupted) return;
-    std::erase(incomplete_, one.name);
-    complete_.push_back(one.name);
-  }
-  bool all_complete() const {
-    const std::scoped_lock lock(mutex_);
-    return incomplete_.empty();
-  }
-
-  std::string said() const {
-    const std::scoped_lock lock(mutex_);
-    if (partial_path_.empty()) return {};
-    std::string text = complete_.empty()
-                           ? "no complete case"
-                           : fmt::format("complete cases {}", fmt::join(complete_, ", "));
-    if (!incomplete_.empty()) {
-      text += fmt::format("; interrupted {}", fmt::join(incomplete_, ", "));
-    }
-    return kept_in(partial_path_, text);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::string partial_path_;
-  std::vector<std::string> complete_, incomplete_;
-};
-
-void write_touches(const sim::run::RunOutput& output, const Options& options) {
-  const std::filesystem::path folder = options.get<std::string>("touches");
-  std::filesystem::create_directories(folder);
-  for (const sim::run::CaseOutput& one : output.cases) {
-    sim::system::write_text_file((folder / (one.name + ".csv")).string(),
-                                 sim::run::touches_csv(one.touches, one.chain.layout),
-                                 options.has("force"));
-  }
-}
-
-// Prints what a run has found; the exit status.
-int print_output(const sim::run::RunOutput& output, const Options& options,
-                 const sim::model::Scenario& scenario, const std::string& path) {
-  const bool json = options.has("json"), quiet = options.has("quiet");
-  if (options.has("touches")) write_touches(output, options);
-  if (options.has("readings")) write_readings(output, options);
-  bool finished = all_days_ended(output);
-  for (const sim::run::CaseOutput& one : output.cases) finished &= one.result.outcome.finished;
-  print_notes(output);
-  if (json) {
-    JsonList list;
-    for (const auto& row : output.comparison) list.add(sim::evaluation::to_json(row));
-    add_report_json(output, list);
-    list.end();
-  } else if (!quiet) {
-    fmt::print("{}\n\n", scenario.title);
-    print_outcomes(output);
-    if (!output.comparison.empty() || scenario.tests.empty()) {
-      fmt::print("\n{}", sim::evaluation::format_table(output.comparison));
-    }
-    print_tests(output, scenario);
-    print_days(output);
-    fmt::print("\nwritten to {}\n", path);
-  }
-  if (!finished && (json || quiet)) {
-    for (const sim::run::CaseOutput& one : output.cases) {
-      if (one.result.outcome.finished) continue;
-      fmt::print(stderr, "case {} stopped: {}\n", one.name, one.result.outcome.reason);
-    }
-  }
-  return finished ? kDone : kMachineStopped;
-}
 
 void add_run_options(Options& options) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT.h5"),
@@ -182,10 +74,10 @@ int run_command(const Arguments& arguments) {
   if (options.has("isolate")) sim::input::isolate_plugins();
 
   ProgressLine line(options);
-  const sim::model::Scenario scenario =
-      sim::input::read_scenario(options.word(), options.list("set"));
-  const std::string path =
-      sim::run::writable_name(output_name(options, scenario.name, ""), options.has("force"));
+  const auto read = sim::input::shared_scenario(options.word(), options.list("set"));
+  const sim::model::Scenario& scenario = *read;
+  const std::string path = sim::run::writable_name(
+      output_name(options, sim::model::name_of(scenario), ""), options.has("force"));
   refuse_other_format(path);
   const auto& stop = stop_on_interrupt();
   std::optional<sim::run::RunStore> store;
@@ -193,7 +85,7 @@ int run_command(const Arguments& arguments) {
   control.threads = thread_count(options);
   control.stop = &stop;
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
-  Kept kept(scenario);
+  KeptCases kept(sim::model::case_names(scenario));
   const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
   control.case_done = [&](const sim::run::CaseOutput& one) {
     store->add(one);
@@ -207,15 +99,15 @@ int run_command(const Arguments& arguments) {
     store.emplace(path, options.has("force"), scenario, control.threads);
     kept.in(store->partial_path());
   };
-  sim::run::RunOutput output;
+  std::shared_ptr<const sim::run::RunOutput> output;
   try {
-    output = sim::run::run_scenario(scenario, control);
+    output = sim::run::shared_run(scenario, control);
     line.end();
     if (!kept.all_complete()) {
       print_interrupted(kept.said());
       return kInterrupted;
     }
-    store->commit(output.comparison);
+    store->commit(sim::run::comparison_of(*output));
   } catch (const sim::system::SystemError& error) {
     line.end();
     fmt::print(stderr, "{}\n", error.what());
@@ -227,7 +119,7 @@ int run_command(const Arguments& arguments) {
     return kInterrupted;
   }
 
-  return print_output(output, options, scenario, path);
+  return print_output(*output, options, scenario, path);
 }
 
 }  // namespace servomill::tools

@@ -6,8 +6,10 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
-#include "sim/frequency/frequency_response.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/stability.h"
+#include "sim/model/machine_parts.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/run/servo_store.h"
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
@@ -134,7 +136,7 @@ std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineS
                                                       int joint, Tick delay,
                                                       sim::frequency::StepSettings& settings,
                                                       ProgressLine& line) {
-  const char axis = machine.chain.layout.letter_of(joint);
+  const char axis = sim::model::layout_of(machine).letter_of(joint);
   const bool is_velocity = settings.kind == sim::frequency::StepKind::velocity;
   const double slowest = sim::frequency::slowest_time_constant(
       machine, joint, delay,
@@ -148,7 +150,7 @@ std::optional<sim::frequency::StepResponse> simulated(const sim::model::MachineS
   if (settings.duration == 0.0) {
     settings.duration = std::min(kLongestDuration, kDefaultDecay * slowest);
   }
-  const auto ticks = static_cast<Tick>(settings.duration / machine.nc.periods.base);
+  const auto ticks = static_cast<Tick>(settings.duration / sim::model::base_period_of(machine));
   sim::frequency::StepResponse response = sim::frequency::step_response(
       machine, joint, delay, settings, std::max<Tick>(1, ticks / kMaxRows));
   if (response.fault) {
@@ -192,6 +194,14 @@ void add_step_options(Options& options) {
   options.add()("quiet,q", "prints only faults");
 }
 
+// The machine of the scenario, --linear without what is not linear.
+std::shared_ptr<const sim::model::MachineSettings> stepped_machine(
+    const Options& options, const std::shared_ptr<const sim::model::Scenario>& scenario) {
+  const sim::model::MachineSettings& machine = sim::model::machine_of(*scenario);
+  if (options.has("linear")) return sim::frequency::shared_linearised(machine);
+  return {scenario, &machine};
+}
+
 }  // namespace
 
 int step_command(const Arguments& arguments) {
@@ -206,29 +216,29 @@ int step_command(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
 
   ProgressLine line(options);
-  const sim::model::Scenario scenario = scenario_for_axes(options);
-  const auto joints = chosen_joints(options, scenario.machine);
+  const auto scenario = scenario_for_axes(options);
+  const auto stepped = stepped_machine(options, scenario);
+  const sim::model::MachineSettings& machine = *stepped;
+  const auto joints = chosen_joints(options, machine);
   const auto kinds = kinds_of(options);
   refuse_wrong_settings(options, joints, kinds);
   std::optional<sim::run::StepStore> store;
   if (options.has("output")) {
-    store.emplace(options.get<std::string>("output"), options.has("force"), scenario);
+    store.emplace(options.get<std::string>("output"), options.has("force"), *scenario);
   }
-  const sim::model::MachineSettings machine =
-      options.has("linear") ? sim::frequency::linearised(scenario.machine) : scenario.machine;
   const bool json = options.has("json"), silent = options.has("quiet") && !json;
   JsonList list;
   Stage steps("steps", static_cast<double>(joints.size() * kinds.size()), Steps::unlike);
-  const Tick delay = sim::frequency::reading_delay_of(scenario);
+  const Tick delay = sim::frequency::reading_delay_of(*scenario);
   bool stable = true;
   const auto print = [&](const sim::frequency::StepSettings& settings,
                          const sim::frequency::StepResponse& response, int joint) {
     const auto hidden = line.hidden();
     if (json) {
-      list.add(to_json(settings, response, machine.chain.layout.letter_of(joint)));
+      list.add(to_json(settings, response, sim::model::layout_of(machine).letter_of(joint)));
     } else if (!silent) {
-      print_figures(settings, response, joint,
-                    scenario.machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+      const sim::model::MachineSettings& limited = sim::model::machine_of(*scenario);
+      print_figures(settings, response, joint, sim::model::current_limit_of(limited, joint));
     }
   };
   for (const int joint : joints) {
@@ -242,7 +252,7 @@ int step_command(const Arguments& arguments) {
       steps.advance();
       stable &= found.has_value();
       if (!found) continue;
-      if (store) store->add(machine.chain.layout.letter_of(joint), settings, *found);
+      if (store) store->add(sim::model::layout_of(machine).letter_of(joint), settings, *found);
       print(settings, *found, joint);
     }
   }

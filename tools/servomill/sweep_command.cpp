@@ -10,9 +10,14 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/simd.h"
-#include "sim/run/day_course.h"
+#include "sim/engine/stop_flag.h"
+#include "sim/model/design.h"
+#include "sim/model/forward.h"
+#include "sim/preparation/estimate.h"
+#include "sim/run/point_result.h"
 #include "sim/sweep/point_series.h"
 #include "sim/sweep/run_sweep.h"
+#include "sim/sweep/selection.h"
 #include "sim/sweep/sweep.h"
 #include "sim/sweep/table.h"
 #include "sim/sweep/table_csv.h"
@@ -120,7 +125,7 @@ struct SweepFiles {
 // Files that a sweep writes; refused where it may not.
 SweepFiles files_of(const Options& options, const sim::sweep::Sweep& sweep,
                     const sim::sweep::Selection& selection) {
-  const std::string out = output_name(options, sweep.base().name, "_sweep");
+  const std::string out = output_name(options, sweep.name(), "_sweep");
   const std::string signals = options.has("keep-signals") ? sim::sweep::series_folder(out) : "";
   const std::string shard = options.has("shard") ? options.get<std::string>("shard") : "";
   std::string table = sim::sweep::writable_table(out, selection, shard, options.has("force"));
@@ -145,7 +150,7 @@ std::uint64_t write_signals(const std::string& folder, const sim::sweep::Sweep& 
   std::uint64_t without = 0;
   for (const sim::sweep::SweepPoint& point : points) {
     sim::sweep::write_point_series(folder, sweep, point);
-    if (point.result.cases.empty()) ++without;
+    if (!point.result.cases) ++without;
   }
   return without;
 }
@@ -196,15 +201,10 @@ void tell_before(const Options& options, const sim::sweep::SweepTable& table,
   }
 }
 
-// Names parts of the scenario that a sweep leaves out.
-void tell_left_out(const sim::model::Scenario& base, ProgressLine& line) {
+// Names parts of the scenario that a sweep omits.
+void tell_left_out(const sim::sweep::Sweep& sweep, ProgressLine& line) {
   const auto hidden = line.hidden();
-  if (base.day && !sim::run::is_day_asked_for(base)) {
-    fmt::print(stderr, "note: {}\n", sim::run::kDayLeftOut);
-  }
-  if (base.record.windows.limited()) {
-    fmt::print(stderr, "note: {}\n", sim::model::kWindowsLeftOut);
-  }
+  for (const std::string& note : sweep.left_out()) fmt::print(stderr, "note: {}\n", note);
 }
 
 // Prints that nothing is left to be done; the exit status.
@@ -250,7 +250,7 @@ int sweep_command(const Arguments& arguments) {
   const sim::sweep::Selection selection = selection_of(options, sweep);
   const SweepFiles files = files_of(options, sweep, selection);
   const auto of_a_point = sweep.refuse_hopeless();
-  tell_left_out(sweep.base(), line);
+  tell_left_out(sweep, line);
 
   PointsLeft left(files.table, selection.size());
   const KeptWhenInterrupted when_interrupted([&left] { return left.said(); });

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/model/scenario.h"
 #include "sim/sweep/statistics.h"
 #include "sim/system/json.h"
 #include "sim/system/worker_thread.h"

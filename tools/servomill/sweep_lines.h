@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "plant/vocabulary/simd.h"
-#include "sim/evaluation/comparison.h"
+#include "sim/evaluation/comparison_row.h"
+#include "sim/model/forward.h"
+#include "sim/preparation/estimate.h"
 #include "sim/sweep/run_sweep.h"
 #include "sim/sweep/table.h"
 #include "tools/servomill/json_list.h"

@@ -10,14 +10,17 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/option_value.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_errors.h"
-#include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/model/machine_parts.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/model/undetermined_errors.h"
 #include "sim/system/output_name.h"
 #include "sim/system/system_error.h"
 #include "sim/system/write_file.h"
+#include "sim/tables/table_request.h"
 #include "sim/tables/verify_tables.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/import_errors.h"
@@ -33,22 +36,24 @@ namespace fs = std::filesystem;
 // Machine and error models: a scenario's, or those of --machine and of a file of error models, by
 // default the machine's own.
 struct Inputs {
-  sim::model::MachineSettings machine;
+  std::shared_ptr<const sim::model::MachineSettings> machine;
   std::map<std::string, plant::ErrorModel> models;
   std::shared_ptr<const sim::model::UncertainErrors> uncertain;  // of a scenario's machine; or none
 };
 
 Inputs read_inputs(const Options& options) {
   if (!options.has("machine")) {
-    sim::model::Scenario scenario = sim::input::read_scenario(options.word(), options.list("set"));
-    return {std::move(scenario.machine), std::move(scenario.errors), scenario.uncertain};
+    const auto scenario = sim::input::shared_scenario(options.word(), options.list("set"));
+    return {{scenario, &sim::model::machine_of(*scenario)},
+            sim::model::errors_of(*scenario),
+            sim::model::uncertain_errors_of(*scenario)};
   }
   sim::input::MachineDescription described = sim::input::read_machine_description(
       options.get<std::string>("machine"), options.list("set"));
-  Inputs inputs{std::move(described.machine), std::move(described.errors), nullptr};
+  Inputs inputs{described.machine, std::move(described.errors), nullptr};
   if (!options.words().empty()) {
     inputs.models =
-        sim::input::read_error_file(options.word(), sim::input::MachineAxes(inputs.machine));
+        sim::input::read_error_file(options.word(), sim::input::MachineAxes(*inputs.machine));
   }
   return inputs;
 }
@@ -76,15 +81,14 @@ const plant::ErrorModel& model_of(const Inputs& inputs, const Options& options, 
 }
 
 // Numbers that a calibration has identified; none: nobody has calibrated the machine.
-std::optional<sim::model::UncertainErrors> identified_of(const Inputs& inputs,
-                                                         const Options& options,
-                                                         const std::string& model) {
-  const JointLayout& layout = inputs.machine.chain.layout;
+std::shared_ptr<const sim::model::UncertainErrors> identified_of(const Inputs& inputs,
+                                                                 const Options& options,
+                                                                 const std::string& model) {
+  const JointLayout& layout = sim::model::layout_of(*inputs.machine);
   if (options.has("machine")) {
     return sim::input::uncertain_errors_of_file(error_file(options), model, layout);
   }
-  if (inputs.uncertain && inputs.uncertain->model == model) return *inputs.uncertain;
-  return std::nullopt;
+  return sim::model::is_of_model(inputs.uncertain, model) ? inputs.uncertain : nullptr;
 }
 
 // "X=..." of an option that may come once for each axis.
@@ -97,11 +101,12 @@ AxisWord axis_word(const std::string& option, std::string_view text, std::string
                    const sim::model::MachineSettings& machine) {
   const bool named = text.size() > 2 && text[1] == '=';
   const auto axis = named ? axis_of(text.front()) : std::nullopt;
-  const auto joint = axis ? machine.chain.layout.joint_of(*axis) : std::nullopt;
+  const auto joint = axis ? sim::model::layout_of(machine).joint_of(*axis) : std::nullopt;
   if (joint) return {*joint, text.substr(2)};
   std::string letters;
-  for (const int j : machine.joints()) {
-    letters += fmt::format("{}{}", letters.empty() ? "" : ", ", machine.chain.layout.letter_of(j));
+  for (const int j : sim::model::joints_of(machine)) {
+    letters += fmt::format("{}{}", letters.empty() ? "" : ", ",
+                           sim::model::layout_of(machine).letter_of(j));
   }
   throw InputError(
       {"--" + option},
@@ -170,7 +175,7 @@ void refuse_idle_options(const Options& options, const sim::model::MachineSettin
     throw InputError({"--comp-file-type"},
                      fmt::format("has no effect with {}", sim::tables::name_of(format)));
   }
-  const auto joints = machine.joints();
+  const auto joints = sim::model::joints_of(machine);
   if (options.has("rotary-spacing") && joints.back() < kLinearJoints) {
     throw InputError({"--rotary-spacing"}, "the machine has no rotary axis");
   }
@@ -353,20 +358,21 @@ int table_command(const Arguments& arguments) {
 
   ProgressLine line(options);
   const Inputs inputs = read_inputs(options);
-  sim::tables::TableRequest request = request_of(options, inputs.machine);
+  sim::tables::TableRequest request = request_of(options, *inputs.machine);
   const plant::ErrorModel& errors = model_of(inputs, options, request.model);
   request.identified = identified_of(inputs, options, request.model);
   if (request.identified) {
-    request.unknown =
-        sim::model::undetermined_errors(errors, *request.identified, inputs.machine.chain.layout);
+    request.unknown = sim::model::undetermined_errors(errors, *request.identified,
+                                                      sim::model::layout_of(*inputs.machine));
   }
-  const sim::tables::TableExport tables = [&] {
+  const auto exported = [&] {
     try {
-      return sim::tables::export_tables(inputs.machine, errors, request);
+      return sim::tables::shared_export(*inputs.machine, errors, request);
     } catch (const InputError& error) {  // knows what is wrong, not where
       throw InputError({error_file(options)}, error.faults().front().message);
     }
   }();
+  const sim::tables::TableExport& tables = *exported;
   const auto folder = options.get<std::string>("output");
   const auto files = sim::tables::table_files(tables);
   const sim::tables::TableVerification verified = sim::tables::verify_tables(tables, files);

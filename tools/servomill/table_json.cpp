@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/system/json.h"
 #include "sim/tables/table_export.h"
 #include "sim/tables/verify_tables.h"

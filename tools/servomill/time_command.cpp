@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plant/vocabulary/input_error.h"
-#include "sim/model/design.h"
+#include "sim/config/written_number.h"
 #include "sim/programs/cycle_time/cycle_time.h"
 #include "sim/system/write_file.h"
 #include "tools/servomill/axis_options.h"
@@ -59,7 +59,7 @@ double raise_of(const Options& options) {
   if (!options.has("raise")) return 0.0;
   std::string text = options.get<std::string>("raise");
   while (!text.empty() && (text.back() == '%' || text.back() == ' ')) text.pop_back();
-  const double percent = sim::model::number_of(text);
+  const double percent = sim::config::number_of(text);
   constexpr double kMax = 1000.0;
   if (percent > 0.0 && percent <= kMax) return percent / 100.0;
   throw InputError({"--raise " + options.get<std::string>("raise")},

@@ -6,8 +6,12 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/bode.h"
+#include "sim/frequency/measured_response.h"
 #include "sim/frequency/tuning.h"
+#include "sim/model/machine_parts.h"
+#include "sim/model/scenario_parts.h"
 #include "sim/system/json.h"
 #include "tools/servomill/axis_options.h"
 #include "tools/servomill/json_list.h"
@@ -142,7 +146,7 @@ bool confirm(const sim::model::MachineSettings& machine, int joint, Tick delay,
     const auto hidden = line.hidden();
     if (measured.fault) {
       fmt::print(stderr, "axis {}, {} loop: {}; nothing is measured\n",
-                 machine.chain.layout.letter_of(joint), one.name, *measured.fault);
+                 sim::model::layout_of(machine).letter_of(joint), one.name, *measured.fault);
       return false;
     }
     const sim::frequency::Complex L =
@@ -154,7 +158,7 @@ bool confirm(const sim::model::MachineSettings& machine, int joint, Tick delay,
         std::remainder(std::arg(L) / deg + 180.0, 360.0));
     if (measured.current_limited) {
       fmt::print("  the current limit of {:g} A was reached: measured values are not linear\n",
-                 machine.nc.cascade[static_cast<std::size_t>(joint)].i_max);
+                 sim::model::current_limit_of(machine, joint));
     }
   }
   return true;
@@ -208,7 +212,7 @@ struct TunedAxis {
 void print_limits(const TunedAxis& axis, const sim::frequency::TuneSettings& wanted,
                   const CommonKv& common) {
   const sim::frequency::Tuning& t = axis.tuning;
-  const plant::FeedDriveParams& drive = axis.machine.drives[static_cast<std::size_t>(axis.joint)];
+  const plant::FeedDriveParams& drive = sim::model::drive_of(axis.machine, axis.joint);
   fmt::print("{}\n\n", axis_headline(axis.machine, axis.joint, axis.delay));
   fmt::print("  wv = {:.4g} rad/s: limited by {}\n", t.after.gains.wv,
              reason(t.velocity, wanted, drive, "velocity"));
@@ -258,7 +262,7 @@ TunedAxes tuned_axes(const sim::model::MachineSettings& machine, const std::vect
     axes.advance();
   }
   const auto slowest = std::min_element(out.own_Kv.begin(), out.own_Kv.end());
-  out.common = {*slowest, machine.chain.layout.letter_of(
+  out.common = {*slowest, sim::model::layout_of(machine).letter_of(
                               joints[static_cast<std::size_t>(slowest - out.own_Kv.begin())])};
   for (std::size_t k = 0; k < joints.size(); ++k) {
     sim::frequency::Tuning& one = out.tunings[k];
@@ -306,16 +310,16 @@ int tune_command(const Arguments& arguments) {
 
   ProgressLine line(options);
   const sim::frequency::TuneSettings wanted = settings_of(options);
-  const sim::model::Scenario scenario = scenario_for_axes(options);
-  const sim::model::MachineSettings& machine = scenario.machine;
+  const auto scenario = scenario_for_axes(options);
+  const sim::model::MachineSettings& machine = sim::model::machine_of(*scenario);
   const auto joints = chosen_joints(options, machine);
-  const Tick delay = sim::frequency::reading_delay_of(scenario);
+  const Tick delay = sim::frequency::reading_delay_of(*scenario);
   const TunedAxes tuned = tuned_axes(machine, joints, delay, wanted);
   if (options.has("json")) {
     JsonList list;
     for (std::size_t k = 0; k < joints.size(); ++k) {
-      list.add(
-          to_json(machine.chain.layout.letter_of(joints[k]), tuned.tunings[k], tuned.common.value));
+      list.add(to_json(sim::model::layout_of(machine).letter_of(joints[k]), tuned.tunings[k],
+                       tuned.common.value));
     }
     list.end();
     return kDone;
@@ -330,12 +334,13 @@ int tune_command(const Arguments& arguments) {
       print_table(axis.tuning, axis.joint);
       fmt::print("\n");
     }
-    confirmed &= confirm(sim::frequency::with_gains(machine, axis.joint, axis.tuning.after.gains),
-                         axis.joint, delay, axis.tuning.after, line);
+    confirmed &=
+        confirm(*sim::frequency::shared_with_gains(machine, axis.joint, axis.tuning.after.gains),
+                axis.joint, delay, axis.tuning.after, line);
   }
   line.end();
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    print_toml(machine.chain.layout.letter_of(joints[k]), tuned.tunings[k].after.gains);
+    print_toml(sim::model::layout_of(machine).letter_of(joints[k]), tuned.tunings[k].after.gains);
   }
   if (joints.size() == 1) {
     fmt::print("\nInterpolating axes need equal Kv: --axis all finds the common one.\n");

@@ -10,7 +10,7 @@
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/document.h"
-#include "sim/input/read_machine.h"
+#include "sim/input/machine_description.h"
 
 namespace servomill::sim::input {
 namespace {

@@ -14,8 +14,8 @@
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/progress.h"
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_errors.h"
-#include "sim/input/read_machine.h"
 #include "sim/model/design.h"
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/compensate_report.h"
@@ -23,6 +23,7 @@
 #include "sim/programs/compensate/dialect_writer.h"
 #include "sim/programs/compensate/highest_z.h"
 #include "sim/programs/compensate/linuxcnc_writer.h"
+#include "sim/programs/compensate/point_uncertainty.h"
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/servo_offset.h"
 #include "sim/programs/compensate/smoothed_feeds.h"
@@ -130,17 +131,17 @@ std::string path_line(const CompensateRequest& request, const ProgramWriter& wri
 struct Preparation {
   explicit Preparation(const CompensateRequest& request)
       : described(input::read_machine_description(request.machine_file, request.changes)),
-        layout(described.machine.chain.layout),
+        layout(described.machine->chain.layout),
         models(request.error_file.empty()
                    ? described.errors
                    : input::read_error_file(request.error_file,
-                                            input::MachineAxes(described.machine))),
+                                            input::MachineAxes(*described.machine))),
         errors(model_of(models, request, model)),
-        correction(described.machine.chain,
+        correction(described.machine->chain,
                    request.servo_file.empty() ? errors : plant::ErrorModel{}, request.axes),
-        known(read_work_knowledge(request, described.machine)),
-        options(walk_options(request, described.machine, known.setup)) {
-    const model::NcSettings& nc = described.machine.nc;
+        known(read_work_knowledge(request, *described.machine)),
+        options(walk_options(request, *described.machine, known.setup)) {
+    const model::NcSettings& nc = described.machine->nc;
     correction.leave(request.left);
     if (request.servo_file.empty()) {
       known.place_matters = axes_that_matter(correction, nc.lower, nc.upper);
@@ -160,7 +161,7 @@ struct Preparation {
 
   // The blocks that LinuxCNC runs are those of every dialect.
   std::vector<Move> moves_with(const CompensateRequest& request, const SharedOffset& offset) const {
-    Correction along(described.machine.chain, {}, request.axes);
+    Correction along(described.machine->chain, {}, request.axes);
     along.follow(offset);
     along.leave(request.left);
     WalkOptions walk = options;
@@ -181,7 +182,7 @@ struct Preparation {
   void follow_model(const CompensateRequest& request) {
     SharedOffset offset;
     servo = predict_servo(
-        request, described.machine, errors, known.setup,
+        request, *described.machine, errors, known.setup,
         [&](const SharedOffset& one) { return moves_with(request, one); }, offset);
     correction.follow(offset);
   }
@@ -277,7 +278,7 @@ void add_to(std::vector<std::string>& lines, const std::vector<std::string>& mor
 std::vector<std::string> header_of(const CompensateRequest& request, const Preparation& prepared,
                                    const ProgramWriter& writer, const Summary& summary) {
   std::vector<std::string> header = {
-      header_line(request, prepared.described.machine.name, prepared.model)};
+      header_line(request, prepared.described.machine->name, prepared.model)};
   header.push_back(path_line(request, writer));
   add_to(header, unrolled_parts(summary));
   for (const std::string& one : summary.assumed) header.push_back("assumed: " + one);
@@ -327,9 +328,11 @@ void write_blocks(const CompensateRequest& request, WorkKnowledge& known,
 
 }  // namespace
 
+std::string points_csv(const Compensated& done) { return done.uncertainty->csv(); }
+
 Compensated compensate(const CompensateRequest& request) {
   Preparation prepared(request);
-  const model::MachineSettings& machine = prepared.described.machine;
+  const model::MachineSettings& machine = *prepared.described.machine;
   const JointLayout& layout = prepared.layout;
   Correction& correction = prepared.correction;
   WorkKnowledge& known = prepared.known;
@@ -340,11 +343,12 @@ Compensated compensate(const CompensateRequest& request) {
   out.summary.servo = prepared.servo;
   std::optional<SmoothedFeeds> smoothed;
   if (request.smoothing > 0.0) smoothed.emplace(machine, request.smoothing, request.tolerance);
-  out.uncertainty = uncertainty_of(request, machine.chain, prepared.model, prepared.errors);
+  const std::shared_ptr<PointUncertainty> uncertainty =
+      uncertainty_of(request, machine.chain, prepared.model, prepared.errors);
+  out.uncertainty = uncertainty;
   ProgramCorrector corrector(prepared.options, known.setup.tools, correction, out.summary,
                              request.records ? &out.record : nullptr,
-                             smoothed ? &*smoothed : nullptr,
-                             out.uncertainty ? &*out.uncertainty : nullptr);
+                             smoothed ? &*smoothed : nullptr, uncertainty.get());
   const auto writer = writer_of(request, prepared.described, known.setup, corrector, out.summary);
   controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                        known.setup);
@@ -352,7 +356,7 @@ Compensated compensate(const CompensateRequest& request) {
   Stage parts("parts", 2.0, Steps::unlike);  // correction, verification
   write_blocks(request, known, interpreter, *writer, highest, out.warnings);
   parts.advance();
-  if (out.uncertainty) out.uncertainty->refuse_undetermined(request.file_of_errors(), request.left);
+  if (uncertainty) uncertainty->refuse_undetermined(request.file_of_errors(), request.left);
 
   const std::optional<double> retract = retract_of(request, prepared.described);
   if (prepared.options.is_for_other_control && retract) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,11 +11,12 @@
 #include "sim/programs/canonical_moves.h"
 #include "sim/programs/compensate/dialect.h"
 #include "sim/programs/compensate/path_record.h"
-#include "sim/programs/compensate/point_uncertainty.h"
 #include "sim/programs/compensate/summary.h"
-#include "strategies/axis_displacement.h"
+#include "strategies/displaced_axes.h"
 
 namespace servomill::sim::programs {
+
+class PointUncertainty;  // sim/programs/compensate/point_uncertainty.h
 
 struct CompensateRequest {
   std::string program_file, machine_file;
@@ -57,8 +59,12 @@ struct Compensated {
   std::string machine;  // its name
   PathRecord record;    // where it was asked for
   /// Uncertainty of the corrected points, where the covariance of the errors is known.
-  std::optional<PointUncertainty> uncertainty;
+  std::shared_ptr<const PointUncertainty> uncertainty;
 };
+
+/// Corrected points with their uncertainty, as CSV (PointUncertainty::csv).
+/// @pre the uncertainty is known
+std::string points_csv(const Compensated& done);
 
 /// The program is read back as its control would read it and compared with the original.
 /// @throws InputError, also where they differ

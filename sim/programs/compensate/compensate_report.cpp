@@ -5,6 +5,7 @@
 
 #include "controllers/gcode/parameters.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::programs {
 namespace {

@@ -21,11 +21,11 @@ double resolution_of(const CompensateRequest& request) {
 }
 
 std::array<bool, 3> endless_axes(const input::MachineDescription& described) {
-  const JointLayout& layout = described.machine.chain.layout;
+  const JointLayout& layout = described.machine->chain.layout;
   std::array<bool, 3> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::optional<int> j = layout.joint_of(kAllAxes[kLinearJoints + i]);
-    out[i] = j && described.machine.nc.is_endless(*j);
+    out[i] = j && described.machine->nc.is_endless(*j);
   }
   return out;
 }
@@ -58,7 +58,7 @@ DialectSettings dialect_settings(const CompensateRequest& request,
         "is missing: programs for other controls retract before and after; set --retract Z=... in "
         "machine coordinates, or axis.Z.retract_mm in the machine file");
   }
-  const model::NcSettings& nc = described.machine.nc;
+  const model::NcSettings& nc = described.machine->nc;
   if (*retract < nc.lower[2] || *retract > nc.upper[2]) {
     throw InputError({fmt::format("--retract Z={:g}", *retract / mm)},
                      fmt::format("is outside the travel of Z, {:g} ... {:g} mm", nc.lower[2] / mm,
@@ -70,7 +70,7 @@ DialectSettings dialect_settings(const CompensateRequest& request,
         {"--program-number"},
         "is missing: Fanuc programs need a number, 1 ... 9999, and the file name has none");
   }
-  const JointLayout& layout = described.machine.chain.layout;
+  const JointLayout& layout = described.machine->chain.layout;
   settings.axes.clear();
   for (const Axis axis : kAllAxes) {
     if (layout.joint_of(axis)) settings.axes.push_back(axis);

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 #include "sim/programs/compensate/compensate.h"
 

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/simd.h"
 #include "plant/vocabulary/units.h"
 #include "sim/programs/compensate/program_corrector.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
 #include "sim/run/store.h"
 

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/model/machine.h"
 #include "sim/model/undetermined_errors.h"
 #include "sim/model/unit_error.h"
 #include "sim/programs/compensate/compensate.h"
@@ -186,14 +187,17 @@ std::string PointUncertainty::csv() const {
   return out;
 }
 
-std::optional<PointUncertainty> uncertainty_of(const CompensateRequest& request,
-                                               const plant::MachineChain& chain,
-                                               const std::string& model,
-                                               const plant::ErrorModel& errors) {
+std::shared_ptr<PointUncertainty> uncertainty_of(const CompensateRequest& request,
+                                                 const plant::MachineChain& chain,
+                                                 const std::string& model,
+                                                 const plant::ErrorModel& errors) {
   const std::string& file = request.file_of_errors();
   const auto identified = input::uncertain_errors_of_file(file, model, chain.layout);
-  if (identified) return PointUncertainty(chain, errors, *identified, request.lists_uncertainty);
-  if (!request.lists_uncertainty) return std::nullopt;
+  if (identified) {
+    return std::make_shared<PointUncertainty>(chain, errors, *identified,
+                                              request.lists_uncertainty);
+  }
+  if (!request.lists_uncertainty) return nullptr;
   throw InputError({file}, fmt::format("has no covariance of the error model '{}' ([identified]); "
                                        "servomill calibrate -o writes it",
                                        model));

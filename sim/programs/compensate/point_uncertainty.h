@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -85,9 +86,9 @@ class PointUncertainty {
 /// Uncertainty of the corrected points; none where the covariance of the errors is not known.
 /// @param model, errors  that are corrected
 /// @throws InputError if the request asks for a covariance that is not known
-std::optional<PointUncertainty> uncertainty_of(const CompensateRequest& request,
-                                               const plant::MachineChain& chain,
-                                               const std::string& model,
-                                               const plant::ErrorModel& errors);
+std::shared_ptr<PointUncertainty> uncertainty_of(const CompensateRequest& request,
+                                                 const plant::MachineChain& chain,
+                                                 const std::string& model,
+                                                 const plant::ErrorModel& errors);
 
 }  // namespace servomill::sim::programs

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "controllers/gcode/interpreter.h"
+#include "sim/programs/axis_flags.h"
 #include "sim/programs/compensate/corrected_path.h"
 #include "sim/programs/compensate/path_record.h"
 #include "sim/programs/compensate/summary.h"
 
 namespace servomill::sim::programs {
-
-/// One flag for each axis word.
-using AxisFlags = std::array<bool, kAxisWords>;
 
 /// A move of the program and what became of it.
 struct Step {

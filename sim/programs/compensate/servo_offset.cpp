@@ -10,9 +10,14 @@
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/interrupt.h"
 #include "plant/vocabulary/units.h"
-#include "sim/input/read_machine.h"
+#include "sim/evaluation/comparison_row.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/scenario_source.h"
+#include "sim/model/scenario.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
+#include "strategies/entry.h"
 #include "strategies/iterative_learning.h"
 
 namespace servomill::sim::programs {
@@ -133,7 +138,7 @@ void refuse_other_machine(const std::string& file, const input::MachineDescripti
                      "has no drives: --servo needs an identified model of servo, friction "
                      "and structure, such as servomill identify writes");
   }
-  const model::MachineSettings& known = model.machine;
+  const model::MachineSettings& known = *model.machine;
   const auto refuse = [&](const std::string& why) {
     throw InputError({file}, "is the model of another machine: " + why);
   };

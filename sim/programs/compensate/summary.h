@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/axes.h"
 #include "sim/programs/compensate/servo_prediction.h"
-#include "strategies/strategy.h"
+#include "strategies/residual.h"
 
 namespace servomill::sim::programs {
 

@@ -11,6 +11,7 @@
 #include "controllers/gcode/request.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/option_value.h"
+#include "sim/model/machine.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/programs/compensate/compensate.h"

@@ -10,7 +10,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "controllers/gcode/program_setup.h"
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/programs/compensate/correction.h"
 #include "sim/programs/compensate/program_corrector.h"
 

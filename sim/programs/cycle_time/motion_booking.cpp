@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "controllers/path/feed_reduction.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::programs {
 

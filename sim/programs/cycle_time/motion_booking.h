@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/model/forward.h"
 #include "sim/programs/cycle_time/cycle_time.h"
 #include "sim/programs/cycle_time/raised_limits.h"
 #include "sim/programs/cycle_time/time_account.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/model/machine.h"
 #include "sim/system/worker_thread.h"
 
 namespace servomill::sim::programs {

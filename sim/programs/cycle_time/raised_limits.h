@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/forward.h"
 #include "sim/programs/cycle_time/cycle_time.h"
 #include "sim/programs/program_duration.h"
 

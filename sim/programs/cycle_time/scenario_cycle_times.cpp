@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/programs/cycle_time/cycle_time.h"
 #include "sim/system/json.h"
 

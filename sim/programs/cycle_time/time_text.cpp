@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/programs/cycle_time/cycle_time.h"
 #include "sim/system/counted.h"
 #include "sim/system/text_table.h"

@@ -8,6 +8,7 @@
 #include "controllers/gcode/probing.h"
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/programs/verification/linuxcnc_replay.h"
 #include "sim/programs/verification/readings.h"
 #include "sim/system/write_file.h"

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/forward.h"
 #include "sim/programs/compensate/dialect.h"
 #include "sim/programs/measuring/measuring_steps.h"
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::programs {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/machine.h"
+#include "sim/model/forward.h"
 #include "sim/readings/readings.h"
 
 namespace servomill::sim::programs {

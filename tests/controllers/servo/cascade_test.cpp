@@ -1,4 +1,5 @@
 #include "controllers/servo/cascade.h"
+#include "sim/frequency/axis_signals.h"
 
 #include <gtest/gtest.h>
 

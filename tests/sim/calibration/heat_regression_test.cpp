@@ -12,6 +12,7 @@
 #include "plant/sensing/noise.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 #include "sim/model/heat.h"
 
@@ -23,9 +24,9 @@ using plant::operator""_err;
 const std::string kMachines = SERVOMILL_SOURCE_DIR "/scenarios/machines/";
 
 const model::MachineSettings& machine() {
-  static const model::MachineSettings kMachine =
+  static const auto kMachine =
       input::read_machine_description(kMachines + "hsm600u_heat.toml").machine;
-  return kMachine;
+  return *kMachine;
 }
 
 const std::vector<plant::ErrorName> kSought = {"EXX"_err, "EYY"_err, "EZZ"_err};
@@ -222,10 +223,11 @@ TEST(HeatRegression, IsReadBackFromItsFile) {
                       input::machine_seen_from(path, kMachines + "hsm600u_heat.toml")),
       false);
   const auto read = input::read_machine_description(path).machine;
-  ASSERT_EQ(read.heat->sensor_errors.size(), 2U);
+  ASSERT_EQ(read->heat->sensor_errors.size(), 2U);
   for (const HeatTerm& term : found.terms) {
-    const plant::ThermalError& of = read.heat->sensor_errors[static_cast<std::size_t>(term.sensor)];
-    EXPECT_EQ(read.heat->sensors[static_cast<std::size_t>(of.body)].name,
+    const plant::ThermalError& of =
+        read->heat->sensor_errors[static_cast<std::size_t>(term.sensor)];
+    EXPECT_EQ(read->heat->sensors[static_cast<std::size_t>(of.body)].name,
               found.sensors[static_cast<std::size_t>(term.sensor)]);
     const double value =
         term.error.is_location

@@ -9,8 +9,10 @@
 #include "sim/calibration/error_effects.h"
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/short_waves.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/model/tip_uncertainty.h"
 #include "sim/readings/readings.h"
 
 namespace servomill::sim::calibration::identified_uncertainty_test {
@@ -28,10 +30,10 @@ class IdentifiedUncertainty : public testing::Test {
   IdentifiedUncertainty()
       : machine_(input::read_machine_description(kMachine)),
         file_((fs::path(testing::TempDir()) / "servomill_uncertainty.toml").string()) {
-    const plant::MachineChain& chain = machine_.machine.chain;
+    const plant::MachineChain& chain = machine_.machine->chain;
     result_ =
-        calibrate(readings::read_readings(kRouter, chain, machine_.machine.nc.lower,
-                                          machine_.machine.nc.upper, readings::Numbers::required),
+        calibrate(readings::read_readings(kRouter, chain, machine_.machine->nc.lower,
+                                          machine_.machine->nc.upper, readings::Numbers::required),
                   chain, read_settings(kRouter, chain.layout));
     write_identified_errors(file_, result_, kMachine, "identified", true);
   }
@@ -43,7 +45,7 @@ class IdentifiedUncertainty : public testing::Test {
 };
 
 TEST_F(IdentifiedUncertainty, OfTheTipIsThatOfTheAdjustment) {
-  const plant::MachineChain& chain = machine_.machine.chain;
+  const plant::MachineChain& chain = machine_.machine->chain;
   const auto errors = input::uncertain_errors_of_file(file_, "identified", chain.layout);
   ASSERT_TRUE(errors);
   const model::TipUncertainty tip(chain, *errors);
@@ -65,7 +67,7 @@ TEST_F(IdentifiedUncertainty, OfTheTipIsThatOfTheAdjustment) {
 // Waves between the knots of a table, which the report states: nothing where the table was measured
 // but its mean line, most in between. The file has a few periods of them in place of all.
 TEST_F(IdentifiedUncertainty, OfShortWavesIsThatOfTheReportBetweenTheKnots) {
-  const plant::MachineChain& chain = machine_.machine.chain;
+  const plant::MachineChain& chain = machine_.machine->chain;
   const ErrorEffects effects(chain, result_.adjustment.unknowns);
   const auto& functions = result_.adjustment.unknowns.functions;
   const auto table = std::find_if(functions.begin(), functions.end(), [](const auto& one) {
@@ -76,7 +78,7 @@ TEST_F(IdentifiedUncertainty, OfShortWavesIsThatOfTheReportBetweenTheKnots) {
   const Vector3d p_ST(0.0, 0.0, -60 * mm);
   const auto found_at = [&](const Joints& Q) {
     const auto errors = input::uncertain_errors_of_file(file_, "identified", chain.layout);
-    return model::TipUncertainty(chain, errors.value()).covariance(Q, p_ST, Joints::Zero()).eval();
+    return model::TipUncertainty(chain, *errors).covariance(Q, p_ST, Joints::Zero()).eval();
   };
   const std::vector<double>& knots = table->basis.form().knots;
   std::vector<Joints> places;
@@ -102,7 +104,7 @@ TEST_F(IdentifiedUncertainty, OfShortWavesIsThatOfTheReportBetweenTheKnots) {
 }
 
 TEST_F(IdentifiedUncertainty, IsUnknownOfOtherModelsAndFiles) {
-  const JointLayout& layout = machine_.machine.chain.layout;
+  const JointLayout& layout = machine_.machine->chain.layout;
   EXPECT_FALSE(input::uncertain_errors_of_file(file_, "measured", layout));
   EXPECT_FALSE(input::uncertain_errors_of_file(kMachine, "measured", layout));
 }

@@ -11,6 +11,7 @@
 #include "sim/calibration/make_up.h"
 #include "sim/calibration/measurable.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/model/machine.h"
 #include "tests/number_of.h"
 #include "tests/sim/calibration/shop.h"
 #include "tests/text.h"

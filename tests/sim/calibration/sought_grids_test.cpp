@@ -13,8 +13,10 @@
 #include "sim/calibration/identified_errors.h"
 #include "sim/calibration/make_up.h"
 #include "sim/calibration/report.h"
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/uncertain_errors.h"
+#include "sim/model/tip_uncertainty.h"
 #include "tests/sim/calibration/random_machine.h"
 #include "tests/text.h"
 
@@ -127,22 +129,22 @@ const std::string kMachine = SERVOMILL_SOURCE_DIR "/scenarios/machines/router_3a
 // The file has a grid from end to end of the travel, and its covariance is that of the adjustment.
 TEST(SoughtGrids, ComeBackFromTheFileWithTheirUncertainty) {
   const input::MachineDescription machine = input::read_machine_description(kMachine);
-  const plant::MachineChain& chain = machine.machine.chain;
+  const plant::MachineChain& chain = machine.machine->chain;
   CalibrationSettings settings = read_settings(kRouter, chain.layout);
   FormSettings form;
   form.grids.push_back({.across = Axis::Y, .knots = {5, 3}});
   settings.forms.emplace_back("EXX"_err, form);
   const Calibration found =
-      calibrate(readings::read_readings(kRouter, chain, machine.machine.nc.lower,
-                                        machine.machine.nc.upper, readings::Numbers::required),
+      calibrate(readings::read_readings(kRouter, chain, machine.machine->nc.lower,
+                                        machine.machine->nc.upper, readings::Numbers::required),
                 chain, settings);
   const std::string file = (fs::path(testing::TempDir()) / "servomill_grid.toml").string();
   write_identified_errors(file, found, kMachine, "identified", true);
   const input::MachineDescription read = input::read_machine_description(file);
   const auto& grids = read.errors.at("identified").component("EXX"_err).grids;
   ASSERT_EQ(grids.size(), 1U);
-  EXPECT_EQ(grids[0].points().at[0].front(), machine.machine.nc.lower[0]);
-  EXPECT_EQ(grids[0].points().at[0].back(), machine.machine.nc.upper[0]);
+  EXPECT_EQ(grids[0].points().at[0].front(), machine.machine->nc.lower[0]);
+  EXPECT_EQ(grids[0].points().at[0].back(), machine.machine->nc.upper[0]);
   const auto errors = input::uncertain_errors_of_file(file, "identified", chain.layout);
   fs::remove(file);
   ASSERT_TRUE(errors);

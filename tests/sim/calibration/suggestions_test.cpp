@@ -4,6 +4,7 @@
 
 #include "sim/calibration/make_up.h"
 #include "sim/calibration/plan_candidates.h"
+#include "sim/model/machine.h"
 #include "tests/sim/calibration/shop.h"
 
 namespace servomill::sim::calibration::suggestions_test {

@@ -9,6 +9,7 @@
 #include "plant/cutting/cutting_force.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/depth_of_cut.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"
 

@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include "sim/engine/simulate.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "tests/sim/engine/circles.h"
 #include "tests/sim/small_scenario.h"

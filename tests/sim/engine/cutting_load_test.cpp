@@ -8,9 +8,14 @@
 #include <filesystem>
 #include <numbers>
 
+#include "controllers/servo/cascade.h"
 #include "plant/cutting/cutting_force.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tests/counting_new.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"

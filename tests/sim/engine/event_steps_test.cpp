@@ -8,6 +8,7 @@
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "strategies/registry.h"
 #include "tests/sim/small_scenario.h"
 

@@ -12,6 +12,8 @@
 #include "plant/cutting/material.h"
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"
 

@@ -10,7 +10,10 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tests/sim/engine/circles.h"
 #include "tests/sim/small_scenario.h"
 

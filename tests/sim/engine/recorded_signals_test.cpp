@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::engine::recorded_signals_test {
 namespace {

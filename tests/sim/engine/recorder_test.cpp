@@ -6,6 +6,8 @@
 #include <boost/random/uniform_real_distribution.hpp>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
 #include "tests/sim/small_scenario.h"
 

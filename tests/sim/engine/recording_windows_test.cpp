@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/engine/program_path.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
 #include "tests/sim/small_scenario.h"
 

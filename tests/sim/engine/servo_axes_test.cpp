@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::engine::servo_axes_test {

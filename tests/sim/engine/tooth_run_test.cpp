@@ -9,6 +9,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/cutting_load.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"
 

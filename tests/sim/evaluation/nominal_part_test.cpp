@@ -9,8 +9,11 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/records/input_file.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "sim/system/base64.h"
 #include "tests/sim/small_scenario.h"
 

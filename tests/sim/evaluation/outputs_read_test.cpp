@@ -10,6 +10,7 @@
 
 #include "sim/evaluation/quantity.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/run/point_batch.h"
 
 namespace servomill::sim::evaluation {

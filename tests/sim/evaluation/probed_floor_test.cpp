@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/run/run.h"
+#include "sim/run/run_output.h"
 
 namespace servomill::sim::evaluation::probed_floor_test {
 namespace {

@@ -11,8 +11,11 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/engine/simulate.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::evaluation::probed_part_test {

@@ -9,6 +9,8 @@
 #include "plant/vocabulary/input_error.h"
 #include "sim/evaluation/cutter_path.h"
 #include "sim/evaluation/probed_part.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::evaluation::probed_teeth_test {

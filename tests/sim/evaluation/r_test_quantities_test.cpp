@@ -9,6 +9,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::evaluation::spindle_quantities_test {

@@ -6,6 +6,7 @@
 
 #include "plant/vocabulary/checksum.h"
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/fmu/exported.h"
 
 namespace servomill::sim::fmu::axis_constants_test {

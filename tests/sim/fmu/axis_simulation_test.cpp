@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/fmu/exported.h"
 #include "tests/sim/fmu/recorded.h"
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sim/fmu/exported_axis.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::fmu {

@@ -7,6 +7,7 @@
 
 #include "sim/fmu/axis_variables.h"
 #include "sim/fmu/library/fmi2_functions.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/fmu/exported.h"
 #include "tests/sim/fmu/recorded.h"
 

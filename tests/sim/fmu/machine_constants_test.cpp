@@ -7,6 +7,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/heat.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/fmu/exported.h"
 
 namespace servomill::sim::fmu::machine_constants_test {

@@ -5,6 +5,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/fmu/clocks.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/fmu/exported.h"
 #include "tests/sim/fmu/recorded.h"
 

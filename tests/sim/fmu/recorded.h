@@ -12,6 +12,7 @@
 #include "sim/engine/setpoint.h"
 #include "sim/engine/simulate.h"
 #include "sim/fmu/axis_simulation.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 
 namespace servomill::sim::fmu {

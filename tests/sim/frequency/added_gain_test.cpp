@@ -8,6 +8,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/tuning.h"
+#include "sim/model/machine.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::frequency::added_gain_test {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/axis_dynamics.h"
 #include "sim/frequency/bode.h"
 #include "sim/frequency/frequency_response.h"
 #include "sim/frequency/stability.h"

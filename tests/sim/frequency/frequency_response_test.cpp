@@ -1,5 +1,6 @@
 /// The exact response of sampled loops against closed forms.
 #include "sim/frequency/frequency_response.h"
+#include "sim/frequency/axis_dynamics.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

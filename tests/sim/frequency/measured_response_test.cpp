@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "plant/vocabulary/units.h"
+#include "sim/frequency/frequency_response.h"
 #include "sim/frequency/margins.h"
 #include "sim/frequency/stability.h"
 #include "sim/frequency/step_response.h"

@@ -1,11 +1,13 @@
 /// Tuned gains keep what was asked for, just.
 #include "sim/frequency/tuning.h"
+#include "sim/frequency/axis_dynamics.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "sim/frequency/frequency_response.h"
 #include "sim/frequency/measured_response.h"
 #include "sim/frequency/stability.h"
 #include "sim/input/read_scenario.h"

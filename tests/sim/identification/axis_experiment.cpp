@@ -7,6 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "sim/model/machine.h"
+
 namespace servomill::sim::identification {
 namespace {
 

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/identify.h"
 #include "tests/sim/identification/axis_experiment.h"
 

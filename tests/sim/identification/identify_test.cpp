@@ -7,6 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "sim/identification/experiment.h"
+#include "sim/identification/identification.h"
 #include "sim/identification/identified_machine.h"
 #include "sim/identification/report.h"
 #include "sim/identification/synthesize.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "sim/identification/identification.h"
 #include "sim/identification/identify.h"
 #include "sim/identification/parameter_space.h"
 #include "sim/identification/report.h"

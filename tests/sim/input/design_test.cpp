@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "sim/config/written_number.h"
 #include "sim/input/read_design.h"
 
 namespace servomill::sim::input::design_test {
@@ -117,7 +118,7 @@ const std::string kSampled =
 std::vector<double> column(const model::SweepDesign& design, std::size_t key) {
   std::vector<double> out;
   for (std::uint64_t i = 0; i < design.size(); ++i)
-    out.push_back(model::number_of(design.point(i)[key]));
+    out.push_back(config::number_of(design.point(i)[key]));
   return out;
 }
 
@@ -170,7 +171,7 @@ TEST(Design, WritesNumbersThatReadAgainToTheSameBits) {
       "u = { uniform = [0.0, 1e-7] }\n");
   for (std::uint64_t i = 0; i < design.size(); ++i) {
     const config::Document document = config::Document::from_text("u = " + design.point(i)[0], "");
-    EXPECT_EQ(document.root().find("u")->real, model::number_of(design.point(i)[0]));
+    EXPECT_EQ(document.root().find("u")->real, config::number_of(design.point(i)[0]));
   }
 }
 
@@ -186,18 +187,18 @@ TEST(Column, IsOfNumbersWhereAllValuesAre) {
   EXPECT_EQ(design.column(3).texts, (model::ValueTexts{"\"table\"", "\"gcode\""}));
   EXPECT_EQ(design.column(4).texts, (model::ValueTexts{"\"auto\"", "5"}));
   EXPECT_TRUE(design.column(5).numeric);
-  EXPECT_EQ(model::number_of(design.point(0)[5]), 16.0);
-  EXPECT_EQ(model::number_of(design.point(1)[5]), 1000.0);
+  EXPECT_EQ(config::number_of(design.point(0)[5]), 16.0);
+  EXPECT_EQ(config::number_of(design.point(1)[5]), 1000.0);
 }
 
 TEST(NumberOf, ReadsTheNumberOfAValue) {
-  EXPECT_EQ(model::number_of("1.5"), 1.5);
-  EXPECT_EQ(model::number_of("-2e3"), -2000.0);
-  EXPECT_EQ(model::number_of("\"60 1/s\""), 60.0);
-  EXPECT_EQ(model::number_of("'3 mm'"), 3.0);
-  EXPECT_TRUE(std::isnan(model::number_of("\"table\"")));
-  EXPECT_TRUE(std::isnan(model::number_of("")));
-  EXPECT_TRUE(std::isnan(model::number_of("\"\"")));
+  EXPECT_EQ(config::number_of("1.5"), 1.5);
+  EXPECT_EQ(config::number_of("-2e3"), -2000.0);
+  EXPECT_EQ(config::number_of("\"60 1/s\""), 60.0);
+  EXPECT_EQ(config::number_of("'3 mm'"), 3.0);
+  EXPECT_TRUE(std::isnan(config::number_of("\"table\"")));
+  EXPECT_TRUE(std::isnan(config::number_of("")));
+  EXPECT_TRUE(std::isnan(config::number_of("\"\"")));
 }
 
 const std::string kForm =

@@ -7,7 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "plant/geometry/error_model.h"
+#include "sim/config/written_number.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/sweep/sweep.h"
 #include "tests/text.h"
 
@@ -66,8 +69,8 @@ TEST_F(DrawnErrors, AreAnotherModelThanTheOneThatStrategiesKnow) {
     const model::Scenario one = sweep.at(i);
     const plant::ErrorModel& drawn = one.errors.at("drawn");
     EXPECT_EQ(one.errors.at("identified"), sweep.base().errors.at("identified"));
-    EXPECT_NEAR(drawn.location(EC0Y), 1e-6 * model::number_of(values[0]), 1e-18);
-    EXPECT_NEAR(drawn.component(EYX).value(1e-3), 1e-6 * model::number_of(values[1]), 1e-18);
+    EXPECT_NEAR(drawn.location(EC0Y), 1e-6 * config::number_of(values[0]), 1e-18);
+    EXPECT_NEAR(drawn.component(EYX).value(1e-3), 1e-6 * config::number_of(values[1]), 1e-18);
     EXPECT_NE(drawn.location(EC0Y), last);
     last = drawn.location(EC0Y);
   }

@@ -8,11 +8,13 @@
 #include <limits>
 #include <random>
 
+#include "sim/input/machine_description.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_errors.h"
 #include "sim/input/read_machine.h"
 #include "sim/input/read_scenario.h"
 #include "sim/input/write_identified.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::input::identified_file_test {
 namespace {

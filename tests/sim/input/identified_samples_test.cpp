@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim/config/written_number.h"
 #include "sim/input/read_design.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/sweep/sweep.h"
 #include "tests/text.h"
 
@@ -44,7 +47,7 @@ Moments moments_of(const model::SweepDesign& design, std::size_t keys) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto point = design.point(static_cast<std::uint64_t>(i));
     for (std::size_t k = 0; k < keys; ++k) {
-      values(static_cast<Eigen::Index>(k), i) = model::number_of(point.at(k));
+      values(static_cast<Eigen::Index>(k), i) = config::number_of(point.at(k));
     }
   }
   Moments out{values.rowwise().mean(), {}};
@@ -120,7 +123,7 @@ TEST(IdentifiedSamples, OfASingularCovarianceLieOnTheirLine) {
     EXPECT_EQ(one.sampled_dimensions, 1U);
     for (std::uint64_t i = 0; i < one.size(); ++i) {
       const auto point = one.point(i);
-      const double a = model::number_of(point[0]), b = model::number_of(point[1]);
+      const double a = config::number_of(point[0]), b = config::number_of(point[1]);
       EXPECT_LE(std::abs(b - (20.0 - (a - 95.0) / 4.0)), 1e-14 * 95.0);
     }
   }

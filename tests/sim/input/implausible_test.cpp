@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 
 namespace servomill::sim::input::implausible_test {
@@ -15,7 +16,7 @@ const fs::path kMachines = fs::path(SERVOMILL_SOURCE_DIR) / "scenarios/machines"
 
 std::vector<std::string> values_with(const std::string& change) {
   const std::string file = (kMachines / "hsm600u.toml").string();
-  return implausible_values(read_machine_description(file, {change}).machine);
+  return implausible_values(*read_machine_description(file, {change}).machine);
 }
 
 // A key with a bare number that was meant in another unit.
@@ -77,10 +78,10 @@ TEST(ImplausibleValues, NameTheUnitOfBareNumbersAndOneThatIsMeant) {
 TEST(ImplausibleValues, KnowTheFrictionOfADrive) {
   const std::string file = (kMachines / "hsm600u.toml").string();
   const auto values =
-      implausible_values(read_machine_description(file, {"friction_model=\"lugre\"",
-                                                         "axis.X.friction.stribeck_velocity=2",
-                                                         "axis.X.friction.bristle_stiffness=50"})
-                             .machine);
+      implausible_values(*read_machine_description(file, {"friction_model=\"lugre\"",
+                                                          "axis.X.friction.stribeck_velocity=2",
+                                                          "axis.X.friction.bristle_stiffness=50"})
+                              .machine);
   ASSERT_EQ(values.size(), 2U);
   EXPECT_TRUE(values[0].starts_with("axis.X.friction.stribeck_velocity = 2 m/s is implausible"));
   EXPECT_TRUE(values[1].starts_with("axis.X.friction.bristle_stiffness = 50 N/m is implausible"));
@@ -89,7 +90,8 @@ TEST(ImplausibleValues, KnowTheFrictionOfADrive) {
 TEST(ImplausibleValues, AreInNoMachineThatComesWithServomill) {
   for (const auto& entry : fs::directory_iterator(kMachines)) {
     if (entry.path().extension() != ".toml") continue;
-    const auto values = implausible_values(read_machine_description(entry.path().string()).machine);
+    const auto values =
+        implausible_values(*read_machine_description(entry.path().string()).machine);
     EXPECT_TRUE(values.empty()) << entry.path() << ": " << values.front();
   }
 }

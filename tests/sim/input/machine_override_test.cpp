@@ -4,6 +4,8 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::input::machine_override_test {

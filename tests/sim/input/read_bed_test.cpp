@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::input::read_bed_test {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "sim/model/working_day.h"
 #include "tests/sim/small_scenario.h"
 

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "plant/kinematics/chain.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
 #include "sim/config/document.h"
 #include "sim/input/read_errors.h"
+#include "sim/model/machine.h"
 
 namespace servomill::sim::input::read_grid_test {
 namespace {

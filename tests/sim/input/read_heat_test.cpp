@@ -6,6 +6,8 @@
 #include "plant/heat/temperature.h"
 #include "plant/vocabulary/units.h"
 #include "sim/model/heat.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::input::read_heat_test {

@@ -7,6 +7,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::input::read_inertial_deflection_test {

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "plant/vocabulary/units.h"
+#include "sim/input/machine_description.h"
 
 namespace servomill::sim::input::read_machine_test {
 namespace {
@@ -46,10 +47,10 @@ std::string refusal(const std::string& text) {
 TEST(MachineDescription, NeedsStructureTravelAndErrorsOnly) {
   const MachineDescription router = read_machine_description(written("ten.toml", kTenLines));
   EXPECT_FALSE(router.has_drives);
-  EXPECT_EQ(router.machine.name, "router");
-  EXPECT_EQ(router.machine.nc.upper[0], 1.0);
-  EXPECT_EQ(router.machine.nc.lower[2], -0.15);
-  EXPECT_TRUE(std::isinf(router.machine.nc.upper[1]));  // no travel given: no limit known
+  EXPECT_EQ(router.machine->name, "router");
+  EXPECT_EQ(router.machine->nc.upper[0], 1.0);
+  EXPECT_EQ(router.machine->nc.lower[2], -0.15);
+  EXPECT_TRUE(std::isinf(router.machine->nc.upper[1]));  // no travel given: no limit known
   EXPECT_DOUBLE_EQ(router.retract_Z.value(), -1.5 * mm);
   ASSERT_TRUE(router.errors.contains("measured"));
   EXPECT_DOUBLE_EQ(router.errors.at("measured").location("EC0Y"_err), 0.2e-3);
@@ -67,7 +68,7 @@ TEST(MachineDescription, ReadsAFileWithDrivesAsASimulationDoes) {
   EXPECT_TRUE(read.has_drives);
   EXPECT_TRUE(read.errors.contains("measured"));
   EXPECT_DOUBLE_EQ(read.retract_Z.value(), -2 * mm);
-  EXPECT_GT(read.machine.drives[0].Kt, 0.0);
+  EXPECT_GT(read.machine->drives[0].Kt, 0.0);
 }
 
 TEST(MachineDescription, TakesSquarenessAsASlope) {

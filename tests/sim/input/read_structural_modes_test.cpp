@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/machine.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::input::read_structural_modes_test {

@@ -16,7 +16,10 @@
 #include "sim/input/machine_document.h"
 #include "sim/input/read_scenario.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "sim/system/read_file.h"
 #include "strategies/registry.h"
 

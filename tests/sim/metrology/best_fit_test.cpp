@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/metrology/triangle_mesh.h"
 #include "tests/sim/metrology/random_poses.h"
 
 namespace servomill::sim::metrology::best_fit_test {

@@ -7,6 +7,7 @@
 #include "plant/cutting/stability_lobes.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 #include "tests/sim/cutting_block.h"
 #include "tests/sim/small_scenario.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"
 

@@ -16,8 +16,11 @@
 
 #include "sim/engine/simulate.h"
 #include "sim/input/scenario_source.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 
 namespace servomill::sim::preparation::preparation_cache_test {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "tests/sim/small_scenario.h"
 

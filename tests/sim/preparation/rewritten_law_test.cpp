@@ -10,6 +10,8 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/move_curve.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/preparation/rewritten_text.h"

@@ -4,6 +4,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::preparation::tooth_step_test {
 namespace {

@@ -12,6 +12,8 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepared_case.h"
 #include "sim/run/run.h"

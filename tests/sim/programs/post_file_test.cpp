@@ -8,9 +8,11 @@
 #include <fstream>
 
 #include "plant/vocabulary/units.h"
+#include "sim/evaluation/comparison_row.h"
 #include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "sim/run/run.h"
+#include "sim/run/run_output.h"
 #include "sim/system/read_file.h"
 
 namespace servomill::sim::programs::post_file_test {

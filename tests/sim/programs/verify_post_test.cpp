@@ -15,6 +15,7 @@
 #include "controllers/gcode/printer.h"
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "tests/text.h"
 
 namespace servomill::sim::programs::verify_post_test {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "sim/records/hdf5_group.h"
 #include "sim/records/output_file.h"
 #include "tests/text.h"
 

@@ -7,6 +7,9 @@
 #include <limits>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/records/chunk_encoder.h"
+#include "sim/records/hdf5_dataset.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 

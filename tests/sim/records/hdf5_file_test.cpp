@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/system/system_error.h"

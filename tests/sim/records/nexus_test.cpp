@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 

@@ -3,6 +3,9 @@
 
 #include <numbers>
 
+#include "plant/vocabulary/parameters.h"
+#include "sim/model/scenario.h"
+#include "strategies/entry.h"
 #include "tests/sim/run/small_budget.h"
 
 namespace servomill::sim::run::budget_causes_test {

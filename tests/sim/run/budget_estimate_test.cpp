@@ -1,6 +1,7 @@
 /// Estimates of budgets before they are found.
 #include "sim/run/budget_estimate.h"
 
+#include "sim/model/scenario.h"
 #include "tests/sim/run/small_budget.h"
 
 namespace servomill::sim::run::budget_estimate_test {

@@ -1,6 +1,7 @@
 /// Quantities that have a budget, asked for or not.
 #include "sim/run/budget_quantities.h"
 
+#include "sim/model/scenario.h"
 #include "tests/sim/run/small_budget.h"
 
 namespace servomill::sim::run::budget_quantities_test {

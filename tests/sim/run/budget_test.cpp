@@ -1,6 +1,7 @@
 /// Error budgets: causes add up with a remainder, and what there is none of is said.
 #include "sim/run/budget.h"
 
+#include "sim/model/scenario.h"
 #include "tests/sim/run/small_budget.h"
 
 namespace servomill::sim::run::budget_test {

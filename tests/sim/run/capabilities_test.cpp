@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/run_settings.h"
+#include "sim/model/scenario.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_quantities.h"
+#include "sim/run/run_output.h"
 #include "strategies/feedback.h"
 #include "strategies/none.h"
 #include "strategies/table.h"

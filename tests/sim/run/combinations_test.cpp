@@ -4,6 +4,7 @@
 #include <string>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::combinations_test {

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 
 namespace servomill::sim::run::converge_test {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/run/day_course.h"

@@ -8,6 +8,8 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/run/day_course.h"
 #include "tests/sim/small_scenario.h"
 

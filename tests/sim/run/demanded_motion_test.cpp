@@ -10,7 +10,9 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/comparison.h"
+#include "sim/model/scenario.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::demanded_motion_test {

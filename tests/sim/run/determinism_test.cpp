@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::determinism_test {

@@ -7,7 +7,10 @@
 #include <string>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/records/row_thinning.h"
+#include "sim/run/run_output.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::extremes_run_test {

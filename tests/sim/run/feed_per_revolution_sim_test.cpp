@@ -1,4 +1,5 @@
 // Simulation of G95.
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepared_case.h"
 #include "tests/sim/small_scenario.h"
 

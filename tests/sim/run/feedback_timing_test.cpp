@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::feedback_timing_test {

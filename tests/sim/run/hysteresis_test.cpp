@@ -8,6 +8,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/simulate.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"
 #include "tests/text.h"

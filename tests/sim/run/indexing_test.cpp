@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::indexing_test {

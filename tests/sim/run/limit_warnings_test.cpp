@@ -3,6 +3,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/engine/simulate.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepare_cases.h"
 #include "tests/sim/small_scenario.h"

@@ -10,6 +10,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/run/test_sheet.h"
 #include "sim/standards/positioning_readings.h"
 #include "tests/sim/small_scenario.h"

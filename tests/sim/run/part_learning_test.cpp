@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
 #include "strategies/path_offset.h"
 #include "tests/sim/small_scenario.h"

@@ -5,7 +5,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "controllers/servo/cascade.h"
+#include "sim/frequency/axis_signals.h"
+#include "sim/model/scenario.h"
 #include "sim/run/point_batch.h"
+#include "sim/run/run_output.h"
 #include "strategies/none.h"
 #include "tests/counting_new.h"
 #include "tests/sim/small_scenario.h"
@@ -181,7 +185,7 @@ TEST(PositionLoop, RunsInLockstepHaveTheBitsOfRunsAlone) {
       ++ended;
       ASSERT_EQ(one.result.status, PointStatus::done) << one.result.reason;
       const CaseOutput alone = run_named_case(points[one.place], "one");
-      expect_same(one.result.cases.front().result.servo, alone.result.servo);
+      expect_same(one.result.cases->front().result.servo, alone.result.servo);
     }
   };
   run_batch(points, kNever, progress, compare_each, {.keep = Keep::series});

@@ -11,7 +11,10 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/offset_response.h"
+#include "sim/run/run_output.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::precompensation_run_test {

@@ -12,6 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/frequency/frequency_response.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/identified_loops.h"
 #include "sim/preparation/preparation_cache.h"
 #include "strategies/predictive_encoder.h"

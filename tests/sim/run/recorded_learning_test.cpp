@@ -11,7 +11,9 @@
 #include <functional>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "sim/records/input_file.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
 #include "strategies/path_offset.h"
 #include "tests/sim/small_scenario.h"

@@ -12,6 +12,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/units.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/run/machine_tests.h"
 #include "sim/run/test_sheet.h"
 #include "sim/standards/ball_test.h"

@@ -7,6 +7,7 @@
 
 #include "sim/engine/simulate.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/preparation/prepare_cases.h"
 #include "sim/run/point_batch.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "sim/run/budget.h"
 #include "sim/run/budget_quantities.h"
 #include "tests/sim/small_scenario.h"

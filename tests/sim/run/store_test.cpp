@@ -7,8 +7,10 @@
 
 #include <fstream>
 
+#include "sim/model/scenario.h"
 #include "sim/records/input_file.h"
 #include "sim/records/series_spool.h"
+#include "sim/run/stored_run.h"
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"
 

@@ -8,6 +8,7 @@
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/run/machine_tests.h"
 #include "sim/run/test_sheet.h"
 #include "tests/sim/small_scenario.h"

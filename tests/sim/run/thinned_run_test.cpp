@@ -5,8 +5,10 @@
 #include <map>
 
 #include "sim/evaluation/quantity.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/records/row_thinning.h"
+#include "sim/run/run_output.h"
 #include "tests/sim/run/compared_cases.h"
 #include "tests/sim/small_scenario.h"
 

@@ -4,6 +4,7 @@
 
 #include "plant/vocabulary/units.h"
 #include "sim/evaluation/comparison.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/five_axis_program.h"
 
 namespace servomill::sim::run::tip_rewrite_test {

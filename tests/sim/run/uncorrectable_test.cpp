@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "plant/vocabulary/units.h"
+#include "sim/model/scenario.h"
 #include "tests/sim/small_scenario.h"
 
 namespace servomill::sim::run::uncorrectable_test {

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/scenario.h"
 #include "sim/preparation/estimate.h"
 #include "sim/records/row_thinning.h"
+#include "sim/run/run_output.h"
 #include "sim/run/store.h"
+#include "sim/run/stored_run.h"
 #include "tests/sim/run/compared_cases.h"
 #include "tests/sim/small_scenario.h"
 

@@ -7,9 +7,12 @@
 #include <cstring>
 #include <map>
 
+#include "sim/engine/case_result.h"
 #include "sim/input/read_scenario.h"
+#include "sim/model/scenario.h"
 #include "sim/preparation/preparation_cache.h"
 #include "sim/run/point_batch.h"
+#include "sim/run/run_case.h"
 
 namespace servomill::sim::sweep::lockstep_test {
 namespace {
@@ -80,8 +83,8 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 void expect_same(const run::BatchResult& one, const run::BatchResult& other, std::size_t place) {
   EXPECT_EQ(other.status, one.status) << other.reason;
   EXPECT_EQ(other.reason, one.reason);
-  ASSERT_EQ(other.cases.size(), 1U);
-  const engine::CaseResult &a = one.cases[0].result, &b = other.cases[0].result;
+  ASSERT_EQ(other.cases->size(), 1U);
+  const engine::CaseResult &a = one.cases->at(0).result, &b = other.cases->at(0).result;
   EXPECT_TRUE(same_bits(a.servo.data(), b.servo.data())) << "run " << place;
   EXPECT_TRUE(same_bits(a.last_ticks.data(), b.last_ticks.data())) << "run " << place;
 }
@@ -128,9 +131,9 @@ TEST(Lockstep, HasOddRunsThatAreOdd) {
   std::map<std::string, run::BatchResult> odd;
   for (const auto& [name, changes] : kOdd) odd[name] = std::move(run({scenario_with(changes)})[0]);
   const auto series = [&](const std::string& name) -> const records::Series& {
-    return odd.at(name).cases.at(0).result.servo;
+    return odd.at(name).cases->at(0).result.servo;
   };
-  const auto& last = odd.at("overflows").cases.at(0).result.last_ticks.data();
+  const auto& last = odd.at("overflows").cases->at(0).result.last_ticks.data();
   EXPECT_TRUE(std::any_of(last.begin(), last.end(), [](double x) { return !std::isfinite(x); }));
   EXPECT_EQ(odd.at("faults").status, run::PointStatus::stopped);
   EXPECT_NE(odd.at("faults").reason.find("following error beyond 0.001 mm"), std::string::npos);

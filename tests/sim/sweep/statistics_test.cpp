@@ -1,5 +1,6 @@
 /// Distribution of the quantities of a sweep.
 #include "sim/sweep/statistics.h"
+#include "sim/model/scenario.h"
 
 #include <gtest/gtest.h>
 

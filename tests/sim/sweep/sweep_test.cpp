@@ -9,7 +9,10 @@
 
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/progress.h"
+#include "sim/model/scenario.h"
 #include "sim/run/run.h"
+#include "sim/run/run_case.h"
+#include "sim/run/run_output.h"
 #include "sim/sweep/run_sweep.h"
 
 namespace servomill::sim::sweep::sweep_test {
@@ -101,9 +104,9 @@ TEST(Sweep, KeepsSignalsOnRequest) {
   SweepControl control;
   control.keep = run::Keep::series;
   const auto results = run_all(sweep_of("program.feed_override=[1.0]"), control);
-  ASSERT_EQ(results.at(0).cases.size(), 2U);
-  EXPECT_EQ(results.at(0).cases[1].name, "table");
-  EXPECT_GT(results.at(0).cases[1].result.servo.rows(), 100U);
+  ASSERT_EQ(results.at(0).cases->size(), 2U);
+  EXPECT_EQ(results.at(0).cases->at(1).name, "table");
+  EXPECT_GT(results.at(0).cases->at(1).result.servo.rows(), 100U);
 }
 
 TEST(Sweep, SaysWhyAPointIsRefusedAndGoesOn) {

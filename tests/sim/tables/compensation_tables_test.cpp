@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 
 namespace servomill::sim::tables::compensation_tables_test {

@@ -7,6 +7,7 @@
 
 #include "controllers/tables/isg_table.h"
 #include "plant/geometry/volumetric.h"
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 
 namespace servomill::sim::tables::exchange_files_test {

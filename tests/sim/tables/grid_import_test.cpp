@@ -5,6 +5,7 @@
 
 #include "sim/config/document.h"
 #include "sim/input/read_errors.h"
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 
 namespace servomill::sim::tables::grid_import_test {

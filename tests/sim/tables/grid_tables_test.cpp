@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/machine.h"
 #include "sim/tables/table_export.h"
 #include "tests/sim/tables/rich_tables.h"
 

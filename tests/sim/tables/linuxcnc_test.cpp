@@ -11,6 +11,8 @@
 #include <sstream>
 
 #include "plant/geometry/volumetric.h"
+#include "sim/model/machine.h"
+#include "sim/tables/table_export.h"
 #include "tests/sim/tables/small_machine.h"
 
 namespace servomill::sim::tables::linuxcnc_test {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "controllers/tables/mesh_table.h"
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 #include "tests/text.h"
 

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
+#include "sim/tables/table_export.h"
 #include "sim/tables/verify_tables.h"
 #include "tests/sim/tables/small_machine.h"
 

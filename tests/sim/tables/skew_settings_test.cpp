@@ -8,6 +8,7 @@
 
 #include "controllers/tables/skew_table.h"
 #include "plant/geometry/volumetric.h"
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 
 namespace servomill::sim::tables::skew_settings_test {

@@ -6,7 +6,10 @@
 
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "sim/tables/table_files.h"
+#include "sim/tables/table_format.h"
+#include "sim/tables/table_request.h"
 
 namespace servomill::sim::tables {
 

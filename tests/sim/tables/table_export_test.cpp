@@ -8,6 +8,9 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/input_error.h"
+#include "sim/model/machine.h"
+#include "sim/tables/compensation_tables.h"
+#include "sim/tables/table_export.h"
 #include "tests/pattern.h"
 #include "tests/sim/tables/small_machine.h"
 

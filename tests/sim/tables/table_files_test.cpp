@@ -3,6 +3,9 @@
 
 #include <numeric>
 
+#include "plant/geometry/error_model.h"
+#include "sim/model/machine.h"
+#include "sim/tables/table_export.h"
 #include "tests/sim/tables/small_machine.h"
 
 namespace servomill::sim::tables::table_files_test {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <sstream>
 
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 #include "tests/text.h"
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/machine.h"
+#include "sim/model/tip_uncertainty.h"
 #include "sim/tables/mesh_settings.h"
 #include "sim/tables/skew_settings.h"
 #include "tests/sim/tables/small_machine.h"
@@ -43,7 +45,7 @@ class Identified : public testing::Test {
 
   TableRequest request(TableFormat format) const {
     TableRequest out = request_of(format);
-    out.identified = identified_;
+    out.identified = std::make_shared<const model::UncertainErrors>(identified_);
     return out;
   }
 
@@ -162,7 +164,7 @@ TEST_F(Identified, BedMeshesThatAreNotDeterminedAreRefused) {
             "determined by the calibration; leave out --bed-mesh, or limit it with --travel\n");
   identified_ = {};
   know_all(1e-5, 2e-6);
-  mesh.identified = identified_;
+  mesh.identified = std::make_shared<const model::UncertainErrors>(identified_);
   const TableExport e = export_tables(machine_, errors_, mesh);
   EXPECT_NEAR(*e.mesh->uncertainty, 0.2e-6, 1e-9);  // 2 * 1e-5 / m * (0.1 m)^2
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/model/machine.h"
+#include "sim/model/tip_uncertainty.h"
 #include "sim/model/undetermined_errors.h"
 #include "tests/sim/tables/small_machine.h"
 #include "tests/text.h"

@@ -6,6 +6,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
+#include "sim/model/machine.h"
 #include "tests/sim/tables/rich_tables.h"
 
 namespace servomill::sim::tables::verify_tables_test {

@@ -9,6 +9,7 @@
 
 #include "plant/kinematics/structure.h"
 #include "plant/vocabulary/units.h"
+#include "sim/model/machine.h"
 #include "tests/text.h"
 
 namespace servomill::sim::programs::measuring_program_test {

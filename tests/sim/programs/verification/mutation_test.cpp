@@ -2,6 +2,7 @@
 // the control does.
 #include <random>
 
+#include "sim/input/machine_description.h"
 #include "sim/input/read_machine.h"
 #include "sim/programs/verification/verification.h"
 #include "tests/number_of.h"
@@ -100,7 +101,7 @@ std::vector<Effect> linuxcnc_effects(const std::string& text, const CompensateRe
   controllers::ProgramSetup setup = program_setup(request.inputs, "mutant");
   setup.work_offset[0].head<3>() << 0.4, 0.35, -0.09;
   return linuxcnc_effects_of(text, setup,
-                             input::read_machine_description(kRouter).machine.chain.layout);
+                             input::read_machine_description(kRouter).machine->chain.layout);
 }
 
 std::vector<Effect> effects(const std::string& text, const CompensateRequest& request) {
