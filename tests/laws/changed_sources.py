@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Prints the sources in which more than words has changed: messages and comments make no function longer or more complex.
+"""Prints the sources in which more than words has changed: messages, comments and lists of headers make no function longer or
+more complex.
 
     changed_sources.py BASE FOLDER...      BASE is a commit; uncommitted changes count
 """
@@ -9,11 +10,12 @@ import subprocess
 import sys
 
 WORDS = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+INCLUDE = re.compile(r"^[ \t]*#include[^\n]*$", re.MULTILINE)
 
 
 def code_of(source):
-    """A source without what comments and texts say, and without its line breaks."""
-    code = WORDS.sub(lambda word: '""' if word[0].startswith('"') else " ", source)
+    """A source without what comments and texts say, its list of headers and its line breaks."""
+    code = WORDS.sub(lambda word: '""' if word[0].startswith('"') else " ", INCLUDE.sub("", source))
     return re.sub(r'""(?:\s*"")+', '""', " ".join(code.split()))
 
 
