@@ -167,6 +167,24 @@ void require_travel(const model::MachineSettings& machine) {
   }
 }
 
+void require_time(const std::vector<PlannedSetUp>& set_ups, double time) {
+  double shortest = set_ups.front().time;
+  for (const PlannedSetUp& one : set_ups) shortest = std::min(shortest, one.time);
+  if (shortest <= time) return;
+  const double hours =
+      std::ceil(shortest / 36.0) / 100.0;  // as it is typed: two digits, rounded up
+  throw InputError({"--hours"},
+                   fmt::format("must be at least {:g}: the shortest set-up of these instruments "
+                               "takes {:g} min",
+                               hours, shortest / minute));
+}
+
+[[noreturn]] void refuse_without_gain() {
+  throw InputError({"--hours"},
+                   "no set-up of these instruments lowers the uncertainty of the TCP in this time; "
+                   "raise it or add --instruments");
+}
+
 }  // namespace
 
 Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings& settings,
@@ -177,6 +195,7 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
   if (out.set_ups.empty()) {
     throw InputError({"--instruments"}, "none of them applies to this machine");
   }
+  require_time(out.set_ups, settings.time);
   const Unknowns unknowns = unknowns_of(machine);
   const ErrorEffects effects(machine.chain, unknowns);
   MatrixXd known = MatrixXd::Zero(effects.size(), effects.size());
@@ -200,6 +219,8 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
   parts.advance();
   std::vector<MatrixXd> tips = tips_of(machine, settings, effects);
   const Measurable parted = measurable(candidates, known, settings.time);
+  // readings that say more already than all set-ups can in the time leave the search no variance
+  if (parted.beyond.cols() == effects.size()) refuse_without_gain();
   out.beyond = worst_beyond(tips, parted.beyond);
   out.untold = untold_errors(unknowns, known, parted.beyond);
   for (MatrixXd& K : tips) K = K * parted.projector;
@@ -210,6 +231,7 @@ Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings&
   for (std::size_t i = 0; i < out.set_ups.size(); ++i) {
     out.set_ups[i].count = static_cast<int>(std::lround(whole.counts[i]));
   }
+  if (planned_readings(out).groups.empty()) refuse_without_gain();
   out.before = worst_of(problem.variances(std::vector<double>(out.set_ups.size(), 0.0)));
   out.usual = worst_of(problem.variances(usual_counts(out.set_ups, settings.time)));
   out.after = std::sqrt(whole.worst);

@@ -43,7 +43,8 @@ struct Plan {
 };
 
 /// @param taken  readings that are there already; none: nullptr
-/// @throws InputError if an axis has no travel, or no instrument can measure anything
+/// @throws InputError if an axis has no travel, no instrument applies to the machine, the time is
+///                    too short for every set-up, or none of them lowers the uncertainty
 Plan plan_calibration(const model::MachineSettings& machine, const PlanSettings& settings,
                       const readings::Readings* taken);
 

@@ -178,6 +178,12 @@ class Way(unittest.TestCase):
         refused = self.run_in("router", *arguments[:-1], "heads", "--controls", "linuxcnc,fanux", status=2).stderr
         self.assertIn("'fanux' is no control of linuxcnc, heidenhain, fanuc, siemens; did you mean 'fanuc'?", refused)
 
+    def test_a_plan_without_a_measurement_is_refused_and_not_written(self):
+        refused = self.run_in("router", "plan-calibration", "--machine", "../../machines/generic_trunnion_ac.toml", "--instruments", "probe",
+                              "--hours", "0.25", "-o", "short", status=2).stderr
+        self.assertEqual(refused, "--hours: error: must be at least 0.34: the shortest set-up of these instruments takes 20 min\n")
+        self.assertFalse(os.path.exists(self.path("router", "short")))
+
     def test_the_table_of_errors_is_drawn(self):
         self.run_in("router", "calibrate", "readings.toml", "--table", "errors.csv", "-q")
         tool = os.path.join(SCENARIOS, "..", "tools", "errors_figure.py")

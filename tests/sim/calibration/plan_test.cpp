@@ -121,6 +121,31 @@ TEST(Plan, RefusesMachinesWithoutTravelAndInstrumentsWithoutUse) {
             "has no travel_mm in the machine file; a plan needs it\n");
 }
 
+PlanSettings circles_only() {
+  return {.instruments = {PlanInstrument::ballbar}, .time = 900.0, .tool_lengths = {0.15}};
+}
+
+// A circle of a ball bar takes 15 min (README.md).
+TEST(Plan, RefusesATimeThatIsTooShortForAnySetUp) {
+  PlanSettings settings = circles_only();
+  settings.time = 899.0;
+  EXPECT_EQ(fault_messages([&] { plan_calibration(gantry_machine(), settings, nullptr); }),
+            "must be at least 0.25: the shortest set-up of these instruments takes 15 min\n");
+  settings.time = 900.0;
+  const Plan plan = plan_calibration(gantry_machine(), settings, nullptr);
+  EXPECT_EQ(planned_readings(plan).groups.size(), 1U);
+}
+
+// Readings of a thousandth of their uncertainty leave less than one circle can lower.
+TEST(Plan, RefusesATimeInWhichNothingIsGained) {
+  readings::Readings taken = planned_readings(plan_of_a_day());
+  for (readings::Group& group : taken.groups) group.uncertainty = 1e-3 * *group.uncertainty;
+  PlanSettings settings = circles_only();
+  EXPECT_EQ(fault_messages([&] { plan_calibration(gantry_machine(), settings, &taken); }),
+            "no set-up of these instruments lowers the uncertainty of the TCP in this time; raise "
+            "it or add --instruments\n");
+}
+
 // Two unknowns: one is determined, of the other less than is known already.
 TEST(Measurable, PartsWhatSetUpsCannotTell) {
   Eigen::MatrixXd known = Eigen::Vector2d(4.0, 1.0).asDiagonal();
