@@ -13,6 +13,13 @@
 #include "sim/records/nexus.h"
 
 namespace servomill::sim::records {
+namespace {
+
+std::string without_attribute(const std::string& object, const std::string& name) {
+  return fmt::format("'{}' has no attribute '{}'", object, name);
+}
+
+}  // namespace
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
   const Hdf5Lock lock;
@@ -181,7 +188,7 @@ Hdf5Handle InputFile::open_attribute(const std::string& object, const std::strin
   const Hdf5Lock lock;
   const Hdf5Handle id = open(object);
   Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
-  if (attribute.get() < 0) fail(fmt::format("'{}' has no attribute '{}'", object, name));
+  if (attribute.get() < 0) fail(without_attribute(object, name));
   return attribute;
 }
 
@@ -204,9 +211,13 @@ std::string InputFile::long_text(const std::string& dataset) const {
 
 std::string InputFile::text(const std::string& object, const std::string& name) const {
   const Hdf5Lock lock;
-  const std::string dataset = object + "/" + name;
-  if (!has_attribute(object, name) && has(dataset)) return long_text(dataset);
-  const Hdf5Handle attribute = open_attribute(object, name);
+  const Hdf5Handle id = open(object);
+  const Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
+  if (attribute.get() < 0) {
+    const std::string dataset = object + "/" + name;
+    if (has(dataset)) return long_text(dataset);
+    fail(without_attribute(object, name));
+  }
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
     fail(fmt::format("attribute '{}' of '{}' is not a string", name, object));
