@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "plant/vocabulary/units.h"
 #include "sim/identification/interval_report.h"
@@ -165,6 +166,21 @@ std::string disturbance_warning(const RecordResult& one) {
   return {};
 }
 
+// Laws that are much farther from the parts of the recording that their fit did not see.
+std::optional<std::string> law_warning(const std::vector<LawResult>& laws) {
+  constexpr double kFar = 2.0;  // of the rms of the fit; laws that are determined stay within 1.3
+  std::vector<std::string> names;
+  for (const LawResult& law : laws) {
+    if (law.refused.empty() && law.held_out > kFar * law.rms) names.push_back(law.name);
+  }
+  if (names.empty()) return std::nullopt;
+  return fmt::format(
+      "friction law '{}': the held-out error is above {:g} times the rms of the fit, since two "
+      "thirds of the recording do not determine all values; compare the laws on a longer recording "
+      "with more reversals",
+      fmt::join(names, "', '"), kFar);
+}
+
 }  // namespace
 
 std::vector<std::string> unidentifiable_sentences(const Identification& result) {
@@ -224,6 +240,7 @@ std::vector<std::string> warnings(const Identification& result) {
                       one.record->record.name, 100.0 * share));
     }
   }
+  if (const auto said = law_warning(result.laws)) out.push_back(*said);
   return out;
 }
 

@@ -234,6 +234,9 @@ class Way(in_folder.InScenarios):
         printed = self.run_in_folder("identify", "short.toml", "--compare-laws").stdout
         rows = re.findall(r"^(viscous|Coulomb, viscous, offset|LuGre by direction) .* um +[\d.]+ um", printed, re.MULTILINE)
         self.assertEqual(rows, ["viscous", "Coulomb, viscous, offset", "LuGre by direction"])
+        held_out = [float(one) for one in re.findall(r" um +([\d.]+) um +[\d.]+ +\d+$", printed, re.MULTILINE)]
+        self.assertEqual(len(held_out), 8)
+        self.assertLess(max(held_out), 10.0)      # um; the axis moves by tenths of a metre
         self.assertIn("the simplest law that is not worse than the best: LuGre by direction\n", printed)   # that of the recording
 
 

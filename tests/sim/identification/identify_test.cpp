@@ -296,6 +296,27 @@ start = 0.5
   EXPECT_EQ(units, (std::vector<std::string>{"N s/m", "ms", "ms", ""}));
 }
 
+TEST(Identify, NamesLawsThatPredictFarWorseThanTheyFit) {
+  Identification result;
+  result.fit.converged = true;
+  const auto law = [&](const char* name, double held_out) -> LawResult& {
+    result.laws.emplace_back().name = name;
+    result.laws.back().rms = 1e-6;
+    result.laws.back().held_out = held_out;
+    return result.laws.back();
+  };
+  law("viscous", 2.1e-6);
+  law("Coulomb", 1.9e-6);
+  law("LuGre", 80.0);
+  law("Stribeck", 1.0).refused = "too stiff";
+  ASSERT_EQ(warnings(result).size(), 1U);
+  EXPECT_EQ(
+      warnings(result).back(),
+      "friction law 'viscous', 'LuGre': the held-out error is above 2 times the rms of the "
+      "fit, since two thirds of the recording do not determine all values; compare the laws on "
+      "a longer recording with more reversals");
+}
+
 TEST(Identify, AMachineInTheExperimentCannotBeLaidOver) {
   const AxisExperiment files;
   files.write_recording(recorded(ramps(0.5), truth()));
