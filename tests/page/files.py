@@ -40,6 +40,16 @@ def identify(servomill, signals):
         run(servomill, "identify", "identify.toml", "--signals", signals, "--force", cwd=cwd)
 
 
+def long_program(servomill, result):
+    """A program above 1 MB, which the file has as a list of characters: comments, and a part behind them."""
+    with tempfile.TemporaryDirectory() as copy:
+        folder = pathlib.Path(copy) / "long"
+        shutil.copytree(ROOT / "tests" / "cli" / "gallery", folder)
+        program = folder / "part.ngc"
+        program.write_text("(a comment ahead of the part: \u00e4)\n" * 50_000 + program.read_text(encoding="utf-8"), encoding="utf-8")
+        run(servomill, "run", "scenario.toml", "-o", result, "--force", cwd=folder)
+
+
 def main():
     servomill, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -47,6 +57,7 @@ def main():
         # Names of scenarios are relative to the source tree, as users type them.
         run(servomill, command, scenario, *options, "-o", folder / f"{name}.h5", "--force", cwd=ROOT)
     identify(servomill, folder / "identified.h5")
+    long_program(servomill, folder / "long.h5")
     (folder / "text.h5").write_text("not HDF5, whatever its name\n", encoding="utf-8")
     (folder / "cut.h5").write_bytes((folder / "run.h5").read_bytes()[:300_000])
     return 0

@@ -93,6 +93,16 @@ describe("comparison", () => {
   });
 });
 
+describe("a program above 1 MB", () => {
+  it("has its line at the cursor, too", async () => {
+    const page = await opened("long");
+    await side(page, "Machine");
+    await set(page, { cursor: { key: "time", value: 0.2 } });
+    assert.equal(await page.$eval(".side pre", (one) => one.textContent), "line 50008: G1 X10");
+    await page.close();
+  });
+});
+
 describe("path and machine", () => {
   let page;
   before(async () => {

@@ -9,6 +9,7 @@ import { html } from "../shell/dom.js";
 import { colourOf, MachineScene } from "./machine_scene.js";
 
 const SMALLEST = 100; // mm, travel by which the bodies are drawn
+const LONG_PROGRAM = "/inputs/program";
 const POSITIONS = ["true_linear", "true_rotary"];
 
 export class MachineView {
@@ -67,8 +68,8 @@ export class MachineView {
         return { one, axes, values };
       }),
     );
-    await this.showPlace(found[0]);
     await this.showAxes(found);
+    await this.showPlace(found[0]); // last: the first line of a long program takes a reading of all of it
   }
 
   async showPlace({ one, axes, values }) {
@@ -76,9 +77,14 @@ export class MachineView {
     const number = Math.floor(line);
     const name = one.sections[Math.round(section)] ?? "";
     this.place.textContent = `${one.label}: ${short(time, 6)} s, s = ${short(s, 6)} mm${name ? `, section ${name}` : ""}`;
-    const program = await this.programOf(one.file);
-    this.line.textContent =
-      program[number - 1] !== undefined ? `line ${number}: ${program[number - 1].trim()}` : `line ${number}`;
+    const text = await this.lineOf(one.file, number);
+    this.line.textContent = text === undefined ? `line ${number}` : `line ${number}: ${text.trim()}`;
+  }
+
+  /** A line of the program; undefined where the file has none. Programs above 1 MB are a dataset. */
+  async lineOf(file, number) {
+    if (this.store.state.results[file].dataset(LONG_PROGRAM)) return this.client.ask("line", file, LONG_PROGRAM, number);
+    return (await this.programOf(file))[number - 1];
   }
 
   async programOf(file) {

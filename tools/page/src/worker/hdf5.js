@@ -1,5 +1,6 @@
 /** Result files, read through h5wasm: the tree of groups and datasets, and hyperslabs of columns. */
 import * as h5wasm from "h5wasm";
+import { LongText } from "../core/long_text.js";
 import { pagedFile, pageReader } from "./source.js";
 
 const SIGNATURE = [0x89, 0x48, 0x44, 0x46, 0x0d, 0x0a, 0x1a, 0x0a];
@@ -73,6 +74,7 @@ export class ResultFile {
   constructor(name, file, paged, folder) {
     Object.assign(this, { name, file, paged, folder });
     this.datasets = new Map();
+    this.texts = new Map();
   }
 
   async close() {
@@ -157,6 +159,30 @@ export class ResultFile {
   /** Text of an attribute too long for the tree. */
   attribute(path, name) {
     return attributeValue(this.file.get(path).get_attribute(name));
+  }
+
+  /** A line, counted from 1, of a text that is stored as the list of its characters; undefined behind the last one. */
+  line(path, number) {
+    let text = this.texts.get(path);
+    if (!text) {
+      text = new LongText(this.dataset(path).shape[0], (from, to) => this.bytes(path, from, to));
+      this.texts.set(path, text);
+    }
+    return text.line(number);
+  }
+
+  /** Characters of a list, as bytes: the library makes a string of each, a hundred times as large. */
+  bytes(path, from, to) {
+    const { Module } = h5wasm;
+    const place = Module._malloc(to - from);
+    try {
+      Module.get_dataset_data(this.file.file_id, path, [BigInt(to - from)], [BigInt(from)], [1n], BigInt(place));
+      return Module.HEAPU8.slice(place, place + to - from);
+    } catch (fault) {
+      throw this.paged.fault ?? new Error(`${path}: ${fault.message ?? fault}`);
+    } finally {
+      Module._free(place);
+    }
   }
 
   /** Ticks from row to row, if these are times that all rows have from 0 on; undefined of others and of signals. */

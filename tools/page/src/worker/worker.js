@@ -40,6 +40,7 @@ const methods = {
     await file.close();
   },
   values: (file, path_) => fileOf(file).values(path_),
+  line: (file, path_, number) => fileOf(file).line(path_, number),
   attribute: (file, path_, name) => fileOf(file).attribute(path_, name),
   column: (file, path_, column) => fileOf(file).read(path_, column, 0, fileOf(file).dataset(path_).shape[0]),
   curve: (request) => curve(columns, request),
