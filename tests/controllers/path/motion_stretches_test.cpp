@@ -95,6 +95,37 @@ TEST(LongMotion, EveryBlockIsPassedOnceAndWhole) {
   EXPECT_EQ(move, program.moves().size() - 1);
 }
 
+double end_speed(const Trajectory::Chain& chain) {
+  return chain.plan->law.phases.back().at(chain.duration).v;
+}
+
+// A stretch that the look-ahead cannot continue ends at rest, by the law that was planned with it.
+// Here the third seam is passed as fast as the 10 mm behind it lead to rest under the jerk alone,
+// (L^2 j)^(1/3) = 215 mm/s. That braking is at 141 mm/s 2.5 mm ahead of its end, within the feed of
+// 145 mm/s there. With the path beyond, the speed is to settle at 145 mm/s: 9.6 mm, of 7.5 mm.
+TEST(LongMotion, AStretchThatCannotBeContinuedEndsAtRest) {
+  Program program;
+  for (int n = 1; n <= 160; ++n) {
+    program.line(n * mm, 0.0, 0.0, n > 42 && n <= 48 ? 145 * mm : 600 * mm);
+  }
+  const Trajectory path = planned(program, 20);
+  ASSERT_GE(path.chains(), 6U);
+  EXPECT_NEAR(path.chain(3)->plan->path.length(), 10 * mm, 1e-9);
+  EXPECT_NEAR(end_speed(*path.chain(2)), std::cbrt(1e-4 * 100.0), 1e-4);
+  EXPECT_NEAR(end_speed(*path.chain(3)), 0.0, 1e-9);
+  EXPECT_NEAR(path.chain(4)->plan->law.phases.front().v, 0.0, 1e-9);
+  EXPECT_GT(end_speed(*path.chain(4)), 100 * mm);  // and the motion goes on
+  Trajectory::Cursor cursor;
+  double s = 0.0;
+  for (double t = 0.0; t < path.duration(); t += 1 * ms) {
+    const auto now = path.at(t, cursor);
+    EXPECT_GE(now.s, s);
+    EXPECT_LE(now.s - s, (now.move >= 42 && now.move < 48 ? 146e-6 : 601e-6));
+    s = now.s;
+  }
+  EXPECT_NEAR(s, 160 * mm, 1 * mm);
+}
+
 // Nothing to be divided: a motion of splines alone stays whole.
 TEST(LongMotion, SplinesStayWhole) {
   Program program;
