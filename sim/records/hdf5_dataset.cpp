@@ -22,6 +22,25 @@ void Hdf5Dataset::attach_scale(Hdf5Dataset& scale, unsigned dimension) {
   written(H5DSattach_scale(id_.get(), scale.id_.get(), dimension), id_.get());
 }
 
+// HDF5 Dimension Scale Specification, section 4.2: the attribute DIMENSION_LIST has references to
+// the scales of each dimension.
+void Hdf5Dataset::refer_to_scales(std::span<Hdf5Dataset* const> scales) {
+  const Hdf5Lock lock;
+  std::vector<hobj_ref_t> references(scales.size());
+  std::vector<hvl_t> list;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    written(H5Rcreate(&references[i], scales[i]->id_.get(), ".", H5R_OBJECT, -1), id_.get());
+    list.push_back({1, &references[i]});
+  }
+  const hsize_t rank = list.size();
+  const Hdf5Handle type = hdf5_handle(H5Tvlen_create(H5T_STD_REF_OBJ));
+  const Hdf5Handle space = hdf5_handle(H5Screate_simple(1, &rank, nullptr));
+  const Hdf5Handle attribute(written(
+      H5Acreate2(id_.get(), "DIMENSION_LIST", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+      id_.get()));
+  written(H5Awrite(attribute.get(), type.get(), list.data()), id_.get());
+}
+
 void Hdf5Dataset::write(std::size_t first, std::span<const double> values) {
   const Hdf5Lock lock;
   const hsize_t begin = first, count = values.size();
@@ -62,6 +81,17 @@ void Hdf5Dataset::append(std::size_t rows, std::span<const std::vector<std::uint
             id_.get());
   }
   rows_ += rows;
+}
+
+void Hdf5Dataset::read_chunk(std::size_t row, std::size_t column,
+                             std::vector<std::uint8_t>& chunk) {
+  const Hdf5Lock lock;
+  const std::array<hsize_t, 2> begin = {row, column};
+  hsize_t size = 0;
+  written(H5Dget_chunk_storage_size(id_.get(), begin.data(), &size), id_.get());
+  chunk.resize(size);
+  std::uint32_t left_out = 0;  // filters
+  written(H5Dread_chunk(id_.get(), H5P_DEFAULT, begin.data(), &left_out, chunk.data()), id_.get());
 }
 
 }  // namespace servomill::sim::records

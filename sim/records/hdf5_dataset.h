@@ -15,10 +15,17 @@ namespace servomill::sim::records {
 
 class Hdf5Dataset : public Hdf5Object {
  public:
+  /// Numbers of a row.
+  std::size_t columns() const { return columns_; }
+
   /// Makes this dataset the scale of a dimension called `name`.
   void make_scale(const std::string& name);
   /// Gives the dimension (0 rows, 1 columns) its scale.
   void attach_scale(Hdf5Dataset& scale, unsigned dimension);
+  /// Gives all dimensions their scales, which are not changed: they have no list of their datasets
+  /// then, which no reader needs, but a kill cannot spoil them.
+  /// @pre no dimension has one
+  void refer_to_scales(std::span<Hdf5Dataset* const> scales);
 
   /// Replaces numbers of a dataset of fixed size, from row `first` on.
   void write(std::size_t first, std::span<const double> values);
@@ -28,6 +35,8 @@ class Hdf5Dataset : public Hdf5Object {
   /// Adds rows at the end of an extendible dataset: of each column one chunk, encoded as the
   /// dataset says. Only the last chunks may hold fewer rows than the chunks are long.
   void append(std::size_t rows, std::span<const std::vector<std::uint8_t>> chunks);
+  /// The chunk of a column that begins with this row, as it was appended.
+  void read_chunk(std::size_t row, std::size_t column, std::vector<std::uint8_t>& chunk);
 
  private:
   friend class Hdf5Group;

@@ -88,6 +88,13 @@ void Hdf5Group::move(const std::string& from, const std::string& to) {
           id_.get());
 }
 
+void Hdf5Group::link(const std::string& from, const std::string& name) {
+  const Hdf5Lock lock;
+  written(
+      H5Lcreate_hard(id_.get(), from.c_str(), id_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      id_.get());
+}
+
 void Hdf5Group::remove(const std::string& name) {
   const Hdf5Lock lock;
   written(H5Ldelete(id_.get(), name.c_str(), H5P_DEFAULT), id_.get());

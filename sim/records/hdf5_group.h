@@ -29,6 +29,10 @@ class Hdf5Group : public Hdf5Object {
   /// Moves what is at a path to another path, both below this group; the groups above are there.
   void move(const std::string& from, const std::string& to);
 
+  /// Gives a dataset of this file one name more, in this group; nothing is copied.
+  /// @param from  its path below this group or, with "/" at its begin, below the root
+  void link(const std::string& from, const std::string& name);
+
   /// Takes an empty group away.
   void remove(const std::string& name);
 

@@ -11,6 +11,7 @@
 #include "plant/vocabulary/user_file.h"
 #include "sim/records/hdf5_library.h"
 #include "sim/records/nexus.h"
+#include "sim/records/shared_signals.h"
 
 namespace servomill::sim::records {
 namespace {
@@ -194,7 +195,8 @@ Hdf5Handle InputFile::open_attribute(const std::string& object, const std::strin
 
 Meaning InputFile::meaning(const std::string& dataset) const {
   std::string units = text(dataset, "units");
-  std::string long_name = unlabelled(text(dataset, "long_name"), units);
+  const std::string name = dataset.substr(dataset.rfind('/') + 1);
+  std::string long_name = own_long_name(unlabelled(text(dataset, "long_name"), units), name);
   return {std::move(units), std::move(long_name)};
 }
 

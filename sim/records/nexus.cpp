@@ -17,9 +17,10 @@ std::string bracketed(const std::string& units) { return " [" + units + "]"; }
 
 void label(Hdf5Group& group, const std::string& name) {
   Hdf5Dataset dataset = group.dataset(name);
-  const std::string units = dataset.text("units");
-  const std::string long_name = unlabelled(dataset.text("long_name"), units);
-  dataset.attribute("long_name", labelled({units, long_name}));
+  const std::string units = dataset.text("units"), long_name = dataset.text("long_name");
+  const std::string label = labelled({units, unlabelled(long_name, units)});
+  // what several groups share is written once
+  if (label != long_name) dataset.attribute("long_name", label);
 }
 
 }  // namespace

@@ -31,10 +31,14 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
   // all datasets, with their scales
   std::vector<Hdf5Dataset> scales;
   for (const ColumnLabels& labels : layout_.labels) {
-    scales.push_back(group_.labels(labels.name, labels.letters, labels.long_name));
+    if (!labels.same_as.empty()) group_.link(labels.same_as, labels.name);
+    scales.push_back(labels.same_as.empty()
+                         ? group_.labels(labels.name, labels.letters, labels.long_name)
+                         : group_.dataset(labels.name));
   }
-  add_channel({layout_.index, layout_.index_meaning, "", Storage::float64}, scales);
-  if (layout_.index_steps) {
+  add_channel({layout_.index, layout_.index_meaning, "", Storage::float64, layout_.index_same_as},
+              scales);
+  if (layout_.index_steps && layout_.index_same_as.empty()) {
     Hdf5Dataset& index = datasets_.front().dataset;
     index.attribute("sampling_ticks", layout_.index_steps->ticks);
     index.attribute("tick", layout_.index_steps->tick);
@@ -65,7 +69,8 @@ SeriesWriter::~SeriesWriter() {
   }
 }
 
-void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales) {
+// Makes a dataset of its own, with its scales.
+Hdf5Dataset SeriesWriter::make(const Channel& channel, std::vector<Hdf5Dataset>& scales) {
   const bool has_columns = !channel.labels.empty();
   const std::size_t labels = has_columns ? place_of(layout_.labels, channel.labels) : 0;
   const std::size_t columns = has_columns ? layout_.labels[labels].letters.size() : 1;
@@ -73,15 +78,29 @@ void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>&
                                           channel.storage, layout_.compression, channel.meaning);
   if (datasets_.empty()) {
     dataset.make_scale(channel.name);
+    return dataset;
+  }
+  std::vector<Hdf5Dataset*> of_dimensions = {&datasets_.front().dataset};
+  if (has_columns) of_dimensions.push_back(&scales[labels]);
+  if (layout_.index_same_as.empty()) {
+    for (unsigned i = 0; i < of_dimensions.size(); ++i) dataset.attach_scale(*of_dimensions[i], i);
   } else {
-    dataset.attach_scale(datasets_.front().dataset, 0);
+    dataset.refer_to_scales(of_dimensions);
   }
   if (has_columns) {
-    dataset.attach_scale(scales[labels], 1);
     dataset.attribute("columns", layout_.labels[labels].letters);  // for readers without scales
   }
-  datasets_.push_back({std::move(dataset), width_, columns});
+  return dataset;
+}
+
+void SeriesWriter::add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales) {
+  const bool is_shared = !channel.same_as.empty();
+  if (is_shared) group_.link(channel.same_as, channel.name);
+  Hdf5Dataset dataset = is_shared ? group_.dataset(channel.name) : make(channel, scales);
+  const std::size_t columns = dataset.columns();
+  datasets_.push_back({std::move(dataset), width_, columns, is_shared});
   storage_.insert(storage_.end(), columns, channel.storage);
+  shared_.insert(shared_.end(), columns, is_shared);
   width_ += columns;
 }
 
@@ -120,6 +139,7 @@ void SeriesWriter::encode(Neighbours& columns, const std::vector<double>& block,
   }
   const double* values = columns.gathered.data();
   for (std::size_t c = columns.begin; c < columns.end; ++c, values += rows) {
+    if (shared_[c]) continue;
     columns.encoder.encode({values, rows}, layout_.chunk_rows, storage_[c], chunks_[c]);
   }
 }
@@ -133,6 +153,7 @@ void SeriesWriter::write_block(const std::vector<double>& block, std::size_t row
   for (const auto& chunk : chunks_) bytes += chunk.size();
   group_.reserve(bytes);
   for (Dataset& one : datasets_) {
+    if (one.is_shared) continue;
     one.dataset.append(rows, std::span(chunks_).subspan(one.offset, one.columns));
   }
   group_.flush_file();
@@ -143,7 +164,9 @@ void SeriesWriter::append_pages(const ColumnPages& pages) {
   const std::size_t count = (pages.rows() + pages.page_rows() - 1) / pages.page_rows();
   for (std::size_t first = 0; first < count; first += kRun) {
     const std::size_t last = std::min(first + kRun, count);
-    for (Dataset& one : datasets_) write_pages(one, pages, first, last);
+    for (Dataset& one : datasets_) {
+      if (!one.is_shared) write_pages(one, pages, first, last);
+    }
     group_.flush_file();
   }
 }

@@ -21,6 +21,7 @@ struct ColumnLabels {
   std::string name;
   std::string letters;
   std::string long_name;
+  std::string same_as = {};  // path of the dataset that has them already; empty: none
 };
 
 /// One dataset: a number a row, or as many as its labels have letters.
@@ -29,6 +30,7 @@ struct Channel {
   Meaning meaning;
   std::string labels;  // name of its ColumnLabels; empty: one number a row
   Storage storage = Storage::float64;
+  std::string same_as = {};  // path of the dataset that has its numbers already; empty: none
 };
 
 /// An index whose row i is i * ticks * tick, to the bit.
@@ -43,6 +45,7 @@ struct SeriesLayout {
   std::string index = "time";
   Meaning index_meaning = {"s", "time"};
   std::optional<EvenSteps> index_steps = {};  // said to readers, who need not read the index then
+  std::string index_same_as = {};             // as that of a channel
   std::vector<ColumnLabels> labels;
   std::vector<Channel> channels;
   Plot plot = {};  // what viewers draw; without a signal, nothing
@@ -54,7 +57,10 @@ struct SeriesLayout {
 
 /// The file must outlive the writer.
 ///
-/// A row is a flat list of numbers: the index, then the channels in the order of the layout.
+/// A row is a flat list of numbers: the index, then the channels in the order of the layout. Those
+/// that are `same_as` a dataset of the file are further names of that, whose numbers are left
+/// alone.
+///
 /// Whoever appends rows only copies them: a thread of the writer compresses and writes a block
 /// while the next one fills. There are no more than these two.
 class SeriesWriter {
@@ -94,6 +100,7 @@ class SeriesWriter {
     Hdf5Dataset dataset;
     std::size_t offset;  // in a row
     std::size_t columns;
+    bool is_shared;  // its numbers are there already
   };
   // Columns whose numbers share the cache lines of a row: encoded by one thread.
   struct Neighbours {
@@ -102,6 +109,7 @@ class SeriesWriter {
     ChunkEncoder encoder;
   };
 
+  Hdf5Dataset make(const Channel& channel, std::vector<Hdf5Dataset>& scales);
   void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
   void allocate();
   void hand_over();
@@ -113,6 +121,7 @@ class SeriesWriter {
   SeriesLayout layout_;
   std::vector<Dataset> datasets_;  // the index first
   std::vector<Storage> storage_;   // of each column
+  std::vector<bool> shared_;       // columns that are not written
   std::vector<Neighbours> neighbours_;
   std::vector<std::vector<std::uint8_t>> chunks_;  // of the block, column by column
   std::size_t width_ = 0;

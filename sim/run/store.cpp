@@ -10,6 +10,7 @@
 #include "sim/model/scenario.h"
 #include "sim/records/hdf5_group.h"
 #include "sim/records/nexus.h"
+#include "sim/records/shared_signals.h"
 #include "sim/run/day_course.h"
 #include "sim/run/run_case.h"
 #include "sim/run/store_chain.h"
@@ -61,14 +62,21 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std
   inputs.attribute("resolved", scenario.resolved);
 }
 
+// Form of the signals, and those of the complete cases.
+struct RunStore::Signals {
+  SeriesFormat format;
+  records::SharedSignals shared;
+};
+
 RunStore::RunStore(const std::string& path, bool force, const model::Scenario& scenario,
                    unsigned threads)
     : file_(writable_name(path, force), force),
       shown_(scenario.cases.front().name),
-      format_(std::make_unique<const SeriesFormat>(
-          SeriesFormat{{scenario.record_period, scenario.machine.nc.periods.base},
-                       scenario.record.compression,
-                       threads})) {
+      signals_(std::make_unique<Signals>(
+          Signals{{{scenario.record_period, scenario.machine.nc.periods.base},
+                   scenario.record.compression,
+                   threads},
+                  {}})) {
   records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run", "cases");
   write_errors(root, scenario);
@@ -92,9 +100,10 @@ void RunStore::add(const CaseOutput& one) {
   records::Hdf5Group group = root.group(unfinished);
   records::make_nexus_group(group, "NXsubentry", "servo");
   write_chain(group, one.chain);
-  write_series(group.group("servo"), one.result.servo, *format_);
+  const records::SeriesLayout servo =
+      write_series(group.group("servo"), one.result.servo, signals_->format, signals_->shared);
   if (one.result.last_ticks.rows() > 0) {
-    write_series(group.group("last_ticks"), one.result.last_ticks, *format_);
+    write_series(group.group("last_ticks"), one.result.last_ticks, signals_->format);
   }
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.frame, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);
@@ -119,6 +128,7 @@ void RunStore::add(const CaseOutput& one) {
   // A kill meanwhile spoils nothing but this case; from now on it is one of the complete ones.
   root.flush_file();
   root.move(unfinished, "cases/" + one.name);
+  signals_->shared.add(fmt::format("/cases/{}/servo", one.name), one.result.servo.rows(), servo);
   // the first case ended without result, as that of a plug-in that crashed
   if (!has_case_ && one.name != shown_) root.group("cases").attribute("default", one.name);
   has_case_ = true;

@@ -20,8 +20,7 @@ struct ComparisonRow;
 
 namespace servomill::sim::run {
 
-struct CaseOutput;    // sim/run/run_case.h
-struct SeriesFormat;  // sim/run/store_series.h
+struct CaseOutput;  // sim/run/run_case.h
 
 /// Header of every result file: build, kind, the instructions that compute
 /// (plant/vocabulary/simd.h), and the scenario with all that it read.
@@ -45,10 +44,12 @@ class RunStore {
   const std::string& partial_path() const { return file_.partial_path(); }
 
  private:
+  struct Signals;
+
   records::OutputFile file_;
   std::string shown_;  // first case of the scenario: that of the default plot
   bool has_case_ = false;
-  std::unique_ptr<const SeriesFormat> format_;
+  std::unique_ptr<Signals> signals_;
 };
 
 }  // namespace servomill::sim::run

@@ -60,8 +60,9 @@ bool has_even_times(const records::Series& series, const records::EvenSteps& ste
   return true;
 }
 
-void write_series(records::Hdf5Group group, const records::Series& series,
-                  const SeriesFormat& format) {
+records::SeriesLayout write_series(records::Hdf5Group group, const records::Series& series,
+                                   const SeriesFormat& format,
+                                   const records::SharedSignals& shared) {
   records::SeriesLayout layout = layout_of(series, "time");
   if (has_even_times(series, format.steps)) layout.index_steps = format.steps;
   layout.compression = format.compression;
@@ -69,7 +70,8 @@ void write_series(records::Hdf5Group group, const records::Series& series,
   const records::ColumnPages* const pages = series.pages();
   layout.is_encoded = pages != nullptr;
   if (pages != nullptr) layout.chunk_rows = pages->page_rows();
-  records::SeriesWriter writer(std::move(group), std::move(layout));
+  shared.find(group, series, layout);
+  records::SeriesWriter writer(std::move(group), layout);
   if (pages != nullptr) {
     writer.append_pages(*pages);
   } else {
@@ -78,6 +80,7 @@ void write_series(records::Hdf5Group group, const records::Series& series,
     }
   }
   writer.finish();
+  return layout;
 }
 
 }  // namespace servomill::sim::run

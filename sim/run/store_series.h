@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/records/series_writer.h"
+#include "sim/records/shared_signals.h"
 
 namespace servomill::sim::run {
 
@@ -17,7 +18,10 @@ bool has_even_times(const records::Series& series, const records::EvenSteps& ste
 
 /// Writes a series with its default plot: the contour error over time; without it, the first
 /// signal.
-void write_series(records::Hdf5Group group, const records::Series& series,
-                  const SeriesFormat& format);
+/// @param shared  series of the file, whose equal signals are not written again
+/// @return layout as it was written
+records::SeriesLayout write_series(records::Hdf5Group group, const records::Series& series,
+                                   const SeriesFormat& format,
+                                   const records::SharedSignals& shared = {});
 
 }  // namespace servomill::sim::run

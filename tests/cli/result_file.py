@@ -50,6 +50,37 @@ class ResultFile(unittest.TestCase):
             for key in ("Conventions", "servomill_version", "servomill_build", "schema_version", "kind", "simd_level", "scenario", "title"):
                 self.assertIn(key, file.attrs)
 
+    def test_equal_signals_are_one_dataset(self):
+        with h5py.File(self.path, "r") as file:
+            nominal, table = (file[f"cases/{name}/servo"] for name in ("nominal", "table"))
+            self.assertEqual(list(nominal), list(table))  # in the same order
+            # the nominal case corrects nothing, and the NC of both reads the scale
+            self.assertEqual(nominal["cmd_linear"], nominal["ref_linear"])
+            self.assertEqual(nominal["meas_linear"], nominal["fb_linear"])
+            self.assertEqual(nominal["ref_linear"].attrs["long_name"],
+                             "ref_linear: interpolated position, linear axes = cmd_linear: setpoint after corrections, linear axes")
+            self.assertNotEqual(table["cmd_linear"], table["ref_linear"])
+            self.assertNotEqual(table["true_linear"], nominal["true_linear"])
+            for name in ("time", "s", "line", "tool_position_nominal"):
+                self.assertEqual(table[name], nominal[name], name)
+            # readers find dimensions by their scales
+            for name, data in table.items():
+                if "CLASS" not in data.attrs:
+                    self.assertEqual(data.dims[0][0], table["time"], name)
+                if data.ndim == 2:
+                    self.assertEqual("".join(letter.decode() for letter in data.dims[1][0]), data.attrs["columns"], name)
+
+    def test_xarray_and_netcdf_find_the_dimensions_of_every_name(self):
+        for engine in ("h5netcdf", "netcdf4"):
+            for case in ("nominal", "table"):
+                try:
+                    data = xarray.open_dataset(self.path, group=f"cases/{case}/servo", engine=engine, decode_times=False)
+                except ValueError as error:
+                    self.skipTest(str(error))
+                with data:
+                    for name in ("ref_linear", "cmd_linear", "true_linear"):
+                        self.assertEqual(data[name].dims, ("time", "axis_linear"), (engine, case, name))
+
     def test_inputs_are_kept_as_they_were_read(self):
         with h5py.File(self.path, "r") as file:
             for key, name in (("scenario", "scenario.toml"), ("machine", "machine.toml"), ("program", "part.ngc")):

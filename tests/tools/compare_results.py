@@ -23,7 +23,7 @@ RAN = (0, 1)   # done, or the machine stopped
 
 
 def content(path):
-    """Bytes of every dataset and attribute of a file, by its path in there."""
+    """Bytes of every dataset and attribute of a file, by each of its paths in there."""
     out = {}
 
     def take(name, item):
@@ -33,10 +33,12 @@ def content(path):
             out[f"{name}@{key}"] = np.asarray(value)
         if isinstance(item, h5py.Dataset):
             out[name] = item[()]
+        else:
+            for child, below in item.items():
+                take(f"{name}/{child}".lstrip("/"), below)
 
     with h5py.File(path, "r") as file:
         take("", file)
-        file.visititems(take)
     return out
 
 

@@ -2,9 +2,10 @@
 """Runs a program of short lines of five axes in three cases (none, table, feedback), recorded every 10 ms.
 
     many_lines.py SERVOMILL [LINES]      10^7 lines are 7.4 h of motion and 500 MB of text
+    many_lines.py --rows SERVOMILL LINES
 
 Prints peak memory, size of the file, speed over all cases, and the processor time of a line beyond a tenth of the lines against that of
-the lines before.
+the lines before. With --rows, prints the size of the file of two cases (none, table) recorded every millisecond.
 """
 import os
 import pathlib
@@ -35,7 +36,7 @@ EYX = {{ harmonic = {{ amplitude_um = 1.5, period_mm = 62.0 }} }}
 EZX = "EYX"
 
 [record]
-period_ms = 10.0
+period_ms = {period_ms}
 
 [[case]]
 name = "none"
@@ -53,6 +54,8 @@ from_mm = -200.0
 to_mm = 250.0
 spacing_mm = 3.2768
 injection_point = "position_command"
+"""
+FEEDBACK = """\
 
 [[case]]
 name = "feedback"
@@ -65,12 +68,12 @@ max_rate_mm_per_s = 10.0
 """
 
 
-def run(servomill, lines, folder):
+def run(servomill, lines, folder, period_ms=10.0, more_cases=FEEDBACK):
     """Peak memory (bytes), size of the file (bytes), time and processor time (s), and motion (s, of all cases)."""
     with open(folder / "five.ngc", "w", encoding="utf-8") as file:
         file.writelines(line + "\n" for line in program("five", lines))
     machine = ROOT / "scenarios" / "machines" / "hsm600u.toml"
-    (folder / "five.toml").write_text(SCENARIO.format(machine=machine), encoding="utf-8")
+    (folder / "five.toml").write_text(SCENARIO.format(machine=machine, period_ms=period_ms) + more_cases, encoding="utf-8")
     begin = time.monotonic()
     with open(folder / "said", "w", encoding="utf-8") as said:
         process = subprocess.Popen([servomill, "run", "five.toml", "-o", "five.h5"], cwd=folder, stdout=said, stderr=subprocess.STDOUT)
@@ -83,7 +86,16 @@ def run(servomill, lines, folder):
     return 1024 * used.ru_maxrss, (folder / "five.h5").stat().st_size, took, used.ru_utime + used.ru_stime, motion
 
 
+def print_rows(servomill, lines):
+    with tempfile.TemporaryDirectory(dir=".") as folder:
+        _, size, _, processor, motion = run(servomill, lines, pathlib.Path(folder), period_ms=1.0, more_cases="")
+    print(f"{lines} lines, {motion / 2 / 60:.1f} min of motion in 2 cases: file of {size / 1e6:.0f} MB, {size / (1000 * motion):.1f} bytes a row, "
+          f"{processor:.1f} s of the processor")
+
+
 def main():
+    if len(sys.argv) == 4 and sys.argv[1] == "--rows":
+        return print_rows(os.path.abspath(sys.argv[2]), int(sys.argv[3]))
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(__doc__)
     servomill = os.path.abspath(sys.argv[1])

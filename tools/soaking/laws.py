@@ -58,10 +58,18 @@ class Commands:
 
 
 def datasets(path):
-    """Every dataset of a result file by its name."""
+    """Every dataset of a result file by each of its names."""
     out = {}
+
+    def take(group, above):
+        for name, one in group.items():
+            if isinstance(one, h5py.Dataset):
+                out[above + name] = one[()]
+            else:
+                take(one, f"{above}{name}/")
+
     with h5py.File(path) as file:
-        file.visititems(lambda name, one: out.update({name: one[()]}) if isinstance(one, h5py.Dataset) else None)
+        take(file, "")
     return out
 
 

@@ -11,6 +11,14 @@ from .results import Case, Comparison, Row, Run
 from .signals import Signals
 
 
+def _own_long_name(long_name: str, name: str) -> str:
+    """The part of one name; signals that are equal have one dataset, whose long name is that of all ("ref: ... = cmd: ...")."""
+    for part in long_name.split(" = "):
+        if part.startswith(f"{name}: "):
+            return part[len(name) + 2:]
+    return long_name
+
+
 class _StoredSignals:
     """The group `servo` of a case, as servomill.signals.Signals wants it."""
 
@@ -29,7 +37,7 @@ class _StoredSignals:
             units = data.attrs["units"]
             # behind the long name of what NeXus viewers draw stands its unit, too
             long_name = data.attrs["long_name"].removesuffix(f" [{units}]")
-            out[name] = (units, long_name, data.attrs.get("columns", ""), scale)
+            out[name] = (units, _own_long_name(long_name, name), data.attrs.get("columns", ""), scale)
         return out
 
     def array(self, name: str) -> np.ndarray:

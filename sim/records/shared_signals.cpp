@@ -1,0 +1,209 @@
+#include "sim/records/shared_signals.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <utility>
+
+#include "sim/records/chunk_encoder.h"
+
+namespace servomill::sim::records {
+namespace {
+
+constexpr std::string_view kEquals = " = ", kIs = ": ";
+
+using Chunk = std::vector<std::uint8_t>;
+
+// Columns of a series in the chunks in which a file holds them.
+class EncodedColumns {
+ public:
+  EncodedColumns(const Series& series, const SeriesLayout& layout)
+      : series_(series), chunk_rows_(layout.chunk_rows), encoder_(layout.compression) {}
+  std::size_t chunks() const { return (series_.rows() + chunk_rows_ - 1) / chunk_rows_; }
+  std::size_t first_row(std::size_t chunk) const { return chunk * chunk_rows_; }
+  void encode(std::size_t column, Storage storage, std::size_t chunk, Chunk& out) {
+    if (series_.pages() != nullptr && series_.pages()->read_encoded(column, chunk, out)) return;
+    values_.clear();
+    const std::size_t end = std::min(first_row(chunk + 1), series_.rows());
+    for (std::size_t row = first_row(chunk); row < end; ++row) {
+      values_.push_back(series_.at(row, column));
+    }
+    encoder_.encode(values_, chunk_rows_, storage, out);
+  }
+
+ private:
+  const Series& series_;
+  const std::size_t chunk_rows_;
+  ChunkEncoder encoder_;
+  std::vector<double> values_;
+};
+
+// Columns of a channel.
+struct Columns {
+  std::size_t first, count;
+  Storage storage;
+};
+
+// @param other  makes a chunk of the same signal elsewhere, by column and chunk
+template <class Other>
+bool are_equal(EncodedColumns& encoded, Columns columns, Other&& other) {
+  Chunk one, another;
+  for (std::size_t c = 0; c < columns.count; ++c) {
+    for (std::size_t chunk = 0; chunk < encoded.chunks(); ++chunk) {
+      encoded.encode(columns.first + c, columns.storage, chunk, one);
+      other(c, chunk, another);
+      if (one != another) return false;
+    }
+  }
+  return true;
+}
+
+bool equals_stored(EncodedColumns& encoded, Columns columns, Hdf5Dataset stored) {
+  return are_equal(encoded, columns, [&](std::size_t c, std::size_t chunk, Chunk& out) {
+    stored.read_chunk(encoded.first_row(chunk), c, out);
+  });
+}
+
+Columns columns_of(const Series& series, const Channel& channel) {
+  const Signal& signal = *series.find(channel.name);
+  return {signal.offset, signal.columns(), channel.storage};
+}
+
+bool may_share(const Channel& one, const Channel& other) {
+  return !one.labels.empty() && one.labels == other.labels && one.storage == other.storage &&
+         one.storage != Storage::int32 && one.meaning.units == other.meaning.units;
+}
+
+// Shares within a series.
+void share_channels(EncodedColumns& encoded, const Series& series, std::vector<Channel>& channels) {
+  std::vector<std::vector<const Channel*>> sharing(channels.size());
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    sharing[i].push_back(&channels[i]);
+    const Columns columns = columns_of(series, channels[i]);
+    for (std::size_t earlier = 0; earlier < i && channels[i].same_as.empty(); ++earlier) {
+      const Channel& other = channels[earlier];
+      if (!other.same_as.empty() || !may_share(channels[i], other)) continue;
+      const Columns before = columns_of(series, other);
+      const auto chunk_before = [&](std::size_t c, std::size_t chunk, Chunk& out) {
+        encoded.encode(before.first + c, before.storage, chunk, out);
+      };
+      if (!are_equal(encoded, columns, chunk_before)) continue;
+      channels[i].same_as = other.name;
+      sharing[earlier].push_back(&channels[i]);
+    }
+  }
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (sharing[i].size() > 1) channels[i].meaning.long_name = long_name_of_all(sharing[i]);
+  }
+}
+
+bool is_drawn(const Plot& plot, const std::string& name) {
+  return plot.signal == name ||
+         std::find(plot.others.begin(), plot.others.end(), name) != plot.others.end();
+}
+
+bool is_same(const Meaning& one, const Meaning& other) {
+  return one.units == other.units && one.long_name == other.long_name;
+}
+
+bool is_same(const ColumnLabels& one, const ColumnLabels& other) {
+  return one.name == other.name && one.letters == other.letters && one.long_name == other.long_name;
+}
+
+// @pre the labels of the same name are the same
+bool is_same(const Channel& one, const Channel& other) {
+  return one.name == other.name && is_same(one.meaning, other.meaning) &&
+         one.labels == other.labels && one.storage == other.storage;
+}
+
+const ColumnLabels* find_labels(const std::vector<ColumnLabels>& all, const std::string& name) {
+  const auto at = std::find_if(all.begin(), all.end(),
+                               [&](const ColumnLabels& one) { return one.name == name; });
+  return at == all.end() ? nullptr : &*at;
+}
+
+Channel index_of(const SeriesLayout& layout) {
+  return {layout.index, layout.index_meaning, "", Storage::float64, layout.index_same_as};
+}
+
+}  // namespace
+
+std::string long_name_of_all(std::span<const Channel* const> channels) {
+  std::string out;
+  for (const Channel* channel : channels) {
+    if (!out.empty()) out += kEquals;
+    out += channel->name;
+    out += kIs;
+    out += channel->meaning.long_name;
+  }
+  return out;
+}
+
+std::string own_long_name(std::string_view long_name, std::string_view name) {
+  for (std::string_view rest = long_name; !rest.empty();) {
+    const std::string_view part = rest.substr(0, rest.find(kEquals));
+    if (part.starts_with(name) && part.substr(name.size()).starts_with(kIs)) {
+      return std::string(part.substr(name.size() + kIs.size()));
+    }
+    rest.remove_prefix(std::min(rest.size(), part.size() + kEquals.size()));
+  }
+  return std::string(long_name);
+}
+
+void SharedSignals::find(Hdf5Group& file, const Series& series, SeriesLayout& layout) const {
+  if (series.rows() == 0) return;
+  EncodedColumns encoded(series, layout);
+  share_channels(encoded, series, layout.channels);
+  const Columns index = {*series.column(layout.index), 1, Storage::float64};
+  for (const Family& family : families_) {
+    if (family.rows != series.rows() || family.chunk_rows != layout.chunk_rows ||
+        !is_same(family.index, index_of(layout)) ||
+        !equals_stored(encoded, index, file.dataset(family.index.same_as))) {
+      continue;
+    }
+    layout.index_same_as = family.index.same_as;
+    for (ColumnLabels& labels : layout.labels) {
+      const ColumnLabels* known = find_labels(family.labels, labels.name);
+      if (known != nullptr && is_same(*known, labels)) labels.same_as = known->same_as;
+    }
+    for (Channel& channel : layout.channels) {
+      const ColumnLabels* labels = find_labels(layout.labels, channel.labels);
+      if (!channel.same_as.empty() || (labels != nullptr && labels->same_as.empty())) continue;
+      for (const auto& [stored, drawn] : family.signals) {
+        if (is_same(stored, channel) && drawn == is_drawn(layout.plot, channel.name) &&
+            equals_stored(encoded, columns_of(series, channel), file.dataset(stored.same_as))) {
+          channel.same_as = stored.same_as;
+          break;
+        }
+      }
+    }
+    return;
+  }
+}
+
+void SharedSignals::add(const std::string& group, std::size_t rows, const SeriesLayout& layout) {
+  const auto here = [&](const std::string& name) { return group + "/" + name; };
+  auto family = std::find_if(families_.begin(), families_.end(), [&](const Family& one) {
+    return one.index.same_as == layout.index_same_as;
+  });
+  if (family == families_.end()) {
+    families_.push_back({rows, layout.chunk_rows, index_of(layout), {}, {}});
+    family = families_.end() - 1;
+    family->index.same_as = here(layout.index);
+  }
+  for (const ColumnLabels& labels : layout.labels) {
+    if (find_labels(family->labels, labels.name) != nullptr) continue;
+    family->labels.push_back(labels);
+    family->labels.back().same_as = here(labels.name);
+  }
+  for (const Channel& channel : layout.channels) {
+    const ColumnLabels* labels = find_labels(family->labels, channel.labels);
+    const ColumnLabels* own = find_labels(layout.labels, channel.labels);
+    // further names, and signals whose scale is another one
+    if (!channel.same_as.empty() || (labels != nullptr && !is_same(*labels, *own))) continue;
+    family->signals.push_back({channel, is_drawn(layout.plot, channel.name)});
+    family->signals.back().channel.same_as = here(channel.name);
+  }
+}
+
+}  // namespace servomill::sim::records
