@@ -1,8 +1,10 @@
 #include "plant/vocabulary/scratch_file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -44,7 +46,10 @@ ScratchFile::ScratchFile(std::string folder, std::string contents)
   }
 }
 
-ScratchFile::~ScratchFile() { ::close(descriptor_); }
+ScratchFile::~ScratchFile() {
+  if (mapped_ != nullptr) ::munmap(mapped_, size_);
+  ::close(descriptor_);
+}
 
 std::uint64_t ScratchFile::size() const {
   const std::scoped_lock lock(mutex_);
@@ -78,6 +83,23 @@ void ScratchFile::read(std::uint64_t place, std::span<std::uint8_t> bytes) const
     place += static_cast<std::uint64_t>(done);
     bytes = bytes.subspan(static_cast<std::size_t>(done));
   }
+}
+
+std::span<const std::uint8_t> ScratchFile::map() {
+  const std::scoped_lock lock(mutex_);
+  assert(size_ > 0 && mapped_ == nullptr);
+  void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, descriptor_, 0);
+  if (at == MAP_FAILED) {
+    throw SystemError(folder_, contents_ + " cannot be read", std::strerror(errno));
+  }
+  mapped_ = at;
+  return {static_cast<const std::uint8_t*>(at), size_};
+}
+
+void ScratchFile::release() const {
+  const std::scoped_lock lock(mutex_);
+  // pages of a shared mapping that are dropped are those of the file again
+  if (mapped_ != nullptr) ::madvise(mapped_, size_, MADV_DONTNEED);
 }
 
 }  // namespace servomill

@@ -24,12 +24,20 @@ class ScratchFile {
   /// Returns the place where the bytes begin.
   std::uint64_t append(std::span<const std::uint8_t> bytes);
   void read(std::uint64_t place, std::span<std::uint8_t> bytes) const;
+  /// All bytes that were appended, as long as the file is there; once, and then nothing is
+  /// appended. The system reads them when they are used, so that a disk that fails ends the process
+  /// then.
+  /// @pre size() > 0
+  std::span<const std::uint8_t> map();
+  /// Gives back the memory of mapped bytes that were read. Whoever uses them goes on.
+  void release() const;
 
  private:
   std::string folder_, contents_;
   int descriptor_ = -1;
   mutable std::mutex mutex_;
   std::uint64_t size_ = 0;
+  void* mapped_ = nullptr;
 };
 
 /// The bytes of values without pointers.

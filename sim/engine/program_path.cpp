@@ -34,7 +34,10 @@ int index_of_section(std::vector<std::string>& sections, const std::string& name
   return static_cast<int>(sections.size()) - 1;
 }
 
-// A vector that grows holds its elements twice for a while: of 10^7 moves half a gigabyte.
+// Whoever goes along a path on the disk has about so many of its pieces in memory.
+constexpr std::size_t kInMemory = 1U << 15U;
+
+// A vector that grows holds its elements twice for a while.
 std::size_t motions_of(const MoveRange& moves) {
   std::size_t count = 0;
   for (const Move& move : moves) count += is_motion(move.kind) ? 1 : 0;
@@ -45,8 +48,10 @@ std::size_t motions_of(const MoveRange& moves) {
 
 ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
                          std::shared_ptr<const controllers::ToolCentrePoint> machine,
-                         const std::map<int, Eigen::Vector3d>& tips)
-    : machine_(std::move(machine)) {
+                         const std::map<int, Eigen::Vector3d>& tips, std::size_t most_in_memory)
+    : machine_(std::move(machine)),
+      pieces_("the programmed path", most_in_memory),
+      rotary_ends_("the programmed path", most_in_memory) {
   AxisWords at = start;  // machine coordinates; behind a tip piece tip words with its p_ST
   std::optional<Piece> before;
   int section = 0;
@@ -79,6 +84,8 @@ ProgramPath::ProgramPath(const MoveRange& moves, const AxisWords& start,
     before = piece;
     at = move.end_machine;
   }
+  pieces_.finish();
+  rotary_ends_.finish();
 }
 
 // @param move  of which the curve is; nullptr: straight from the end of the piece before
@@ -121,7 +128,15 @@ MoveCurve ProgramPath::curve_of(std::size_t index) const {
   return {end_of(pieces_[index - 1]), end_of(held)};
 }
 
+// Whoever goes along the path calls this with every index.
+void ProgramPath::release_behind(std::size_t index) const {
+  if (index % kInMemory != kInMemory - 1) return;
+  pieces_.release();
+  rotary_ends_.release();
+}
+
 ProgramPath::Piece ProgramPath::piece(std::size_t index) const {
+  release_behind(index);
   const Held& held = pieces_[index];
   const Setting& setting = setting_of(held);
   Piece out{curve_of(index), end_of(held),        s_begin_of(index), held.s_end,
@@ -167,6 +182,7 @@ ProgramPath::Indices ProgramPath::pieces_of(const MoveRange& moves) const {
   for (const Move& move : moves) {
     while (is_motion(move.kind) && !holds(piece, move)) {
       if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");
+      release_behind(piece);
     }
     out.push_back(piece);
   }

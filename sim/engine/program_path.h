@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -14,12 +13,14 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move_curve.h"
 #include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/stored_values.h"
 
 namespace servomill::sim::engine {
 
 /// The motion of the original program in machine coordinates, by arc length s (m). Where the
 /// program controls the tip, that is the tip in the workpiece, and s the length of its way. A
-/// straight block takes 48 bytes.
+/// straight block takes 48 bytes, 72 where rotary axes move; those of a long program are on the
+/// disk.
 class ProgramPath {
  public:
   /// @param moves  canonical moves with s_begin, s_end
@@ -27,9 +28,12 @@ class ProgramPath {
   /// @param machine, tips  for moves under tool control: the ideal machine, and p_ST (3; m) by
   /// number
   ///               of tool offset
+  /// @param most_in_memory  bytes of blocks, and of positions of the rotary axes
+  /// @throws SystemError if the disk is full
   ProgramPath(const MoveRange& moves, const AxisWords& start,
               std::shared_ptr<const controllers::ToolCentrePoint> machine = nullptr,
-              const std::map<int, Eigen::Vector3d>& tips = {});
+              const std::map<int, Eigen::Vector3d>& tips = {},
+              std::size_t most_in_memory = MoveList::kMaxInMemory);
 
   struct Piece {
     MoveCurve curve;
@@ -117,6 +121,7 @@ class ProgramPath {
   };
 
   void hold(const Piece& piece, const Move* move);
+  void release_behind(std::size_t index) const;
   std::uint32_t index_of(const Setting& setting);
   std::uint32_t index_of_rotary(const Eigen::Vector3d& end);
   AxisWords end_of(const Held& held) const;
@@ -130,9 +135,8 @@ class ProgramPath {
                   const Joints& Q_near) const;
 
   std::shared_ptr<const controllers::ToolCentrePoint> machine_;
-  std::vector<Held> pieces_;
-  // A B C; blocks in a row mostly have the same. Where they do not a vector would grow by copies
-  std::deque<Eigen::Vector3d> rotary_ends_;
+  StoredValues<Held> pieces_;
+  StoredValues<Eigen::Vector3d> rotary_ends_;  // A B C; blocks in a row mostly have the same
   std::vector<Setting> settings_;
   std::vector<Curved> curved_;
   std::vector<std::string> sections_ = {""};

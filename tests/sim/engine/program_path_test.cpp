@@ -121,5 +121,48 @@ TEST(ProgramPath, MeasuresTheDistanceToThePathNearby) {
   EXPECT_NEAR(distance(3.0, 24.0, 3), 5.0, kTol) << "inside of the arc";
 }
 
+// A zigzag while C turns, with an arc among every hundred lines.
+std::vector<Move> many_moves(int count) {
+  std::vector<Move> moves;
+  double s = 0.0;
+  for (int n = 0; n < count; ++n) {
+    const AxisWords end = at(0.1 * (n % 700), 0.37 * n, n % 3 == 0 ? 1e-3 * n : 2.0);
+    Move move = move_to(end, n + 1, s, s + 0.5);
+    s += 0.5;
+    if (n > 0 && n % 100 == 0) {
+      move.kind = MoveKind::arc;
+      const AxisWords& begin = moves.back().end;
+      move.centre_machine = move.arc.centre = 0.5 * (begin + end).head<3>();
+    }
+    moves.push_back(std::move(move));
+  }
+  return moves;
+}
+
+TEST(ProgramPath, IsTheSameInMemoryAndOnTheDisk) {
+  constexpr int kMoves = 70'000;
+  const std::vector<Move> moves = many_moves(kMoves);
+  const ProgramPath in_memory(moves, at(0, 0)), on_disk(moves, at(0, 0), nullptr, {}, 0);
+  ASSERT_EQ(on_disk.size(), in_memory.size());
+  EXPECT_EQ(on_disk.length(), in_memory.length());
+  EXPECT_EQ(on_disk.pieces_of(moves), in_memory.pieces_of(moves));
+  const Eigen::Vector3d aside(1 * mm, 2 * mm, 3 * mm);
+  for (std::size_t i = 0; i < in_memory.size(); ++i) {
+    const ProgramPath::Piece one = in_memory.piece(i), other = on_disk.piece(i);
+    ASSERT_EQ(other.begin, one.begin) << i;
+    ASSERT_EQ(other.end, one.end) << i;
+    ASSERT_EQ(other.s_begin, one.s_begin) << i;
+    ASSERT_EQ(other.s_end, one.s_end) << i;
+    ASSERT_EQ(other.line, one.line) << i;
+    ASSERT_EQ(on_disk.is_rapid(i), in_memory.is_rapid(i)) << i;
+    const double s = 0.3 * one.s_begin + 0.7 * one.s_end;
+    const AxisWords there = in_memory.at(i, s);
+    ASSERT_EQ(on_disk.at(i, s), there) << i;
+    const Eigen::Vector3d beside = there.head<3>() + aside;
+    if (i % 500 != 0) continue;
+    ASSERT_EQ(on_disk.distance(beside, i), in_memory.distance(beside, i)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace servomill::sim::engine::program_path_test
