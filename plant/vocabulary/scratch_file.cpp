@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstdlib>
@@ -16,6 +17,8 @@
 
 namespace servomill {
 namespace {
+
+std::atomic<std::uint64_t> temporary = 0;
 
 std::string folder_of_temporary_files(const std::string& contents) {
   std::error_code error;
@@ -38,7 +41,8 @@ int open_without_name(const std::string& folder) {
 }  // namespace
 
 ScratchFile::ScratchFile(std::string folder, std::string contents)
-    : folder_(folder.empty() ? folder_of_temporary_files(contents) : std::move(folder)),
+    : is_temporary_(folder.empty()),
+      folder_(folder.empty() ? folder_of_temporary_files(contents) : std::move(folder)),
       contents_(std::move(contents)),
       descriptor_(open_without_name(folder_)) {
   if (descriptor_ < 0) {
@@ -49,6 +53,14 @@ ScratchFile::ScratchFile(std::string folder, std::string contents)
 ScratchFile::~ScratchFile() {
   if (mapped_ != nullptr) ::munmap(mapped_, size_);
   ::close(descriptor_);
+  if (is_temporary_) temporary -= size_;
+}
+
+std::uint64_t ScratchFile::temporary_bytes() { return temporary; }
+
+void ScratchFile::fail_to_write(const std::string& reason) const {
+  const char* const remedy = is_temporary_ ? "; TMPDIR chooses another folder" : "";
+  throw SystemError(folder_, contents_ + " cannot be written", reason + remedy);
 }
 
 std::uint64_t ScratchFile::size() const {
@@ -63,10 +75,9 @@ std::uint64_t ScratchFile::append(std::span<const std::uint8_t> bytes) {
     const ssize_t done =
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) {
-      throw SystemError(folder_, contents_ + " cannot be written", std::strerror(errno));
-    }
+    if (done <= 0) fail_to_write(std::strerror(errno));
     size_ += static_cast<std::uint64_t>(done);
+    if (is_temporary_) temporary += static_cast<std::uint64_t>(done);
     bytes = bytes.subspan(static_cast<std::size_t>(done));
   }
   return place;

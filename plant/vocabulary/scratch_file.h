@@ -20,6 +20,9 @@ class ScratchFile {
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
+  /// Bytes of all that this process has in the folder of temporary files (TMPDIR).
+  static std::uint64_t temporary_bytes();
+
   std::uint64_t size() const;
   /// Returns the place where the bytes begin.
   std::uint64_t append(std::span<const std::uint8_t> bytes);
@@ -33,6 +36,9 @@ class ScratchFile {
   void release() const;
 
  private:
+  [[noreturn]] void fail_to_write(const std::string& reason) const;
+
+  bool is_temporary_;  // in the folder of temporary files
   std::string folder_, contents_;
   int descriptor_ = -1;
   mutable std::mutex mutex_;

@@ -25,6 +25,22 @@ TEST(ScratchFile, ReturnsWhatWasAppended) {
   EXPECT_EQ(read.front(), 100);
 }
 
+TEST(ScratchFile, CountsTheBytesOfTemporaryFiles) {
+  const std::uint64_t before = ScratchFile::temporary_bytes();
+  const std::vector<std::uint8_t> hundred(100);
+  ScratchFile elsewhere(".", "numbers");
+  elsewhere.append(hundred);
+  EXPECT_EQ(ScratchFile::temporary_bytes(), before);
+  {
+    ScratchFile one("", "numbers"), other("", "numbers");
+    one.append(hundred);
+    other.append(hundred);
+    other.append(hundred);
+    EXPECT_EQ(ScratchFile::temporary_bytes(), before + 300);
+  }
+  EXPECT_EQ(ScratchFile::temporary_bytes(), before);
+}
+
 TEST(ScratchFile, SaysWhatCannotBeStoredOrRead) {
   const auto message = [](const auto& action) -> std::string {
     try {
