@@ -24,6 +24,24 @@ Trajectory::Sample rest(const Joints& Q, const Trajectory::Chain::Span& at, doub
   return out;
 }
 
+// Joints kBegin to kEnd - 1 at y (m) behind the begin of a piece, with speed v, acceleration a and
+// jerk j along the path. Numbers one by one: four of them are two vectors of the processor, five a
+// call of a function each.
+template <std::size_t kBegin, std::size_t kEnd>
+void evaluate(const CubicPiece& q, double y, double v, double a, double j,
+              Trajectory::Sample& out) {
+  const double *c0 = q.c0.data(), *c1 = q.c1.data(), *c2 = q.c2.data(), *c3 = q.c3.data();
+  double *Q = out.Q_ref.data(), *dQ = out.dQ_ref.data(), *ddQ = out.ddQ_ref.data(),
+         *dddQ = out.dddQ_ref.data();
+  for (std::size_t i = kBegin; i < kEnd; ++i) {
+    const double d1 = c1[i] + y * (c2[i] + c3[i] * (y / 2.0)), d2 = c2[i] + c3[i] * y;
+    Q[i] = c0[i] + y * (c1[i] + y * (c2[i] / 2.0 + c3[i] * (y / 6.0)));
+    dQ[i] = d1 * v;
+    ddQ[i] = d2 * (v * v) + d1 * a;
+    dddQ[i] = c3[i] * (v * v * v) + d2 * (3.0 * v * a) + d1 * j;
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const Trajectory::Chain> Trajectory::chain(std::size_t index) const {
@@ -80,19 +98,16 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   while (c.piece > 0 && s < pieces[c.piece].s) --c.piece;
   while (c.piece + 1 < pieces.size() && s >= pieces[c.piece + 1].s) ++c.piece;
   const CubicPiece& q = pieces[c.piece];
-  const double y = s - q.s;
-  const Joints d1 = q.c1 + y * (q.c2 + q.c3 * (y / 2.0)), d2 = q.c2 + q.c3 * y;
   while (c.span > 0 && s < chain.begin_of(chain.spans[c.span])) --c.span;
   while (c.span + 1 < chain.spans.size() && s >= chain.end_of(chain.spans[c.span])) ++c.span;
   const Chain::Span& span = chain.spans[c.span];
 
   Sample out;
-  out.Q_ref = q.c0 + y * (q.c1 + y * (q.c2 / 2.0 + q.c3 * (y / 6.0)));
-  out.dQ_ref = d1 * v;
-  out.ddQ_ref = d2 * (v * v) + d1 * a;
-  out.dddQ_ref = q.c3 * (v * v * v) + d2 * (3.0 * v * a) + d1 * now.j;
+  evaluate<0, 4>(q, s - q.s, v, a, now.j, out);
+  evaluate<4, kJoints>(q, s - q.s, v, a, now.j, out);
   for (Joints* part : {&out.Q_ref, &out.dQ_ref, &out.ddQ_ref, &out.dddQ_ref}) {
-    part->tail<kJoints - kLinearJoints>() /= rotary_radius_;
+    auto rotary = part->tail<kJoints - kLinearJoints>();
+    if (!rotary.isZero(0.0)) rotary /= rotary_radius_;  // a division takes as long as all the rest
   }
   const double s_begin = chain.begin_of(span), s_end = chain.end_of(span);
   const double x = std::clamp((s - s_begin) / (s_end - s_begin), 0.0, 1.0);

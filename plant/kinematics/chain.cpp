@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "plant/kinematics/linear_joints.h"
 #include "plant/vocabulary/sine_and_cosine.h"
 
 namespace servomill::plant {
@@ -175,41 +176,12 @@ PoseJacobian jacobian(const MachineChain& chain, const Joints& Q, const Eigen::V
 
 LinearJoints linear_joints(const MachineChain& chain, const Eigen::Vector3d& p_WT,
                            const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
-  // The tip is an affine function of the linear joints: where it is with all at 0, and its slopes.
-  Eigen::Vector3d tip = p_ST;
-  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
-  for (auto a = chain.axes.rbegin(); a != chain.axes.rend(); ++a) {
-    if (is_linear(a->axis)) {
-      J(index_of(a->axis), a->joint) = 1.0;
-      continue;
-    }
-    const JointMotion m = motion_at(*a, Q_rotary[a->joint]);
-    tip = turned(*a, m, tip - a->centre) + a->centre;
-    for (int i = 0; i < kLinearJoints; ++i) J.col(i) = turned(*a, m, J.col(i));
-  }
-  LinearJoints out{Q_rotary, 0.0};
-  const Eigen::Vector3d way = p_WT - tip;
-  if (J.isIdentity(0.0) && way.allFinite()) {  // as solved below: no axis is turned or missing
-    out.Q.head<kLinearJoints>() = way + Eigen::Vector3d::Zero();  // no negative zeros
-    return out;
-  }
-  // The second round removes rounding.
-  Eigen::Vector3d q = Eigen::Vector3d::Zero();
-  for (int round = 0; round < 2; ++round) {
-    const LeastSquares step = least_squares(J, way - J * q);
-    out.is_unique = step.rank == number_of_linear_axes(chain);
-    q += step.x;
-  }
-  out.miss = (way - J * q).norm();
-  out.Q.head<kLinearJoints>() = q;
-  return out;
+  return linear_joints(chain, tip_of_linear_joints(chain, Q_rotary, p_ST), p_WT, Q_rotary);
 }
 
 std::optional<Joints> inverse_fixed_rotary(const MachineChain& chain, const Eigen::Vector3d& p_WT,
                                            const Joints& Q_rotary, const Eigen::Vector3d& p_ST) {
-  const LinearJoints linear = linear_joints(chain, p_WT, Q_rotary, p_ST);
-  if (!linear.is_unique || !(linear.miss <= kReachTolerance)) return std::nullopt;
-  return linear.Q;
+  return inverse_fixed_rotary(chain, tip_of_linear_joints(chain, Q_rotary, p_ST), p_WT, Q_rotary);
 }
 
 }  // namespace servomill::plant

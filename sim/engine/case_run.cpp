@@ -69,7 +69,7 @@ CaseRun::CaseRun(CaseInputs& in, ServoAxes& axes, FeedbackLanes& feedback, std::
 bool CaseRun::command_axes(Tick n) {
   const double t = nc_.periods.seconds(n);
   const auto& reference = reference_.at(t);
-  set_ = setpoint_.advance(reference, t, axes_.Q_fb(run_));
+  setpoint_.advance(reference, t, setpoint_.corrects() ? axes_.Q_fb(run_) : Joints::Zero());
   if (in_.feedback) feedback_.set_reference(run_, set_, reference.s);
   if (last_ticks_) {
     last_ticks_->keep(t, set_.Q_cmd, axes_.Q_fb(run_), axes_.Q_true(run_), axes_.current(run_));
@@ -227,7 +227,7 @@ bool CaseRun::heat(Tick n) {
 
 // In steady state at the start: position feedback agrees with the setpoint.
 void CaseRun::initialise_at_rest() {
-  set_ = setpoint_.settle();
+  setpoint_.settle();
   Standstill rest{set_.Q_cmd};
   if (in_.feedback) {
     feedback_.add(run_, *in_.feedback, model_period_of(in_));

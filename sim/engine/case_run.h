@@ -84,7 +84,7 @@ class CaseRun {
   bool on_bed_;
   std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   Tick end_ = 0;
-  AxisSetpoint set_;
+  const AxisSetpoint& set_ = setpoint_.now();
   DemandMeter demands_;
   LoopDisplacement by_loops_;               // without feed-forward
   Joints added_velocity_ = Joints::Zero();  // by strategies, in the position period before

@@ -12,7 +12,9 @@ void FeedbackLanes::add(std::size_t run, const strategies::Strategy& strategy,
   if (together == all_.end()) {
     all_.push_back({&strategy, strategy.feedback(model_period)});
     together = all_.end() - 1;
+    observes_ |= together->part->observes();
   }
+  place_.at(run - first_) = static_cast<std::size_t>(together - all_.begin());
   use(*together, run - first_, true);
   model_period_ = model_period;
 }
@@ -28,14 +30,13 @@ void FeedbackLanes::use(Together& together, std::size_t lane, bool used) {
 }
 
 FeedbackLanes::Together& FeedbackLanes::of(std::size_t run) {
-  const auto found = std::find_if(all_.begin(), all_.end(), [&](const Together& together) {
-    return together.lanes.at(run - first_);
-  });
-  assert(found != all_.end());
-  return *found;
+  Together& together = all_[place_.at(run - first_)];
+  assert(together.lanes.at(run - first_));
+  return together;
 }
 
 void FeedbackLanes::set_reference(std::size_t run, const AxisSetpoint& set, double s) {
+  if (!observes_) return;
   strategies::Reading& reading = readings_[run - first_];
   reading.s = s;
   reading.Q_ref = set.Q_ref;

@@ -57,6 +57,8 @@ class FeedbackLanes {
   ServoAxes& axes_;
   std::size_t first_;
   std::vector<Together> all_;
+  std::array<std::size_t, kLaneWidth> place_ = {};  // in all_, of each lane
+  bool observes_ = false;                           // some strategy does
   JointLanes Q_meas_{};
   std::array<strategies::Reading, kLaneWidth> readings_ = {};
   double model_period_ = 0.0;  // s

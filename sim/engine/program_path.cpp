@@ -113,7 +113,8 @@ std::uint32_t ProgramPath::index_of_rotary(const Eigen::Vector3d& end) {
 
 AxisWords ProgramPath::end_of(const Held& held) const {
   AxisWords end;
-  end << held.end, rotary_ends_[held.rotary_end];
+  end.head<3>() = held.end;
+  end.tail<3>() = rotary_ends_[held.rotary_end];
   return end;
 }
 
@@ -193,7 +194,8 @@ AxisWords ProgramPath::at(std::size_t index, double s) const {
   const Held& p = pieces_[index];
   const double s_begin = s_begin_of(index), length = p.s_end - s_begin;
   if (!(length > 0.0)) return end_of(p);
-  return curve_of(index).at(std::clamp((s - s_begin) / length, 0.0, 1.0));
+  const double share = std::clamp((s - s_begin) / length, 0.0, 1.0);
+  return p.curved == kStraight ? curve_of(index).at(share) : curved_[p.curved].curve.at(share);
 }
 
 // Share of the piece that is behind; by the turn of the rotary axes where s stands.
@@ -218,6 +220,7 @@ double ProgramPath::fraction(const Piece& p, double s, const JointLayout& layout
 
 Joints ProgramPath::joints(std::size_t index, double s, const JointLayout& layout,
                            const Joints& Q_near) const {
+  if (!is_tip(index) && !stands(index)) return layout.joints(at(index, s));
   const Piece p = piece(index);
   const double share = fraction(p, s, layout, Q_near);
   const AxisWords words = p.curve.at(share);

@@ -16,6 +16,7 @@ class RowWriter {
  public:
   explicit RowWriter(double* row) : next_(row) {}
   void put(double value) { *next_++ = value; }
+  void skip(std::size_t values) { next_ += values; }
   void put(const Joints& Q, const std::vector<int>& joints, double unit) {
     for (const int joint : joints) put(Q[joint] / unit);
   }

@@ -34,6 +34,7 @@ RecordedRows::RecordedRows(const model::MachineSettings& machine,
       keeping_(std::move(keeping)),
       oriented_(oriented),
       windows_(windows),
+      wants_axes_(wants_axis_signals(outputs)),
       wants_contour_error_(outputs.wants("contour_error")) {
   for (int joint = 0; joint < kJoints; ++joint) {
     if (!machine.chain.layout.has(joint)) continue;
@@ -176,30 +177,27 @@ void RecordedRows::displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) cons
   p_WT = part.measured(p_WT, T - machine_.heat->reference);
 }
 
-// The order of the values is that of recorded_signals(). The contour error is measured where the
-// program is defined: at the TCP under TCP control, else in axis coordinates with the rotary axes
-// as programmed.
-void RecordedRows::make_row(const Snapshot& now, std::size_t place, double* to) {
-  const std::size_t piece = pieces_[place];
-  displace_tip(now, actual_[place].p_WT);
-  const ToolPose &nominal = nominal_[place], &actual = actual_[place];
-  const auto place_on_path = [&]() -> std::optional<Eigen::Vector3d> {
-    if (path_.is_tip(piece)) return actual.p_WT;
-    const auto Q = plant::inverse_fixed_rotary(machine_.chain, actual.p_WT, Q_prog_[place], p_ST_);
-    if (!Q) return std::nullopt;
-    return Q->head<3>();
-  };
-  const auto contour_error = [&] {
-    const auto on_path = place_on_path();
-    return on_path ? path_.distance(*on_path, piece) : (actual.p_WT - nominal.p_WT).norm();
-  };
+const plant::TipOfLinearJoints& RecordedRows::tip_at(const Joints& Q_rotary) {
+  constexpr int kRotary = kJoints - kLinearJoints;
+  if (!stand_ || stand_->Q_rotary.tail<kRotary>() != Q_rotary.tail<kRotary>() ||
+      stand_->p_ST != p_ST_) {
+    stand_ = {Q_rotary, p_ST_, plant::tip_of_linear_joints(machine_.chain, Q_rotary, p_ST_)};
+  }
+  return stand_->tip;
+}
 
-  RowWriter row(to);
-  row.put(now.time);
-  row.put(now.s / mm);
-  row.put(path_.line(piece));
-  row.put(path_.section(piece));
-  row.put(path_.is_rapid(piece) ? 1.0 : 0.0);
+// The contour error (m) is measured where the program is defined: at the TCP under TCP control,
+// else in axis coordinates with the rotary axes as programmed.
+double RecordedRows::contour_error(std::size_t place) {
+  const std::size_t piece = pieces_[place];
+  const Eigen::Vector3d& p_WT = actual_[place].p_WT;
+  if (path_.is_tip(piece)) return path_.distance(p_WT, piece);
+  const Joints& Q_prog = Q_prog_[place];
+  const auto Q = plant::inverse_fixed_rotary(machine_.chain, tip_at(Q_prog), p_WT, Q_prog);
+  return Q ? path_.distance(Q->head<3>(), piece) : (p_WT - nominal_[place].p_WT).norm();
+}
+
+void RecordedRows::put_axes(const Snapshot& now, RowWriter& row) const {
   const auto per_axis = [&](const Joints& Q, double unit_linear, double unit_rotary) {
     row.put(Q, linear_, unit_linear);
     row.put(Q, rotary_, unit_rotary);
@@ -213,6 +211,24 @@ void RecordedRows::make_row(const Snapshot& now, std::size_t place, double* to) 
   per_axis(now.dQ_true, mm, deg);
   per_axis(now.current, 1.0, 1.0);
   per_axis(now.torque, 1.0, 1.0);
+}
+
+// The order of the values is that of recorded_signals().
+void RecordedRows::make_row(const Snapshot& now, std::size_t place, double* to) {
+  const std::size_t piece = pieces_[place];
+  displace_tip(now, actual_[place].p_WT);
+  const ToolPose &nominal = nominal_[place], &actual = actual_[place];
+  RowWriter row(to);
+  row.put(now.time);
+  row.put(now.s / mm);
+  row.put(path_.line(piece));
+  row.put(path_.section(piece));
+  row.put(path_.is_rapid(piece) ? 1.0 : 0.0);
+  if (wants_axes_) {
+    put_axes(now, row);
+  } else {
+    row.skip(axis_signals() * (linear_.size() + rotary_.size()));
+  }
   if (imposed_ != nullptr) {
     Joints displacement = Joints::Zero();
     displacement.head<3>() = displacement_[place];
@@ -223,7 +239,7 @@ void RecordedRows::make_row(const Snapshot& now, std::size_t place, double* to) 
   row.put(actual.p_WT - nominal.p_WT, um);
   row.put(nominal.k_W, 1.0);
   row.put(actual.k_W, 1.0);
-  row.put(wants_contour_error_ ? contour_error() / um : 0.0);
+  row.put(wants_contour_error_ ? contour_error(place) / um : 0.0);
   if (oriented_) row.put(side_[place], 1.0);
   if (!correcting_.empty()) put_residual(place, row);
   put_structure(now, row);

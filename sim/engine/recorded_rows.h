@@ -11,6 +11,7 @@
 
 #include "plant/geometry/volumetric.h"
 #include "plant/kinematics/inverse.h"
+#include "plant/kinematics/linear_joints.h"
 #include "sim/engine/program_path.h"
 #include "sim/engine/recorded_row.h"
 #include "sim/engine/run_outputs.h"
@@ -56,6 +57,9 @@ class RecordedRows {
   void choose(const RunOutputs& outputs, std::vector<records::Signal>& signals);
   void displace_tip(const Snapshot& now, Eigen::Vector3d& p_WT) const;
   void make_row(const Snapshot& now, std::size_t place, double* to);
+  void put_axes(const Snapshot& now, RowWriter& row) const;
+  double contour_error(std::size_t place);
+  const plant::TipOfLinearJoints& tip_at(const Joints& Q_rotary);
   void put_structure(const Snapshot& now, RowWriter& row) const;
   void put_residual(std::size_t place, RowWriter& row) const;
 
@@ -83,7 +87,13 @@ class RecordedRows {
   const records::RowKeeping keeping_;
   const bool oriented_;  // the direction across the tool axis is recorded
   const bool windows_;   // rows outside of some are left out
-  const bool wants_contour_error_;
+  const bool wants_axes_, wants_contour_error_;
+  struct RotaryStand {
+    Joints Q_rotary;
+    Eigen::Vector3d p_ST;
+    plant::TipOfLinearJoints tip;
+  };
+  std::optional<RotaryStand> stand_;   // of the row before: rotary axes mostly stand for long
   std::vector<std::size_t> chosen_;    // columns of a whole row that are recorded; empty: all
   std::vector<double> whole_row_;      // where some are chosen
   std::vector<std::string> left_out_;  // signals

@@ -156,6 +156,8 @@ bool wants_axis_signals(const RunOutputs& outputs) {
   });
 }
 
+std::size_t axis_signals() { return std::size(kAxisSignals); }
+
 bool stands_on_bed(const model::MachineSettings& machine) {
   return std::any_of(machine.drives.begin(), machine.drives.end(),
                      [](const plant::FeedDriveParams& drive) { return drive.on_bed(); });

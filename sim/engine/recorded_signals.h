@@ -27,6 +27,9 @@ bool is_of_every_row(std::string_view signal);
 /// True if a signal of the axes and their loops is asked for.
 bool wants_axis_signals(const RunOutputs& outputs);
 
+/// Number of these signals, each of all axes.
+std::size_t axis_signals();
+
 /// True if the bed of the machine moves under some axis.
 bool stands_on_bed(const model::MachineSettings& machine);
 

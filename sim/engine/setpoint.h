@@ -23,6 +23,9 @@ class Setpoint {
 
   /// New temperatures of a machine with heat, for strategies that read them.
   void read_temperatures(const strategies::TemperatureReading& now);
+  bool corrects() const { return !corrections_.empty(); }
+  /// Setpoint of this position period.
+  const AxisSetpoint& now() const { return out_; }
   /// Standing at the start of the trajectory for long; corrections settled.
   const AxisSetpoint& settle();
   /// Time by which the filter delays the reference (s).
