@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 #include "plant/kinematics/inverse.h"
 #include "plant/vocabulary/input_error.h"
@@ -133,7 +134,8 @@ class Rewriter {
   // Halves the way from a to b until the chord is within tolerance at a quarter, the half and three
   // quarters.
   void split(const Place& a, const Place& b, int splits_left) {
-    const bool is_within = is_within_tolerance(a, b) || is_step(a, b);
+    const Place middle = place(0.5 * (a.t + b.t), a.Q);
+    const bool is_within = is_within_tolerance(a, middle, b) || is_step(a, b);
     if (splits_left == 0 || is_within) {
       // a rapid may turn where it stands: it cuts nothing
       if (!is_within && way_->controls_tip() && move_->kind != MoveKind::rapid) {
@@ -144,7 +146,6 @@ class Rewriter {
       emit(b);
       return;
     }
-    const Place middle = place(0.5 * (a.t + b.t), a.Q);
     split(a, middle, splits_left - 1);
     split(middle, b, splits_left - 1);
   }
@@ -155,12 +156,15 @@ class Rewriter {
            (b.off.step - a.off.step).norm() > limits_.tolerance;
   }
 
-  bool is_within_tolerance(const Place& a, const Place& b) const {
+  // @param middle  where the way is halved; without tip control it is that of the chord, too,
+  //                whatever is near
+  bool is_within_tolerance(const Place& a, const Place& middle, const Place& b) const {
     const bool minds_turn = limits_.turns || way_->controls_tip();
-    for (const double f : {0.25, 0.5, 0.75}) {
-      const Joints Q_near = a.Q + f * (b.Q - a.Q);
-      const AxisWords off =
-          place(a.t + f * (b.t - a.t), Q_near).words - (a.words + f * (b.words - a.words));
+    for (const double f : {0.5, 0.25, 0.75}) {  // the chord mostly is farthest in its middle
+      const double t = a.t + f * (b.t - a.t);
+      const bool is_middle = t == middle.t && !way_->controls_tip();
+      const AxisWords& words = is_middle ? middle.words : place(t, a.Q + f * (b.Q - a.Q)).words;
+      const AxisWords off = words - (a.words + f * (b.words - a.words));
       if (off.head<3>().norm() > limits_.tolerance) return false;
       if (minds_turn && off.tail<3>().norm() > limits_.tolerance_turn) return false;
     }
@@ -184,7 +188,7 @@ class Rewriter {
     out_at_ = target.words;
     s_ = block.s_end;
     t_ = target.t;
-    out_.push_back(block);
+    out_.push_back(std::move(block));
   }
 
   // A move that stands has F in degrees; displaced, X, Y and Z go where the one before left them.

@@ -30,7 +30,8 @@ void Interpreter::Machine::motion() {
   const int explicit_code = request().code(Group::g_motion);
   if (explicit_code >= 0 && !is_bezier(explicit_code)) state_.motion = explicit_code;
   const int code = request().motion_code();
-  if (std::max(code, explicit_code) >= 0 && code != kNurbsPoint) {
+  const bool is_inside_nurbs = !state_.nurbs.points.empty();
+  if (is_inside_nurbs && std::max(code, explicit_code) >= 0 && code != kNurbsPoint) {
     refuse_inside_nurbs(request().of(Group::g_motion).column,
                         code_name('G', std::max(code, explicit_code)));
   }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/number_text.h"
@@ -34,7 +35,8 @@ class Grid {
 };
 
 std::string work_system_code(int system) {
-  return system <= 6 ? fmt::format("G{}", 53 + system) : fmt::format("G59.{}", system - 6);
+  const auto digits = [](int number) { return std::to_string(number); };
+  return system <= 6 ? "G" + digits(53 + system) : "G59." + digits(system - 6);
 }
 
 // significant_text() of a number that mostly is the one before.
@@ -55,7 +57,7 @@ std::string path_code(const Move& move, RepeatedNumber& tolerance) {
   if (move.path_mode == PathMode::exact_path) return "G61";
   if (move.path_mode == PathMode::exact_stop) return "G61.1";
   if (move.path_tolerance == 0.0) return "G64";
-  return fmt::format("G64 P{}", tolerance.text(move.path_tolerance / mm));
+  return "G64 P" + tolerance.text(move.path_tolerance / mm);
 }
 
 class Printer {
@@ -184,8 +186,8 @@ class Printer {
   }
 
   std::string tool_code(int offset) const {
-    if (options_.tcp_control) return fmt::format("G43.4 H{}", offset);
-    return offset == 0 ? "G49" : fmt::format("G43 H{}", offset);
+    if (options_.tcp_control) return "G43.4 H" + std::to_string(offset);
+    return offset == 0 ? "G49" : "G43 H" + std::to_string(offset);
   }
 
   bool change(std::string& now, const std::string& wanted, bool moves_origin) {
@@ -213,8 +215,9 @@ class Printer {
       const bool of_machine = options_.axes.find(letter(axis)) != std::string::npos;
       const bool wanted = steps_ ? steps[i] != (*steps_)[i] : of_machine || steps[i] != 0.0;
       if (!wanted) continue;
-      text +=
-          fmt::format(" {}{}", letter(axis), (is_linear(axis) ? linear_ : rotary_).text(steps[i]));
+      text += ' ';
+      text += letter(axis);
+      text += (is_linear(axis) ? linear_ : rotary_).text(steps[i]);
     }
     return text;
   }
