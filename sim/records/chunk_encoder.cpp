@@ -2,6 +2,7 @@
 
 #include <libdeflate.h>
 
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -28,10 +29,38 @@ void store(std::span<const double> values, std::size_t rows, T rest,
   }
 }
 
+// Pairs of rows that lie kApart from each other exchange squares of kApart x kApart bytes.
+template <std::size_t kApart>
+void exchange(std::array<std::uint64_t, 8>& rows, std::uint64_t lower) {
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if ((i & kApart) != 0) continue;
+    const std::uint64_t exchanged = ((rows[i] >> (8 * kApart)) ^ rows[i + kApart]) & lower;
+    rows[i + kApart] ^= exchanged;
+    rows[i] ^= exchanged << (8 * kApart);
+  }
+}
+
+// Byte b of number i becomes byte i of number b: H. S. Warren, Hacker's Delight, 2nd ed., 2013,
+// section 7-3, with bytes in place of bits.
+void transpose(std::array<std::uint64_t, 8>& rows) {
+  exchange<4>(rows, 0x00000000ffffffff);
+  exchange<2>(rows, 0x0000ffff0000ffff);
+  exchange<1>(rows, 0x00ff00ff00ff00ff);
+}
+
 // Byte b of number i goes to place b * count + i.
 template <std::size_t kSize>
 void shuffle(const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
-  for (std::size_t i = 0; i < count; ++i) {
+  std::size_t i = 0;
+  if constexpr (kSize == sizeof(std::uint64_t)) {
+    for (std::array<std::uint64_t, 8> eight; i + 8 <= count; i += 8) {
+      std::memcpy(eight.data(), from + i * kSize, sizeof(eight));
+      transpose(eight);
+      for (std::size_t b = 0; b < kSize; ++b) std::memcpy(to + b * count + i, &eight[b], kSize);
+    }
+  }
+  for (; i < count; ++i) {
     for (std::size_t b = 0; b < kSize; ++b) to[b * count + i] = from[i * kSize + b];
   }
 }
@@ -47,7 +76,18 @@ struct ChunkEncoder::Deflate {
   ~Deflate() { libdeflate_free_compressor(compressor); }
   Deflate(const Deflate&) = delete;
   Deflate& operator=(const Deflate&) = delete;
+
+  void compress(const std::vector<std::uint8_t>& bytes, std::vector<std::uint8_t>& chunk) {
+    const std::size_t most = libdeflate_zlib_compress_bound(compressor, bytes.size());
+    if (room.size() < most) room.resize(most);
+    const std::size_t size =
+        libdeflate_zlib_compress(compressor, bytes.data(), bytes.size(), room.data(), room.size());
+    assert(size > 0);
+    chunk.assign(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size));
+  }
+
   libdeflate_compressor* compressor;
+  std::vector<std::uint8_t> room = {};  // a chunk that would be filled with zeros each time
 };
 
 ChunkEncoder::ChunkEncoder(int level) {
@@ -61,10 +101,13 @@ ChunkEncoder::ChunkEncoder(ChunkEncoder&&) noexcept = default;
 void ChunkEncoder::encode(std::span<const double> values, std::size_t rows, Storage storage,
                           std::vector<std::uint8_t>& chunk) {
   assert(values.size() <= rows);
+  // a full chunk of numbers that are kept as they are is shuffled where it lies
+  const bool is_plain = deflate_ && storage == Storage::float64 && values.size() == rows;
+  const auto* bytes_of_numbers = reinterpret_cast<const std::uint8_t*>(values.data());
   std::vector<std::uint8_t>& plain = deflate_ ? plain_ : chunk;
   switch (storage) {
     case Storage::float64:
-      store(values, rows, std::numeric_limits<double>::quiet_NaN(), plain);
+      if (!is_plain) store(values, rows, std::numeric_limits<double>::quiet_NaN(), plain);
       break;
     case Storage::float32:
       store(values, rows, std::numeric_limits<float>::quiet_NaN(), plain);
@@ -74,17 +117,13 @@ void ChunkEncoder::encode(std::span<const double> values, std::size_t rows, Stor
       break;
   }
   if (!deflate_) return;
-  shuffled_.resize(plain_.size());
+  shuffled_.resize(rows * bytes_of(storage));
   if (bytes_of(storage) == 8) {
-    shuffle<8>(plain_.data(), rows, shuffled_.data());
+    shuffle<8>(is_plain ? bytes_of_numbers : plain_.data(), rows, shuffled_.data());
   } else {
     shuffle<4>(plain_.data(), rows, shuffled_.data());
   }
-  chunk.resize(libdeflate_zlib_compress_bound(deflate_->compressor, shuffled_.size()));
-  const std::size_t size = libdeflate_zlib_compress(deflate_->compressor, shuffled_.data(),
-                                                    shuffled_.size(), chunk.data(), chunk.size());
-  assert(size > 0);
-  chunk.resize(size);
+  deflate_->compress(shuffled_, chunk);
 }
 
 }  // namespace servomill::sim::records

@@ -15,6 +15,14 @@ constexpr std::size_t kRun = 64;  // chunks of a column next to each other, if a
 
 constexpr std::size_t kNeighbours = 8;  // doubles of a cache line
 
+// Columns that are gathered side by side begin on different lines of the cache: a power of two
+// apart, all of them would take the place of each other there.
+constexpr std::size_t kApart = 8;
+
+constexpr std::size_t kAhead = 16;  // rows, while which a line of the cache arrives from memory
+
+void prefetch(const double* numbers) { __builtin_prefetch(numbers); }
+
 constexpr std::size_t kValuesPerThread = 65536;  // fewer are encoded before a thread has started
 
 std::size_t place_of(const std::vector<ColumnLabels>& labels, const std::string& name) {
@@ -50,12 +58,15 @@ SeriesWriter::SeriesWriter(Hdf5Group group, SeriesLayout layout)
 }
 
 void SeriesWriter::allocate() {
-  filling_.resize(layout_.chunk_rows * width_);
-  writing_.resize(filling_.size());
+  if (!layout_.is_complete) {
+    filling_.resize(layout_.chunk_rows * width_);
+    writing_.resize(filling_.size());
+  }
   chunks_.resize(width_);
   for (std::size_t begin = 0; begin < width_; begin += kNeighbours) {
     const std::size_t end = std::min(begin + kNeighbours, width_);
-    neighbours_.push_back({begin, end, std::vector<double>((end - begin) * layout_.chunk_rows),
+    neighbours_.push_back({begin, end,
+                           std::vector<double>((end - begin) * (layout_.chunk_rows + kApart)),
                            ChunkEncoder(layout_.compression)});
   }
 }
@@ -113,9 +124,18 @@ std::size_t SeriesWriter::offset_of(std::string_view channel) const {
 }
 
 void SeriesWriter::append(std::span<const double> row) {
-  assert(row.size() == width_ && !finished_ && !layout_.is_encoded);
+  assert(row.size() == width_ && !finished_ && !layout_.is_encoded && !layout_.is_complete);
   std::copy(row.begin(), row.end(), filling_.begin() + static_cast<std::ptrdiff_t>(rows_ * width_));
   if (++rows_ == layout_.chunk_rows) hand_over();
+}
+
+void SeriesWriter::append_all(std::span<const double> rows) {
+  assert(rows.size() % width_ == 0 && layout_.is_complete && !finished_);
+  while (!rows.empty()) {
+    const std::size_t count = std::min(rows.size() / width_, layout_.chunk_rows);
+    write_block(rows.data(), count);
+    rows = rows.subspan(count * width_);
+  }
 }
 
 void SeriesWriter::finish() {
@@ -128,23 +148,25 @@ void SeriesWriter::hand_over() {
   const std::size_t rows = std::exchange(rows_, 0);
   background_.wait();
   std::swap(filling_, writing_);
-  background_.post([this, rows] { write_block(writing_, rows); });
+  background_.post([this, rows] { write_block(writing_.data(), rows); });
 }
 
-void SeriesWriter::encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows) {
+void SeriesWriter::encode(Neighbours& columns, const double* block, std::size_t rows) {
+  const std::size_t apart = rows + kApart;
   for (std::size_t row = 0; row < rows; ++row) {
-    const double* from = block.data() + row * width_;
+    const double* from = block + row * width_;
+    if (row + kAhead < rows) prefetch(from + kAhead * width_ + columns.begin);
     double* to = columns.gathered.data() + row;
-    for (std::size_t c = columns.begin; c < columns.end; ++c, to += rows) *to = from[c];
+    for (std::size_t c = columns.begin; c < columns.end; ++c, to += apart) *to = from[c];
   }
   const double* values = columns.gathered.data();
-  for (std::size_t c = columns.begin; c < columns.end; ++c, values += rows) {
+  for (std::size_t c = columns.begin; c < columns.end; ++c, values += apart) {
     if (shared_[c]) continue;
     columns.encoder.encode({values, rows}, layout_.chunk_rows, storage_[c], chunks_[c]);
   }
 }
 
-void SeriesWriter::write_block(const std::vector<double>& block, std::size_t rows) {
+void SeriesWriter::write_block(const double* block, std::size_t rows) {
   const auto useful = static_cast<unsigned>(1 + rows * width_ / kValuesPerThread);
   system::for_each_index(neighbours_.size(),
                          std::min(system::thread_count(layout_.threads), useful),

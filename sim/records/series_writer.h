@@ -50,9 +50,10 @@ struct SeriesLayout {
   std::vector<Channel> channels;
   Plot plot = {};  // what viewers draw; without a signal, nothing
   std::size_t chunk_rows = 16384;
-  int compression = 1;      // kNoCompression to kMaxCompression
-  unsigned threads = 0;     // that compress; 0: one a core; the file does not depend on it
-  bool is_encoded = false;  // rows come as pages (append_pages); none can be appended
+  int compression = 1;       // kNoCompression to kMaxCompression
+  unsigned threads = 0;      // that compress; 0: one a core; the file does not depend on it
+  bool is_encoded = false;   // rows come as pages (append_pages); none can be appended
+  bool is_complete = false;  // rows come all at once (append_all); likewise
 };
 
 /// The file must outlive the writer.
@@ -85,6 +86,11 @@ class SeriesWriter {
   ///         that, and every later call throws the same
   void append(std::span<const double> row);
 
+  /// Adds all rows, one behind the other, without a copy of them; once.
+  /// @pre is_complete of the layout
+  /// @throws SystemError as append
+  void append_all(std::span<const double> rows);
+
   /// Adds all rows of pages that are encoded, a page to a chunk. Some hundred kilobytes or more of
   /// a column lie next to each other in the file, so that one signal is read without the others.
   /// @pre is_encoded of the layout, and its chunk_rows are those of a page; nothing was added yet
@@ -113,9 +119,9 @@ class SeriesWriter {
   void add_channel(const Channel& channel, std::vector<Hdf5Dataset>& scales);
   void allocate();
   void hand_over();
-  void write_block(const std::vector<double>& block, std::size_t rows);
+  void write_block(const double* block, std::size_t rows);
   void write_pages(Dataset& to, const ColumnPages& pages, std::size_t first, std::size_t last);
-  void encode(Neighbours& columns, const std::vector<double>& block, std::size_t rows);
+  void encode(Neighbours& columns, const double* block, std::size_t rows);
 
   Hdf5Group group_;
   SeriesLayout layout_;

@@ -69,15 +69,14 @@ records::SeriesLayout write_series(records::Hdf5Group group, const records::Seri
   layout.threads = format.threads;
   const records::ColumnPages* const pages = series.pages();
   layout.is_encoded = pages != nullptr;
+  layout.is_complete = pages == nullptr;
   if (pages != nullptr) layout.chunk_rows = pages->page_rows();
   shared.find(group, series, layout);
   records::SeriesWriter writer(std::move(group), layout);
   if (pages != nullptr) {
     writer.append_pages(*pages);
   } else {
-    for (std::size_t row = 0; row < series.rows(); ++row) {
-      writer.append({series.row(row), series.width()});
-    }
+    writer.append_all(series.data());
   }
   writer.finish();
   return layout;

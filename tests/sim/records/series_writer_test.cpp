@@ -98,6 +98,33 @@ TEST_F(SeriesFile, HasEveryRowWhateverTheBlock) {
   }
 }
 
+// To the byte, as if they had come one by one.
+TEST_F(SeriesFile, IsTheSameFromAllRowsAtOnce) {
+  constexpr std::size_t kBlock = 16;
+  for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 43u}) {
+    std::vector<double> rows;
+    for (std::size_t n = 0; n < count; ++n) {
+      for (const double value : row(n)) rows.push_back(value);
+    }
+    const auto written = [&](const std::string& name, bool at_once) {
+      {
+        OutputFile out(path(name), true);
+        SeriesLayout wanted = layout(kBlock);
+        wanted.is_complete = at_once;
+        SeriesWriter writer(out.root().group("servo"), wanted);
+        if (at_once) writer.append_all(rows);
+        for (std::size_t n = 0; !at_once && n < count; ++n) writer.append(row(n));
+        writer.finish();
+        out.commit();
+      }
+      std::ifstream file(path(name), std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    EXPECT_EQ(written("rows.h5", false), written("all.h5", true)) << count << " rows";
+    expect_rows(InputFile(path("all.h5")), "/servo", count);
+  }
+}
+
 TEST_F(SeriesFile, WritesTheRestWhenLeftEarly) {
   {
     OutputFile out(path("out.h5"), false);
