@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/config/value.h"
+
 namespace servomill::strategies {
 class Strategy;
 }  // namespace servomill::strategies
@@ -35,12 +37,12 @@ class RunIdentity {
  private:
   bool is_comparable_ = false;  // false if it depends on more than this knows
   std::vector<const void*> prepared_;
-  std::string document_;
+  std::string outputs_;
+  config::Value document_;
 };
 
-/// A document without its tables `errors`, `quantity` and `sweep`, and of `case` with one only;
-/// empty if it has not `cases` of these, or a text of several lines, which may look like a header.
-/// @param toml  as config::to_toml writes it
-std::string document_of_run(std::string_view toml, std::size_t number, std::size_t cases);
+/// The resolved document of a scenario without its tables `errors`, `quantity` and `sweep`, and of
+/// its cases with this one only.
+config::Value document_of_run(std::string_view toml, std::size_t number);
 
 }  // namespace servomill::sim::run

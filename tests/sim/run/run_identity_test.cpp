@@ -70,16 +70,25 @@ TEST(RunIdentity, IsAnotherWithWhatAllCasesShare) {
 
 TEST(DocumentOfRun, HasOneCaseAndNoErrors) {
   const std::string toml =
-      "a = 1\n\n[program]\nb = 2\n\n[errors.x]\nc = 3\n\n[errors.x.EXX]\nc = 4\n\n[[case]]\nname = "
-      "\"p\"\n\n[[case.strategy]]\nd = 5\n\n[[case]]\nname = \"q\"\n\n[[quantity]]\ne = 6\n\n"
-      "[sweep]\nf = 7\n\n[record]\ng = 8\n";
-  EXPECT_EQ(document_of_run(toml, 0, 2),
-            "a = 1\n\n[program]\nb = 2\n\n[[case]]\nname = \"p\"\n\n[[case.strategy]]\nd = 5\n\n"
-            "[record]\ng = 8\n");
-  EXPECT_EQ(document_of_run(toml, 1, 2),
-            "a = 1\n\n[program]\nb = 2\n\n[[case]]\nname = \"q\"\n\n[record]\ng = 8\n");
-  EXPECT_EQ(document_of_run(toml, 0, 1), "");                        // a case has no table
-  EXPECT_EQ(document_of_run("t = '''\n[errors]\n'''\n", 0, 0), "");  // no header
+      "a = 1\nt = \"\"\"\n[errors]\n[[case]]\n\"\"\"\n[program]\nb = 2\n[errors.x]\nc = "
+      "3\n[errors.x.EXX]\n"
+      "c = 4\n[[case]]\nname = \"p\"\n[[case.strategy]]\nd = 5\n[[case]]\nname = \"q\"\n"
+      "[[quantity]]\ne = 6\n[sweep]\nf = 7\n[record]\ng = 8\n";
+  EXPECT_EQ(config::inline_toml(document_of_run(toml, 0)),
+            "{ a = 1, t = \"\"\"\n[errors]\n[[case]]\n\"\"\", program = { b = 2 }, case = [{ name "
+            "= \"p\", "
+            "strategy = [{ d = 5 }] }], record = { g = 8 } }");
+  EXPECT_EQ(config::inline_toml(document_of_run(toml, 1)),
+            "{ a = 1, t = \"\"\"\n[errors]\n[[case]]\n\"\"\", program = { b = 2 }, case = [{ name "
+            "= \"q\" }], "
+            "record = { g = 8 } }");
+}
+
+// A header in a text of several lines, which a comparison of lines took for one, hides nothing.
+TEST(RunIdentity, OfAScenarioWithATextOfSeveralLines) {
+  const std::string remark = "source=\"\"\"\n[errors]\nwhat follows is read\n\"\"\"";
+  EXPECT_EQ(same_runs({remark}, {remark}), "none one other ");
+  EXPECT_EQ(same_runs({remark}, {remark, "record.period_ms=2.0"}), "");
 }
 
 // Each point of a batch has the rows that it has alone, where others have the same runs.
