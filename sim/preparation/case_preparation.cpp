@@ -16,6 +16,7 @@
 #include "sim/preparation/added_gains.h"
 #include "sim/preparation/case_program.h"
 #include "sim/preparation/cutting_force_plan.h"
+#include "sim/preparation/estimate.h"
 #include "sim/preparation/identified_heat.h"
 #include "sim/preparation/identified_loops.h"
 #include "sim/preparation/refusals.h"
@@ -317,6 +318,7 @@ PlannedMotion CasePreparation::plan(const SharedMoves& moves, const InterpretedP
   auto faults = controllers::travel_faults(*moves, machine_.chain.layout, start_, machine_.nc.lower,
                                            machine_.nc.upper, scenario_.program.file, tip);
   if (!faults.empty()) throw InputError(std::move(faults));
+  refuse_full_temporary_folder(scenario_, moves->size());
   if (const auto slowed = controllers::slowed_inverse_time(*moves, machine_.chain.layout, start_,
                                                            limits, options)) {
     tip.slowed.push_back(*slowed);

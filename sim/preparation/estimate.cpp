@@ -9,6 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/scratch_file.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/chip_regeneration.h"
 #include "sim/engine/engaged_teeth.h"
@@ -25,9 +27,11 @@ namespace servomill::sim::preparation {
 namespace {
 
 constexpr double kGigabyte = 1e9;
-constexpr double kTicksPerSecond = 1e7;  // of one case on one core; measured with five axes
-constexpr double kRowsPerSecond = 9e5;   // with five axes, where every tick is recorded
-constexpr double kMemoryShare = 0.8;  // of the memory; the rest is the program's and the system's
+// One core, measured with five axes. Alone a case makes up to 1.7e7, which recording and comparison
+// take back; up to eight in lockstep make some 1e7 each.
+constexpr double kTicksPerSecond = 1e7;
+constexpr double kRowsPerSecond = 9e5;  // with five axes, where every tick is recorded
+constexpr double kMemoryShare = 0.8;    // of the memory; the rest is the program's and the system's
 
 // Columns of the recorded signals (sim/records/README.md); those that only some cases have are
 // rounded up.
@@ -117,6 +121,7 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const double> mo
   out.file = out.is_thinned ? scenario.record.max_size / kMinCompression
                             : out.size / compression_of(scenario);
   out.memory = memory_of(scenario, in_rows, row, threads);
+  out.temporary = static_cast<double>(ScratchFile::temporary_bytes());
   const double cores = std::min<double>(system::thread_count(threads), system::thread_count(0));
   const double of_tick =
       1.0 / kTicksPerSecond + (scenario.record.extremes ? 1.0 / kRowsPerSecond : 0.0);
@@ -175,6 +180,10 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCa
     const Teeth teeth = teeth_of(one);
     out.computing += teeth.computing / cores;
     out.memory += teeth.memory;
+    if (one.spec().servo != model::ServoModel::cascade) continue;
+    out.lockstep += (one.duration() + scenario.settle_time) / scenario.machine.nc.periods.base /
+                    kTicksPerSecond;
+    ++out.lanes;
   }
   for (const PreparedCase& one : cases) {
     const TrialRunsToCome trials = one.trial_runs();  // one after the other
@@ -184,13 +193,34 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCa
   return out;
 }
 
+RunEstimate estimate_of_points(RunEstimate of_point, std::uint64_t points, unsigned threads) {
+  const auto n = static_cast<double>(points);
+  const double at_once = std::min(n, static_cast<double>(system::thread_count(threads)));
+  if (n == 0.0) return {};
+  const double of_thread = n / at_once;
+  const double lanes = std::clamp(of_thread * of_point.lanes, 1.0, static_cast<double>(kLaneWidth));
+  const double alone = of_point.computing - of_point.lockstep;
+  of_point.computing = of_thread * (alone + of_point.lockstep / lanes);
+  of_point.lockstep *= of_thread / lanes;
+  of_point.lanes *= static_cast<int>(points);
+  of_point.motion *= n;
+  of_point.rows *= n;
+  of_point.size *= n;
+  of_point.file *= n;
+  return of_point;
+}
+
 std::string to_string(const RunEstimate& estimate) {
   return fmt::format(
-      "{} of motion, {:.2g} rows, {} of signals in a file of {}{}, {} of memory, about {} of "
+      "{} of motion, {:.2g} rows, {} of signals in a file of {}{}, {} of memory{}, about {} of "
       "computing{}",
       in_time(estimate.motion), estimate.rows, in_gigabytes(estimate.size),
       estimate.is_thinned ? "at most " : "", in_gigabytes(estimate.file),
-      in_gigabytes(estimate.memory), in_time(estimate.computing),
+      in_gigabytes(estimate.memory),
+      estimate.temporary > 0.0
+          ? fmt::format(", {} of temporary files (TMPDIR)", in_gigabytes(estimate.temporary))
+          : "",
+      in_time(estimate.computing),
       estimate.trial_runs > 0 ? fmt::format(" with {} trial runs", estimate.trial_runs) : "");
 }
 
@@ -223,7 +253,8 @@ std::vector<bool> sections_kept_whole(const model::Scenario& scenario,
 
 bool is_worth_telling(const RunEstimate& estimate) {
   constexpr double kMinute = 60.0;
-  return estimate.computing > kMinute || estimate.size > kGigabyte;
+  return estimate.computing > kMinute || estimate.size > kGigabyte ||
+         estimate.temporary > kGigabyte;
 }
 
 void refuse_too_large(const model::Scenario& scenario, const RunEstimate& estimate, double memory) {
@@ -269,6 +300,22 @@ void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estima
                                "record.max_size_GB = {:g} or choose another file (--output)",
                                in_gigabytes(needed), where, in_gigabytes(*available),
                                scenario.record.max_size / kGigabyte));
+}
+
+void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
+                                  std::optional<double> available) {
+  constexpr double kPlannedMove = 95.0;  // bytes, of a five-axis line (sim/records/README.md)
+  constexpr double kInMemory = 32e6;     // bytes of a plan, beyond which it goes to the disk
+  const double needed = kPlannedMove * static_cast<double>(moves) - kInMemory;
+  if (needed <= 0.0) return;
+  std::error_code unknown;
+  const std::string folder = std::filesystem::temp_directory_path(unknown).string();
+  if (!available && !unknown) available = room_in(folder);
+  if (!available || needed <= *available) return;
+  throw InputError({scenario.program.file},
+                   fmt::format("its planned motion takes about {} of temporary files; {} has {} "
+                               "free: choose another folder (TMPDIR)",
+                               in_gigabytes(needed), folder, in_gigabytes(*available)));
 }
 
 }  // namespace servomill::sim::preparation

@@ -1,6 +1,8 @@
 /// Estimates of the time, memory and file size of a run, made before it begins.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,8 +26,11 @@ struct RunEstimate {
   bool is_thinned = false;  // so many are too many: rows are left out (records/row_thinning.h)
   double file = 0.0;        // bytes of the result file: about, or at most if it is thinned
   double memory = 0.0;      // bytes, about: what is held now, a plan included, and what comes
+  double temporary = 0.0;   // bytes of temporary files (TMPDIR): moves and plans of long programs
   double computing = 0.0;   // s, on so many threads; by the speed of one core of a desktop computer
   int trial_runs = 0;       // part of that: of the program, from which strategies have yet to learn
+  double lockstep = 0.0;    // s, part of computing that runs of several points do together
+  int lanes = 0;            // runs that have it: cases under the cascade
 };
 
 /// @param motions  of the cases, s
@@ -35,6 +40,11 @@ RunEstimate estimate(const model::Scenario& scenario, std::span<const double> mo
                      unsigned threads, std::span<const double> recorded = {});
 RunEstimate estimate(const model::Scenario& scenario, std::span<const PreparedCase> cases,
                      unsigned threads);
+
+/// Estimate for points of a sweep that are like one: on each thread up to eight runs, of cases and
+/// points, advance in lockstep (sim/README.md) in the time of one.
+/// @param of_point  of one point, on one thread
+RunEstimate estimate_of_points(RunEstimate of_point, std::uint64_t points, unsigned threads);
 
 /// "373 s of motion, 3.7e+05 rows, 0.2 GB of signals in a file of 0.04 GB, 0.1 GB of memory, about
 /// 4 s of computing"
@@ -69,5 +79,12 @@ inline constexpr double kCopiesOfRun = 2.0;
 void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estimate,
                       const std::string& folder, double copies = kCopiesOfRun,
                       std::optional<double> available = {});
+
+/// To be called before a motion is planned, whose moves are on the disk by then.
+/// @param moves      of the motion
+/// @param available  bytes that are free in the folder of temporary files; none: the system says
+/// @throws InputError if there is not so much room for the planned motion
+void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
+                                  std::optional<double> available = {});
 
 }  // namespace servomill::sim::preparation

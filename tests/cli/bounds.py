@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Every input has a bound that is checked before the work. bounds.py SERVOMILL"""
+import math
 import os
 import resource
 import shutil
@@ -146,6 +147,29 @@ class Bounds(unittest.TestCase):
         subprocess.run(["mount", "-o", "remount,size=1100m", disk], check=True)
         self.first_lines(1, slow, output="disk/out.h5")
         self.assertNotEqual(os.listdir(disk), [], "the run has begun")
+
+    def test_a_full_folder_of_temporary_files_is_named_with_a_remedy(self):
+        disk = self.path("temporary")
+        os.mkdir(disk)
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], stderr=subprocess.DEVNULL, check=False).returncode != 0:
+            self.skipTest("no file system of a chosen size may be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        blocks = (f"G1 X{math.sin(0.37 * n):.5f} Y{math.cos(0.61 * n):.5f} Z{math.sin(0.83 * n):.5f} F{3000 + n % 97}\n" for n in range(600_000))
+        self.write("long.ngc", "G21 G90 G94 G54\n" + "".join(blocks) + "M2\n")
+        run = [SERVOMILL, "run", "scenario.toml", "--set", "program.file=long.ngc", "-q"]
+
+        def said_with(size):
+            subprocess.run(["mount", "-o", f"remount,size={size}", disk], check=True)
+            done = subprocess.run(run, capture_output=True, text=True, timeout=10 * LIMIT, check=False, cwd=self.folder,
+                                  preexec_fn=limit_memory, env={**os.environ, "TMPDIR": disk})
+            return done.returncode, done.stderr
+        self.assertEqual(said_with("100k"), (3, f"{disk}: error: moves of the program cannot be written: No space left on device; "
+                                                 "TMPDIR chooses another folder\n"))
+        status, said = said_with("16m")
+        self.assertEqual(status, 2, said)
+        self.assertRegex(said, r"^long\.ngc: error: its planned motion takes about 0\.025 GB of temporary files; \S+/temporary has 0\.0\d+ GB free: "
+                               r"choose another folder \(TMPDIR\)\n$")
+        self.assertEqual(os.listdir(disk), [])
 
     def test_blocks_of_corrected_programs_are_counted_first(self):
         command = ["compensate", "cut.ngc", "--machine", "machine.toml", "--errors", "errors.toml", "--work-offset",

@@ -9,7 +9,6 @@
 #include "sim/model/scenario.h"
 #include "sim/sweep/statistics.h"
 #include "sim/system/json.h"
-#include "sim/system/worker_thread.h"
 
 namespace servomill::tools {
 namespace {
@@ -146,14 +145,10 @@ void print_statistics(const std::string& table) {
 
 void tell_estimate(sim::preparation::RunEstimate takes, std::uint64_t points, unsigned threads,
                    bool series) {
-  const auto n = static_cast<double>(points);
   if (points > 0 && takes.is_thinned)
     fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
-  takes.motion *= n;
-  takes.rows *= n;
-  takes.computing *= n / std::min(n, static_cast<double>(sim::system::thread_count(threads)));
-  takes.size *= series ? n : 0.0;
-  takes.file *= series ? n : 0.0;
+  takes = sim::preparation::estimate_of_points(takes, points, threads);
+  if (!series) takes.size = takes.file = 0.0;
   if (points == 0 || !sim::preparation::is_worth_telling(takes)) return;
   fmt::print(stderr, "estimate: {} points like the first: {}\n", points,
              sim::preparation::to_string(takes));

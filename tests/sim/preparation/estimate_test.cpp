@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "sim/input/read_scenario.h"
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
@@ -77,6 +79,46 @@ TEST(RunEstimate, TakesTwiceTheFileOfTheDisk) {
   EXPECT_EQ(refusal([&] { refuse_full_disk(of, takes, "out", 5.0, 4.9e9); }),
             "small.ngc: error: takes 5 GB of disk space while running; out has 4.9 GB free: lower "
             "record.max_size_GB = 8 or choose another file (--output)");
+}
+
+// 10^6 lines of 95 bytes, of which 32 MB stay in memory.
+TEST(RunEstimate, PlansOfLongProgramsFindRoomForTemporaryFiles) {
+  const model::Scenario of = scenario();
+  EXPECT_EQ(refusal([&] { refuse_full_temporary_folder(of, 1'000'000, 63.1e6); }), "");
+  EXPECT_EQ(refusal([&] { refuse_full_temporary_folder(of, 300'000, 0.0); }), "");
+  const std::string folder = std::filesystem::temp_directory_path().string();
+  EXPECT_EQ(refusal([&] { refuse_full_temporary_folder(of, 1'000'000, 62.9e6); }),
+            "small.ngc: error: its planned motion takes about 0.063 GB of temporary files; " +
+                folder + " has 0.063 GB free: choose another folder (TMPDIR)");
+}
+
+TEST(RunEstimate, TellsOfTemporaryFiles) {
+  RunEstimate takes = two_hours(scenario());
+  EXPECT_EQ(to_string(takes).find("temporary"), std::string::npos);
+  takes = {.memory = 1e8, .temporary = 2e9, .computing = 36.0};
+  EXPECT_TRUE(is_worth_telling(takes));
+  EXPECT_EQ(to_string(takes),
+            "0 s of motion, 0 rows, 0 GB of signals in a file of 0 GB, 0.1 GB of memory, 2 GB of "
+            "temporary files (TMPDIR), about 36 s of computing");
+}
+
+// Eight runs in lockstep take the time of one: 24 points of two cases are six times as many runs.
+TEST(RunEstimate, OfPointsCountsRunsInLockstepOnce) {
+  const model::Scenario of = scenario();
+  const RunEstimate one = estimate(of, prepare_cases(of), 1);
+  EXPECT_EQ(one.lanes, 2);
+  EXPECT_NEAR(one.computing, one.lockstep, 1e-12);  // no teeth, no trial runs
+  EXPECT_NEAR(estimate_of_points(one, 1, 1).computing, one.lockstep / 2.0, 1e-12);
+  EXPECT_NEAR(estimate_of_points(one, 4, 1).computing, one.lockstep / 2.0, 1e-12);
+  EXPECT_NEAR(estimate_of_points(one, 24, 1).computing, 6.0 * one.lockstep / 2.0, 1e-12);
+  EXPECT_NEAR(estimate_of_points(one, 24, 1).motion, 24.0 * one.motion, 1e-9);
+  EXPECT_EQ(estimate_of_points(one, 0, 1).computing, 0.0);
+}
+
+// Teeth and trial runs are of each run alone.
+TEST(RunEstimate, OfPointsCountsAllElseAtEachPoint) {
+  const RunEstimate one = {.computing = 10.0, .lockstep = 8.0, .lanes = 2};
+  EXPECT_NEAR(estimate_of_points(one, 8, 1).computing, 8.0 * (2.0 + 8.0 / 8.0), 1e-12);
 }
 
 // The path of the cutters is held as far as it comes near probes.
