@@ -108,6 +108,8 @@ void refuse_growing(const LearningPlan& plan, const JointLayout& layout, const T
       worst = left;
       at = f;
     }
+    // The condition of contraction, |1 - L G| < 1 at every frequency: sufficient for convergence of
+    // the error in the iteration domain, and its excess is the growth of a run.
     if (worst < 1.0) continue;
     throw InputError({}, fmt::format("cutoff_Hz: the filter does not contract: at {:.3g} Hz the "
                                      "next run would have {:.2f} times the error of axis {}; "
@@ -172,9 +174,11 @@ Lesson learn(const LearningPlan& plan, const JointLayout& layout, TrialRuns& run
     const bool first = k == 0;
     const bool is_enough = figures.largest <= plan.tolerance;
     if (plan.takes_best && (first || is_enough || figures.rms < best)) out.offset = u;
+    // Runs end with the last that was clearly better: noise that does not repeat cannot be learnt.
     const bool better = first || figures.rms < kHardlyBetter * best;
     best = first ? figures.rms : std::min(best, figures.rms);
     if (plan.takes_best && (is_enough || !better)) break;
+    // The offset opposes the deviation that it is to cancel.
     for (Joints& one : run.deviation) one = -one;
     std::vector<Joints> next =
         next_offset(u->offset, run.deviation, times->row_period(), plan.filter, runs.joints(),

@@ -34,6 +34,8 @@ std::vector<MoveFeed> feeds_of(const MoveRange& moves, const PathOptions& option
 
 // Time (s) at which a phase reaches s, within [from, to]; s(from) <= s.
 double time_at(const Phase& phase, double s, double from, double to) {
+  // Newton within a bracket that halves where a step leaves it: from an hour to 1e-13 s in 56
+  // halvings.
   constexpr int kSteps = 60;
   constexpr double kResolution = 1e-13;  // s
   double t = from;

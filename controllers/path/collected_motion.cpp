@@ -104,6 +104,7 @@ std::optional<std::size_t> CollectedMotion::seam() const {
     const double length = (vertices.u(k + 1) - vertices.u(k)).norm();
     const Joints d = direction(k);
     const double turn = std::max((d - direction(k - 1)).norm(), (direction(k + 1) - d).norm());
+    // The longest chord with the least turn at its ends wins; turns within rounding count as none.
     constexpr double kStraight = 1e-9;
     const double worth = length * length / std::max(turn, kStraight);
     if (worth <= most) continue;

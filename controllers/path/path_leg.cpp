@@ -14,6 +14,7 @@ constexpr double kLongLeg = 3.0;    // windows, below it corners share their cur
 // Limit along a direction, in which a joint that does not move, or
 // that the machine does not have, limits nothing.
 double along(const Joints& limits, const Joints& direction) {
+  // A share of a direction (unit vector) that is rounding.
   constexpr double kStill = 1e-12;
   const Joints d = direction.cwiseAbs();
   return (d.array() > kStill)

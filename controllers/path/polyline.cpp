@@ -20,6 +20,7 @@ void Polyline::clear() { *this = {}; }
 // The last ones are those that come again: the inside of an arc, and its end.
 std::uint32_t Polyline::index_of(const Traits& traits) {
   has_arcs_ = has_arcs_ || traits.arc >= 0;
+  // Few, as it is asked for each vertex: a miss costs memory, never a result.
   constexpr std::size_t kLookedAt = 3;
   for (std::size_t back = 1; back <= kLookedAt && back <= traits_.size(); ++back) {
     const std::size_t i = traits_.size() - back;

@@ -13,6 +13,7 @@ struct Polynomial {
 };
 
 // 1 / tan(w0 T/2): p becomes this times (z - 1) / (z + 1).
+// Bilinear transform, prewarped at f: gain and phase there are those of the continuous filter.
 double scale(double f, double T) {
   assert(can_filter(f, T));
   return 1.0 / std::tan(std::numbers::pi * f * T);
@@ -52,6 +53,7 @@ Biquad low_pass(double f, double zeta, double T) {
   return second_order({1.0, 0.0, 0.0}, {1.0, 2.0 * zeta, 1.0}, scale(f, T));
 }
 
+// Prewarped at the geometric mean, where the phase is greatest.
 Biquad lead_lag(double f_zero, double f_pole, double T) {
   assert(can_filter(f_zero, T) && can_filter(f_pole, T));
   const double f = std::sqrt(f_zero * f_pole);
@@ -70,6 +72,8 @@ std::complex<double> response(const FilterChain& chain, double w_T) {
 }
 
 FilterState standing_at(const FilterChain& chain, double value) {
+  // Transposed direct form II in steady state with gain 1 at frequency 0: all sections pass the
+  // value on, so that one value serves the whole chain.
   FilterState state;
   for (std::size_t n = 0; n < chain.count; ++n) {
     const Biquad& c = chain.sections[n];

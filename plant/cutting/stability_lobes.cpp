@@ -92,6 +92,7 @@ StabilityLimit zeroth_order_limit(const FlankEngagement& cut, std::span<const Ch
       if (!crosses || std::abs(after[i]) < kNone * std::abs(after[1 - i])) continue;
       double low = w, high = w + step;
       Pair m = before;
+      // Bisection down to the rounding of a double: an interval of 1 over 2^50.
       constexpr int kHalvings = 50;
       for (int n = 0; n < kHalvings; ++n) {
         const double middle = 0.5 * (low + high);

@@ -13,6 +13,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The turn of the axis is that of where the ray leaves: by iteration from the first of some guesses
 // at which the step is met at all.
 double leave_step(const SweptCutter& step, const Ray& ray, std::initializer_list<double> guesses) {
+  // The turn changes little along the ray, so that each iteration gains digits; 20 bound it where
+  // it would alternate.
   constexpr int kIterations = 20;
   constexpr double kSame = 1e-13;  // m
   if (!step.turns()) return step.leave(ray, 0.0);

@@ -36,6 +36,7 @@ enum Event : int {
   kEvents
 };
 using Events = std::array<int, kEvents>;
+// Distance of an event that cannot occur in the present mode: any number that keeps its sign.
 constexpr double kNotNow = 1.0;
 
 template <auto kFree>

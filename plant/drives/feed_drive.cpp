@@ -8,6 +8,7 @@ namespace {
 enum State : int { kCurrent, kSpeed, kWindUp, kVelocity, kPosition };
 enum Input : int { kCommand = 5, kForce = 6 };
 
+// Within the gap neither spring nor damper acts: motor and slide are two free masses.
 Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p, bool gap) {
   const double k = gap ? 0.0 : p.k, c = gap ? 0.0 : p.c;
   Eigen::Matrix<double, 5, 7> A = Eigen::Matrix<double, 5, 7>::Zero();
@@ -27,6 +28,8 @@ Eigen::Matrix<double, 5, 7> two_mass_equations(const FeedDriveParams& p, bool ga
   return A;
 }
 
+// The speed of the motor stays a state, tied to that of the slide, so that all kinds of drives
+// share one layout of five states.
 Eigen::Matrix<double, 5, 7> rigid_equations(const FeedDriveParams& p) {
   Eigen::Matrix<double, 5, 7> A = Eigen::Matrix<double, 5, 7>::Zero();
   // (M + J / r^2) dv/dt = Kt i / r - (b_load + b_motor / r^2) v - F,   w = v / r
@@ -42,6 +45,8 @@ Eigen::Matrix<double, 5, 7> rigid_equations(const FeedDriveParams& p) {
 Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool sticking, bool gap) {
   Eigen::Matrix<double, 5, 7> A = p.is_rigid() ? rigid_equations(p) : two_mass_equations(p, gap);
   A(kPosition, kVelocity) = 1.0;
+  // Motor and wind-up go on moving against the slide that is held: presliding by the elasticity of
+  // the screw.
   if (sticking) {
     A.row(kVelocity).setZero();
     A.row(kPosition).setZero();
@@ -52,6 +57,7 @@ Eigen::Matrix<double, 5, 7> drive_equations(const FeedDriveParams& p, bool stick
     A(kCurrent, kSpeed) = -p.Ke / p.L;
     A(kCurrent, kCommand) = 1.0 / p.L;
   } else if (p.current_is_command()) {
+    // T_i = 0: the current has no dynamics; what it acts on the command acts on directly
     A.col(kCommand) = A.col(kCurrent);
     A.col(kCurrent).setZero();
   } else {
@@ -69,6 +75,7 @@ Eigen::Matrix<double, 7, 9> drive_equations_on_bed(const FeedDriveParams& p, boo
   Eigen::Matrix<double, 7, 9> A = Eigen::Matrix<double, 7, 9>::Zero();
   A.topLeftCorner<4, 4>() = drive.topLeftCorner<4, 4>();
   A.topRightCorner<4, 2>() = drive.topRightCorner<4, 2>();
+  // The position is the last state, behind those of the bed: no other one depends on it.
   A(kWay, kVelocity) = drive(kPosition, kVelocity);
   if (!sticking) {
     A(kVelocity, kBed) = p.travelling_mass() * stiffness / p.slide_mass();
@@ -76,6 +83,8 @@ Eigen::Matrix<double, 7, 9> drive_equations_on_bed(const FeedDriveParams& p, boo
     if (p.is_rigid()) A.row(kSpeed).segment<2>(kBed) = A.row(kVelocity).segment<2>(kBed) / p.r;
   }
   // b'' = -2 zeta w b' - w^2 b - share x''
+  // The slide is accelerated against the bed; the row above already has the reaction of the bed, so
+  // that x'' is eliminated here.
   A.row(kBedSpeed) = -p.bed_share() * A.row(kVelocity);
   A(kBedSpeed, kBed) -= stiffness;
   A(kBedSpeed, kBedSpeed) -= damping;
@@ -112,6 +121,8 @@ double screw_force(const FeedDriveParams& p, const LaneState& s) {
 ContactMode contact_after(const FeedDriveParams& p, const LaneState& s) {
   const auto pushes = [&](ContactMode flank, double away) {
     const double S = away * flank_force(p, s, flank);
+    // A force of exactly 0 occurs at the instant of touching (undamped spring): the approach
+    // decides then.
     return S > 0.0 || (S == 0.0 && away * (p.r * s.w - s.v) > 0.0);
   };
   switch (s.contact) {
@@ -170,6 +181,8 @@ SlideMode slide_from_rest(const FrictionParams& friction, double force) {
 LaneState at_rest(const FeedDriveParams& p, double x) {
   LaneState s;
   s.x = x;
+  // The flank that carries the load is closed; without a load the positive one, as after a move in
+  // that direction.
   const double load = p.F_load + cogging_force(p, x);
   s.i = p.r * load / p.Kt;
   if (p.is_rigid()) return s;

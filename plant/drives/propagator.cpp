@@ -9,6 +9,8 @@ namespace {
 // is that of its eigenvalues.
 template <int n>
 Eigen::Matrix<double, n, n> balanced(Eigen::Matrix<double, n, n> A) {
+  // Similarity keeps the eigenvalues; units (A, rad/s, m) no longer matter to the norm then. Thirty
+  // sweeps: the iteration converges linearly, and no result depends on its last digits.
   for (int sweep = 0; sweep < 30; ++sweep) {
     for (int j = 0; j < n; ++j) {
       const double column = A.col(j).cwiseAbs().sum() - std::abs(A(j, j));
@@ -31,12 +33,15 @@ double fastest_rate(const DriveEquations<kStates>& A) {
   for (int j = 0; j < n; ++j) {
     const double diagonal = B(j, j);
     B(j, j) = 0.0;
+    // A state that acts on nothing, or on which nothing acts, adds its own diagonal alone: its
+    // couplings could be scaled to any size.
     if (B.row(j).cwiseAbs().sum() == 0.0 || B.col(j).cwiseAbs().sum() == 0.0) {
       B.row(j).setZero();
       B.col(j).setZero();
     }
     B(j, j) = diagonal;
   }
+  // The norm of rows bounds every eigenvalue.
   return B.cwiseAbs().rowwise().sum().maxCoeff();
 }
 
@@ -52,6 +57,7 @@ PropagatorSeries<kStates>::PropagatorSeries(const DriveEquations<kStates>& equat
     : rate_(static_cast<long double>(fastest_rate<kStates>(equations))) {
   const Matrix A = equations.template leftCols<kStates>().template cast<long double>();
   A_[0].setIdentity();
+  // Powers once for all lengths: a drive is propagated over many different sub-steps.
   for (std::size_t k = 1; k < kTerms; ++k) A_[k] = A * A_[k - 1];
   for (std::size_t k = 0; k < kTerms; ++k) {
     command_[k] = A_[k] * equations.col(kStates).template cast<long double>();
@@ -65,6 +71,7 @@ typename PropagatorSeries<kStates>::Values PropagatorSeries<kStates>::at(long do
   // An entry begins with one of the first terms; each further one is smaller by rate t / k.
   constexpr std::size_t kFirst = 6;
   std::size_t terms = kFirst;
+  // Terms (rate t)^k / k! of the exponential, down to a thousandth of the rounding of a double.
   for (long double size = 1.0L; size > 1e-22L && terms < kTerms; ++terms) {
     size *= rate_ * t / static_cast<long double>(terms - kFirst + 1);
   }
@@ -74,6 +81,8 @@ typename PropagatorSeries<kStates>::Values PropagatorSeries<kStates>::at(long do
     S.E += A_[k] * factor[0];
     S.command += command_[k] * factor[1];
     for (std::size_t m = 0; m < 3; ++m) S.moment[m] += force_[k] * factor[m + 1];
+    // Factors t^(k+1+m) m! / (k+1+m)!: the integrals of e^(A (t - s)) s^m, by which a force that is
+    // a parabola in time acts.
     for (std::size_t m = 0; m < 4; ++m) factor[m] *= t / (n + static_cast<long double>(m));
   }
   return S;
@@ -90,6 +99,7 @@ long double PropagatorSeries<kStates>::entry(const Values& S, State state, std::
   if (column >= Propagator::kColumns) {
     return S.E(state, static_cast<Eigen::Index>(column - Propagator::kColumns) + b);
   }
+  // A force given at begin, middle and end of the sub-step, as Simpson's rule has it.
   const double(&l)[3] = kLagrange[column - 5];
   return l[0] * S.moment[0](state) + l[1] * S.moment[1](state) / h +
          l[2] * S.moment[2](state) / (h * h);

@@ -19,6 +19,8 @@ static_assert(sizeof(VolumetricError) == 6 * sizeof(double));
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+// Places of a screw: three shifts, a gap of one, three rotations, so that each triple begins a
+// register of four.
 int lane_of(Axis direction) { return index_of(direction) + (is_linear(direction) ? 0 : 1); }
 
 Vector3d unit_vector(Axis axis) { return Vector3d::Unit(index_of(axis) % 3); }
@@ -73,6 +75,7 @@ VolumetricModel::Prepared VolumetricModel::prepare(const ChainAxis& axis,
     const int lane = lane_of(direction);
     const ErrorFunction& f = errors.component({direction, axis.axis, false});
     if (f.is_zero()) continue;
+    // All six directions of an axis share one Horner scheme, of the highest degree among them.
     out.polynomial.resize(std::max(out.polynomial.size(), f.polynomial.size()), Screw::Zero());
     for (std::size_t i = 0; i < f.polynomial.size(); ++i) out.polynomial[i][lane] = f.polynomial[i];
     for (const Harmonic& h : f.harmonics) {
@@ -160,6 +163,7 @@ VolumetricModel::Screw VolumetricModel::reversals(const Prepared& errors, double
                                                   std::span<const double> directions) {
   Screw e = Screw::Zero();
   for (const auto& r : errors.reversals) {
+    // half of the width to either side of the error without reversal
     e[r.lane] += 0.5 * directions[r.play] * r.reversal.value(q);
   }
   return e;
@@ -228,6 +232,8 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
 template <class Values>
 VolumetricError VolumetricModel::first_order(const Joints& Q, const Vector3d& p_ST,
                                              Values values_at) const {
+  // From the tool back along the chain: each error acts with the lever arm to the TCP that the
+  // joints behind it make.
   ToolPose P{p_ST, Vector3d::UnitZ()};
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {
@@ -264,6 +270,8 @@ Vector3d VolumetricModel::joint_offset(const Joints& Q, const Vector3d& p_ST) co
 }
 
 void VolumetricModel::find_offset(const Joints& Q, const Vector3d& p_ST, Vector3d& d) const {
+  // A projection onto orthogonal axes is the solution; otherwise (inclined axes, or a missing one)
+  // that of least squares.
   if (linear_axes_are_orthogonal_) {
     evaluation_->offset(Q, p_ST, d.data());
   } else {
@@ -303,6 +311,8 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     const Prepared& errors = errors_[i];
     const JointMotion m = motion_at(a, Q[a.joint]);
     const Screw e = values(errors, Q);
+    // Product rule of the error motion: as R and the shift depend on q themselves, they carry a
+    // velocity of their own.
     const auto apply_components = [&] {
       const TurnOf R(turn_of(e));
       tool.turn(R.matrix());
@@ -315,6 +325,8 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
     };
     tool.shift(-a.centre);
     if (a.is_inclined) tool.turn(a.R_MA.transpose());
+    // Component errors act on the moved side of the joint: towards the tool here, towards the
+    // workpiece below.
     if (a.side == Side::tool) apply_components();
     // L^-1
     tool.turn(errors.R_location.transpose());
@@ -330,6 +342,8 @@ PoseJacobian VolumetricModel::jacobian(const Joints& Q, const Vector3d& p_ST) co
         R.col(n) = turned(a.axis, m.cosine, m.sine, Vector3d::Unit(n));
       }
       tool.turn(R);
+      // Positive C of a table turns the workpiece, hence the tool by -C as the workpiece sees it
+      // (ISO 841).
       tool.turn_with(a.joint, a.sense == Sense::table ? Vector3d(-direction) : direction);
     }
     // L
@@ -349,6 +363,8 @@ std::optional<Joints> VolumetricModel::inverse(const Vector3d& p_WT, const Joint
     const Vector3d miss = p_WT - forward(Q, p_ST).p_WT;
     if (miss.norm() <= kInverseTolerance) return Q;
     const LeastSquares move = least_squares(jacobian(Q, p_ST).J_pQ.leftCols<3>(), miss);
+    // Newton with the exact Jacobian. A lost rank: the linear axes of the chain do not span the
+    // directions of the miss.
     if (move.rank < number_of_linear_axes(chain_) || !move.x.allFinite()) return std::nullopt;
     Q.head<kLinearJoints>() += move.x;
   }

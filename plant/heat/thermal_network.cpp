@@ -36,6 +36,8 @@ std::vector<bool> connected(const ThermalParams& params) {
   for (const ThermalLink& link : params.surface_links) {
     if (link.conductance > 0.0) out[static_cast<std::size_t>(link.from)] = true;
   }
+  // One more body is reached in each pass at least: as many passes as bodies suffice for any order
+  // of the links.
   for (std::size_t pass = 0; pass < params.bodies.size(); ++pass) {
     for (const ThermalLink& link : params.links) {
       const auto a = static_cast<std::size_t>(link.from), b = static_cast<std::size_t>(link.to);
@@ -46,6 +48,8 @@ std::vector<bool> connected(const ThermalParams& params) {
 }
 
 // (1 - e^-x) / x and (x - 1 + e^-x) / x^2: the response to a constant and to a rising input.
+// Differences of nearly equal numbers where a body is slow against the step: expm1, and below
+// kSeries the series, whose first neglected term, x^6 / 8!, is below the rounding of 1/2.
 double constant_response(double x) { return x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x; }
 double rising_response(double x) {
   constexpr double kSeries = 1e-2;
@@ -93,6 +97,9 @@ ThermalNetwork::ThermalNetwork(ThermalParams params) : params_(std::move(params)
   for (const ThermalLink& link : params_.surface_links) {
     surface_(link.from, link.to) += link.conductance;
   }
+  // C dT/dt = -G T + P becomes symmetric in C^1/2 T, so that its eigenvalues are real and its
+  // eigenvectors orthogonal: no complex modes, and no inverse of an ill-conditioned matrix of
+  // eigenvectors.
   const VectorXd root = C_.cwiseSqrt();
   const MatrixXd G = conductance_matrix(params_);
   const MatrixXd scaled = root.cwiseInverse().asDiagonal() * G * root.cwiseInverse().asDiagonal();
@@ -126,6 +133,7 @@ VectorXd ThermalNetwork::settled(const VectorXd& power, double t) const {
     const double w = 2.0 * std::numbers::pi / around.period;
     const VectorXd excitation = heat_to_modes_ * surface_.col(k) * around.amplitude;
     for (Index i = 0; i < modes.size(); ++i) {
+      // Each mode is a first-order lag: gain 1 / |decay + i w|, phase atan(w / decay).
       const double lag = std::atan2(w, decay_[i]);
       modes[i] +=
           excitation[i] / std::hypot(decay_[i], w) * std::cos(w * (t - around.warmest_at) - lag);
@@ -135,6 +143,8 @@ VectorXd ThermalNetwork::settled(const VectorXd& power, double t) const {
 }
 
 void ThermalNetwork::advance(double t, double h, const VectorXd& power) {
+  // Linear within the step, which leaves the second derivative of a daily cosine: (w h)^2 / 8 of
+  // the amplitude.
   set_surroundings(t, outside_);
   set_surroundings(t + h, outside_after_);
   heat_.noalias() = surface_ * outside_;

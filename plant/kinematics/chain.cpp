@@ -39,6 +39,7 @@ bool turn_apart(int i, int j, Eigen::Matrix3d& A, Eigen::Matrix3d& V) {
 // rank-revealing decomposition of Eigen takes g++ as long as all other sources of this folder.)
 // Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., 8.6.3.
 LeastSquares singular_least_squares(const Eigen::Matrix3d& J, const Eigen::Vector3d& v) {
+  // Bounds rounds in which rounding alone would go on rotating.
   constexpr int kMaxRounds = 30;
   Eigen::Matrix3d A = J, V = Eigen::Matrix3d::Identity();
   for (int round = 0; round < kMaxRounds; ++round) {

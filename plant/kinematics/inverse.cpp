@@ -184,6 +184,7 @@ void InverseKinematics::check_travel(JointSolution& solution) const {
 
 JointSolutions InverseKinematics::solve(const ToolPose& P, const Vector3d& p_ST,
                                         const Joints& Q_near) const {
+  // Rounding of a vector that its maker has normalised.
   constexpr double kUnit = 1e-9;
   assert(std::abs(P.k_W.norm() - 1.0) < kUnit);
   static_cast<void>(kUnit);

@@ -33,6 +33,7 @@ std::optional<PostProcessedSegment> PostProcessedSegment::post(const InverseKine
                                                                const Joints& Q_near) {
   const auto Q_0 = post_processed(inverse, p_ST, from, Q_near);
   if (!Q_0) return {};
+  // The rotary solution next to the first location, as a post-processor takes it.
   const auto Q_1 = post_processed(inverse, p_ST, to, *Q_0);
   if (!Q_1) return {};
   PostProcessedSegment segment(inverse, p_ST, *Q_0, *Q_1);
@@ -58,6 +59,8 @@ CutterLocation PostProcessedSegment::at(double t) const {
 }
 
 std::optional<Joints> PostProcessedSegment::joints(NonlinearError definition, double t) const {
+  // By one definition the joints move linearly and the tip leaves its chord; by the other the tip
+  // is on the chord and the joints leave theirs.
   if (definition == NonlinearError::joint_interpolation) return linear(t);
   const CutterLocation location = at(t);
   if (location.U.norm() == 0.0) return {};
@@ -72,6 +75,8 @@ std::optional<Eigen::Vector3d> PostProcessedSegment::error(NonlinearError defini
   if (frame == ErrorFrame::workpiece) {
     return forward(inverse_->chain(), *Q, p_ST_).p_WT - at(t).P;
   }
+  // In the machine the error is the travel of the linear axes that brings the tip back to the
+  // chord, rotary axes as they are.
   const auto onto_chord = inverse_fixed_rotary(inverse_->chain(), at(t).P, *Q, p_ST_);
   if (!onto_chord) return {};
   return (*Q - *onto_chord).head<3>();
@@ -99,6 +104,8 @@ std::optional<std::vector<PathPoint>> PostProcessedSegment::compensated_points(
   if (!amplitude) return {};
   std::vector<PathPoint> points;
   if (amplitude->norm() > tolerance) {
+    // A chord along which the axes move but the tip hardly does has no length to be divided: the
+    // error, out and back, stands in for it.
     const double intervals = std::max(length(), 2.0 * amplitude->norm()) / spacing;
     for (double n = 1.0; n < intervals - kSameLength; n += 1.0) {
       const double t = n / intervals;

@@ -6,6 +6,9 @@
 namespace servomill::plant {
 namespace {
 
+// Constants of Philox 4x32-10: J. K. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC
+// 2011, table 2. The number of a sample is the counter, so that every reading has its noise
+// whatever was read before.
 constexpr std::uint64_t kMultiplier0 = 0xD2511F53, kMultiplier1 = 0xCD9E8D57;
 constexpr std::uint32_t kWeyl0 = 0x9E3779B9, kWeyl1 = 0xBB67AE85;
 constexpr int kRounds = 10;

@@ -5,6 +5,8 @@
 namespace servomill {
 
 std::uint64_t crc64(std::string_view bytes) {
+  // ECMA-182, reflected, as xz has it (CRC-64/XZ): `xz --check=crc64` and libraries give the same
+  // number.
   constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693;
   boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc;
   crc.process_bytes(bytes.data(), bytes.size());

@@ -19,6 +19,9 @@ ErrorEffects::ErrorEffects(const plant::MachineChain& chain, const Unknowns& unk
     line_of_.push_back(lines);
     lines += function.basis.lines();
   }
+  // Values of a function are those of its basis less the mean and slope over the travel, which the
+  // conventions give to location errors and set-ups. That part is a dense block of few rows: kept
+  // as P, rows of readings stay sparse.
   P_ = Eigen::MatrixXd::Zero(lines, size_);
   for (std::size_t f = 0; f < unknowns.functions.size(); ++f) {
     const SoughtFunction& function = unknowns.functions[f];
@@ -37,6 +40,8 @@ void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)
   std::size_t k = 0;
   for (; k < unknowns_.locations.size(); ++k) {
     add(unknowns_.first_location() + static_cast<int>(k),
+        // Effects are linear in the errors: one machine with a single unit error each gives the
+        // column.
         pose.weight * unit_[k].first_order_at(pose) / model::kUnitError);
   }
   std::vector<BasisValue> values;
@@ -48,6 +53,7 @@ void ErrorEffects::visit(const Pose& pose, const std::function<void(int, double)
     values.clear();
     function.basis.evaluate(pose.Q[joint], pose.direction[static_cast<std::size_t>(joint)], values);
     for (const BasisValue& value : values) {
+      // Behind the unknowns: columns of the conventions, which P turns into unknowns (row()).
       const int column = value.index < function.basis.size()
                              ? function.first + value.index
                              : size_ + line_of_[f] + value.index - function.basis.size();
@@ -94,6 +100,7 @@ Eigen::Vector3d ErrorEffects::unit_shift(std::size_t f, const Joints& Q,
 Eigen::RowVectorXd ErrorEffects::row(const Pose& pose) const {
   Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(size_ + lines());
   visit(pose, [&](int column, double value) { all[column] += value; });
+  // A row of the design matrix: d = (a - b P) x.
   return all.head(size_) - all.tail(lines()) * P_;
 }
 
@@ -114,6 +121,8 @@ Eigen::Matrix3d tip_covariance(const ErrorEffects& effects, const Adjustment& ad
     const Eigen::Vector3d effect = effects.unit_shift(f, Q, p_ST);
     const SoughtFunction& function = adjustment.unknowns.functions[f];
     const double s = Q[effects.joint_of(f)];
+    // Short waves add an independent variance between the knots, in the direction in which the
+    // error moves the tip.
     out += wave * wave * interpolation_variance(function.basis, s) * effect * effect.transpose();
   }
   return out;

@@ -14,6 +14,8 @@ using Eigen::VectorXd;
 NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const VectorXd& expected)
     : size_(A.rows()), scale_(A.diagonal().cwiseMax(0.0).cwiseSqrt()) {
   const auto has_effect = [&](Index j) { return scale_[j] > kNoEffect; };
+  // Cholesky without pivoting, on A scaled to a unit diagonal: the order of the unknowns decides
+  // which of several dependent ones is left out (set-up before errors, README.md).
   MatrixXd rows = MatrixXd::Zero(size_, size_);  // of all unknowns, in the columns of those kept
   for (Index j = 0; j < size_; ++j) {
     if (!has_effect(j)) {
@@ -21,6 +23,8 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const Vect
       continue;
     }
     const auto k = static_cast<Index>(kept_.size());
+    // Share of the effect that the unknowns before it cannot have: the squared diagonal of the
+    // factor.
     const double own = 1.0 - rows.row(j).head(k).squaredNorm();
     if (own < own_share * own_share) {
       left_out_.push_back({static_cast<int>(j), {}});
@@ -41,6 +45,8 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const Vect
   for (Dependent& one : left_out_) {
     if (!has_effect(one.unknown)) continue;
     // only those kept before it have numbers in its row
+    // Least squares of the column that is left out on those kept, read off the factor: L' share =
+    // row. The readings determine x_kept + factor x_left in place of x_kept.
     VectorXd share = rows.row(one.unknown).head(n).transpose();
     L_.transpose().triangularView<Eigen::Upper>().solveInPlace(share);
     for (Index i = 0; i < n; ++i) {
@@ -53,6 +59,7 @@ NormalEquations::NormalEquations(const MatrixXd& A, double own_share, const Vect
     }
   }
   if (expected.isZero(0.0)) return;
+  // Priors enter only now: added before, they would make every dependent unknown look determined.
   MatrixXd whole = L_ * L_.transpose();
   for (Index i = 0; i < n; ++i) {
     const int unknown = kept_[static_cast<std::size_t>(i)];
@@ -82,6 +89,7 @@ MatrixXd NormalEquations::inverse() const {
   const auto n = static_cast<Index>(kept_.size());
   MatrixXd inverse = MatrixXd::Identity(n, n);
   L_.triangularView<Eigen::Lower>().solveInPlace(inverse);
+  // (L L')^-1 = L^-T L^-1, in the scaling of the unknowns.
   const MatrixXd product = inverse.triangularView<Eigen::Lower>().transpose() * inverse;
   MatrixXd out = MatrixXd::Zero(size_, size_);
   for (Index j = 0; j < n; ++j) {

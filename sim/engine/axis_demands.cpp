@@ -64,6 +64,7 @@ LoopDisplacement::LoopDisplacement(const Joints& Kv, double period) {
 }
 
 std::size_t periods_of_readings(const Joints& Kv, double period) {
+  // Four readings in 1/Kv follow the position loop; more would repeat what its lag lets pass.
   constexpr double kPerTimeConstant = 4.0;
   const double fastest = Kv.maxCoeff();
   if (!(fastest > 0.0)) return 1;

@@ -10,6 +10,7 @@ using State = plant::ToolPointVibration::State;
 namespace {
 
 std::size_t steps_held(double step, double longest) {
+  // interpolation needs both neighbours of the farthest place
   constexpr double kSpare = 4.0;  // steps
   return static_cast<std::size_t>(std::ceil(plant::kPassagesBefore * longest / step) + kSpare);
 }
@@ -33,6 +34,8 @@ void ChipRegeneration::begin(const Eigen::Matrix3d& J_pL) {
   J_pL_ = J_pL;
   begin_ = vibration_.now();
   newest_ = (newest_ + 1) % course_.size();
+  // Kept in W: chip thickness compares with where the workpiece was cut, although rotary axes have
+  // turned since.
   course_[newest_] = {J_pL * begin_.x, J_pL * begin_.dx};
   if (gives_way_) held_W_ = J_pL * held_ * J_pL.transpose();
 }
@@ -47,6 +50,7 @@ void ChipRegeneration::end(const Eigen::Vector3d& force) {
 // In W, so many steps before the present one has begun.
 Eigen::Vector3d ChipRegeneration::past(double steps) const {
   const auto whole = static_cast<std::size_t>(std::ceil(steps));
+  // Before the first cut nothing vibrated.
   if (whole >= course_.size()) return Eigen::Vector3d::Zero();
   const std::size_t size = course_.size();
   const State& a = course_[(newest_ + size - whole) % size];
@@ -69,6 +73,7 @@ Eigen::Vector3d ChipRegeneration::past_held(double steps) const {
 DisplacementsBefore ChipRegeneration::displacements(const Eigen::Vector3d& force,
                                                     const Eigen::Matrix3d& J_pL,
                                                     double passage) const {
+  // The force of a step is that in its middle, which makes the step of second order.
   constexpr double kMiddle = 0.5;
   const State next = vibration_.after(J_pL.transpose() * force);
   const Eigen::Vector3d x = J_pL * plant::ToolPointVibration::between(begin_, next, step_, kMiddle);

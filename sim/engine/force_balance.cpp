@@ -5,6 +5,8 @@
 namespace servomill::sim::engine {
 namespace {
 
+// Newton converges in a few steps where the cut is stable; halvings (down to 1/4096 of a step)
+// carry it over the kink where a tooth leaves the material.
 constexpr int kMaxSteps = 30, kMaxHalvings = 12;
 constexpr double kBalanced = 1e-9;    // of the force, and N
 constexpr double kDifference = 1e-3;  // N, of derivatives
@@ -21,6 +23,8 @@ ForceBalance balanced_force(const Eigen::Vector3d& guess,
     for (int i = 0; i < 3; ++i) {
       M.col(i) -= (f(F + kDifference * Eigen::Vector3d::Unit(i)) - at) / kDifference;
     }
+    // Static instability: the force grows faster with the displacement than the stiffness holds
+    // against it, and no balance is reached from here.
     if (!(M.determinant() > 0.0)) return {at, false};
     const Eigen::Vector3d direction = M.inverse() * residual;
     double share = 1.0;

@@ -24,6 +24,8 @@ Setpoint::Setpoint(const model::NcSettings& nc, const controllers::Trajectory& r
     }
   }
   const Joints zero = Joints::Zero();
+  // The filter is linear, so that values and rates each have one of their own in place of a
+  // differentiation behind it. That of the corrections starts at their value at rest.
   filters_.emplace(Filters{filter(reference.start()), filter(zero), filter(zero), filter(before)});
   delay_ = filters_->Q.delay() * Tp_;
 }
@@ -53,6 +55,7 @@ const AxisSetpoint& Setpoint::settle() {
     const Joints offset = correction.part->offset(Q);
     correction.in_nc.settle(offset);
     out_.Q_cmd += offset;
+    // An offset at the start is no step: its first difference is 0.
     if (correction.in_nc.entry() != EntryPoint::position_command) fed_forward_ += offset;
   }
   return out_;
@@ -106,6 +109,7 @@ void Setpoint::feed_forward(const Joints& offset) {
   const Joints rate = (offset - fed_forward_) / Tp_;
   out_.Q_cmd += offset;
   out_.dQ_ff += rate;
+  // Second difference, one period late, as a control without a model of the correction has it.
   out_.ddQ_ff += (rate - fed_forward_rate_) / Tp_;
   fed_forward_ = offset;
   fed_forward_rate_ = rate;

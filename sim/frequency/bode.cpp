@@ -75,6 +75,7 @@ Complex taken(const CurveOf& of, const Response& response, double r) {
 
 // Acceleration whose feed-forward takes a share of the current.
 double fed_forward_acceleration(const model::MachineSettings& machine, int joint) {
+  // Leaves 70 % of the current for friction and the loop, so that the excitation meets no limit.
   constexpr double kShare = 0.3;
   const controllers::CascadeParams& c = machine.nc.cascade[static_cast<std::size_t>(joint)];
   return kShare * c.i_max * c.Kt * c.r / (c.kaf * c.J);  // infinite without feed-forward

@@ -60,6 +60,8 @@ Largest largest_gain(double least, double most,
   Largest found;
   double previous = 0.0;
   Stage tried("gains tried", 0.0, Steps::unlike);
+  // A scan before the bisection: margins need not fall steadily with the gain, and beyond a
+  // resonance they may come back.
   for (double gain = least; gain <= most; gain *= kScan) {
     throw_if_interrupted();
     const auto limit = check(gain);
@@ -87,6 +89,7 @@ Largest largest_gain(double least, double most,
   return found;
 }
 
+// Four digits, as they are printed and typed into the control; downwards, so that the margins stay.
 double rounded_down(double value) {
   if (value <= 0.0) return 0.0;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
@@ -101,6 +104,7 @@ double rounded_up(double value) {
 // half of it is not enough.
 template <class Kept>
 double kept_at(double gain, const Kept& kept) {
+  // Doubled each time: nine trials, since each evaluates the whole loop.
   constexpr double kFirst = 1e-3, kMax = 0.5;
   double tried = rounded_down(gain);
   for (double share = kFirst; share <= kMax; share *= 2.0) {
@@ -122,6 +126,7 @@ double step_overshoot(const model::MachineSettings& linear, int joint, Tick read
   if (!std::isfinite(slowest)) return Margins::kNone;
   StepSettings step;
   step.amplitude = kStepHeight;
+  // Long enough for the overshoot of the slowest mode to have passed.
   step.duration = std::min(kLongestStep, kStepDuration * slowest);
   return step_response(linear, joint, reading_delay, step).figures.overshoot;
 }
@@ -137,6 +142,7 @@ double step_overshoot(const model::MachineSettings& linear, int joint, Tick read
 
 Largest largest_Kv(const model::MachineSettings& machine, int joint, Tick reading_delay,
                    Gains gains, const TuneSettings& wanted) {
+  // The open position loop is in proportion to Kv: one curve serves all gains.
   gains.Kv = 1.0;
   const model::MachineSettings tried = with_gains(machine, joint, gains);
   FrequencyResponse response(tried, joint, reading_delay, PositionLoop::closed);
@@ -245,6 +251,8 @@ class Tuner {
     for (const double share : kCalmer) {
       const double Kv_there =
           largest_Kv(linear_, joint_, reading_delay_, gains_for(share * wv), wanted_).gain;
+      // A calmer velocity loop costs stiffness against cutting forces: it is only mentioned, and
+      // only where Kv gains 5 %.
       if (Kv_there < kWorthIt * std::max(Kv, out_.calmer_Kv)) continue;
       out_.calmer_wv = share * wv;
       out_.calmer_Kv = Kv_there;

@@ -115,6 +115,8 @@ class ScaleSearch {
   double step() const { return std::isfinite(scale_) ? kNaN : step_; }
   // @param change  of the feedback by the step; NaN: the step is refused
   void look(double change, double wanted) {
+    // Between the two the response counts as linear, and one division gives the scale; far beyond,
+    // the next step is shrunk and tried again.
     constexpr double kFar = 100.0, kNothing = 1e-4;
     if (std::isfinite(scale_)) return;
     if (std::isnan(change)) {
@@ -135,6 +137,7 @@ class ScaleSearch {
 // Change of each parameter that moves the feedback by `wanted` (rms); NaN where none does.
 Values find_scales(const Prediction& prediction, const Differences& differences, const Values& at,
                    const Eigen::VectorXd& here, double wanted) {
+  // Ten-fold steps: fourteen span all that a first guess can be wrong by.
   constexpr int kRounds = 14;
   std::vector<ScaleSearch> searches;
   for (std::size_t p = 0; p < at.size(); ++p) {

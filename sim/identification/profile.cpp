@@ -36,6 +36,7 @@ class Side {
     double inside = 0.0, outside = limit_;  // distances
     bool has_outside = false;
     double reached = 0.0, at = std::min(half, limit_);
+    // Bisection in doubt: thirty halvings end at 1e-9 of the first distance.
     constexpr int kMax = 30;
     for (int n = 0; n < kMax; ++n) {
       const auto excess = excess_at(at, along, out);
@@ -69,6 +70,7 @@ class Side {
 
   // The square root of the rise is nearly in proportion to the distance.
   double next(double inside, double reached, bool has_outside, double outside) const {
+    // At most four times as far: flat profiles would jump to where nothing can be simulated.
     const double by_line = inside * std::min(1.0 / std::max(reached, 1e-3), 4.0);
     if (has_outside || blocked_) {
       return std::clamp(by_line, inside + 0.05 * (outside - inside),
@@ -80,6 +82,8 @@ class Side {
   // Square root of the rise over that of the interval's end.
   std::optional<double> excess_at(double distance, const Eigen::VectorXd& along, Profile& out) {
     Values at = values_;
+    // From the last point along the linear model: refits begin next to their minimum and take few
+    // simulations.
     const double change = value(distance) - values_[parameter_];
     for (std::size_t p = 0; p < at.size(); ++p) {
       const auto [lower, upper] = prediction_.bounds(p);
@@ -123,6 +127,8 @@ Profile profile(const Prediction& prediction, const Fit& fit, const Uncertainty&
         inverse(static_cast<Eigen::Index>(k), own) / inverse(own, own);
   }
   const double half = uncertainty.half_width(parameter);
+  // Rise at which a linear model has the interval of the coloured covariance: white residuals would
+  // set it to t^2 times the variance.
   const double rise = half * half / inverse(own, own);
   for (const double direction : {-1.0, 1.0}) {
     Side side(prediction, fit, mask, parameter, direction, rise);

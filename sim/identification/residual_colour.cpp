@@ -32,6 +32,7 @@ std::vector<Order> all_orders(const std::vector<double>& c) {
   std::vector<Order> orders = {{{}, c.front()}};
   for (std::size_t p = 1; p < c.size(); ++p) {
     const Order& last = orders.back();
+    // Levinson-Durbin recursion: each order from the one before, O(p) a step.
     double sum = c[p];
     for (std::size_t k = 0; k < last.a.size(); ++k) sum += last.a[k] * c[p - 1 - k];
     const double reflection = -sum / last.innovation;
@@ -49,6 +50,8 @@ std::vector<Order> all_orders(const std::vector<double>& c) {
 // Beyond the lags that were given the process continues them.
 std::vector<double> continued(const std::vector<double>& given, const std::vector<double>& a,
                               std::size_t most) {
+  // Decayed to 1e-6 of the variance, the rest no longer changes the sums over the lags. The largest
+  // of a window of 200 counts, since an oscillating autocovariance passes through 0.
   constexpr double kDecayed = 1e-6;
   std::vector<double> c(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(a.size() + 1));
   double greatest_lately = c.front();
@@ -71,6 +74,8 @@ std::vector<double> continued(const std::vector<double>& given, const std::vecto
 }  // namespace
 
 double AutoregressiveNoise::effective_samples(std::size_t n) const {
+  // Samples that would give the variance as exactly, not the mean: its sampling error goes with the
+  // squares of the autocovariances (Bartlett).
   double sum = 0.0;
   for (std::size_t lag = 0; lag < autocovariance.size(); ++lag) {
     sum += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag] * autocovariance[lag];
@@ -85,6 +90,8 @@ std::vector<double> autocovariance(const Eigen::VectorXd& residual, std::size_t 
   std::vector<double> out;
   const Eigen::Index n = residual.size();
   for (Eigen::Index lag = 0; lag <= static_cast<Eigen::Index>(lags); ++lag) {
+    // Divided by n at every lag, not by n - lag: only so is the sequence positive definite, which
+    // the recursion needs.
     out.push_back(residual.head(n - lag).dot(residual.tail(n - lag)) / static_cast<double>(n));
   }
   return out;
@@ -98,6 +105,8 @@ AutoregressiveNoise autoregressive(const std::vector<double>& c, std::size_t sam
   for (std::size_t p = 0; p < orders.size(); ++p) {
     const double k = static_cast<double>(p) + 1.0;
     if (n - k - 1.0 <= 0.0 || !(orders[p].innovation > 0.0)) break;
+    // Akaike's criterion with the correction for few samples (Hurvich and Tsai 1989): k = p + 1
+    // counts the innovation.
     const double criterion = n * std::log(orders[p].innovation) + 2.0 * k * n / (n - k - 1.0);
     if (criterion < best) {
       best = criterion;
@@ -113,6 +122,8 @@ AutoregressiveNoise autoregressive(const std::vector<double>& c, std::size_t sam
 
 Eigen::MatrixXd coloured(const AutoregressiveNoise& noise, const Eigen::MatrixXd& X) {
   const auto n = static_cast<std::size_t>(X.rows());
+  // A Toeplitz matrix times vectors by FFT: embedded in a circulant one of twice the length, so
+  // that nothing wraps around. O(n log n) in place of O(n^2).
   const std::size_t size = padded(2 * n), lags = std::min(noise.autocovariance.size(), n);
   std::vector<double> kernel(size, 0.0);
   for (std::size_t lag = 0; lag < lags; ++lag) {
@@ -141,12 +152,15 @@ std::vector<double> cross_sums(const Eigen::MatrixXd& U, const Eigen::MatrixXd& 
   for (Eigen::Index k = 0; k < U.cols(); ++k) {
     fft.fwd(A, column(U, k, size));
     fft.fwd(B, column(V, k, size));
+    // Correlation theorem; spectra are summed over the columns, so that one inverse transform
+    // serves all.
     for (std::size_t f = 0; f < size; ++f) sum[f] += std::conj(A[f]) * B[f];
   }
   std::vector<double> both;
   fft.inv(both, sum);
   std::vector<double> out;
   for (std::size_t lag = 0; lag <= lags; ++lag) {
+    // Positive and negative lags, as the symmetric Sigma meets both.
     out.push_back(both[lag] + both[lag == 0 ? 0 : size - lag]);
   }
   return out;

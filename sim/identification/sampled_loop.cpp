@@ -14,6 +14,8 @@ void SampledLoop::start(std::size_t lane, double position, double speed, double 
   const LoopSettings& loop = lanes_[lane];
   // sample() writes the reading of the instant 0 at place 0: these are the ones before it
   for (std::size_t back = 1; back < past_readings_.size(); ++back) {
+    // Extrapolated backwards with the speed at the start, so that the first differences are that
+    // speed.
     past_readings_[past_readings_.size() - back][lane] =
         position - speed * loop.period * static_cast<double>(back);
   }
@@ -53,6 +55,7 @@ void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedb
     const double speed = way / (loop.period * static_cast<double>(taps));
     const double v_cmd = loop.Kv * (q - feedback[l]) + loop.kvf * dq;
     const double error = loop.Kp * (v_cmd - speed);
+    // P or PI on the speed error, in units of force at the slide.
     const double wanted = error + integral_[l] + loop.kaf * ddq;
     const double limited = std::clamp(wanted, -loop.F_max, loop.F_max);
     force[l] = std::clamp(controllers::advance(loop.filters, filters_[l], limited), -loop.F_max,
@@ -63,6 +66,7 @@ void SampledLoop::sample(double q, double dq, double ddq, const LaneArray& feedb
       if (has_reset) integral_[l] += first_force_[l] - wanted;
       force[l] = first_force_[l];
     }
+    // Anti-windup: the integral waits while the force is limited.
     if (has_reset && std::abs(wanted) <= loop.F_max) integral_[l] += error * loop.period / loop.Tn;
   }
   first_ = false;
@@ -82,6 +86,8 @@ void SampledLoop::set_parts(int parts) {
         const double end = static_cast<double>(part + 1) / parts - delay;
         const double acts = -static_cast<double>(n);
         const double within = std::min(end, acts + 1.0) - std::max(begin, acts);
+        // Overlap of two intervals in periods, over the length 1/parts of the part: a dead time of
+        // any length, not of whole periods alone, by the mean force over each part.
         any += share.weight[l] = std::max(within, 0.0) * parts;
       }
       if (any > 0.0) shares_.push_back(share);

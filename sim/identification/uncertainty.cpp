@@ -39,6 +39,8 @@ AutoregressiveNoise corrected(const std::vector<double>& found, const Autoregres
   const std::vector<double> once = cross_sums(U, coloured(guess, U), lags);
   const std::vector<double> twice = cross_sums(U, U * G, lags);
   std::vector<double> c(found.size());
+  // Residual = (I - U U') noise: its autocovariances lack the terms U U' Sigma and Sigma U U'
+  // (once, both ways) and have U U' Sigma U U' (twice) too much.
   const double n = static_cast<double>(samples);
   for (std::size_t lag = 0; lag <= lags; ++lag) {
     // cross_sums adds both ways, of which `twice` needs one
@@ -54,6 +56,8 @@ struct Coloured {
 
 Coloured colour_of(const Eigen::VectorXd& residual, const std::vector<Rows>& rows,
                    const Eigen::MatrixXd& U) {
+  // The fit takes part of the noise out of the residual; the correction for it changes the
+  // estimated spectrum, and with it the correction.
   constexpr int kRounds = 3;
   Coloured out;
   std::vector<std::vector<double>> found;
@@ -62,6 +66,7 @@ Coloured colour_of(const Eigen::VectorXd& residual, const std::vector<Rows>& row
     std::vector<double> c = autocovariance(residual.segment(r.begin, r.count), most_lags(n));
     const double share =
         static_cast<double>(r.count) / static_cast<double>(std::max<Eigen::Index>(r.counting, 1));
+    // Samples that the mask leaves out are zeros: the sums are divided by those that count.
     for (double& one : c) one *= share;
     out.noise.push_back(autoregressive(c, n));
     found.push_back(std::move(c));
@@ -124,6 +129,7 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
   name_directions(part, size, out);
   const std::vector<Rows> rows = rows_of(mask);
   Coloured colour = colour_of(residual, rows, part.U);
+  // (J'J)^-1 J' Sigma J (J'J)^-1 with J = U S V': only the small matrix U' Sigma U is ever formed.
   const Eigen::MatrixXd C = part.back * colour.G * part.back.transpose();
   double samples = 0.0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -147,6 +153,7 @@ Uncertainty uncertainty_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
     }
   }
   out.noise = std::move(colour.noise);
+  // The noise itself is estimated, from as many independent samples as its colour leaves.
   out.t_95 = student_95(out.effective_samples - rank);
   return out;
 }

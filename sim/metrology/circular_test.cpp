@@ -21,6 +21,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kNear = 0.1;  // of the radius: farther away it is another circle
 
 // arcs about a reversal, in the direction of travel
+// The friction peak behind a reversal, and what the loops make of it, are between the two arcs.
 constexpr double kBeforeFrom = -15.0 * deg, kBeforeTo = -5.0 * deg;
 constexpr double kBehindFrom = 30.0 * deg, kBehindTo = 40.0 * deg;
 
@@ -60,6 +61,8 @@ ParallelLines lines_through(const std::vector<RadialError>& arcs) {  // theta: p
   Vector3d right = Vector3d::Zero();
   for (const auto& [phi, dr] : arcs) {
     const Vector3d row(1.0, phi, phi > 0.0 ? 1.0 : 0.0);
+    // One slope for both sides: an ellipse about the reversal turns the curve alike before and
+    // behind it, and is not taken for a step.
     normal += row * row.transpose();
     right += row * dr;
   }
@@ -82,6 +85,8 @@ Reversal reversal_at(double theta, int axis, Sense sense, const std::vector<Radi
   Reversal reversal{theta, axis, 0.0, theta, lines.step};
   for (const auto& [phi, dr] : window) {
     const auto [low, high] = std::minmax({lines.before(phi), lines.behind(phi)});
+    // Outside of the band between the two lines alone: within it the curve merely goes from one
+    // level to the other.
     const double beyond = dr > high ? dr - high : dr < low ? dr - low : 0.0;
     if (std::abs(beyond) <= std::abs(reversal.spike)) continue;
     reversal.spike = beyond;
@@ -130,6 +135,7 @@ double squareness_of(const std::vector<RadialError>& curve, double radius) {
     right += row * dr;
   }
   const Row x = numerics::solve_symmetric(normal, right);
+  // A squareness error g makes dr = +-R g/2 sin(2 theta).
   return 2.0 * x[4] / radius;
 }
 

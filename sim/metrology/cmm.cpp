@@ -7,6 +7,7 @@
 namespace servomill::sim::metrology {
 namespace {
 
+// Uncertainties of data sheets and certificates are expanded ones, k = 2.
 constexpr double kCoverage = 2.0;
 
 // FNV-1a, 32 bits.

@@ -102,6 +102,8 @@ double periods_in(double passage, std::span<const plant::ChatterMode> modes) {
 
 ChatterCheck::Unstable ChatterCheck::stability_of(const plant::PeriodicCut& cut,
                                                   std::span<const plant::ChatterMode> modes) const {
+  // The limit of the width to half a percent, far within what cutting coefficients are known to;
+  // below a thousandth the cut counts as unstable at any width.
   constexpr double kShareTol = 5e-3, kLowestShare = 1e-3;
   plant::ChatterAnalysis analysis(modes);
   const plant::ChatterStability full = analysis.of(cut);

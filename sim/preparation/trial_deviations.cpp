@@ -50,6 +50,7 @@ void CaseTrials::take_recorded_joints() {
 bool CaseTrials::is_seen(const RecordedRun& run, int joint, const PlannedInstants& path) const {
   if (run.sees == model::SeenBy::scales) return true;
   if (joint >= kLinearJoints) return false;
+  // m per m, the misalignment of a nominal chain that is rounding of its angles.
   constexpr double kAlong = 1e-6;
   for (std::size_t n = 0; n < path.Q.size(); n += times_->every) {
     const Eigen::Matrix3d J = plant::linear_jacobian(actual().chain, path.Q[n]);
@@ -89,6 +90,7 @@ strategies::TrialRun CaseTrials::recorded_run(const RecordedRun& run) const {
   for (std::size_t n = 1; n < run.t.size(); ++n) {
     longest = std::max(longest, run.t[n] - run.t[n - 1]);
   }
+  // Twice Nyquist at the cut-off, where the low-pass still passes one half.
   constexpr double kSamplesPerSwing = 4.0;
   if (longest * kSamplesPerSwing * setting_.setup.cutoff > 1.0 + 1e-6) {
     throw InputError(

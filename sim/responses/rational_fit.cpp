@@ -36,6 +36,8 @@ class Fitter {
   Fitter(const MeasuredResponse& response, const RationalOrder& order)
       : response_(response), order_(order) {
     const double first = response.lines.front().frequency, last = response.lines.back().frequency;
+    // Frequencies over the geometric mean of the range: powers of p stay near 1, and with them the
+    // condition of the normal equations.
     w0_ = kTurn * std::sqrt(first * last);
   }
 
@@ -63,6 +65,9 @@ class Fitter {
 
   // Linear iterations: |B - G A|^2 / |A of the last one|^2.
   Eigen::VectorXd start(const std::vector<double>& weight) const {
+    // Sanathanan and Koerner (1963): the linear equation error, divided by the denominator of the
+    // round before, tends to the error of the response. The rounds need not fall steadily: the best
+    // one counts.
     constexpr int kRounds = 30;
     std::vector<double> of_last(weight.size(), 1.0);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size()), best = x;
@@ -92,6 +97,7 @@ class Fitter {
     for (std::size_t n = 0; n < weight.size(); ++n) {
       const ResponseLine& line = response_.lines[n];
       const Complex p(0.0, kTurn * line.frequency / w0_);
+      // The last coefficient of A is 1: its term is the right side.
       Complex power = weight[n] / of_last[n];
       for (int k = 0; k <= order_.denominator; ++k, power *= p) {
         if (k <= order_.numerator) put(K, n, k, power);
@@ -186,6 +192,7 @@ std::vector<Root> roots_with_deviation(const std::vector<double>& c, double w0,
     const Complex down = polynomial(slope, p);
     Eigen::MatrixXd along(2, covariance.cols());  // of frequency and damping
     Complex power = 1.0;
+    // First-order propagation of the covariance of the coefficients to |p| and -Re p / |p|.
     const double size = std::abs(p);
     for (Eigen::Index k = 0; k < along.cols(); ++k, power *= p) {
       const Complex change = -power / down;
@@ -230,6 +237,8 @@ RationalFit fit_rational(const MeasuredResponse& response, const RationalOrder& 
     rounds.reach(round);
     weight = line_weights(response, floor);
     x = fitter.descend(x, weight);
+    // Lines are trusted no further than the model reaches: the median misfit is added to their
+    // noise. Otherwise lines of little noise would force the model error onto all others.
     floor = median_misfit(response, fitter.at_lines(x));
   }
   RationalFit out;
@@ -243,6 +252,7 @@ RationalFit fit_rational(const MeasuredResponse& response, const RationalOrder& 
   out.median_misfit = median_misfit(response, fitter.at_lines(x));
   const Eigen::MatrixXd J = fitter.jacobian(x, weight);
   const double rows = static_cast<double>(2 * weight.size() - parameters);
+  // Not below 1: a fit that is better than the noise by chance has no narrower intervals.
   const double ratio = fitter.residual(x, weight).squaredNorm() / std::max(rows, 1.0);
   out.covariance = numerics::pseudo_inverse(J.transpose() * J) * std::max(ratio, 1.0) *
                    response.lines_per_estimate;
