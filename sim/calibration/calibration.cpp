@@ -294,8 +294,8 @@ Calibration calibrate(readings::Readings readings, const plant::MachineChain& ch
   }
   if (!out.adjustment.converged) {
     throw InputError({out.readings.path},
-                     "the adjustment does not converge: readings are misplaced or have errors of "
-                     "millimetres; remove groups to find which");
+                     "the adjustment does not converge: readings have the wrong positions or "
+                     "errors of millimetres; remove groups to find them");
   }
   out.adjustment.short_waves = short_waves(out.adjustment);
   out.outliers = outliers_of(out.adjustment);
@@ -309,6 +309,7 @@ namespace {
 
 // Enough places to show the shortest period.
 int places_for(const FunctionForm& form, int points) {
+  // Twelve points show a sine within 3.5 % of its amplitude (1 - cos(pi/12)).
   constexpr double kEachPeriod = 12.0;
   constexpr double kMax = 2000.0;
   double most = points;

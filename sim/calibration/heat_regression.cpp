@@ -73,6 +73,8 @@ std::vector<Vector3d> effects_at(const HeatReading& at, const plant::MachineChai
   std::vector<Vector3d> out;
   for (const HeatTerm& term : terms) {
     const plant::VolumetricModel model(chain, unit_error(term, kSize));
+    // In axes of the machine, as drift is read there: rotary axes turn the workpiece away from
+    // them.
     out.emplace_back(J.transpose() * model.first_order_error(at.Q, at.p_ST).dp_W / kSize);
   }
   return out;
@@ -109,6 +111,8 @@ class Sums {
   }
 
   HeatRegression solve(const HeatReadings& readings) const {
+    // Unknowns are um, urad and um/m per kelvin: scaled to equal effect before eigenvalues are
+    // compared.
     const VectorXd scale = A_.diagonal().cwiseMax(1e-300).cwiseSqrt();
     refuse_unseen(readings);
     const MatrixXd scaled =
@@ -122,6 +126,7 @@ class Sums {
     return result(readings, x, inverse);
   }
 
+  // Numbers less unknowns, each group having spent one on its mean.
   double redundancy() const {
     return counts_.sum() - static_cast<double>(groups_) - static_cast<double>(size());
   }
@@ -146,8 +151,8 @@ class Sums {
     for (Index i = 0; i < size(); ++i) {
       if (A_(i, i) > 0.0) continue;
       throw InputError({readings.file},
-                       fmt::format("does not show {}: its sensor never changes, or "
-                                   "the error moves nothing that was measured",
+                       fmt::format("does not show {}: its sensor reading does not change, or the "
+                                   "error does not affect the measured drift",
                                    name(i, readings)));
     }
   }
@@ -156,11 +161,13 @@ class Sums {
     if (eigen.values[0] > kDependent * eigen.values[size() - 1]) return;
     std::vector<std::string> names;
     for (Index i = 0; i < size(); ++i) {
+      // Terms with a substantial part (unit vector) in the combination that the readings do not
+      // see.
       if (std::abs(eigen.vectors(i, 0)) > 0.3) names.push_back(name(i, readings));
     }
     throw InputError({readings.file},
-                     fmt::format("cannot distinguish {}: their temperatures change alike; omit "
-                                 "one, or measure where they differ",
+                     fmt::format("cannot distinguish {}: their temperatures change in proportion; "
+                                 "omit one, or measure where they differ",
                                  fmt::join(names, ", ")));
   }
 
@@ -207,8 +214,11 @@ Group group_of(const std::vector<const HeatReading*>& rows, Index direction) {
   }
   if (n == 0) return out;
   constexpr double kRounding = 1e-9;  // K
+  // Readings of a pose have an unknown zero in each direction: taking the means off both sides is
+  // the same as an unknown for each, and keeps the normal equations small.
   out.T.rowwise() -= out.T.colwise().mean().eval();
   for (Index s = 0; s < sensors; ++s) {
+    // A sensor that stands still would otherwise explain drift by the rounding of its mean.
     if (out.T.col(s).cwiseAbs().maxCoeff() < kRounding) out.T.col(s).setZero();
   }
   out.drift.array() -= out.drift.mean();
@@ -259,7 +269,7 @@ input::IdentifiedFile identified_file(const HeatRegression& found, const HeatRea
   input::IdentifiedFile out;
   out.comments = {
       "Errors per kelvin of temperature sensors, by servomill identify-heat.",
-      fmt::format("{}: {} numbers of drift, {:.3g} um rms, {:.3g} um with these errors",
+      fmt::format("{}: {} drift values, {:.3g} um rms, {:.3g} um with these errors compensated",
                   readings.file, found.numbers, found.before.norm() / um, found.after.norm() / um)};
   out.based_on = based_on;
   const auto n = static_cast<Index>(found.terms.size());
@@ -291,8 +301,8 @@ std::string heat_report(const HeatRegression& found) {
   }
   for (Index k = 0; k < 3; ++k) {
     if (!(found.before[k] > 0.0)) continue;
-    out += fmt::format("drift along {}: {:.2f} um rms, {:.2f} um with these errors\n", "XYZ"[k],
-                       found.before[k] / um, found.after[k] / um);
+    out += fmt::format("drift along {}: {:.2f} um rms, {:.2f} um with these errors compensated\n",
+                       "XYZ"[k], found.before[k] / um, found.after[k] / um);
   }
   return out;
 }

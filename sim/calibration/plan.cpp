@@ -257,12 +257,12 @@ std::string report(const Plan& plan, const PlanSettings& settings) {
       "  before                                     {:8.2f} um\n"
       "  lines through the middle, in the same time {:8.2f} um\n"
       "  this plan                                  {:8.2f} um\n"
-      "  bound of all plans of these set-ups        {:8.2f} um, efficiency {:.1f} %\n",
+      "  lower bound for all plans of these set-ups {:8.2f} um, efficiency {:.1f} %\n",
       2.0 * plan.before / um, 2.0 * plan.usual / um, 2.0 * plan.after / um, 2.0 * plan.bound / um,
       100.0 * plan.efficiency);
   if (plan.beyond > kSeen) {
     out += fmt::format(
-        "  errors that none of these set-ups can tell     {:8.2f} um, not in the others{}\n",
+        "  errors that none of these set-ups determines   {:8.2f} um, not included above{}\n",
         2.0 * plan.beyond / um,
         plan.untold.empty() ? "" : fmt::format(": {}", fmt::join(plan.untold, ", ")));
   }

@@ -93,7 +93,7 @@ void add_copied_rows(const readings::Group& group, std::vector<std::string>& out
   }
   if (copies == 0) return;
   out.push_back(fmt::format(
-      "{}: equals line {} in every number{}; it is used: remove copied rows",
+      "{}: equals line {} in every value{}; it is used: remove copied rows",
       readings::place_of(group, *first), copied->line,
       copies == 1 ? "" : fmt::format("; so do {} more rows with earlier ones", copies - 1)));
 }

@@ -13,7 +13,7 @@ namespace {
 std::string bootstrap_table(const Identification& result) {
   if (!result.bootstrap) return {};
   const Bootstrap& b = *result.bootstrap;
-  Lines table({"block bootstrap", "2.5 %", "97.5 %", "+- (k = 2)", "unit", "by the spectrum"});
+  Lines table({"block bootstrap", "2.5 %", "97.5 %", "+- (k = 2)", "unit", "from the spectrum"});
   for (std::size_t k = 0; k < result.estimates.size(); ++k) {
     if (!result.uncertainty.identifiable[k]) continue;
     const Estimate& one = result.estimates[k];

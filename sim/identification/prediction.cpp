@@ -75,9 +75,9 @@ void Prediction::refuse(const Values& values) const {
                                  "not that of the recording",
                                  records_[r]->record.period / ms));
   }
-  throw InputError({records_.front()->record.name},
-                   "cannot be simulated with these values: the friction is too stiff for the exact "
-                   "step");
+  throw InputError(
+      {records_.front()->record.name},
+      "cannot be simulated with these values: the friction is too stiff for the exact integrator");
 }
 
 std::vector<std::optional<Prediction::Signals>> Prediction::simulate(

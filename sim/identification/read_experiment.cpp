@@ -140,7 +140,7 @@ std::vector<Estimate> read_estimates(config::Reader& root, const config::Documen
     }
     if (table.boolean_or("own", false)) own.push_back(estimates.size());
     if (!(one.lower <= one.start && one.start <= one.upper)) {
-      table.fault(fmt::format("start {:g} is outside min and max", one.start));
+      table.fault(fmt::format("start {:g} is not between min and max", one.start));
     }
     for (const Estimate& other : estimates) {
       for (const std::string& key : one.keys) {

@@ -236,8 +236,8 @@ class RecordReader {
       return;
     }
     if (!counted && base.unit != "s") {
-      table_.fault("file", fmt::format("has the feedback over {} in '{}', not over time", base.name,
-                                       base.unit));
+      table_.fault("file", fmt::format("has the feedback as a function of {} in '{}', not of time",
+                                       base.name, base.unit));
       return;
     }
     const double interval = counted ? loop_.period : median_interval(base.values);

@@ -93,8 +93,9 @@ std::string record_table(const Identification& result) {
   for (const auto* list : {&result.estimation, &result.validation}) {
     for (const RecordResult& one : *list) {
       if (one.scale_rms == 0.0) continue;
-      out += fmt::format("{}: the scale of the slide is predicted to {:.3g} {} rms (not fitted)\n",
-                         one.record->record.name, one.scale_rms / um, one.record->record.micro());
+      out += fmt::format(
+          "{}: the position of the scale is predicted within {:.3g} {} rms (not fitted)\n",
+          one.record->record.name, one.scale_rms / um, one.record->record.micro());
     }
   }
   return out;
@@ -157,11 +158,11 @@ std::string disturbance_warning(const RecordResult& one) {
         one.record->record.micro());
   };
   if (one.reversed_rms.value_or(limit) < limit) {
-    return text(*one.reversed_rms, "with the other sign", "give it factor = -1");
+    return text(*one.reversed_rms, "with the opposite sign", "set factor = -1");
   }
   if (one.undisturbed_rms.value_or(limit) < limit) {
     return text(*one.undisturbed_rms, "without the force",
-                "it does not act on the slide, or has another unit or delay");
+                "it does not act on the slide, or has the wrong unit or delay");
   }
   return {};
 }
@@ -218,20 +219,19 @@ std::vector<std::string> warnings(const Identification& result) {
   }
   for (const std::string& one : result.implausible) {
     const std::string& file = result.estimation.front().record->record.name;
-    out.push_back(
-        fmt::format("{}: {}: a channel has another unit or factor, or the loop is not that of "
-                    "the recording",
-                    file, one));
+    out.push_back(fmt::format(
+        "{}: {}: a channel has the wrong unit or factor, or the loop is not that of the recording",
+        file, one));
   }
   for (const auto* list : {&result.estimation, &result.validation}) {
     for (const RecordResult& one : *list) {
       const double share = unexplained(one);
       if (const std::string said = disturbance_warning(one); !said.empty()) out.push_back(said);
       if (one.force_rms > kForeignLoop) {
-        out.push_back(fmt::format(
-            "{}: the simulated force is {:.0f} % off the recorded one; the loop is not that of the "
-            "recording, or the force has another factor",
-            one.record->record.name, 100.0 * one.force_rms));
+        out.push_back(
+            fmt::format("{}: the simulated force is {:.0f} % off the recorded one; the loop is not "
+                        "that of the recording, or the force has the wrong factor",
+                        one.record->record.name, 100.0 * one.force_rms));
       }
       if (share < kForeignLoop) continue;
       out.push_back(
@@ -248,8 +248,8 @@ std::vector<std::string> faults(const Identification& result) {
   std::vector<std::string> out;
   if (!result.fit.converged) {
     out.push_back(
-        fmt::format("the fit has not converged{}{}; start from the values that are "
-                    "printed, or estimate fewer",
+        fmt::format("the fit has not converged{}{}; start from the printed values, or estimate "
+                    "fewer parameters",
                     result.fit.message.empty() ? "" : ": ", result.fit.message));
   }
   for (const RecordResult& one : result.estimation) {

@@ -37,10 +37,10 @@ void store_signals(records::Hdf5Group& group, const RecordResult& one) {
   if (!r.scale.empty()) {
     signal("simulated_scale", one.simulated.scale, length, "position of the slide as simulated");
   }
-  signal("residual", residual, length, "simulated less recorded position feedback");
+  signal("residual", residual, length, "simulated minus recorded position feedback");
   signal("force", r.force, force, "force of the drive as recorded");
   signal("simulated_force", one.simulated.force, force, "force of the drive as simulated");
-  signal("disturbance_force", r.disturbance, force, "force on the slide from outside");
+  signal("disturbance_force", r.disturbance, force, "external force on the slide");
   records::make_nexus_data(group, {"residual", {"time"}, {}});
 }
 
@@ -99,7 +99,7 @@ void store_laws(records::Hdf5Group group, const std::vector<LawResult>& laws) {
   group.list("rms", rms, {"m", "of the residual"}, "law");
   group.list("held_out_rms", held_out, {"m", "of segments excluded from the fit"}, "law");
   group.list("held_out_error", error, {"m", "standard error of held_out_rms"}, "law");
-  group.list("bic", bic, {"1", "information criterion of Bayes, relative to the smallest"}, "law");
+  group.list("bic", bic, {"1", "Bayesian information criterion, relative to the smallest"}, "law");
   records::make_nexus_data(group, {"rms", {"law"}, {"held_out_rms", "held_out_error"}});
 }
 

@@ -40,10 +40,11 @@ Record synthesize(const Record& motion, const AxisModel& model, const NoiseSetti
   quantising.step = noise.feedback_step;
   std::vector<Simulated> simulated = simulate(driven, {&quantising, 1}, 1);
   if (!simulated.front().resolved || simulated.front().diverges) {
-    throw InputError({motion.name},
-                     simulated.front().diverges
-                         ? "the motion that is simulated diverges: the loop is unstable"
-                         : "cannot be simulated: the friction is too stiff for the exact step");
+    throw InputError(
+        {motion.name},
+        simulated.front().diverges
+            ? "the motion that is simulated diverges: the loop is unstable"
+            : "cannot be simulated: the friction is too stiff for the exact integrator");
   }
   Record out = motion;
   out.feedback = std::move(simulated.front().feedback);

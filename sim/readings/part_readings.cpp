@@ -100,8 +100,9 @@ void add_feature(const records::InputFile& file, const std::string& group, const
   const std::vector<double> measured = file.values(group + "/measured");
   const std::size_t points = nominal.size();
   if (points == 0 || normal.size() != points || measured.empty() || measured.size() % points != 0) {
-    throw InputError({file.path()},
-                     fmt::format("'{}' has other numbers of nominal and measured points", group));
+    throw InputError(
+        {file.path()},
+        fmt::format("'{}' has different numbers of nominal and measured points", group));
   }
   const std::vector<double> deviation = means(measured, points);
   std::vector<Fault> faults;
@@ -111,7 +112,7 @@ void add_feature(const records::InputFile& file, const std::string& group, const
     one.normal = normal[n];
     one.deviation = deviation[n] * um;
     if (std::isnan(one.deviation)) {
-      faults.push_back({one.place, one.name + " was not met by the CMM; name other probes"});
+      faults.push_back({one.place, one.name + " was not reached by the CMM; choose other probes"});
     }
     check_normal(one, faults);
     out.push_back(std::move(one));

@@ -83,7 +83,8 @@ class GroupReader {
         if (is_linear(direction) != wants_linear) {
           table_.fault("direction", wants_linear ? "must be X, Y or Z" : "must be A, B or C");
         } else if (wants_linear && group_.axis == group_.direction) {
-          table_.fault("direction", "is that of the axis itself: kind = \"positioning\"");
+          table_.fault("direction",
+                       "is the direction of the axis itself: use kind = \"positioning\"");
         }
         return;
       }
@@ -229,7 +230,7 @@ class GroupReader {
         table.real("length_mm", config::kLength),
         table.real("wavelength_uncertainty_um_per_m", config::kNumber, {config::above(0.0)})};
     if (group_.kind != Kind::positioning || (group_.axis && !is_linear(*group_.axis))) {
-      table_.fault("dead_path", "must be a group of a laser that measures positions");
+      table_.fault("dead_path", "must be a laser group of kind positioning");
     }
   }
 

@@ -63,7 +63,7 @@ void set_time_unit(Recording& recording, const std::string& unit) {
     recording.notes.push_back(
         unit.empty()
             ? fmt::format(
-                  "the file has no unit of its {}: s is assumed; change it with --time-unit",
+                  "the file has no unit of its {}: s is assumed; --time-unit specifies another",
                   base.name)
             : fmt::format("the {} is in {}, by --time-unit", base.name, unit));
   }

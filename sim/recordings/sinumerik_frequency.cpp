@@ -176,7 +176,7 @@ class FrequencyFile {
     const double duration = interval(*time) * static_cast<double>(time->values.size());
     const double line = interval(*frequency);
     out_.notes.push_back(fmt::format(
-        "the frequency axis of the control has {:.5g} Hz a line; the transform of {} samples at "
+        "the frequency axis of the control has {:.5g} Hz per line; the transform of {} samples at "
         "{:.6g} us has {:.5g} Hz: {:+.3f} %",
         line, time->values.size(), interval(*time) * 1e6, 1.0 / duration,
         100.0 * (line * duration - 1.0)));
@@ -217,8 +217,7 @@ class FrequencyFile {
       }
       out_.notes.push_back(fmt::format(
           "response of signal {} to {}: the transform of the series differs from the control's by "
-          "{:.1e} of the greatest response and by {:.1e} of the response of its line at most, at "
-          "equal line",
+          "{:.1e} of the largest response and by at most {:.1e} of the response at the same line",
           cross.signal, cross.other, difference / greatest, of_line));
     }
   }

@@ -206,7 +206,7 @@ class ScopeExport {
       return;
     }
     out_.notes.push_back(
-        fmt::format("the time of '{}' ascends by {:.6g} ms, its SampleTime is {} ms",
+        fmt::format("the time of '{}' advances by {:.6g} ms per sample, its SampleTime is {} ms",
                     group.channels[0].name, step, text));
   }
 

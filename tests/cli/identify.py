@@ -316,8 +316,8 @@ start = "95 kg"
             text = file.read().replace('channel = "pulses_N", unit = "N"', 'channel = "pulses_N", factor = -1')
         self.write("reversed.toml", text)
         printed = self.run_in_folder("identify", "reversed.toml", "--recording", "emps_train.csv", "--validation", "emps_test.csv").stdout
-        self.assertRegex(printed, r"warning: emps_test.csv: with the other sign of disturbance_force the position rms is [\d.]+ um in place of "
-                                  r"[\d.]+ um; give it factor = -1")
+        self.assertRegex(printed, r"warning: emps_test.csv: with the opposite sign of disturbance_force the position rms is [\d.]+ um in place of "
+                                  r"[\d.]+ um; set factor = -1")
 
     def test_pulses_in_another_unit_are_noticed(self):
         with open(self.path("emps.toml"), encoding="utf-8") as file:

@@ -231,12 +231,12 @@ TEST(Findings, NamesResidualsThatAreFarTooSmall) {
 TEST(Findings, NamesACopiedRow) {
   readings::Readings all = shop_readings();
   make_up(all, gantry(), {}, 33);
-  EXPECT_FALSE(warns(calibrated(all), "in every number"));
+  EXPECT_FALSE(warns(calibrated(all), "in every value"));
   readings::Reading copy = all.groups[2].rows[4];
   copy.line = 20;
   all.groups[2].rows.push_back(copy);
   EXPECT_TRUE(
-      warns(calibrated(all), ":20: equals line 6 in every number; it is used: remove copied rows"));
+      warns(calibrated(all), ":20: equals line 6 in every value; it is used: remove copied rows"));
 }
 
 }  // namespace

@@ -138,13 +138,13 @@ std::string refusal(const HeatReadings& readings, const std::vector<plant::Error
 
 TEST(HeatRegression, RefusesWhatTheReadingsDoNotTell) {
   EXPECT_EQ(refusal(made_up(0.0, 0, true), {"EZZ"_err}),
-            "cannot distinguish EZZ of ram, EZZ of column: their temperatures change alike; omit "
-            "one, or measure where they differ");
+            "cannot distinguish EZZ of ram, EZZ of column: their temperatures change in "
+            "proportion; omit one, or measure where they differ");
   HeatReadings cold = made_up(0.0);
   for (HeatReading& one : cold.rows) one.T[1] = kelvin(20.0);
   EXPECT_EQ(refusal(cold, {"EZZ"_err}),
-            "does not show EZZ of column: its sensor never changes, or the error moves nothing "
-            "that was measured");
+            "does not show EZZ of column: its sensor reading does not change, or the error does "
+            "not affect the measured drift");
   HeatReadings few = made_up(0.0);
   few.rows.resize(5);
   EXPECT_EQ(refusal(few, kSought), "has too few readings for 10 unknowns");

@@ -187,7 +187,7 @@ TEST(Plan, SaysWhatNoSetUpCanTell) {
   EXPECT_NE(std::find(day.untold.begin(), day.untold.end(), "EAC"), day.untold.end());
   EXPECT_EQ(std::find(day.untold.begin(), day.untold.end(), "EC0Y"), day.untold.end());
   EXPECT_LT(day.after, 0.9 * day.before);  // of what it tells
-  EXPECT_NE(report(day, settings).find("errors that none of these set-ups can tell"),
+  EXPECT_NE(report(day, settings).find("errors that none of these set-ups determines"),
             std::string::npos);
   // levels see no turn about the vertical
   EXPECT_EQ(plan_of_a_day().untold, std::vector<std::string>{"ECZ"});

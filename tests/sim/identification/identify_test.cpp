@@ -192,7 +192,7 @@ key = "axis.X.moving_mass"
   EXPECT_NE(warnings(found).front().find("recording.csv: axis.X.moving_mass = "), std::string::npos)
       << warnings(found).front();
   EXPECT_NE(
-      warnings(found).front().find("times its start value: a channel has another unit or factor"),
+      warnings(found).front().find("times its start value: a channel has the wrong unit or factor"),
       std::string::npos);
 }
 
@@ -246,7 +246,7 @@ TEST(Identify, NothingIsWrittenOfAFitThatIsNone) {
   const std::string messages =
       fault_messages([&] { identified_machine(result.experiment, found, files.path("out.toml")); });
   EXPECT_EQ(messages.find("not written: the fit has not converged: Maximum number of iterations "
-                          "reached.; start from the values that are printed, or estimate fewer\n"
+                          "reached.; start from the printed values, or estimate fewer parameters\n"
                           "not written: recording.csv: the simulation is 1e+08 um rms off the "
                           "recording, whose motion is "),
             0u)

@@ -163,7 +163,7 @@ TEST_F(ReadReadings, DeadPathsAreThoseOfLasers) {
   angle.replace(angle.find("positioning"), 11, "straightness");
   angle += "direction = \"Y\"\n";
   EXPECT_EQ(faults(angle),
-            "group[0].dead_path = {...}; must be a group of a laser that measures positions\n");
+            "group[0].dead_path = {...}; must be a laser group of kind positioning\n");
 }
 
 TEST_F(ReadReadings, WantsToKnowWhereEveryAxisStood) {
@@ -245,7 +245,8 @@ TEST_F(ReadReadings, EstimatesAnUncertaintyOnlyWhereItIsAskedTo) {
 TEST_F(ReadReadings, RefusesAxesThatTheMachineLacksAndDirectionsOfTheAxisItself) {
   EXPECT_EQ(faults("[[group]]\nkind = \"straightness\"\naxis = \"X\"\ndirection = \"X\"\n"
                    "readings = \"x.csv\"\npoint_mm = [0, 0, 0]\nuncertainty_um = 1\n"),
-            "group[0].direction = \"X\"; is that of the axis itself: kind = \"positioning\"\n");
+            "group[0].direction = \"X\"; is the direction of the axis itself: use kind = "
+            "\"positioning\"\n");
   EXPECT_EQ(faults("[[group]]\nkind = \"angle\"\naxis = \"C\"\ndirection = \"A\"\n"
                    "readings = \"x.csv\"\npoint_mm = [0, 0, 0]\nuncertainty_urad = 1\n"),
             "group[0].axis = \"C\"; is not an axis of the machine\n");

@@ -75,7 +75,7 @@ TEST_F(MatReader, ArraysOfAnyNumbersAreChannels) {
             (std::vector<std::string>{
                 "'kp' = 160.25", "'word' is a text: skipped",
                 "'other' has 2 values, the time 't' has 3: skipped",
-                "the file has no unit of its time: s is assumed; change it with --time-unit"}));
+                "the file has no unit of its time: s is assumed; --time-unit specifies another"}));
   EXPECT_EQ(read_recording(path("a.mat"), "ms").bases.at(0).values[1], 0.5e-3);
 }
 

@@ -53,7 +53,7 @@ TEST(TimeUnit, IsForTimesWithoutOneOnly) {
   set_time_unit(recording, "");
   EXPECT_EQ(recording.bases[0].values, right().bases[0].values);
   EXPECT_EQ(recording.notes.at(0),
-            "the file has no unit of its time: s is assumed; change it with --time-unit");
+            "the file has no unit of its time: s is assumed; --time-unit specifies another");
 }
 
 }  // namespace

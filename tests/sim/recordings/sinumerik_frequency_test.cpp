@@ -76,9 +76,10 @@ TEST_F(SinumerikFile, ResponsesEqualTheTransformOfTheSeriesAtEqualLine) {
 
 TEST_F(SinumerikFile, ErrorOfTheFrequencyAxisIsReported) {
   ASSERT_GE(recording_.notes.size(), 2u);
-  EXPECT_EQ(recording_.notes[0],
-            "the frequency axis of the control has 3.9139 Hz a line; the transform of 2047 samples "
-            "at 125 us has 3.9082 Hz: +0.147 %");
+  EXPECT_EQ(
+      recording_.notes[0],
+      "the frequency axis of the control has 3.9139 Hz per line; the transform of 2047 samples "
+      "at 125 us has 3.9082 Hz: +0.147 %");
   EXPECT_EQ(
       recording_.notes[1].find("response of signal 61 to 62: the transform of the series differs"),
       0u);

@@ -375,7 +375,7 @@ TEST_F(PartLearning, RefusesWhatAPartDoesNotHave) {
       "to_mm = [120.0, 0.0, -5.0], normal = [0, -1, 0], points = 4 }\n",
       "beyond.h5");
   EXPECT_EQ(refusal(of_case("beyond.h5")),
-            "beyond.h5: error: point 3 of beyond was not met by the CMM; name other probes");
+            "beyond.h5: error: point 3 of beyond was not reached by the CMM; choose other probes");
 }
 
 }  // namespace
