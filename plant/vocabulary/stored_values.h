@@ -1,6 +1,7 @@
 /// Many values that are appended and then read in any order.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -30,6 +31,7 @@ class StoredValues {
   }
   /// @throws SystemError if the disk is full
   void push_back(const T& value) {
+    assert(mapped_ == nullptr);
     if (file_ == nullptr && values_.size() == most_in_memory_) make_file();
     if (file_ != nullptr && values_.size() >= kBlock) write();
     values_.push_back(value);
@@ -38,6 +40,7 @@ class StoredValues {
   /// To be called once, before anything but the last value is read.
   /// @throws SystemError
   void finish() {
+    assert(mapped_ == nullptr);
     if (file_ == nullptr || size_ == 0) return;
     last_ = values_.back();
     write();

@@ -34,8 +34,8 @@ int index_of_section(std::vector<std::string>& sections, const std::string& name
   return static_cast<int>(sections.size()) - 1;
 }
 
-// Whoever goes along a path on the disk has about so many of its pieces in memory.
-constexpr std::size_t kInMemory = 1U << 15U;
+// Steps along a path on the disk after which memory of what was read is given back.
+constexpr std::uint32_t kStepsInMemory = 1U << 13U;
 
 // A vector that grows holds its elements twice for a while.
 std::size_t motions_of(const MoveRange& moves) {
@@ -129,15 +129,18 @@ MoveCurve ProgramPath::curve_of(std::size_t index) const {
   return {end_of(pieces_[index - 1]), end_of(held)};
 }
 
-// Whoever goes along the path calls this with every index.
-void ProgramPath::release_behind(std::size_t index) const {
-  if (index % kInMemory != kInMemory - 1) return;
+// Whoever goes along the path calls this at each step. Steps are counted, not pieces: those who go
+// along leave pieces out or stay on one, and several do so at a time.
+void ProgramPath::release_behind() const {
+  if (!pieces_.is_on_disk() && !rotary_ends_.is_on_disk()) return;
+  thread_local std::uint32_t steps = 0;
+  if (++steps % kStepsInMemory != 0) return;
   pieces_.release();
   rotary_ends_.release();
 }
 
 ProgramPath::Piece ProgramPath::piece(std::size_t index) const {
-  release_behind(index);
+  release_behind();
   const Held& held = pieces_[index];
   const Setting& setting = setting_of(held);
   Piece out{curve_of(index), end_of(held),        s_begin_of(index), held.s_end,
@@ -183,7 +186,7 @@ ProgramPath::Indices ProgramPath::pieces_of(const MoveRange& moves) const {
   for (const Move& move : moves) {
     while (is_motion(move.kind) && !holds(piece, move)) {
       if (++piece == pieces_.size()) throw std::logic_error("a move is on no line of the program");
-      release_behind(piece);
+      release_behind();
     }
     out.push_back(piece);
   }
@@ -191,6 +194,7 @@ ProgramPath::Indices ProgramPath::pieces_of(const MoveRange& moves) const {
 }
 
 AxisWords ProgramPath::at(std::size_t index, double s) const {
+  release_behind();
   const Held& p = pieces_[index];
   const double s_begin = s_begin_of(index), length = p.s_end - s_begin;
   if (!(length > 0.0)) return end_of(p);

@@ -121,7 +121,7 @@ class ProgramPath {
   };
 
   void hold(const Piece& piece, const Move* move);
-  void release_behind(std::size_t index) const;
+  void release_behind() const;
   std::uint32_t index_of(const Setting& setting);
   std::uint32_t index_of_rotary(const Eigen::Vector3d& end);
   AxisWords end_of(const Held& held) const;

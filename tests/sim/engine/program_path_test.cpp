@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
 #include <numbers>
+#include <string>
 
 #include "plant/vocabulary/units.h"
 
@@ -162,6 +166,32 @@ TEST(ProgramPath, IsTheSameInMemoryAndOnTheDisk) {
     if (i % 500 != 0) continue;
     ASSERT_EQ(on_disk.distance(beside, i), in_memory.distance(beside, i)) << i;
   }
+}
+
+// Bytes of mapped files that are in memory (Linux: proc(5), "RssFile").
+double mapped_bytes_in_memory() {
+  std::ifstream status("/proc/self/status");
+  std::size_t kilobytes = 0;
+  for (std::string line; std::getline(status, line);) {
+    if (std::sscanf(line.c_str(), "RssFile: %zu", &kilobytes) == 1) break;
+  }
+  return 1024.0 * static_cast<double>(kilobytes);
+}
+
+// As a recorder does it: a place now and then, pieces in between left out.
+TEST(ProgramPath, GivesBackTheMemoryOfWhatLiesBehind) {
+  constexpr int kMoves = 200'000;
+  constexpr double kBytes = 48.0 * kMoves;  // of its pieces alone
+  const ProgramPath path(many_moves(kMoves), at(0, 0), nullptr, {}, 0);
+  const JointLayout layout{{Axis::X, Axis::Y, Axis::Z, Axis::B, Axis::C}};
+  path.joints(1, 0.1, layout, Joints::Zero());
+  const double before = mapped_bytes_in_memory();
+  double most = 0.0;
+  for (std::size_t i = 0; i < path.size(); i += 3) {
+    path.joints(i, path.s_end(i), layout, Joints::Zero());
+    if (i % 3000 == 0) most = std::max(most, mapped_bytes_in_memory() - before);
+  }
+  EXPECT_LT(most, 0.5 * kBytes);
 }
 
 }  // namespace
