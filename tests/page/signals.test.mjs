@@ -100,6 +100,15 @@ describe("a run", () => {
     assert.deepEqual(page.faults, []);
   });
 
+  it("calls each of several equal signals by its own long name", async () => {
+    const labels = await page.evaluate(() =>
+      servomill.store.state.families[0].signals.filter(({ name }) => /^(ref|cmd)_linear$/.test(name)).map(({ name, label }) => [name, label]),
+    );
+    assert.equal(labels.length, 2);
+    for (const [name, label] of labels) assert.ok(label && !label.includes(" = ") && !label.includes(name), `${name}: ${label}`);
+    assert.notEqual(labels[0][1], labels[1][1]);
+  });
+
   it("draws few points with every extreme of the file", async () => {
     const { x, y } = await points(0, "table");
     const rows = columnOf(file("run"), "/cases/table/servo/contour_error");

@@ -53,6 +53,13 @@ function unlabelled(attributes) {
   return typeof label === "string" && label.endsWith(unit) ? { ...attributes, long_name: label.slice(0, -unit.length) } : attributes;
 }
 
+/** Signals that are equal are one dataset, whose long name says what each of its names is: "a: this = b: that". */
+function own(attributes, name) {
+  const { long_name: label } = attributes;
+  const part = typeof label === "string" ? label.split(" = ").find((one) => one.startsWith(`${name}: `)) : undefined;
+  return part === undefined ? attributes : { ...attributes, long_name: part.slice(name.length + 2) };
+}
+
 /** One open result file. */
 export class ResultFile {
   /** @param {string} name @param {{blob?: Blob, url?: string, size?: number}} place */
@@ -142,7 +149,7 @@ export class ResultFile {
       path,
       shape: shape ?? [],
       numeric: type === 0 || type === 1, // H5T_INTEGER, H5T_FLOAT
-      attributes: unlabelled(attributesOf(dataset)),
+      attributes: own(unlabelled(attributesOf(dataset)), path.split("/").at(-1)),
       scale: scales.length > 0 ? scales[0].split("/").at(-1) : "",
     };
   }
