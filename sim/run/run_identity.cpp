@@ -39,16 +39,22 @@ RunIdentity::RunIdentity(const preparation::PreparedCase& prepared,
   const bool learns = !p.lessons.empty();
   if (inputs.machine.heat || inputs.keeping.thinning || learns || !inputs.stops_with.empty())
     return;
-  document_ = document_of_run(p.scenario.resolved, number);
-  is_comparable_ = true;
+  resolved_ = &p.scenario.resolved;
+  number_ = number;
   add_outputs(inputs.outputs, outputs_);
   prepared_ = {&p.program, &p.motion, p.rewritten, p.cutting, p.imposed, &inputs.machine_errors};
   for (const auto& strategy : p.strategies) prepared_.push_back(strategy.get());
 }
 
+const config::Value& RunIdentity::document() const {
+  if (!document_) document_ = document_of_run(*resolved_, number_);
+  return *document_;
+}
+
 bool RunIdentity::is_same_as(const RunIdentity& other) const {
-  return is_comparable_ && other.is_comparable_ && prepared_ == other.prepared_ &&
-         outputs_ == other.outputs_ && config::same_value(document_, other.document_);
+  if (resolved_ == nullptr || other.resolved_ == nullptr) return false;
+  return prepared_ == other.prepared_ && outputs_ == other.outputs_ &&
+         config::same_value(document(), other.document());
 }
 
 }  // namespace servomill::sim::run

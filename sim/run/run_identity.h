@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,10 +36,14 @@ class RunIdentity {
   bool is_same_as(const RunIdentity& other) const;
 
  private:
-  bool is_comparable_ = false;  // false if it depends on more than this knows
+  const config::Value& document() const;
+
+  // document of the scenario; nullptr if the run depends on more than this knows
+  const std::string* resolved_ = nullptr;
+  std::size_t number_ = 0;
   std::vector<const void*> prepared_;
   std::string outputs_;
-  config::Value document_;
+  mutable std::optional<config::Value> document_;  // read when all else is the same
 };
 
 /// The resolved document of a scenario without its tables `errors`, `quantity` and `sweep`, and of
