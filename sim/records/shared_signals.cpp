@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include "sim/records/chunk_encoder.h"
@@ -22,6 +23,15 @@ class EncodedColumns {
   std::size_t chunks() const { return (series_.rows() + chunk_rows_ - 1) / chunk_rows_; }
   std::size_t first_row(std::size_t chunk) const { return chunk * chunk_rows_; }
   void encode(std::size_t column, Storage storage, std::size_t chunk, Chunk& out) {
+    if (chunk > 0) return make(column, storage, chunk, out);
+    // asked for again and again: by it signals mostly differ
+    Chunk& first = first_chunks_[column];
+    if (first.empty()) make(column, storage, chunk, first);
+    out = first;
+  }
+
+ private:
+  void make(std::size_t column, Storage storage, std::size_t chunk, Chunk& out) {
     if (series_.pages() != nullptr && series_.pages()->read_encoded(column, chunk, out)) return;
     values_.clear();
     const std::size_t end = std::min(first_row(chunk + 1), series_.rows());
@@ -31,11 +41,11 @@ class EncodedColumns {
     encoder_.encode(values_, chunk_rows_, storage, out);
   }
 
- private:
   const Series& series_;
   const std::size_t chunk_rows_;
   ChunkEncoder encoder_;
   std::vector<double> values_;
+  std::map<std::size_t, Chunk> first_chunks_;  // by column
 };
 
 // Columns of a channel.

@@ -119,6 +119,17 @@ std::string bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+TEST_F(RunFile, IsSmallerWhereCasesShareSignals) {
+  const model::Scenario described = scenario();
+  const auto size_of = [&](CaseOutput (*output_of)(std::size_t), const std::string& name) {
+    RunStore store(path(name), false, described);
+    for (std::size_t i = 0; i < 3; ++i) store.add(output_of(i));
+    store.commit({});
+    return bytes(path(name)).size();
+  };
+  EXPECT_LT(size_of(output_of_shared, "shared.h5"), size_of(output, "own.h5"));
+}
+
 TEST_F(RunFile, IsTheSameForTheSameCases) {
   const model::Scenario described = scenario();
   for (const std::string name : {"a.h5", "b.h5"}) {
