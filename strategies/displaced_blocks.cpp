@@ -163,7 +163,7 @@ class Rewriter {
     for (const double f : {0.5, 0.25, 0.75}) {  // the chord mostly is farthest in its middle
       const double t = a.t + f * (b.t - a.t);
       const bool is_middle = t == middle.t && !way_->controls_tip();
-      const AxisWords& words = is_middle ? middle.words : place(t, a.Q + f * (b.Q - a.Q)).words;
+      const AxisWords words = is_middle ? middle.words : place(t, a.Q + f * (b.Q - a.Q)).words;
       const AxisWords off = words - (a.words + f * (b.words - a.words));
       if (off.head<3>().norm() > limits_.tolerance) return false;
       if (minds_turn && off.tail<3>().norm() > limits_.tolerance_turn) return false;

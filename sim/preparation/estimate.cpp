@@ -199,10 +199,9 @@ RunEstimate estimate_of_points(RunEstimate of_point, std::uint64_t points, unsig
   if (n == 0.0) return {};
   const double of_thread = n / at_once;
   const double lanes = std::clamp(of_thread * of_point.lanes, 1.0, static_cast<double>(kLaneWidth));
-  const double alone = of_point.computing - of_point.lockstep;
+  const double alone = of_point.computing - of_point.lockstep;  // >= 0, of one thread
   of_point.computing = of_thread * (alone + of_point.lockstep / lanes);
   of_point.lockstep *= of_thread / lanes;
-  of_point.lanes *= static_cast<int>(points);
   of_point.motion *= n;
   of_point.rows *= n;
   of_point.size *= n;

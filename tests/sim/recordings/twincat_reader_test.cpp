@@ -64,7 +64,8 @@ TEST(Twincat, NamesAlone) {
 
 TEST(Twincat, TimeThatIsNotTheSampleTimeIsNoted) {
   EXPECT_EQ(parse_twincat("Name;x\nSampleTime[ms];0,5\n0;1\n1;2\n", "a.csv").notes,
-            std::vector<std::string>{"the time of 'x' ascends by 1 ms, its SampleTime is 0,5 ms"});
+            std::vector<std::string>{
+                "the time of 'x' advances by 1 ms per sample, its SampleTime is 0,5 ms"});
 }
 
 TEST(Twincat, BadInput) {
