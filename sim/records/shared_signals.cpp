@@ -9,9 +9,6 @@
 #include "sim/records/chunk_encoder.h"
 
 namespace servomill::sim::records {
-namespace {
-
-constexpr std::string_view kEquals = " = ", kIs = ": ";
 
 using Chunk = std::vector<std::uint8_t>;
 
@@ -47,6 +44,10 @@ class EncodedColumns {
   std::vector<double> values_;
   std::map<std::size_t, Chunk> first_chunks_;  // by column
 };
+
+namespace {
+
+constexpr std::string_view kEquals = " = ", kIs = ": ";
 
 // Columns of a channel.
 struct Columns {
@@ -160,35 +161,39 @@ std::string own_long_name(std::string_view long_name, std::string_view name) {
   return std::string(long_name);
 }
 
+// Sets `same_as` of all that a family with the same index has.
+void SharedSignals::share(Hdf5Group& file, const Family& family, const Series& series,
+                          EncodedColumns& encoded, SeriesLayout& layout) {
+  layout.index_same_as = family.index.same_as;
+  for (ColumnLabels& labels : layout.labels) {
+    const ColumnLabels* known = find_labels(family.labels, labels.name);
+    if (known != nullptr && is_same(*known, labels)) labels.same_as = known->same_as;
+  }
+  for (Channel& channel : layout.channels) {
+    const ColumnLabels* labels = find_labels(layout.labels, channel.labels);
+    if (!channel.same_as.empty() || (labels != nullptr && labels->same_as.empty())) continue;
+    const auto same =
+        std::find_if(family.signals.begin(), family.signals.end(), [&](const Stored& one) {
+          return is_same(one.channel, channel) &&
+                 one.is_drawn == is_drawn(layout.plot, channel.name) &&
+                 equals_stored(encoded, columns_of(series, channel),
+                               file.dataset(one.channel.same_as));
+        });
+    if (same != family.signals.end()) channel.same_as = same->channel.same_as;
+  }
+}
+
 void SharedSignals::find(Hdf5Group& file, const Series& series, SeriesLayout& layout) const {
   if (series.rows() == 0) return;
   EncodedColumns encoded(series, layout);
   share_channels(encoded, series, layout.channels);
   const Columns index = {*series.column(layout.index), 1, Storage::float64};
-  for (const Family& family : families_) {
-    if (family.rows != series.rows() || family.chunk_rows != layout.chunk_rows ||
-        !is_same(family.index, index_of(layout)) ||
-        !equals_stored(encoded, index, file.dataset(family.index.same_as))) {
-      continue;
-    }
-    layout.index_same_as = family.index.same_as;
-    for (ColumnLabels& labels : layout.labels) {
-      const ColumnLabels* known = find_labels(family.labels, labels.name);
-      if (known != nullptr && is_same(*known, labels)) labels.same_as = known->same_as;
-    }
-    for (Channel& channel : layout.channels) {
-      const ColumnLabels* labels = find_labels(layout.labels, channel.labels);
-      if (!channel.same_as.empty() || (labels != nullptr && labels->same_as.empty())) continue;
-      for (const auto& [stored, drawn] : family.signals) {
-        if (is_same(stored, channel) && drawn == is_drawn(layout.plot, channel.name) &&
-            equals_stored(encoded, columns_of(series, channel), file.dataset(stored.same_as))) {
-          channel.same_as = stored.same_as;
-          break;
-        }
-      }
-    }
-    return;
-  }
+  const auto family = std::find_if(families_.begin(), families_.end(), [&](const Family& one) {
+    return one.rows == series.rows() && one.chunk_rows == layout.chunk_rows &&
+           is_same(one.index, index_of(layout)) &&
+           equals_stored(encoded, index, file.dataset(one.index.same_as));
+  });
+  if (family != families_.end()) share(file, *family, series, encoded, layout);
 }
 
 void SharedSignals::add(const std::string& group, std::size_t rows, const SeriesLayout& layout) {

@@ -20,6 +20,8 @@ std::string long_name_of_all(std::span<const Channel* const> channels);
 /// The part of a long name that belongs to one name; of a dataset with one name, all of it.
 std::string own_long_name(std::string_view long_name, std::string_view name);
 
+class EncodedColumns;
+
 /// Series that a file has, and which of their signals equal those of another one, bit for bit.
 ///
 /// Within a series, channels of equal unit, labels and storage share a dataset if all their numbers
@@ -49,6 +51,9 @@ class SharedSignals {
     std::vector<ColumnLabels> labels;  // same_as: their paths
     std::vector<Stored> signals;
   };
+  static void share(Hdf5Group& file, const Family& family, const Series& series,
+                    EncodedColumns& encoded, SeriesLayout& layout);
+
   std::vector<Family> families_;
 };
 
