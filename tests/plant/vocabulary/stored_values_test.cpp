@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <string>
 #include <thread>
 #include <vector>
+
+#include "tests/mapped_memory.h"
 
 namespace servomill::stored_values_test {
 namespace {
@@ -55,23 +54,13 @@ TEST(StoredValues, AreTheSameInMemoryAndOnTheDisk) {
   }
 }
 
-// Bytes of mapped files that are in memory (Linux: proc(5), "RssFile").
-std::size_t mapped_bytes_in_memory() {
-  std::ifstream status("/proc/self/status");
-  std::size_t kilobytes = 0;
-  for (std::string line; std::getline(status, line);) {
-    if (std::sscanf(line.c_str(), "RssFile: %zu", &kilobytes) == 1) return 1024 * kilobytes;
-  }
-  return 0;
-}
-
 TEST(StoredValues, GiveBackTheMemoryOfWhatWasRead) {
   constexpr std::size_t kBytes = kCount * sizeof(Value);
   const StoredValues<Value> all = values(0, true);
   ASSERT_EQ(wrong_ones(all), 0U);
-  const std::size_t read = mapped_bytes_in_memory();
+  const double read = mapped_bytes_in_memory();
   all.release();
-  EXPECT_GT(read - mapped_bytes_in_memory(), kBytes * 9 / 10);
+  EXPECT_GT(read - mapped_bytes_in_memory(), 0.9 * kBytes);
   EXPECT_EQ(wrong_ones(all), 0U);
 }
 

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "plant/vocabulary/units.h"
+#include "tests/mapped_memory.h"
 
 namespace servomill::sim::engine::program_path_test {
 namespace {
@@ -166,16 +165,6 @@ TEST(ProgramPath, IsTheSameInMemoryAndOnTheDisk) {
     if (i % 500 != 0) continue;
     ASSERT_EQ(on_disk.distance(beside, i), in_memory.distance(beside, i)) << i;
   }
-}
-
-// Bytes of mapped files that are in memory (Linux: proc(5), "RssFile").
-double mapped_bytes_in_memory() {
-  std::ifstream status("/proc/self/status");
-  std::size_t kilobytes = 0;
-  for (std::string line; std::getline(status, line);) {
-    if (std::sscanf(line.c_str(), "RssFile: %zu", &kilobytes) == 1) break;
-  }
-  return 1024.0 * static_cast<double>(kilobytes);
 }
 
 // As a recorder does it: a place now and then, pieces in between left out.
