@@ -171,8 +171,8 @@ void require_time(const std::vector<PlannedSetUp>& set_ups, double time) {
   double shortest = set_ups.front().time;
   for (const PlannedSetUp& one : set_ups) shortest = std::min(shortest, one.time);
   if (shortest <= time) return;
-  const double hours =
-      std::ceil(shortest / 36.0) / 100.0;  // as it is typed: two digits, rounded up
+  constexpr double kHour = 60.0 * minute;
+  const double hours = std::ceil(100.0 * shortest / kHour) / 100.0;  // two digits, rounded up
   throw InputError({"--hours"},
                    fmt::format("must be at least {:g}: the shortest set-up of these instruments "
                                "takes {:g} min",

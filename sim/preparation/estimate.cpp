@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "controllers/path/path_limits.h"
 #include "plant/vocabulary/lanes.h"
 #include "plant/vocabulary/scratch_file.h"
 #include "plant/vocabulary/units.h"
@@ -304,8 +305,8 @@ void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estima
 void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
                                   std::optional<double> available) {
   constexpr double kPlannedMove = 95.0;  // bytes, of a five-axis line (sim/records/README.md)
-  constexpr double kInMemory = 32e6;     // bytes of a plan, beyond which it goes to the disk
-  const double needed = kPlannedMove * static_cast<double>(moves) - kInMemory;
+  const auto in_memory = static_cast<double>(controllers::PathOptions{}.plans_in_memory);
+  const double needed = kPlannedMove * static_cast<double>(moves) - in_memory;
   if (needed <= 0.0) return;
   std::error_code unknown;
   const std::string folder = std::filesystem::temp_directory_path(unknown).string();
