@@ -22,7 +22,6 @@ std::vector<std::string> case_names(const Scenario& scenario) {
   return names;
 }
 
-bool has_tests(const Scenario& scenario) { return !scenario.tests.empty(); }
 bool has_windows(const Scenario& scenario) { return scenario.record.windows.limited(); }
 bool has_day(const Scenario& scenario) { return scenario.day != nullptr; }
 

@@ -1,4 +1,4 @@
-/// Parts of a scenario, for those who do not see the rest of it (sim/model/scenario.h).
+/// Accessors to a scenario for sources that do not include sim/model/scenario.h.
 #pragma once
 
 #include <map>
@@ -26,9 +26,6 @@ const std::map<std::string, plant::ErrorModel>& errors_of(const Scenario& scenar
 std::shared_ptr<const UncertainErrors> uncertain_errors_of(const Scenario& scenario);
 
 std::vector<std::string> case_names(const Scenario& scenario);
-
-/// True if its program is that of tests of the machine.
-bool has_tests(const Scenario& scenario);
 
 /// True if its recording is limited to windows.
 bool has_windows(const Scenario& scenario);
