@@ -232,8 +232,8 @@ VolumetricError VolumetricModel::first_order_error(const Joints& Q, const Vector
 template <class Values>
 VolumetricError VolumetricModel::first_order(const Joints& Q, const Vector3d& p_ST,
                                              Values values_at) const {
-  // From the tool back along the chain: each error acts with the lever arm to the TCP that the
-  // joints behind it make.
+  // From the tool back along the chain: each error acts with its lever arm to the TCP, which the
+  // joints between them determine.
   ToolPose P{p_ST, Vector3d::UnitZ()};
   VolumetricError sum;
   for (std::size_t i = chain_.axes.size(); i-- > 0;) {

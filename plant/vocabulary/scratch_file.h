@@ -1,4 +1,4 @@
-/// Bytes that memory is not to hold, on the disk.
+/// Data that is kept on the disk instead of in memory.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class ScratchFile {
   /// then.
   /// @pre size() > 0
   std::span<const std::uint8_t> map();
-  /// Gives back the memory of mapped bytes that were read. Whoever uses them goes on.
+  /// Gives back the memory of mapped bytes that were read. The span remains valid.
   void release() const;
 
  private:

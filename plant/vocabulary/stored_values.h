@@ -14,7 +14,7 @@ namespace servomill {
 
 /// Values without pointers, in memory or, if they are many, in a file without a name that is mapped
 /// into it. Reading costs the same; memory that was read can be given back. Copies share the file.
-/// Values are appended by one thread and, behind finish(), read by any number of them.
+/// Values are appended by one thread and, after finish(), read by any number of threads.
 template <class T>
 class StoredValues {
  public:

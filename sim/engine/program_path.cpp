@@ -34,8 +34,8 @@ int index_of_section(std::vector<std::string>& sections, const std::string& name
   return static_cast<int>(sections.size()) - 1;
 }
 
-// Steps along a path on the disk after which memory of what was read is given back.
-constexpr std::uint32_t kStepsInMemory = 1U << 13U;
+// Accesses to a path on the disk after which memory of what was read is given back.
+constexpr std::uint32_t kAccessesInMemory = 1U << 13U;
 
 // A vector that grows holds its elements twice for a while.
 std::size_t motions_of(const MoveRange& moves) {
@@ -129,12 +129,12 @@ MoveCurve ProgramPath::curve_of(std::size_t index) const {
   return {end_of(pieces_[index - 1]), end_of(held)};
 }
 
-// Whoever goes along the path calls this at each step. Steps are counted, not pieces: those who go
-// along leave pieces out or stay on one, and several do so at a time.
+// To be called at each access to the path. Accesses are counted, not pieces: rows skip pieces or
+// stay on one, and several runs read the path at a time.
 void ProgramPath::release_behind() const {
   if (!pieces_.is_on_disk() && !rotary_ends_.is_on_disk()) return;
-  thread_local std::uint32_t steps = 0;
-  if (++steps % kStepsInMemory != 0) return;
+  thread_local std::uint32_t accesses = 0;
+  if (++accesses % kAccessesInMemory != 0) return;
   pieces_.release();
   rotary_ends_.release();
 }

@@ -24,8 +24,8 @@ Setpoint::Setpoint(const model::NcSettings& nc, const controllers::Trajectory& r
     }
   }
   const Joints zero = Joints::Zero();
-  // The filter is linear, so that values and rates each have one of their own in place of a
-  // differentiation behind it. That of the corrections starts at their value at rest.
+  // The filter is linear: values and rates are filtered separately, so that the filtered value need
+  // not be differentiated. The filter of the corrections starts at their value at rest.
   filters_.emplace(Filters{filter(reference.start()), filter(zero), filter(zero), filter(before)});
   delay_ = filters_->Q.delay() * Tp_;
 }

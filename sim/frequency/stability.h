@@ -12,7 +12,7 @@ namespace servomill::sim::frequency {
 /// load, limits, quantisation.
 model::MachineSettings linearised(const model::MachineSettings& machine);
 
-/// The same, for those who only pass it on.
+/// The same for callers that need no complete MachineSettings.
 std::shared_ptr<const model::MachineSettings> shared_linearised(
     const model::MachineSettings& machine);
 

@@ -23,7 +23,7 @@ Gains gains_of(const model::MachineSettings& machine, int joint);
 model::MachineSettings with_gains(const model::MachineSettings& machine, int joint,
                                   const Gains& gains);
 
-/// The same, for those who only pass it on.
+/// The same for callers that need no complete MachineSettings.
 std::shared_ptr<const model::MachineSettings> shared_with_gains(
     const model::MachineSettings& machine, int joint, const Gains& gains);
 

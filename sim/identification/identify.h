@@ -29,7 +29,7 @@ struct IntervalSettings {
 Identification identify(const Experiment& experiment, unsigned threads = 0,
                         const IntervalSettings& intervals = {});
 
-/// The same, for those who only pass it on.
+/// The same for callers that need no complete Identification.
 std::shared_ptr<const Identification> shared_identification(const Experiment& experiment,
                                                             unsigned threads = 0,
                                                             const IntervalSettings& intervals = {});

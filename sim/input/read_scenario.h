@@ -19,7 +19,7 @@ class InputFiles;
 model::Scenario read_scenario(const std::string& path,
                               const std::vector<std::string>& changes = {});
 
-/// The same, for those who only pass it on.
+/// The same for callers that need no complete Scenario.
 std::shared_ptr<const model::Scenario> shared_scenario(
     const std::string& path, const std::vector<std::string>& changes = {});
 

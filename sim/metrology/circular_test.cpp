@@ -61,8 +61,8 @@ ParallelLines lines_through(const std::vector<RadialError>& arcs) {  // theta: p
   Vector3d right = Vector3d::Zero();
   for (const auto& [phi, dr] : arcs) {
     const Vector3d row(1.0, phi, phi > 0.0 ? 1.0 : 0.0);
-    // One slope for both sides: an ellipse about the reversal turns the curve alike before and
-    // behind it, and is not taken for a step.
+    // One slope for both sides: an ellipse has the same slope before and after the reversal, and is
+    // not mistaken for a step.
     normal += row * row.transpose();
     right += row * dr;
   }

@@ -1,4 +1,4 @@
-/// Parts of a machine, for those who do not see the rest of it (sim/model/machine.h).
+/// Accessors to a machine for sources that do not include sim/model/machine.h.
 #pragma once
 
 #include <utility>

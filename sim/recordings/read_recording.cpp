@@ -54,7 +54,7 @@ void refuse_if_fatal(const std::string& path, const std::function<void()>& read)
   std::error_code fault;
   const auto bytes = std::filesystem::file_size(path, fault);
   if (fault) return;
-  // A large file has the time that it takes; a library that hangs takes longer.
+  // The limit grows with the size of the file; a library that takes longer is taken to hang.
   const int seconds = kMinSeconds + static_cast<int>(static_cast<double>(bytes) / kBytesPerSecond);
   const std::string way = system::try_in_process(read, seconds);
   if (!way.empty()) throw InputError({path}, fmt::format("is damaged: reading it {}", way));

@@ -41,7 +41,7 @@ struct RunControl {
 /// @throws InputError before anything is simulated
 RunOutput run_scenario(const model::Scenario& scenario, const RunControl& control);
 
-/// The same, for those who only pass it on.
+/// The same for callers that need no complete RunOutput.
 std::shared_ptr<const RunOutput> shared_run(const model::Scenario& scenario,
                                             const RunControl& control);
 

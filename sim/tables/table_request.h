@@ -47,7 +47,7 @@ struct TableRequest {
   std::shared_ptr<const model::UncertainErrors> identified;
 };
 
-/// export_tables() (sim/tables/table_export.h), for those who only pass it on.
+/// export_tables() for callers that need no complete TableExport.
 /// @throws InputError
 std::shared_ptr<const TableExport> shared_export(const model::MachineSettings& machine,
                                                  const plant::ErrorModel& errors,

@@ -100,9 +100,10 @@ double end_speed(const Trajectory::Chain& chain) {
 }
 
 // A stretch that the look-ahead cannot continue ends at rest, by the law that was planned with it.
-// Here the third seam is passed as fast as the 10 mm behind it lead to rest under the jerk alone,
-// (L^2 j)^(1/3) = 215 mm/s. That braking is at 141 mm/s 2.5 mm ahead of its end, within the feed of
-// 145 mm/s there. With the path beyond, the speed is to settle at 145 mm/s: 9.6 mm, of 7.5 mm.
+// Here the speed at the third seam is the highest from which the 10 mm after it suffice to stop,
+// limited by jerk alone: (L^2 j)^(1/3) = 215 mm/s. That braking is at 141 mm/s 2.5 mm ahead of its
+// end, within the feed of 145 mm/s there. With the path beyond, the speed is to settle at 145
+// mm/s: 9.6 mm, of 7.5 mm.
 TEST(LongMotion, AStretchThatCannotBeContinuedEndsAtRest) {
   Program program;
   for (int n = 1; n <= 160; ++n) {
