@@ -19,8 +19,7 @@ std::size_t rows_within(const ThinningLimits& limits, const Series& series) {
 SpoolFormat format_of(const RowKeeping& keeping, std::size_t chunk_rows) {
   const std::string& folder = keeping.folder;
   return {.folder = folder.empty() ? std::filesystem::temp_directory_path().string() : folder,
-          .chunk_rows = chunk_rows,
-          .compression = keeping.compression};
+          .page = {.chunk_rows = chunk_rows, .compression = keeping.compression}};
 }
 
 }  // namespace
@@ -65,7 +64,7 @@ void RowKeeper::add(std::span<const double> rows) {
 
 void RowKeeper::keep(std::span<const double> rows) {
   if (spool_ != nullptr) return spool_->append(rows);
-  std::copy(rows.begin(), rows.end(), series_.add_rows(rows.size() / series_.width()));
+  series_.append(rows);
 }
 
 Series RowKeeper::take() {

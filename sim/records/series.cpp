@@ -33,9 +33,15 @@ double Series::at_other_page(std::size_t row_index, std::size_t column_index) co
   return latest.values[row_index - latest.first];
 }
 
-double* Series::add_rows(std::size_t count) {
-  data_.resize(data_.size() + count * width_, 0.0);
-  return data_.data() + data_.size() - count * width_;
+std::vector<Storage> Series::storage_of_columns() const {
+  std::vector<Storage> out;
+  for (const Signal& signal : signals_) out.insert(out.end(), signal.columns(), signal.storage);
+  return out;
+}
+
+double* Series::add_row() {
+  data_.resize(data_.size() + width_, 0.0);
+  return data_.data() + data_.size() - width_;
 }
 
 const Signal* Series::find(std::string_view name) const {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +54,7 @@ class Series {
 
   const std::vector<Signal>& signals() const { return signals_; }
   std::size_t width() const { return width_; }
+  std::vector<Storage> storage_of_columns() const;
   std::size_t rows() const {
     if (pages_ != nullptr) return pages_->rows();
     return width_ == 0 ? 0 : data_.size() / width_;
@@ -63,9 +66,13 @@ class Series {
   const std::vector<double>& data() const { return data_; }
 
   void reserve(std::size_t rows) { data_.reserve(rows * width_); }
-  /// New rows of zeros to be filled; the first of them.
-  double* add_rows(std::size_t count);
-  double* add_row() { return add_rows(1); }
+  /// Adds whole rows, one behind the other.
+  void append(std::span<const double> rows) {
+    assert(pages_ == nullptr && rows.size() % width_ == 0);
+    data_.insert(data_.end(), rows.begin(), rows.end());
+  }
+  /// A new row of zeros to be filled.
+  double* add_row();
   void assign(std::vector<double> data) { data_ = std::move(data); }
 
   /// Signals of a recording that nobody asked for: whoever looks for one throws std::logic_error.

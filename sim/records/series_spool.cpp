@@ -5,15 +5,6 @@
 #include <utility>
 
 namespace servomill::sim::records {
-namespace {
-
-std::vector<Storage> storage_of_columns(const std::vector<Signal>& signals) {
-  std::vector<Storage> out;
-  for (const Signal& signal : signals) out.insert(out.end(), signal.columns(), signal.storage);
-  return out;
-}
-
-}  // namespace
 
 std::size_t even_chunk_rows(std::size_t rows) {
   constexpr std::size_t kMaxRows = 16384;
@@ -22,10 +13,10 @@ std::size_t even_chunk_rows(std::size_t rows) {
 }
 
 SeriesSpool::SeriesSpool(const std::vector<Signal>& signals, SpoolFormat format)
-    : format_(std::move(format)),
-      storage_(storage_of_columns(signals)),
-      file_(format_.folder, "recorded signals"),
-      encoder_(format_.compression) {
+    : format_(format.page),
+      storage_(Series(signals).storage_of_columns()),
+      file_(std::move(format.folder), "recorded signals"),
+      encoder_(storage_, format_, 1) {
   filling_.reserve(format_.chunk_rows * storage_.size());
 }
 
@@ -36,28 +27,28 @@ void SeriesSpool::append(std::span<const double> rows) {
     filling_.insert(filling_.end(), rows.begin(),
                     rows.begin() + static_cast<std::ptrdiff_t>(count));
     rows = rows.subspan(count);
-    if (filling_.size() == full) write_chunk(format_.chunk_rows);
+    if (filling_.size() == full) write_page();
   }
 }
 
 void SeriesSpool::finish() {
   assert(filling_.size() % storage_.size() == 0);
-  if (!filling_.empty()) write_chunk(filling_.size() / storage_.size());
+  if (!filling_.empty()) write_page();
   filling_ = {};
-  gathered_ = {};
 }
 
-void SeriesSpool::write_chunk(std::size_t rows) {
-  gathered_.resize(rows);
-  for (std::size_t column = 0; column < storage_.size(); ++column) {
-    const double* from = filling_.data() + column;
-    for (std::size_t row = 0; row < rows; ++row, from += storage_.size()) gathered_[row] = *from;
-    encoder_.encode(gathered_, format_.chunk_rows, storage_[column], encoded_);
-    const std::uint64_t place = file_.append(encoded_);
-    chunks_.push_back({place, static_cast<std::uint32_t>(encoded_.size())});
+void SeriesSpool::write_page() {
+  encoder_.encode(filling_);
+  std::vector<Chunk> written;
+  for (const std::vector<std::uint8_t>& chunk : encoder_.chunks()) {
+    written.push_back({file_.append(chunk), static_cast<std::uint32_t>(chunk.size())});
   }
+  for (const std::size_t chunk : encoder_.chunk_of_columns()) {
+    chunks_.push_back(written[chunk]);
+    bytes_ += written[chunk].size;
+  }
+  rows_ += filling_.size() / storage_.size();
   filling_.clear();
-  rows_ += rows;
   ++pages_;
 }
 

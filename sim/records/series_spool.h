@@ -1,4 +1,4 @@
-/// Rows of a long recording, on the disk from the moment when a chunk of them is full.
+/// Rows of a long recording, on the disk from the moment when a page of them is full.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 #include "plant/vocabulary/scratch_file.h"
 #include "sim/records/chunk_decoder.h"
-#include "sim/records/chunk_encoder.h"
+#include "sim/records/page_encoder.h"
 #include "sim/records/series.h"
 
 namespace servomill::sim::records {
@@ -17,8 +17,7 @@ namespace servomill::sim::records {
 /// How a spool keeps its rows.
 struct SpoolFormat {
   std::string folder;  // of its file
-  std::size_t chunk_rows = 16384;
-  int compression = 1;  // kNoCompression to kMaxCompression
+  PageFormat page = {};
 };
 
 /// Rows of a chunk so that chunks are of equal length and the last one holds little that is
@@ -37,8 +36,9 @@ class SeriesSpool final : public ColumnPages {
   /// Writes the rows of a chunk that is not full. Nothing can be added afterwards.
   void finish();
 
-  /// Bytes of the chunks that are full, and the rows in them.
-  std::uint64_t bytes() const { return file_.size(); }
+  /// Bytes of the chunks of all columns that are full, and the rows in them. On the disk they take
+  /// less where columns are equal.
+  std::uint64_t bytes() const { return bytes_; }
   std::size_t rows_on_disk() const { return pages_ * format_.chunk_rows; }
 
   /// @pre of these: finish()
@@ -53,18 +53,18 @@ class SeriesSpool final : public ColumnPages {
     std::uint64_t place = 0;
     std::uint32_t size = 0;
   };
-  void write_chunk(std::size_t rows);
+  void write_page();
   std::size_t rows_in(std::size_t page) const;
 
-  SpoolFormat format_;
+  PageFormat format_;
   std::vector<Storage> storage_;  // of each column
   ScratchFile file_;
-  ChunkEncoder encoder_;
+  PageEncoder encoder_;
   mutable ChunkDecoder decoder_;
   mutable std::vector<std::uint8_t> encoded_;
-  std::vector<Chunk> chunks_;     // page after page, of each column
-  std::vector<double> filling_;   // rows of the chunk that is not full
-  std::vector<double> gathered_;  // one column of it
+  std::vector<Chunk> chunks_;    // page after page, of each column
+  std::vector<double> filling_;  // rows of the page that is not full
+  std::uint64_t bytes_ = 0;
   std::size_t pages_ = 0, rows_ = 0;
 };
 

@@ -4,44 +4,38 @@
 #include <cassert>
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <utility>
-
-#include "sim/records/chunk_encoder.h"
 
 namespace servomill::sim::records {
 
 using Chunk = std::vector<std::uint8_t>;
 
-// Columns of a series in the chunks in which a file holds them.
+// Chunks of the columns of a series.
 class EncodedColumns {
  public:
-  EncodedColumns(const Series& series, const SeriesLayout& layout)
-      : series_(series), chunk_rows_(layout.chunk_rows), encoder_(layout.compression) {}
-  std::size_t chunks() const { return (series_.rows() + chunk_rows_ - 1) / chunk_rows_; }
-  std::size_t first_row(std::size_t chunk) const { return chunk * chunk_rows_; }
-  void encode(std::size_t column, Storage storage, std::size_t chunk, Chunk& out) {
-    if (chunk > 0) return make(column, storage, chunk, out);
+  explicit EncodedColumns(const ColumnPages& pages) : pages_(pages) {}
+  std::size_t chunks() const {
+    return (pages_.rows() + pages_.page_rows() - 1) / pages_.page_rows();
+  }
+  std::size_t first_row(std::size_t chunk) const { return chunk * pages_.page_rows(); }
+  // @param room  for a chunk that is not kept
+  const Chunk& encoded(std::size_t column, std::size_t chunk, Chunk& room) {
+    if (chunk > 0) return read(column, chunk, room);
     // asked for again and again: by it signals mostly differ
     Chunk& first = first_chunks_[column];
-    if (first.empty()) make(column, storage, chunk, first);
-    out = first;
+    return first.empty() ? read(column, chunk, first) : first;
   }
 
  private:
-  void make(std::size_t column, Storage storage, std::size_t chunk, Chunk& out) {
-    if (series_.pages() != nullptr && series_.pages()->read_encoded(column, chunk, out)) return;
-    values_.clear();
-    const std::size_t end = std::min(first_row(chunk + 1), series_.rows());
-    for (std::size_t row = first_row(chunk); row < end; ++row) {
-      values_.push_back(series_.at(row, column));
+  const Chunk& read(std::size_t column, std::size_t chunk, Chunk& to) const {
+    if (!pages_.read_encoded(column, chunk, to)) {
+      throw std::logic_error("recorded signals are not encoded");
     }
-    encoder_.encode(values_, chunk_rows_, storage, out);
+    return to;
   }
 
-  const Series& series_;
-  const std::size_t chunk_rows_;
-  ChunkEncoder encoder_;
-  std::vector<double> values_;
+  const ColumnPages& pages_;
   std::map<std::size_t, Chunk> first_chunks_;  // by column
 };
 
@@ -52,32 +46,31 @@ constexpr std::string_view kEquals = " = ", kIs = ": ";
 // Columns of a channel.
 struct Columns {
   std::size_t first, count;
-  Storage storage;
 };
 
-// @param other  makes a chunk of the same signal elsewhere, by column and chunk
+// @param other  a chunk of the same signal elsewhere, by column, chunk and room for it
 template <class Other>
 bool are_equal(EncodedColumns& encoded, Columns columns, Other&& other) {
   Chunk one, another;
   for (std::size_t c = 0; c < columns.count; ++c) {
     for (std::size_t chunk = 0; chunk < encoded.chunks(); ++chunk) {
-      encoded.encode(columns.first + c, columns.storage, chunk, one);
-      other(c, chunk, another);
-      if (one != another) return false;
+      if (encoded.encoded(columns.first + c, chunk, one) != other(c, chunk, another)) return false;
     }
   }
   return true;
 }
 
 bool equals_stored(EncodedColumns& encoded, Columns columns, Hdf5Dataset stored) {
-  return are_equal(encoded, columns, [&](std::size_t c, std::size_t chunk, Chunk& out) {
-    stored.read_chunk(encoded.first_row(chunk), c, out);
-  });
+  return are_equal(encoded, columns,
+                   [&](std::size_t c, std::size_t chunk, Chunk& room) -> const Chunk& {
+                     stored.read_chunk(encoded.first_row(chunk), c, room);
+                     return room;
+                   });
 }
 
 Columns columns_of(const Series& series, const Channel& channel) {
   const Signal& signal = *series.find(channel.name);
-  return {signal.offset, signal.columns(), channel.storage};
+  return {signal.offset, signal.columns()};
 }
 
 bool may_share(const Channel& one, const Channel& other) {
@@ -95,8 +88,8 @@ void share_channels(EncodedColumns& encoded, const Series& series, std::vector<C
       const Channel& other = channels[earlier];
       if (!other.same_as.empty() || !may_share(channels[i], other)) continue;
       const Columns before = columns_of(series, other);
-      const auto chunk_before = [&](std::size_t c, std::size_t chunk, Chunk& out) {
-        encoded.encode(before.first + c, before.storage, chunk, out);
+      const auto chunk_before = [&](std::size_t c, std::size_t chunk, Chunk& room) -> const Chunk& {
+        return encoded.encoded(before.first + c, chunk, room);
       };
       if (!are_equal(encoded, columns, chunk_before)) continue;
       channels[i].same_as = other.name;
@@ -183,13 +176,14 @@ void SharedSignals::share(Hdf5Group& file, const Family& family, const Series& s
   }
 }
 
-void SharedSignals::find(Hdf5Group& file, const Series& series, SeriesLayout& layout) const {
-  if (series.rows() == 0) return;
-  EncodedColumns encoded(series, layout);
+void SharedSignals::find(Hdf5Group& file, const Series& series, const ColumnPages& pages,
+                         SeriesLayout& layout) const {
+  if (pages.rows() == 0) return;
+  EncodedColumns encoded(pages);
   share_channels(encoded, series, layout.channels);
-  const Columns index = {*series.column(layout.index), 1, Storage::float64};
+  const Columns index = {*series.column(layout.index), 1};
   const auto family = std::find_if(families_.begin(), families_.end(), [&](const Family& one) {
-    return one.rows == series.rows() && one.chunk_rows == layout.chunk_rows &&
+    return one.rows == pages.rows() && one.chunk_rows == layout.chunk_rows &&
            is_same(one.index, index_of(layout)) &&
            equals_stored(encoded, index, file.dataset(one.index.same_as));
   });

@@ -32,8 +32,10 @@ class SharedSignals {
  public:
   /// Sets `same_as` of what is in the series or in the file already.
   /// @param file  any group of it
+  /// @param pages  of the series, encoded
   /// @param layout  with chunk_rows and compression as it will be written
-  void find(Hdf5Group& file, const Series& series, SeriesLayout& layout) const;
+  void find(Hdf5Group& file, const Series& series, const ColumnPages& pages,
+            SeriesLayout& layout) const;
   /// Adds a series that is in the file from now on.
   /// @param group  path of it, from the root
   /// @param layout  as find() left it

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "sim/records/encoded_series.h"
 #include "sim/records/series.h"
 #include "sim/records/series_spool.h"
 
@@ -66,19 +68,16 @@ records::SeriesLayout write_series(records::Hdf5Group group, const records::Seri
   records::SeriesLayout layout = layout_of(series, "time");
   if (has_even_times(series, format.steps)) layout.index_steps = format.steps;
   layout.compression = format.compression;
-  layout.threads = format.threads;
-  const records::ColumnPages* const pages = series.pages();
-  layout.is_encoded = pages != nullptr;
-  layout.is_complete = pages == nullptr;
-  if (pages != nullptr) layout.chunk_rows = pages->page_rows();
-  shared.find(group, series, layout);
-  records::SeriesWriter writer(std::move(group), layout);
-  if (pages != nullptr) {
-    writer.append_pages(*pages);
-  } else {
-    writer.append_all(series.data());
+  std::optional<records::EncodedSeries> encoded;
+  const records::ColumnPages* pages = series.pages();
+  if (pages == nullptr) {
+    encoded.emplace(series, records::PageFormat{layout.chunk_rows, layout.compression},
+                    format.threads);
+    pages = &*encoded;
   }
-  writer.finish();
+  layout.chunk_rows = pages->page_rows();
+  shared.find(group, series, *pages, layout);
+  records::write_pages(std::move(group), layout, *pages);
   return layout;
 }
 

@@ -87,7 +87,7 @@ class Thinned : public testing::Test {
     }
     thinning.finish(out);
     Series series(thinning.signals());
-    std::copy(out.begin(), out.end(), series.add_rows(out.size() / series.width()));
+    series.append(out);
     return series;
   }
   static std::vector<double> column(const Series& series, std::string_view name,

@@ -38,7 +38,7 @@ std::string folder() { return testing::TempDir(); }
 
 Series spooled(int compression, const std::vector<double>& rows) {
   auto spool =
-      std::make_shared<SeriesSpool>(signals(), SpoolFormat{folder(), kChunkRows, compression});
+      std::make_shared<SeriesSpool>(signals(), SpoolFormat{folder(), {kChunkRows, compression}});
   // in portions that do not fit the chunks
   const std::span<const double> all(rows);
   const std::size_t portion = 6 * 37;

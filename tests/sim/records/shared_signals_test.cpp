@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/records/encoded_series.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/records/series_spool.h"
@@ -71,6 +72,10 @@ SeriesLayout layout() {
   return out;
 }
 
+EncodedSeries encoded_of(const Series& series) {
+  return {series, {kChunkRows, layout().compression}, 1};
+}
+
 const Channel& channel(const SeriesLayout& layout, const std::string& name) {
   for (const Channel& one : layout.channels) {
     if (one.name == name) return one;
@@ -90,17 +95,17 @@ class SharedSignalsTest : public testing::Test {
   }
   SeriesLayout found(const Series& series, SeriesLayout layout = shared_signals_test::layout()) {
     Hdf5Group root = out_.root();
-    shared_.find(root, series, layout);
+    if (series.pages() != nullptr) {
+      shared_.find(root, series, *series.pages(), layout);
+    } else {
+      shared_.find(root, series, encoded_of(series), layout);
+    }
     return layout;
   }
   // Writes the series, of which the next one may share signals.
   void add(const std::string& group, const Series& series) {
     const SeriesLayout layout = found(series);
-    SeriesWriter writer(out_.root().group(group), layout);
-    for (std::size_t n = 0; n < series.rows(); ++n) {
-      writer.append({series.row(n), series.width()});
-    }
-    writer.finish();
+    write_pages(out_.root().group(group), layout, encoded_of(series));
     shared_.add("/" + group, series.rows(), layout);
   }
 
@@ -191,7 +196,7 @@ TEST_F(SharedSignalsTest, AreThoseOfRowsOnTheDisk) {
   add("one", series());
   const Series rows = series(last_bit_of(kVelocityY));
   auto spool = std::make_shared<SeriesSpool>(
-      rows.signals(), SpoolFormat{testing::TempDir(), kChunkRows, layout().compression});
+      rows.signals(), SpoolFormat{testing::TempDir(), {kChunkRows, layout().compression}});
   spool->append(rows.data());
   spool->finish();
   const SeriesLayout on_disk = found(Series(rows.signals(), spool)), in_memory = found(rows);

@@ -147,7 +147,7 @@ TEST_F(RunFile, TakesRowsFromTheDiskAsTheyAre) {
   const CaseOutput in_memory = output(0);
   const records::Series& servo = in_memory.result.servo;
   auto spool = std::make_shared<records::SeriesSpool>(
-      servo.signals(), records::SpoolFormat{folder_, 16, described.record.compression});
+      servo.signals(), records::SpoolFormat{folder_, {16, described.record.compression}});
   spool->append(servo.data());
   spool->finish();
   CaseOutput on_disk = in_memory;
