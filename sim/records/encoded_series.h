@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "sim/records/page_encoder.h"
@@ -14,21 +13,24 @@ namespace servomill::sim::records {
 /// All columns of a series, encoded chunk by chunk.
 class EncodedSeries final : public ColumnPages {
  public:
-  /// @param series   in memory; must outlive this
+  /// @param series   in memory
   /// @param threads  that encode; 0: one a core
   EncodedSeries(const Series& series, const PageFormat& format, unsigned threads);
 
-  std::size_t rows() const override { return series_.rows(); }
-  std::size_t page_rows() const override { return page_rows_; }
+  std::size_t rows() const override { return rows_; }
+  std::size_t page_rows() const override { return format_.chunk_rows; }
   void read(std::size_t column, std::size_t page, std::vector<double>& values) const override;
   bool read_encoded(std::size_t column, std::size_t page,
                     std::vector<std::uint8_t>& chunk) const override;
 
  private:
-  std::span<const double> rows_of(std::size_t page) const;
+  const std::vector<std::uint8_t>& chunk(std::size_t column, std::size_t page) const {
+    return chunks_[chunk_of_[page * storage_.size() + column]];
+  }
 
-  const Series& series_;
-  std::size_t page_rows_;
+  PageFormat format_;
+  std::size_t rows_;
+  std::vector<Storage> storage_;  // of each column
   std::vector<std::vector<std::uint8_t>> chunks_;
   std::vector<std::size_t> chunk_of_;  // index of that of each column, page after page
 };

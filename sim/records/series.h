@@ -61,6 +61,7 @@ class Series {
   }
   /// Pages that hold the rows; nullptr: they are in memory.
   const ColumnPages* pages() const { return pages_.get(); }
+  const std::shared_ptr<const ColumnPages>& shared_pages() const { return pages_; }
   /// @pre of these two: in memory
   const double* row(std::size_t index) const { return data_.data() + index * width_; }
   const std::vector<double>& data() const { return data_; }

@@ -124,6 +124,7 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
     for (std::size_t i = next++; i < count; i = next++) {
       try {
         outputs[i] = run_one(prepared[i], std::move(isolated[i]), control, stop, progress[i]);
+        if (control.case_ran) control.case_ran(outputs[i]);
       } catch (...) {
         failures[i] = std::current_exception();
       }

@@ -18,6 +18,9 @@
 namespace servomill::sim::model {
 struct UncertainErrors;
 }  // namespace servomill::sim::model
+namespace servomill::sim::records {
+class ColumnPages;
+}  // namespace servomill::sim::records
 namespace servomill::sim::preparation {
 class PreparedCase;
 }  // namespace servomill::sim::preparation
@@ -53,6 +56,7 @@ struct CaseOutput {
   std::vector<evaluation::AxisDemand> demands;           // of all its axes
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   std::shared_ptr<const DayCourse> day;                  // likewise; or none
+  std::shared_ptr<const records::ColumnPages> pages;  // servo signals as a file holds them; or none
   evaluation::CaseData data() const;
 };
 

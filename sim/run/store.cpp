@@ -23,6 +23,7 @@
 #include "sim/run/store_series.h"
 #include "sim/run/store_tests.h"
 #include "sim/run/touch_record.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim::run {
 namespace {
@@ -65,8 +66,17 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std
 // Form of the signals, and those of the complete cases.
 struct RunStore::Signals {
   SeriesFormat format;
+  unsigned threads_of_a_case;  // that encode, while other cases run
   records::SharedSignals shared;
 };
+
+namespace {
+
+unsigned threads_of_a_case(unsigned threads, std::size_t cases) {
+  return std::max(1U, system::thread_count(threads) / static_cast<unsigned>(cases));
+}
+
+}  // namespace
 
 RunStore::RunStore(const std::string& path, bool force, const model::Scenario& scenario,
                    unsigned threads)
@@ -76,6 +86,7 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
           Signals{{{scenario.record_period, scenario.machine.nc.periods.base},
                    scenario.record.compression,
                    threads},
+                  threads_of_a_case(threads, scenario.cases.size()),
                   {}})) {
   records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run", "cases");
@@ -94,16 +105,24 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
 RunStore::RunStore(RunStore&&) noexcept = default;
 RunStore::~RunStore() = default;
 
+void RunStore::encode(CaseOutput& one) const {
+  SeriesFormat format = signals_->format;
+  format.threads = signals_->threads_of_a_case;
+  one.pages = encoded_pages(one.result.servo, format);
+}
+
 void RunStore::add(const CaseOutput& one) {
   records::Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
   records::Hdf5Group group = root.group(unfinished);
   records::make_nexus_group(group, "NXsubentry", "servo");
   write_chain(group, one.chain);
+  const SeriesFormat& format = signals_->format;
+  const auto pages = one.pages != nullptr ? one.pages : encoded_pages(one.result.servo, format);
   const records::SeriesLayout servo =
-      write_series(group.group("servo"), one.result.servo, signals_->format, signals_->shared);
-  if (one.result.last_ticks.rows() > 0) {
-    write_series(group.group("last_ticks"), one.result.last_ticks, signals_->format);
+      write_series(group.group("servo"), one.result.servo, *pages, format, signals_->shared);
+  if (const records::Series& ticks = one.result.last_ticks; ticks.rows() > 0) {
+    write_series(group.group("last_ticks"), ticks, *encoded_pages(ticks, format), format);
   }
   if (!one.probes.empty()) write_probes(group.group("probes"), one.probes, one.frame, one.part_fit);
   if (!one.touches.empty()) write_touches(group.group("touches"), one.touches, one.chain.layout);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +32,6 @@ records::SeriesLayout layout_of(const records::Series& series, const std::string
   records::SeriesLayout layout;
   layout.plot = plot_of(series, index);
   layout.index = index;
-  layout.chunk_rows = records::even_chunk_rows(series.rows());
   for (const records::Signal& signal : series.signals()) {
     if (signal.name == index) {
       layout.index_meaning = {signal.units, signal.long_name};
@@ -62,22 +60,23 @@ bool has_even_times(const records::Series& series, const records::EvenSteps& ste
   return true;
 }
 
+std::shared_ptr<const records::ColumnPages> encoded_pages(const records::Series& series,
+                                                          const SeriesFormat& format) {
+  if (auto own = series.shared_pages()) return own;
+  const records::PageFormat of_pages = {records::even_chunk_rows(series.rows()),
+                                        format.compression};
+  return std::make_shared<const records::EncodedSeries>(series, of_pages, format.threads);
+}
+
 records::SeriesLayout write_series(records::Hdf5Group group, const records::Series& series,
-                                   const SeriesFormat& format,
+                                   const records::ColumnPages& pages, const SeriesFormat& format,
                                    const records::SharedSignals& shared) {
   records::SeriesLayout layout = layout_of(series, "time");
   if (has_even_times(series, format.steps)) layout.index_steps = format.steps;
   layout.compression = format.compression;
-  std::optional<records::EncodedSeries> encoded;
-  const records::ColumnPages* pages = series.pages();
-  if (pages == nullptr) {
-    encoded.emplace(series, records::PageFormat{layout.chunk_rows, layout.compression},
-                    format.threads);
-    pages = &*encoded;
-  }
-  layout.chunk_rows = pages->page_rows();
-  shared.find(group, series, *pages, layout);
-  records::write_pages(std::move(group), layout, *pages);
+  layout.chunk_rows = pages.page_rows();
+  shared.find(group, series, pages, layout);
+  records::write_pages(std::move(group), layout, pages);
   return layout;
 }
 

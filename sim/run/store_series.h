@@ -1,6 +1,8 @@
 /// Recorded signals in a result file.
 #pragma once
 
+#include <memory>
+
 #include "sim/records/series_writer.h"
 #include "sim/records/shared_signals.h"
 
@@ -16,12 +18,18 @@ struct SeriesFormat {
 /// @pre  the series has time
 bool has_even_times(const records::Series& series, const records::EvenSteps& steps);
 
+/// Pages of a series as a result file holds them: its own, if it is on the disk, or those that its
+/// rows are encoded in here.
+std::shared_ptr<const records::ColumnPages> encoded_pages(const records::Series& series,
+                                                          const SeriesFormat& format);
+
 /// Writes a series with its default plot: the contour error over time; without it, the first
 /// signal.
+/// @param pages  encoded_pages() of it
 /// @param shared  series of the file, whose equal signals are not written again
 /// @return layout as it was written
 records::SeriesLayout write_series(records::Hdf5Group group, const records::Series& series,
-                                   const SeriesFormat& format,
+                                   const records::ColumnPages& pages, const SeriesFormat& format,
                                    const records::SharedSignals& shared = {});
 
 }  // namespace servomill::sim::run

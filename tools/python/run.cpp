@@ -53,6 +53,9 @@ sim::run::RunOutput run_scenario(const LoadedScenario& loaded, const Target& tar
     sim::preparation::refuse_full_disk(loaded.scenario, takes, control.scratch_folder);
     store.emplace(path, target.force, loaded.scenario, threads);
   };
+  control.case_ran = [&](sim::run::CaseOutput& one) {
+    if (store) store->encode(one);
+  };
   control.case_done = [&](const sim::run::CaseOutput& one) {
     if (store) store->add(one);
   };

@@ -87,6 +87,7 @@ int run_command(const Arguments& arguments) {
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
   KeptCases kept(sim::model::case_names(scenario));
   const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
+  control.case_ran = [&](sim::run::CaseOutput& one) { store->encode(one); };
   control.case_done = [&](const sim::run::CaseOutput& one) {
     store->add(one);
     kept.add(one);

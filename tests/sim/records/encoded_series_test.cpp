@@ -57,10 +57,12 @@ TEST(EncodedSeries, HasTheChunksOfAnEncoder) {
     for (std::size_t page = 0; page * 16 < rows; ++page) {
       for (std::size_t c = 0; c < kColumns; ++c) {
         values.clear();
+        const Storage storage = all.signals()[c].storage;
         for (std::size_t n = page * 16; n < std::min(rows, (page + 1) * 16); ++n) {
-          values.push_back(all.at(n, c));
+          const double value = all.at(n, c);
+          values.push_back(storage == Storage::float32 ? static_cast<float>(value) : value);
         }
-        encoder.encode(values, 16, all.signals()[c].storage, wanted);
+        encoder.encode(values, 16, storage, wanted);
         encoded.read_encoded(c, page, chunk);
         EXPECT_EQ(chunk, wanted) << rows << " rows, page " << page << ", column " << c;
         std::vector<double> read;

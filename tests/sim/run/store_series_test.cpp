@@ -29,6 +29,11 @@ records::Series series_at(const std::vector<double>& times) {
 
 constexpr records::EvenSteps kSteps = {30, 1e-5};
 
+void write(records::OutputFile& out, const std::string& group, const records::Series& series) {
+  const SeriesFormat format = {kSteps};
+  write_series(out.root().group(group), series, *encoded_pages(series, format), format);
+}
+
 std::vector<double> even_times(int rows) {
   std::vector<double> times;
   for (int row = 0; row < rows; ++row) times.push_back(row * 30 * 1e-5);
@@ -58,8 +63,8 @@ TEST(WrittenSeries, SaysThatItsTimesAreEvenWhereTheyAre) {
   namespace fs = std::filesystem;
   const fs::path path = fs::path(testing::TempDir()) / ("s" + std::to_string(getpid()) + ".h5");
   records::OutputFile out(path, true);
-  write_series(out.root().group("even"), series_at(even_times(3)), {kSteps});
-  write_series(out.root().group("windows"), series_at({0.0, 30 * 1e-5, 7.0}), {kSteps});
+  write(out, "even", series_at(even_times(3)));
+  write(out, "windows", series_at({0.0, 30 * 1e-5, 7.0}));
   out.commit();
   const records::InputFile in(path);
   EXPECT_EQ(in.number("/even/time", "sampling_ticks"), 30.0);
@@ -104,7 +109,7 @@ TEST(WrittenSeries, OfPagesHasTheChunksOfASignalNextToEachOther) {
       {{"time", "s", "time", "", ""}, {"s", "mm", "s", "", ""}, {"error", "um", "error", "", ""}},
       pages);
   records::OutputFile out(path, true);
-  write_series(out.root().group("servo"), series, {kSteps});
+  write(out, "servo", series);
   out.commit();
 
   const records::InputFile in(path);

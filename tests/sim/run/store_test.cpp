@@ -142,6 +142,20 @@ TEST_F(RunFile, IsTheSameForTheSameCases) {
   EXPECT_GT(bytes(path("a.h5")).size(), 1000U);
 }
 
+TEST_F(RunFile, IsTheSameOfCasesThatAreEncodedBefore) {
+  const model::Scenario described = scenario();
+  for (const std::string name : {"before.h5", "here.h5"}) {
+    RunStore store(path(name), false, described);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CaseOutput one = output_of_shared(i);
+      if (name == "before.h5") store.encode(one);
+      store.add(one);
+    }
+    store.commit({});
+  }
+  EXPECT_EQ(bytes(path("before.h5")), bytes(path("here.h5")));
+}
+
 TEST_F(RunFile, TakesRowsFromTheDiskAsTheyAre) {
   const model::Scenario described = scenario();
   const CaseOutput in_memory = output(0);
