@@ -188,6 +188,7 @@ class Planner {
   // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
   // points of an arc do.
   void add_tip_motion(const Move& move, std::size_t index) {
+    tip_.release_before(index);
     const TcpMotion* motion = tip_.of(index);
     assert(motion != nullptr);
     const std::span<const JointChord> chords = tip_.chords_of(*motion);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 
 #include "plant/vocabulary/interrupt.h"
@@ -21,11 +22,6 @@ using Eigen::Vector3d;
 // Shares of the tolerance of the tip. Chords in the half-width of a window of their curvature: 4.
 constexpr double kChordShare = 0.04;
 constexpr double kMoreThanSeen = 1.25;  // chords between the places that are looked at
-constexpr double kInnerShare = 0.4;     // of linear and of rotary joints, within a move
-constexpr double kSecondOrder = 0.05;   // beyond (2), where rotary joints deviate
-constexpr double kMinShare = 0.2;       // of either kind of joints where both deviate
-constexpr double kStill = 1e-3;         // of rotary joints that do not move
-constexpr std::size_t kNeighbours = 3;  // chords on either side that deviate together
 constexpr double kAxisShare = 0.5;      // of the tolerance of the tool axis, for the rotary joints
 static_assert(kGreatCircleShare + kAxisShare * std::numbers::sqrt2 < 1.0);
 constexpr double kLongestTurn = 30.0 * deg;  // of a joint or an arc in one chord
@@ -46,7 +42,12 @@ class Tracer {
         tips_(tips),
         limits_(limits),
         options_(options),
-        Q_(start) {}
+        Q_(start),
+        out_(options.plans_in_memory),
+        tolerances_(options.rotary_radius,
+                    [this](const JointChord& chord) { out_.chords.push_back(chord); }) {}
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
 
   void follow(const Move& move) { Q_ = layout_.joints(move.end_machine); }
 
@@ -64,7 +65,8 @@ class Tracer {
       follow(move);
       return turn.fault;
     }
-    TcpMotion motion{index, out_.chords.size(), 0, time_of(move, turn)};
+    TcpMotion motion{index, count_, 0, time_of(move, turn)};
+    chords_.clear();
     RotaryKnot at{0.0, Q_};
     for (const RotaryKnot& knot : turn.knots) {
       if (!add_between(at, knot, move)) {
@@ -73,15 +75,18 @@ class Tracer {
       }
       at = knot;
     }
-    motion.last = out_.chords.size();
-    for (std::size_t i = motion.first + 1; i + 1 < motion.last; ++i) budgets_[i].is_inner = true;
+    tolerances_.end_move();
+    count_ += chords_.size();
+    motion.last = count_;
     note_slowing(motion, move, Q_begin);
     out_.motions.push_back(motion);
     return {};
   }
 
   TipMotions take() {
-    divide_tolerances();
+    tolerances_.finish();
+    out_.chords.finish();
+    out_.motions.finish();
     return std::move(out_);
   }
 
@@ -90,20 +95,6 @@ class Tracer {
     double t = 0.0;
     Joints Q;
   };
-  // Tolerances of a chord, before they are divided among its joints.
-  struct Budget {
-    Joints begin;
-    double whole = 0.0;     // m, tolerance of the tip
-    double tip = 0.0;       // m, the same less what the chord misses
-    double arm = 0.0;       // m, of (2)
-    double axis = 0.0;      // rad, of a rotary joint, for the tool axis
-    bool is_inner = false;  // between other chords of its move, which has no corners
-  };
-  // Changes of direction where a chord begins, as they move the tip.
-  struct Bend {
-    double linear = 0.0, rotary = 0.0;
-  };
-
   void set_tolerances(const Move& move) {
     const double programmed = options_.tolerance_share * move.path_tolerance;
     T_ = programmed > 0.0 ? programmed : options_.tolerance;
@@ -196,57 +187,9 @@ class Tracer {
                            .J_pQ.rightCols<kJoints - kLinearJoints>()
                            .norm();
     const double missed = std::min(kMoreThanSeen * error, kChordShare * T_);
-    budgets_.push_back({a.Q, T_, T_ - missed, arm, kAxisShare * axis_tolerance_});
-    out_.chords.push_back({b.Q, b.t, 0.0, 0.0, is_even});
+    chords_.push_back({b.Q, b.t, 0.0, 0.0, is_even});
+    tolerances_.add(chords_.back(), {a.Q, T_, T_ - missed, arm, kAxisShare * axis_tolerance_});
     Q_ = b.Q;
-  }
-
-  Bend bend_before(std::size_t chord) const {
-    if (chord == 0 || out_.chords[chord - 1].end != budgets_[chord].begin) return {};
-    const auto direction = [&](std::size_t i) -> Joints {
-      Joints step = out_.chords[i].end - budgets_[i].begin;
-      step.tail<kJoints - kLinearJoints>() *= options_.rotary_radius;
-      return step.stableNormalized();
-    };
-    const Joints bend = direction(chord) - direction(chord - 1);
-    return {bend.head<kLinearJoints>().norm(),
-            budgets_[chord].arm * rotary(bend).norm() / options_.rotary_radius};
-  }
-
-  // Linear and rotary joints deviate as the direction changes in them, chords near each other
-  // together: (2) leaves each kind what it needs.
-  void divide_tolerances() {
-    const std::size_t n = out_.chords.size();
-    std::vector<Bend> sums(n + 1);  // of the bends before
-    for (std::size_t i = 0; i < n; ++i) {
-      const Bend here = bend_before(i);
-      sums[i + 1] = {sums[i].linear + here.linear, sums[i].rotary + here.rotary};
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const Bend& from = sums[i < kNeighbours ? 0 : i - kNeighbours];
-      const Bend& to = sums[std::min(n, i + kNeighbours + 2)];
-      divide(i, {to.linear - from.linear, to.rotary - from.rotary});
-    }
-  }
-
-  void divide(std::size_t i, const Bend& bend) {
-    const Budget& budget = budgets_[i];
-    JointChord& chord = out_.chords[i];
-    double most_rotary = kInnerShare * budget.whole;  // of the tip
-    chord.tolerance_linear = kInnerShare * budget.whole;
-    if (!(bend.rotary > 0.0)) {
-      most_rotary = kStill * budget.tip;
-      chord.tolerance_linear = budget.tip - most_rotary;
-    } else if (!budget.is_inner) {
-      const double tip = budget.tip * (1.0 - kSecondOrder);
-      const double needed = bend.rotary / (bend.rotary + bend.linear);
-      most_rotary = std::clamp(needed, kMinShare, 1.0 - kMinShare) * tip;
-      chord.tolerance_linear = tip - std::min(most_rotary, budget.arm * budget.axis);
-    }
-    chord.tolerance_rotary = budget.axis;
-    if (budget.arm > 0.0) {
-      chord.tolerance_rotary = std::min(budget.axis, most_rotary / budget.arm);
-    }
   }
 
   // Speed, acceleration and jerk of the joints at the programmed feed, from the last chords.
@@ -290,7 +233,7 @@ class Tracer {
     // a rotary joint first: where it is too slow the linear ones only follow it
     for (const auto& [first, end] : {std::pair(kLinearJoints, kJoints), {0, kLinearJoints}}) {
       Rates rates(Q_begin);
-      for (const JointChord& chord : out_.chords_of(motion)) {
+      for (const JointChord& chord : chords_) {
         rates.go_to(chord, motion.time * chord.fraction);
         find_slowest(rates, chord, move.line, first, end, worst);
       }
@@ -329,16 +272,25 @@ class Tracer {
   bool circle_ = false;                    // the tool axis turns on a great circle
   Vector3d k_begin_ = Vector3d::UnitZ(), k_end_ = Vector3d::UnitZ();
   TipMotions out_;
-  std::vector<Budget> budgets_;  // of its chords
+  std::size_t count_ = 0;           // of chords, of the moves before
+  std::vector<JointChord> chords_;  // of the move
+  ChordTolerances tolerances_;
 };
 
 }  // namespace
 
 const TcpMotion* TipMotions::of(std::size_t move) const {
+  const auto all = std::views::iota(std::size_t{0}, motions.size());
   const auto found =
-      std::lower_bound(motions.begin(), motions.end(), move,
-                       [](const TcpMotion& m, std::size_t index) { return m.move < index; });
-  return found != motions.end() && found->move == move ? &*found : nullptr;
+      std::ranges::lower_bound(all, move, {}, [this](std::size_t i) { return motions[i].move; });
+  return found != all.end() && motions[*found].move == move ? &motions[*found] : nullptr;
+}
+
+void TipMotions::release_before(std::size_t move) const {
+  constexpr std::size_t kMoves = 65536;
+  if (move % kMoves != 0) return;
+  chords.release();
+  motions.release();
 }
 
 TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,

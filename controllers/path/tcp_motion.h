@@ -7,15 +7,8 @@
 ///     Q(t) = (J^-1 (p(t) - p_0(rotary(t))),  rotary(t))                                    (1)
 ///
 /// and chords of Q are halved until the tip of the machine, going linearly in all joints, keeps to
-/// p(t). The planner rounds the corners of the chords (smooth_path.h). A joint deviation moves the
-/// tip by at most
-///
-///     |dp| <= |dQ_linear| + a |dQ_rotary|,   a^2 = sum of squares of the arms of the tip    (2)
-///
-/// so a tolerance T of the tip less what the chords miss is divided among linear and rotary joints,
-/// as the direction of the chords changes in them, since corners deviate in that proportion: where
-/// the rotary joints are at rest nearly all of it is left to the linear ones. The angle by which
-/// the tool axis moves is at most sqrt(2) |dQ_rotary|.
+/// p(t). The planner rounds the corners of the chords (smooth_path.h), within tolerances of the
+/// joints (chord_tolerances.h).
 #pragma once
 
 #include <cstddef>
@@ -24,21 +17,15 @@
 #include <string>
 #include <vector>
 
+#include "controllers/path/chord_tolerances.h"
 #include "controllers/path/feed_reduction.h"
 #include "controllers/path/path_limits.h"
 #include "controllers/path/tool_centre_point.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/stored_values.h"
 
 namespace servomill::controllers {
-
-struct JointChord {
-  Joints end = Joints::Zero();    // m, rad
-  double fraction = 0.0;          // of the move, where the chord ends
-  double tolerance_linear = 0.0;  // m, for rounding
-  double tolerance_rotary = 0.0;  // rad
-  bool is_even = true;            // on a curve without corners (RotaryKnot)
-};
 
 /// One move under tool control.
 struct TcpMotion {
@@ -47,17 +34,27 @@ struct TcpMotion {
   double time = 0.0;                // s, by the programmed feed; 0: as fast as the joints can
 };
 
+/// Those of a program. Of a long one they are on the disk.
 struct TipMotions {
-  std::vector<JointChord> chords;
-  std::vector<TcpMotion> motions;  // in the order of the moves
+  StoredValues<JointChord> chords;
+  StoredValues<TcpMotion> motions;  // in the order of the moves
   // The worst place of each line: by speed wherever it is, by acceleration and jerk where the tool
   // axis turns near a singular direction.
   std::vector<FeedReduction> slowed;
 
+  TipMotions() : TipMotions(PathOptions{}.plans_in_memory) {}
+  /// @param most_in_memory  bytes, of chords and of motions
+  explicit TipMotions(std::size_t most_in_memory)
+      : chords("the chords of motion under TCP control", most_in_memory),
+        motions("the moves under TCP control", most_in_memory) {}
+
+  /// @return nullptr for a move without tool control
   const TcpMotion* of(std::size_t move) const;
   std::span<const JointChord> chords_of(const TcpMotion& motion) const {
-    return std::span(chords).subspan(motion.first, motion.last - motion.first);
+    return chords.range(motion.first, motion.last);
   }
+  /// Gives back the memory of chords that were read, every so many moves.
+  void release_before(std::size_t move) const;
 };
 
 /// @param moves   of a program; those without tool control are only followed

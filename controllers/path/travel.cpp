@@ -119,8 +119,10 @@ std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layo
       range = range_of(move, at, layout);
       at = layout.joints(move.end_machine);
     } else {
-      for (const JointChord& chord : tip.chords_of(*tip.of(i))) range.include(chord.end);
-      at = tip.chords_of(*tip.of(i)).back().end;
+      tip.release_before(i);
+      const std::span<const JointChord> chords = tip.chords_of(*tip.of(i));
+      for (const JointChord& chord : chords) range.include(chord.end);
+      at = chords.back().end;
     }
     const auto& [low, high] = range;
     for (int k = 0; k < kJoints; ++k) {

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,11 @@ class StoredValues {
   /// @pre finish()
   const T& operator[](std::size_t index) const {
     return mapped_ != nullptr ? mapped_[index] : values_[index];
+  }
+  /// Those from first to before last.
+  /// @pre finish()
+  std::span<const T> range(std::size_t first, std::size_t last) const {
+    return {(mapped_ != nullptr ? mapped_ : values_.data()) + first, last - first};
   }
   /// @pre not empty
   const T& back() const { return mapped_ != nullptr ? last_ : values_.back(); }

@@ -333,5 +333,24 @@ TEST(TcpMotion, WhatLinearAxesCannotReachIsSaidWithTheLine) {
   }
 }
 
+// Chords of a long program are on the disk.
+TEST(TcpMotion, IsTheSameWithChordsOnTheDisk) {
+  const NamedMachine in_memory = machines().front();
+  TipMachine little = in_memory.machine;
+  little.options.plans_in_memory = 1000;
+  const std::string program = words_program(in_memory.tilt);
+  const Planned p(in_memory.machine, program), q(little, program);
+  EXPECT_FALSE(p.tip.chords.is_on_disk());
+  EXPECT_TRUE(q.tip.chords.is_on_disk());
+  ASSERT_EQ(p.tip.chords.size(), q.tip.chords.size());
+  for (std::size_t i = 0; i < p.tip.chords.size(); ++i) {
+    const JointChord &a = p.tip.chords[i], &b = q.tip.chords[i];
+    EXPECT_EQ(a.end, b.end);
+    EXPECT_EQ(a.tolerance_linear, b.tolerance_linear);
+    EXPECT_EQ(a.tolerance_rotary, b.tolerance_rotary);
+  }
+  EXPECT_EQ(p.trajectory.duration(), q.trajectory.duration());
+}
+
 }  // namespace
 }  // namespace servomill::controllers::test::tcp_motion_test
