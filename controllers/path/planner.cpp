@@ -13,6 +13,7 @@
 #include "controllers/path/motion_stretches.h"
 #include "controllers/path/path_leg.h"
 #include "controllers/path/stored_chain.h"
+#include "controllers/path/tcp_motion.h"
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/interrupt.h"
@@ -188,9 +189,7 @@ class Planner {
   // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
   // points of an arc do.
   void add_tip_motion(const Move& move, std::size_t index) {
-    tip_.release_before(index);
     const TcpMotion* motion = tip_.of(index);
-    assert(motion != nullptr);
     const std::span<const JointChord> chords = tip_.chords_of(*motion);
     const Leg leg = tip_leg(move, *motion, chords);
     if (leg.length == 0.0) return stand(leg);

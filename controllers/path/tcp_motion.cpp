@@ -280,17 +280,15 @@ class Tracer {
 }  // namespace
 
 const TcpMotion* TipMotions::of(std::size_t move) const {
+  constexpr std::size_t kReleased = 65536;
+  if (move % kReleased == 0) {
+    chords.release();
+    motions.release();
+  }
   const auto all = std::views::iota(std::size_t{0}, motions.size());
   const auto found =
       std::ranges::lower_bound(all, move, {}, [this](std::size_t i) { return motions[i].move; });
   return found != all.end() && motions[*found].move == move ? &motions[*found] : nullptr;
-}
-
-void TipMotions::release_before(std::size_t move) const {
-  constexpr std::size_t kMoves = 65536;
-  if (move % kMoves != 0) return;
-  chords.release();
-  motions.release();
 }
 
 TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,

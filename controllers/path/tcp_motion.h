@@ -34,7 +34,7 @@ struct TcpMotion {
   double time = 0.0;                // s, by the programmed feed; 0: as fast as the joints can
 };
 
-/// Those of a program. Of a long one they are on the disk.
+/// All moves of a program under tool control. Of a long program they are on the disk.
 struct TipMotions {
   StoredValues<JointChord> chords;
   StoredValues<TcpMotion> motions;  // in the order of the moves
@@ -48,13 +48,12 @@ struct TipMotions {
       : chords("the chords of motion under TCP control", most_in_memory),
         motions("the moves under TCP control", most_in_memory) {}
 
+  /// For moves one after the other: every so many, memory of chords that were read is given back.
   /// @return nullptr for a move without tool control
   const TcpMotion* of(std::size_t move) const;
   std::span<const JointChord> chords_of(const TcpMotion& motion) const {
     return chords.range(motion.first, motion.last);
   }
-  /// Gives back the memory of chords that were read, every so many moves.
-  void release_before(std::size_t move) const;
 };
 
 /// @param moves   of a program; those without tool control are only followed

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "controllers/path/stored_chain.h"
+#include "controllers/path/tcp_motion.h"
 
 namespace servomill::controllers {
 
@@ -118,6 +119,11 @@ Trajectory::Sample Trajectory::at(double t, Cursor& c) const {
   out.move = span.move;
   out.rapid = span.rapid;
   return out;
+}
+
+Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
+                const JointLimits& limits, const PathOptions& options) {
+  return plan(moves, layout, start, limits, options, {});
 }
 
 }  // namespace servomill::controllers

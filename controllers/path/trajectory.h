@@ -9,13 +9,13 @@
 
 #include "controllers/path/path_limits.h"
 #include "controllers/path/smooth_path.h"
-#include "controllers/path/tcp_motion.h"
 #include "controllers/path/time_law.h"
 #include "plant/vocabulary/move_list.h"
 
 namespace servomill::controllers {
 
 class StoredChain;
+struct TipMotions;  // controllers/path/tcp_motion.h
 
 /// A planned program. Immutable; any number of readers, each with its own cursor.
 class Trajectory {
@@ -117,7 +117,9 @@ class Trajectory {
 /// @param tip     of the same moves and start
 /// @pre limits > 0 for the joints of the layout; tolerances and overrides > 0
 Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
-                const JointLimits& limits, const PathOptions& options = {},
-                const TipMotions& tip = {});
+                const JointLimits& limits, const PathOptions& options, const TipMotions& tip);
+/// The same of moves without tool control.
+Trajectory plan(const MoveRange& moves, const JointLayout& layout, const Joints& start,
+                const JointLimits& limits, const PathOptions& options = {});
 
 }  // namespace servomill::controllers

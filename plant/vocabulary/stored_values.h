@@ -55,7 +55,7 @@ class StoredValues {
   const T& operator[](std::size_t index) const {
     return mapped_ != nullptr ? mapped_[index] : values_[index];
   }
-  /// Those from first to before last.
+  /// Values from first to before last.
   /// @pre finish()
   std::span<const T> range(std::size_t first, std::size_t last) const {
     return {(mapped_ != nullptr ? mapped_ : values_.data()) + first, last - first};

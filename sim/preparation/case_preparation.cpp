@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controllers/path/feed_reduction.h"
+#include "controllers/path/tcp_motion.h"
 #include "controllers/path/travel.h"
 #include "controllers/translation/translated_program.h"
 #include "plant/vocabulary/input_error.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "controllers/gcode/program_setup.h"
+#include "controllers/path/feed_reduction.h"
 #include "controllers/path/trajectory.h"
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"

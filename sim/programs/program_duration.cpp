@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controllers/path/tcp_motion.h"
 #include "controllers/path/travel.h"
 #include "sim/model/machine.h"
 #include "sim/preparation/case_program.h"

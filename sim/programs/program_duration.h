@@ -11,11 +11,15 @@
 #include <vector>
 
 #include "controllers/gcode/tool_table.h"
-#include "controllers/path/tcp_motion.h"
+#include "controllers/path/feed_reduction.h"
 #include "controllers/path/trajectory.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/move_list.h"
 #include "sim/model/forward.h"
+
+namespace servomill::controllers {
+class ToolCentrePoint;
+}  // namespace servomill::controllers
 
 namespace servomill::sim::programs {
 

@@ -53,8 +53,10 @@ std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(
 CaseOutput run_one(const preparation::PreparedCase& prepared,
                    std::unique_ptr<IsolatedCase> isolated, const RunControl& control,
                    const engine::StopFlag& stop, std::atomic<float>& progress) {
-  if (isolated == nullptr) return run_case(prepared, stop, progress, control.scratch_folder);
-  CaseOutput out = noted_output_of(prepared, isolated->simulate(stop, progress));
+  CaseOutput out = isolated == nullptr
+                       ? run_case(prepared, stop, progress, control.scratch_folder)
+                       : noted_output_of(prepared, isolated->simulate(stop, progress));
+  if (control.case_ran) control.case_ran(out);
   progress = 1.0F;
   return out;
 }
@@ -124,7 +126,6 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
     for (std::size_t i = next++; i < count; i = next++) {
       try {
         outputs[i] = run_one(prepared[i], std::move(isolated[i]), control, stop, progress[i]);
-        if (control.case_ran) control.case_ran(outputs[i]);
       } catch (...) {
         failures[i] = std::current_exception();
       }

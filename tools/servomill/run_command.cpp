@@ -59,6 +59,12 @@ void print_estimate_once(bool& is_printed, const sim::preparation::RunEstimate& 
   if (takes.is_thinned) fmt::print(stderr, "{}\n", sim::preparation::thinning_message(takes));
 }
 
+// @param kept  on the complete cases; or empty
+void print_failure(const sim::system::SystemError& error, const std::string& kept) {
+  fmt::print(stderr, "{}\n", error.what());
+  if (!kept.empty()) fmt::print(stderr, "{}\n", kept);
+}
+
 }  // namespace
 
 int run_command(const Arguments& arguments) {
@@ -111,8 +117,7 @@ int run_command(const Arguments& arguments) {
     store->commit(sim::run::comparison_of(*output));
   } catch (const sim::system::SystemError& error) {
     line.end();
-    fmt::print(stderr, "{}\n", error.what());
-    if (const std::string said = kept.said(); !said.empty()) fmt::print(stderr, "{}\n", said);
+    print_failure(error, kept.said());
     return kSystemFailed;
   } catch (const Interrupted&) {
     line.end();

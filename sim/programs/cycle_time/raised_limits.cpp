@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controllers/path/tcp_motion.h"
 #include "sim/model/machine.h"
 #include "sim/system/worker_thread.h"
 

@@ -184,7 +184,7 @@ TEST(Post, ChordsAndRoundingTogetherKeepToTheTolerance) {
   limits.a << 5.0, 5.0, 5.0, 50.0, 50.0;
   limits.j << 100.0, 100.0, 100.0, 1000.0, 1000.0;
   const Trajectory trajectory =
-      plan(moves, layout, layout.joints(moves.front().end_machine), limits, {}, {});
+      plan(moves, layout, layout.joints(moves.front().end_machine), limits);
   Trajectory::Cursor cursor{};
   double worst = 0.0;
   for (double t = 0.0; t < trajectory.duration(); t += 0.5e-3) {
