@@ -11,6 +11,7 @@
 #include "plant/vocabulary/byte_order_mark.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/interrupt.h"
+#include "plant/vocabulary/stored_text.h"
 #include "plant/vocabulary/user_file.h"
 
 namespace servomill::controllers {
@@ -24,8 +25,8 @@ constexpr std::size_t kLongestSkipped = 10'000'000;
 
 struct ProgramText::Reader {
   OpenFile file = {};
-  std::shared_ptr<const std::string> text = {};  // in place of a file
-  std::size_t at = 0;                            // in the text
+  std::shared_ptr<const StoredText> text = {};  // in place of a file
+  std::size_t at = 0;                           // in the text
 
   std::size_t read(char* to, std::size_t most) {
     if (!text) return std::fread(to, 1, most, file.get());
@@ -57,7 +58,7 @@ ProgramText ProgramText::of_text(std::string text, std::string file) {
   return out;
 }
 
-ProgramText ProgramText::of_shared_text(std::shared_ptr<const std::string> text, std::string file) {
+ProgramText ProgramText::of_shared_text(std::shared_ptr<const StoredText> text, std::string file) {
   ProgramText out;
   out.file_ = std::move(file);
   out.reader_ = std::make_unique<Reader>();

@@ -10,6 +10,10 @@
 
 #include "plant/vocabulary/input_error.h"
 
+namespace servomill {
+class StoredText;
+}  // namespace servomill
+
 namespace servomill::controllers {
 
 class ProgramText;
@@ -63,7 +67,7 @@ class ProgramText {
   /// @param file  name for messages
   static ProgramText of_text(std::string text, std::string file);
   /// The same of a text that others hold, too: it is not copied.
-  static ProgramText of_shared_text(std::shared_ptr<const std::string> text, std::string file);
+  static ProgramText of_shared_text(std::shared_ptr<const StoredText> text, std::string file);
   /// @throws InputError if the file cannot be read
   static ProgramText of_file(const std::string& path);
   /// The same text or file again, from its first line.

@@ -111,31 +111,41 @@ std::string why_unreadable(const std::string& path) {
   return why;
 }
 
-std::string read_input(const std::string& path, std::uintmax_t most, std::string& why) {
-  constexpr std::size_t kPiece = 1U << 20, kMinPiece = 1U << 12;
+InputPieces::InputPieces(const std::string& path, std::uintmax_t most) : most_(most) {
+  constexpr std::size_t kMaxPiece = 1U << 20, kMinPiece = 1U << 12;
   struct stat about {};
-  const OpenFile file = open_regular(path, about, why);
-  if (!file) return {};
+  file_ = open_regular(path, about, why_);
+  if (!file_) return;
   remember(about);
   const auto size = static_cast<std::uintmax_t>(about.st_size);
   if (size > most) {
-    why = fmt::format("is {}, larger than the limit of {}", size_text(size), size_text(most));
-    return {};
+    why_ = fmt::format("is {}, larger than the limit of {}", size_text(size), size_text(most));
+    return;
   }
+  size_ = static_cast<std::size_t>(size);
+  piece_.resize(std::clamp(size_, kMinPiece, kMaxPiece));
+}
+
+std::string_view InputPieces::next() {
+  if (!why_.empty()) return {};
+  throw_if_interrupted();
+  const std::size_t count = std::fread(piece_.data(), 1, piece_.size(), file_.get());
+  read_ += count;
+  if (std::ferror(file_.get()) != 0) {
+    why_ = std::strerror(errno);
+  } else if (read_ > most_) {  // it may grow while it is read
+    why_ = fmt::format("is larger than the limit of {}", size_text(most_));
+  }
+  return why_.empty() ? std::string_view(piece_).substr(0, count) : std::string_view();
+}
+
+std::string read_input(const std::string& path, std::uintmax_t most, std::string& why) {
+  InputPieces pieces(path, most);
   std::string text;
-  text.reserve(static_cast<std::size_t>(size) + kMinPiece);  // the end shows behind the last byte
-  while (std::feof(file.get()) == 0 && std::ferror(file.get()) == 0) {
-    throw_if_interrupted();
-    const std::size_t kept = text.size();
-    text.resize(kept + std::clamp<std::size_t>(size - std::min<std::uintmax_t>(kept, size),
-                                               kMinPiece, kPiece));
-    text.resize(kept + std::fread(text.data() + kept, 1, text.size() - kept, file.get()));
-    if (text.size() <= most) continue;  // it may grow while it is read
-    why = fmt::format("is larger than the limit of {}", size_text(most));
-    return {};
-  }
-  if (std::ferror(file.get()) != 0) why = std::strerror(errno);
-  return text;
+  text.reserve(pieces.size());
+  for (auto piece = pieces.next(); !piece.empty(); piece = pieces.next()) text += piece;
+  why = pieces.why();
+  return why.empty() ? text : std::string();
 }
 
 std::string not_a_regular_file(const std::string& path) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace servomill {
 
@@ -45,7 +46,29 @@ OpenFile open_input(const std::string& path, std::string& why);
 /// remembered.
 std::string why_unreadable(const std::string& path);
 
-/// All bytes of a file; refused beyond `most`, before anything is read where its size is known.
+/// The bytes of a file, one piece after the other; refused beyond `most`, before anything is read
+/// where its size is known. It is remembered.
+class InputPieces {
+ public:
+  InputPieces(const std::string& path, std::uintmax_t most);
+
+  /// Bytes of the file when it was opened.
+  std::size_t size() const { return size_; }
+  /// The next piece, valid until the next call; empty behind the last one, and where why() says
+  /// that the file cannot be read.
+  std::string_view next();
+  /// Empty while the file can be read.
+  const std::string& why() const { return why_; }
+
+ private:
+  OpenFile file_;
+  std::uintmax_t most_;
+  std::size_t size_ = 0, read_ = 0;
+  std::string why_;
+  std::string piece_;
+};
+
+/// All bytes of a file, as InputPieces has them.
 /// @param why  empty if it was read
 std::string read_input(const std::string& path, std::uintmax_t most, std::string& why);
 

@@ -7,15 +7,14 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/stored_text.h"
 #include "sim/config/document.h"
 #include "sim/system/shared_cache.h"
 
 namespace servomill::sim::input {
-
-/// Place of the program of a result file, beside its resolved document.
-inline constexpr const char* kStoredProgram = "/inputs/program";
 
 /// Reads every file once and keeps it, however often it is asked for, so that what happens to a
 /// file during a sweep does not matter. Beyond some bytes those asked for least recently are
@@ -27,7 +26,13 @@ class InputFiles {
 
   /// Takes a text for the file of that name, which need not be on a disk. Before it is asked for.
   void provide(const std::string& path, std::string text);
-  bool is_provided(const std::string& path) const { return provided_.contains(path); }
+
+  /// Takes the program of a result file, which is stored beside the resolved document.
+  void provide_program(std::shared_ptr<const StoredText> program) {
+    provided_program_ = std::move(program);
+  }
+  /// nullptr if there is none.
+  const std::shared_ptr<const StoredText>& provided_program() const { return provided_program_; }
 
   /// @param at    where the file was named; without a file: the complaint stands in `path`
   /// @param what  "program", "machine": for the message
@@ -35,8 +40,12 @@ class InputFiles {
   std::shared_ptr<const std::string> text(const std::string& path, const Place& at,
                                           std::string_view what);
 
+  /// The same of a program or a subroutine, which may be long.
+  std::shared_ptr<const StoredText> program(const std::string& path, const Place& at,
+                                            std::string_view what);
+
   /// A number that other contents of a file do not have: CRC-64 of ECMA-182, as xz takes it.
-  /// @throws InputError as text() does
+  /// @throws InputError as text() does, unless the file was read before
   std::uint64_t checksum(const std::string& path, const Place& at, std::string_view what);
 
   /// A scenario.
@@ -49,12 +58,16 @@ class InputFiles {
                                                    const std::string& text);
 
  private:
+  void refuse_changed(const std::string& path, std::uint64_t checksum);
+
   system::SharedCache<std::string> texts_;
+  system::SharedCache<StoredText> programs_;
   system::SharedCache<config::Document> documents_;
   std::mutex mutex_;
   std::unordered_map<std::string, std::uint64_t> checksums_;  // by path, of all that was read
   // by path; constant once files are asked for
   std::unordered_map<std::string, std::shared_ptr<const std::string>> provided_;
+  std::shared_ptr<const StoredText> provided_program_;
 };
 
 }  // namespace servomill::sim::input

@@ -26,32 +26,59 @@ namespace {
 
 constexpr double kLongestTool = 100.0;  // m: farther places are slips, and overflow
 
-// A program becomes a text of the result file, which is UTF-8 without NUL.
-void refuse_unwritable(const std::string& file, std::string_view text) {
-  int line = 1, column = 1;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = system::utf8_length(text.substr(i));
-    const auto byte = static_cast<unsigned char>(text[i]);
+// Goes through characters and keeps the place of the next one.
+class CharacterCheck {
+ public:
+  explicit CharacterCheck(const std::string& file) : file_(file) {}
+
+  // The length of the character that a text begins with.
+  // @throws InputError if it cannot be written as UTF-8 without NUL
+  std::size_t pass(std::string_view text) {
+    const std::size_t length = system::utf8_length(text);
+    const auto byte = static_cast<unsigned char>(text.front());
     if (length == 0) {
-      throw InputError({file, line, column},
+      throw InputError({file_, line_, column_},
                        fmt::format("byte 0x{:02x} is not UTF-8; save the program as UTF-8", byte));
     }
-    if (byte == 0) throw InputError({file, line, column}, "byte 0x00 is not allowed in a program");
-    i += length;
-    column = byte == '\n' ? 1 : column + 1;
-    if (byte == '\n') ++line;
+    if (byte == 0) {
+      throw InputError({file_, line_, column_}, "byte 0x00 is not allowed in a program");
+    }
+    column_ = byte == '\n' ? 1 : column_ + 1;
+    if (byte == '\n') ++line_;
+    return length;
   }
+
+ private:
+  const std::string& file_;
+  int line_ = 1, column_ = 1;
+};
+
+// A program becomes a text of the result file, which is UTF-8 without NUL.
+void refuse_unwritable(const std::string& file, const StoredText& text) {
+  constexpr std::size_t kLongest = 4;  // bytes of a character
+  CharacterCheck check(file);
+  std::string ahead;  // a character that a piece cuts, and the piece after it
+  std::size_t taken = 0;
+  text.each_piece([&](std::string_view piece) {
+    ahead += piece;
+    taken += piece.size();
+    const bool is_last = taken == text.size();
+    const std::size_t end = is_last ? ahead.size() : ahead.size() - (kLongest - 1);
+    std::size_t at = 0;
+    while (at < end) at += check.pass(std::string_view(ahead).substr(at));
+    ahead.erase(0, at);
+  });
 }
 
 // Files of subroutines that a text may call, and those that they may call in turn.
-void read_subroutines(const std::shared_ptr<const std::string>& text, const Place& at,
+void read_subroutines(const std::shared_ptr<const StoredText>& text, const Place& at,
                       InputFiles& files, model::ProgramSpec& program) {
   for (const std::string& name : controllers::called_subroutines(
            controllers::ProgramText::of_shared_text(text, program.file))) {
     const std::string file = subroutine_file(program.file, name);
     if (program.subroutines.contains(name) || !std::filesystem::is_regular_file(file)) continue;
-    const std::shared_ptr<const std::string> called = files.text(file, at, "subroutine");
-    program.subroutines[name] = *called;
+    const std::shared_ptr<const StoredText> called = files.program(file, at, "subroutine");
+    program.subroutines[name] = called->all();
     refuse_unwritable(file, *called);
     read_subroutines(called, at, files, program);
   }
@@ -72,26 +99,27 @@ bool is_stored_beside(config::Reader& table) {
 void read_text(config::Reader& table, InputFiles& files, model::ProgramSpec& program) {
   program.file = table.text("file");
   if (table.has("text") && !is_outdated_copy(table, "file", "text")) {
-    program.shared_text = std::make_shared<const std::string>(table.text("text"));
+    program.shared_text = std::make_shared<const StoredText>(table.text("text"));
     read_stored_subroutines(table, program);
-  } else if (is_stored_beside(table) && files.is_provided(kStoredProgram)) {
-    program.shared_text = files.text(kStoredProgram, table.place("file"), "program");
+  } else if (is_stored_beside(table) && files.provided_program() != nullptr) {
+    program.shared_text = files.provided_program();
     read_stored_subroutines(table, program);
   } else if (!program.file.empty()) {
     for (const char* stored : {"text", "subroutines"}) table.raw(stored);
     const Place at = table.place("file");
     program.file = beside(at, program.file);
-    program.shared_text = files.text(program.file, at, "program");
+    program.shared_text = files.program(program.file, at, "program");
     read_subroutines(program.shared_text, at, files, program);
   }
-  if (is_stored_beside(table) && table.text("text_checksum") != checksum_text(program.text())) {
+  if (is_stored_beside(table) &&
+      table.text("text_checksum") != checksum_text(*program.shared_text)) {
     table.fault("text_checksum",
                 fmt::format("differs from that of {}: the program has changed", program.file));
   }
   if (table.is("file", config::Value::Type::text) && table.text("file").empty()) {
     table.fault("file", "must not be empty");
   }
-  refuse_unwritable(program.file, program.text());
+  refuse_unwritable(program.file, *program.shared_text);
 }
 
 // The program of tests.
@@ -104,7 +132,7 @@ void use_program_of(const model::MachineTests& tests, const JointLayout& layout,
   if (std::any_of(tests.begin(), tests.end(), [](const auto& one) { return !one->moves(); })) {
     return;  // its faults are reported
   }
-  program.shared_text = std::make_shared<const std::string>(model::program_of(tests, layout));
+  program.shared_text = std::make_shared<const StoredText>(model::program_of(tests, layout));
 }
 
 // "#101", "#<name>" or "Q5"
@@ -166,8 +194,8 @@ std::set<int> read_ignored_codes(config::Reader& table, const std::set<int>& fal
   return out;
 }
 
-std::string checksum_text(std::string_view program) {
-  return fmt::format("{:016x}", crc64(program));
+std::string checksum_text(const StoredText& program) {
+  return fmt::format("{:016x}", crc64_in_pieces(program));
 }
 
 model::ProgramSpec read_program(config::Reader& table, const model::MachineSettings& machine,

@@ -3,7 +3,6 @@
 
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "plant/vocabulary/axes.h"
 #include "sim/config/reader.h"
@@ -21,7 +20,7 @@ model::ProgramSpec read_program(config::Reader& table, const model::MachineSetti
                                 InputFiles& files, const model::MachineTests& tests);
 
 /// CRC-64 of a program, as a resolved document has it of a long one: 16 hexadecimal digits.
-std::string checksum_text(std::string_view program);
+std::string checksum_text(const StoredText& program);
 
 /// Program words such as X_mm = 1.5.
 /// @param layout  of the machine; empty where that could not be read: any words are then taken

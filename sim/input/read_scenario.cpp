@@ -114,10 +114,10 @@ class ScenarioReader {
     config::Value program;
     program.key = "program";
     // the program of [[test]] follows from its keys
-    const std::string& code = out_.program.text();
+    const StoredText& code = *out_.program.shared_text;
     constexpr std::size_t kLongest = 1'000'000;  // bytes
     if (out_.tests.empty() && code.size() <= kLongest) {
-      program.children.push_back(text_value("text", code));
+      program.children.push_back(text_value("text", code.all()));
     } else if (out_.tests.empty()) {
       program.children.push_back(text_value("text_checksum", checksum_text(code)));
     }
@@ -340,9 +340,9 @@ std::shared_ptr<const model::Scenario> shared_scenario(const std::string& path,
 }
 
 model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,
-                                       std::optional<std::string> program) {
+                                       std::shared_ptr<const StoredText> program) {
   InputFiles files;
-  if (program) files.provide(kStoredProgram, *std::move(program));
+  files.provide_program(std::move(program));
   return read_document(with_machine(config::Document::from_text(resolved, name), {}, files), name,
                        files);
 }

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/model/forward.h"
+
+namespace servomill {
+class StoredText;
+}  // namespace servomill
 
 namespace servomill::sim::input {
 
@@ -25,9 +28,9 @@ std::shared_ptr<const model::Scenario> shared_scenario(
 
 /// Reads a resolved document and the program stored with it in a result file. The document contains
 /// a short program itself, and the checksum of a long one.
-/// @param program  none: a long program is read from its file
+/// @param program  nullptr: a long program is read from its file
 model::Scenario read_resolved_scenario(const std::string& resolved, const std::string& name,
-                                       std::optional<std::string> program = {});
+                                       std::shared_ptr<const StoredText> program = nullptr);
 
 /// Common part of both: reads the document with the machine in it (sim/input/scenario_document.h).
 /// @param files  where the program is looked for

@@ -18,6 +18,7 @@
 #include "plant/geometry/error_model.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/parameters.h"
+#include "plant/vocabulary/stored_text.h"
 #include "sim/metrology/cmm.h"
 #include "sim/metrology/probing_plan.h"
 #include "sim/model/design.h"
@@ -40,7 +41,7 @@ struct WorkingDay;   // sim/model/working_day.h
 struct ProgramSpec {
   std::string file;  // as messages name it
   // of the program; what is made of a scenario shares it
-  std::shared_ptr<const std::string> shared_text = std::make_shared<const std::string>();
+  std::shared_ptr<const StoredText> shared_text = std::make_shared<const StoredText>();
   std::map<std::string, std::string> subroutines;  // texts of NAME.ngc beside the program, by NAME
   std::map<std::string, double> parameters;        // "#101" -> value
   controllers::Reader reader = controllers::Reader::any;
@@ -55,7 +56,8 @@ struct ProgramSpec {
   std::map<int, plant::Cutter> cutters;  // of the tools with a diameter, by number
   std::set<int> assumed_teeth;           // cutters whose number of teeth is not given
 
-  const std::string& text() const { return *shared_text; }
+  /// Copies the text, which should be short.
+  std::string text() const { return shared_text->all(); }
 };
 
 /// Instrument that shows the deviation of an actual run.

@@ -15,6 +15,7 @@
 #include "plant/drives/prepared_drives.h"
 #include "plant/geometry/volumetric.h"
 #include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/stored_text.h"
 #include "sim/engine/cutting_load.h"
 #include "sim/engine/program_path.h"
 #include "sim/model/forward.h"
@@ -54,7 +55,7 @@ struct InterpretedProgram {
   /// The first feed in coordinates that the program has shifted; nullptr: none is.
   std::optional<Move> first_shifted_feed() const;
 
-  std::shared_ptr<const std::string> text;  // of the program, if a key names it
+  std::shared_ptr<const StoredText> text;  // of the program, if a key names it
   MoveList moves;
   std::vector<Fault> warnings;
   std::vector<Touch> touches;                           // of its probing moves
@@ -73,7 +74,7 @@ struct RewrittenProgram {
   SharedMoves original;
   std::shared_ptr<const strategies::Strategy> strategy;
   MoveList moves;
-  std::string text;
+  std::shared_ptr<const StoredText> text;
 };
 
 /// The planned motion of some moves.

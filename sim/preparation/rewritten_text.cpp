@@ -199,9 +199,12 @@ RewrittenText through_text(const std::vector<Move>& rewritten,
     if (axis) options.axes += letter(*axis);
   }
   RewrittenText out;
-  out.text = controllers::print_program(rewritten, options, request.header).text;
+  out.text = std::make_shared<const StoredText>(
+      controllers::print_program(rewritten, options, request.header).text);
   controllers::Interpreter interpreter(
-      out.text, fmt::format("{} as rewritten for case {}", request.program_file, request.case_name),
+      controllers::ProgramText::of_shared_text(
+          out.text,
+          fmt::format("{} as rewritten for case {}", request.program_file, request.case_name)),
       request.setup);
   ReadBack read_back(rewritten, request);
   while (const Move* next = interpreter.next()) out.moves.push_back(read_back.take(*next));

@@ -1,6 +1,7 @@
 /// Rewritten programs as the text that leaves the simulation.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,11 +9,12 @@
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/move.h"
 #include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/stored_text.h"
 
 namespace servomill::sim::preparation {
 
 struct RewrittenText {
-  std::string text;
+  std::shared_ptr<const StoredText> text;
   MoveList moves;  // as read back; lines and arc lengths are those of the original
 };
 

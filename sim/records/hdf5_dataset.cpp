@@ -41,15 +41,29 @@ void Hdf5Dataset::refer_to_scales(std::span<Hdf5Dataset* const> scales) {
   written(H5Awrite(attribute.get(), type.get(), list.data()), id_.get());
 }
 
+// Replaces values of a list, from `first` on.
+void Hdf5Dataset::write(std::size_t first, std::size_t count, std::int64_t type,
+                        const void* values) {
+  const hsize_t begin = first, size = count;
+  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
+  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &size, nullptr);
+  const Hdf5Handle in_memory = hdf5_handle(H5Screate_simple(1, &size, nullptr));
+  written(H5Dwrite(id_.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, values),
+          id_.get());
+}
+
 void Hdf5Dataset::write(std::size_t first, std::span<const double> values) {
   const Hdf5Lock lock;
-  const hsize_t begin = first, count = values.size();
-  const Hdf5Handle in_file(written(H5Dget_space(id_.get()), id_.get()));
-  H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
-  const Hdf5Handle in_memory = hdf5_handle(H5Screate_simple(1, &count, nullptr));
-  written(H5Dwrite(id_.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT,
-                   values.data()),
-          id_.get());
+  write(first, values.size(), H5T_NATIVE_DOUBLE, values.data());
+}
+
+void Hdf5Dataset::write(const StoredText& text) {
+  const Hdf5Lock lock;
+  std::size_t at = 0;
+  text.each_piece([&](std::string_view piece) {
+    write(at, piece.size(), H5T_C_S1, piece.data());
+    at += piece.size();
+  });
 }
 
 void Hdf5Dataset::write_text(std::size_t row, std::string_view text) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plant/vocabulary/stored_text.h"
 #include "sim/records/hdf5_object.h"
 #include "sim/records/meaning.h"
 
@@ -29,6 +30,9 @@ class Hdf5Dataset : public Hdf5Object {
 
   /// Replaces numbers of a dataset of fixed size, from row `first` on.
   void write(std::size_t first, std::span<const double> values);
+  /// Fills a list of characters.
+  /// @pre it is as long as the text
+  void write(const StoredText& text);
   /// Replaces one row of texts. A text longer than the room ends with "...".
   void write_text(std::size_t row, std::string_view text);
 
@@ -41,6 +45,7 @@ class Hdf5Dataset : public Hdf5Object {
  private:
   friend class Hdf5Group;
   Hdf5Dataset(Hdf5Handle id, std::size_t columns);
+  void write(std::size_t first, std::size_t count, std::int64_t type, const void* values);
 
   std::size_t rows_ = 0;
   std::size_t columns_;

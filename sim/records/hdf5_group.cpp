@@ -106,6 +106,7 @@ struct Hdf5Group::Layout {
   Hdf5Handle space;                      // one value, a list or rows of columns
   const void* values = nullptr;          // none: the dataset is filled later
   hid_t value_type = H5T_NATIVE_DOUBLE;  // of these values
+  const StoredText* text = nullptr;      // in place of values
   Hdf5Handle creation = dataset_creation();
   hid_t access = H5P_DEFAULT;
 };
@@ -122,6 +123,7 @@ Hdf5Dataset Hdf5Group::create(const std::string& name, const Layout& layout,
                      layout.values),
             id_.get());
   }
+  if (layout.text != nullptr) dataset.write(*layout.text);
   dataset.attribute("units", meaning.units);
   dataset.attribute("long_name", meaning.long_name);
   return dataset;
@@ -193,15 +195,13 @@ Hdf5Dataset Hdf5Group::labels(const std::string& name, std::string_view letters,
   return dataset;
 }
 
-void Hdf5Group::write_text(const std::string& name, const std::string& text) {
+// A chunk is a piece, so that each is encoded once.
+void Hdf5Group::write_text(const std::string& name, const StoredText& text) {
   constexpr std::size_t kLongest = 1'000'000;  // bytes of an attribute
-  constexpr hsize_t kChunk = 1U << 20U;
-  if (text.size() <= kLongest) return attribute(name, text);
+  constexpr hsize_t kChunk = StoredText::kPiece;
+  if (text.size() <= kLongest) return attribute(name, text.all());
   const Hdf5Lock lock;
-  Layout layout{.type = H5T_C_S1,
-                .space = list_space(text.size()),
-                .values = text.data(),
-                .value_type = H5T_C_S1};
+  Layout layout{.type = H5T_C_S1, .space = list_space(text.size()), .text = &text};
   H5Pset_chunk(layout.creation.get(), 1, &kChunk);
   H5Pset_deflate(layout.creation.get(), 1);
   Hdf5Dataset dataset = create(name, layout, {"1", name});

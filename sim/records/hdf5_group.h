@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "plant/vocabulary/stored_text.h"
 #include "sim/records/chunk_encoder.h"
 #include "sim/records/hdf5_dataset.h"
 
@@ -60,8 +61,8 @@ class Hdf5Group : public Hdf5Object {
                      const std::string& long_name);
 
   /// A text: an attribute or, of more than a megabyte, a list of characters of that name, which is
-  /// compressed and need not be held twice.
-  void write_text(const std::string& name, const std::string& text);
+  /// compressed and written in pieces.
+  void write_text(const std::string& name, const StoredText& text);
 
   /// One value.
   void scalar(const std::string& name, double value, const Meaning& meaning);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -200,26 +201,40 @@ Meaning InputFile::meaning(const std::string& dataset) const {
   return {std::move(units), std::move(long_name)};
 }
 
-std::string InputFile::long_text(const std::string& dataset) const {
+StoredText InputFile::long_text(const std::string& dataset) const {
   const auto size = shape(dataset);
   if (size.size() != 1 || holds_numbers(dataset)) fail(fmt::format("'{}' is not a text", dataset));
   const Hdf5Handle id = open(dataset);
-  std::string out(size[0], '\0');
-  if (H5Dread(id.get(), H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
-    fail(fmt::format("'{}' cannot be read: {}", dataset, hdf5_reason()));
+  const Hdf5Handle in_file(H5Dget_space(id.get()));
+  StoredText out;
+  out.reserve(size[0]);
+  std::string piece;
+  while (out.size() < size[0]) {
+    const hsize_t begin = out.size(), count = std::min(StoredText::kPiece, size[0] - out.size());
+    piece.resize(count);
+    const Hdf5Handle in_memory(H5Screate_simple(1, &count, nullptr));
+    H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
+    if (H5Dread(id.get(), H5T_C_S1, in_memory.get(), in_file.get(), H5P_DEFAULT, piece.data()) <
+        0) {
+      fail(fmt::format("'{}' cannot be read: {}", dataset, hdf5_reason()));
+    }
+    out.append(piece);
   }
   return out;
+}
+
+StoredText InputFile::stored_text(const std::string& object, const std::string& name) const {
+  const std::string dataset = object + "/" + name;
+  const Hdf5Lock lock;
+  if (!has_attribute(object, name) && has(dataset)) return long_text(dataset);
+  return StoredText(text(object, name));
 }
 
 std::string InputFile::text(const std::string& object, const std::string& name) const {
   const Hdf5Lock lock;
   const Hdf5Handle id = open(object);
   const Hdf5Handle attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT));
-  if (attribute.get() < 0) {
-    const std::string dataset = object + "/" + name;
-    if (has(dataset)) return long_text(dataset);
-    fail(without_attribute(object, name));
-  }
+  if (attribute.get() < 0) fail(without_attribute(object, name));
   const Hdf5Handle type(H5Aget_type(attribute.get()));
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) <= 0) {
     fail(fmt::format("attribute '{}' of '{}' is not a string", name, object));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/stored_text.h"
 #include "sim/records/meaning.h"
 
 namespace servomill::sim::records {
@@ -43,8 +44,10 @@ class InputFile {
                                  std::size_t count) const;
 
   bool has_attribute(const std::string& object, const std::string& name) const;
-  /// An attribute, or the list of characters that a long text is.
+  /// A text that is an attribute.
   std::string text(const std::string& object, const std::string& name) const;
+  /// A text as Hdf5Group::write_text() writes it; a long one is read in pieces.
+  StoredText stored_text(const std::string& object, const std::string& name) const;
   /// Unit of a dataset and its long name without it.
   Meaning meaning(const std::string& dataset) const;
   double number(const std::string& object, const std::string& name) const;
@@ -54,7 +57,7 @@ class InputFile {
   [[noreturn]] void fail(const std::string& message) const;
   std::vector<std::string> children(const std::string& group, bool groups) const;
   Hdf5Handle open(const std::string& object) const;
-  std::string long_text(const std::string& dataset) const;
+  StoredText long_text(const std::string& dataset) const;
   Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
 
   std::string path_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/vocabulary/stored_text.h"
 #include "sim/engine/case_result.h"
 #include "sim/evaluation/comparison.h"
 #include "sim/evaluation/part_fit.h"
@@ -39,8 +40,8 @@ struct LearntRuns {
 struct CaseOutput {
   std::string name;
   engine::CaseResult result;
-  std::string program;    // the rewritten program; empty: the original one ran
-  double duration = 0.0;  // s, of the program that the NC ran
+  std::shared_ptr<const StoredText> program;  // the rewritten one; nullptr: the original one ran
+  double duration = 0.0;                      // s, of the program that the NC ran
   double blocks = 0.0;
   std::vector<std::string> notes;  // what the NC put right or could not do as programmed
   std::vector<std::string> sections;

@@ -59,7 +59,7 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std
   records::make_nexus_group(inputs, "NXcollection");
   inputs.attribute("scenario", scenario.text);
   inputs.attribute("machine", scenario.machine_text);
-  inputs.write_text("program", scenario.program.text());
+  inputs.write_text("program", *scenario.program.shared_text);
   inputs.attribute("resolved", scenario.resolved);
 }
 
@@ -139,7 +139,7 @@ void RunStore::add(const CaseOutput& one) {
   group.attribute("duration_s", one.duration);
   group.attribute("blocks", static_cast<std::int64_t>(one.blocks));
   group.attribute("sections", fmt::format("{}", fmt::join(one.sections, "\n")));
-  if (!one.program.empty()) group.write_text("program", one.program);
+  if (one.program != nullptr) group.write_text("program", *one.program);
   if (!one.result.left_out.empty()) {
     group.attribute("rows_left_out", fmt::format("{}", fmt::join(one.result.left_out, "\n")));
   }

@@ -180,7 +180,8 @@ StoredRun read_run(const std::string& path) {
   run.scenario_name = file.text("/", "scenario");
   run.title = file.text("/", "title");
   const model::Scenario scenario = input::read_resolved_scenario(
-      file.text("/inputs", "resolved"), path + ":/inputs", file.text("/inputs", "program"));
+      file.text("/inputs", "resolved"), path + ":/inputs",
+      std::make_shared<const StoredText>(file.stored_text("/inputs", "program")));
   run.quantities = scenario.quantities;
   for (const std::string& name : file.groups("/cases")) {
     const std::string group = "/cases/" + name;

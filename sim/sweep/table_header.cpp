@@ -65,8 +65,9 @@ SweepHeader read_sweep_header(const records::InputFile& file) {
   }
   SweepHeader header;
   const std::string resolved = file.text("/inputs", "resolved");
-  header.base =
-      input::read_resolved_scenario(resolved, path + ":/inputs", file.text("/inputs", "program"));
+  header.base = input::read_resolved_scenario(
+      resolved, path + ":/inputs",
+      std::make_shared<const StoredText>(file.stored_text("/inputs", "program")));
   header.base.name = file.text("/", "scenario");
   header.base.text = file.text("/inputs", "scenario");
   header.base.machine_text = file.text("/inputs", "machine");

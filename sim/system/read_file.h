@@ -8,6 +8,10 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
 
+namespace servomill {
+class StoredText;
+}  // namespace servomill
+
 namespace servomill::sim::system {
 
 /// The bytes of a file, without a byte-order mark (UTF-8).
@@ -17,5 +21,8 @@ namespace servomill::sim::system {
 /// @throws InputError if it cannot be read
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
                       std::uintmax_t most = kMaxBytesOfFile);
+
+/// The same of a file that may be long.
+StoredText stored_file(const std::string& path, const Place& at, std::string_view what);
 
 }  // namespace servomill::sim::system

@@ -3,8 +3,9 @@
 
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
+
+#include "plant/vocabulary/stored_text.h"
 
 namespace servomill::sim::system {
 
@@ -12,14 +13,14 @@ namespace servomill::sim::system {
 /// Holds none of them itself. For any number of threads.
 class SharedTexts {
  public:
-  using Text = std::shared_ptr<const std::string>;
+  using Text = std::shared_ptr<const StoredText>;
 
   /// The text that equals this one and is still held by somebody, or else this one.
   Text shared(const Text& text);
 
  private:
   std::mutex mutex_;
-  std::vector<std::weak_ptr<const std::string>> known_;
+  std::vector<std::weak_ptr<const StoredText>> known_;
 };
 
 }  // namespace servomill::sim::system

@@ -163,9 +163,9 @@ class Bounds(unittest.TestCase):
             done = subprocess.run(run, capture_output=True, text=True, timeout=10 * LIMIT, check=False, cwd=self.folder,
                                   preexec_fn=limit_memory, env={**os.environ, "TMPDIR": disk})
             return done.returncode, done.stderr
-        self.assertEqual(said_with("100k"), (3, f"{disk}: error: moves of the program cannot be written: No space left on device; "
+        self.assertEqual(said_with("100k"), (3, f"{disk}: error: text of the program cannot be written: No space left on device; "
                                                  "TMPDIR chooses another folder\n"))
-        status, said = said_with("16m")
+        status, said = said_with("44m")
         self.assertEqual(status, 2, said)
         self.assertRegex(said, r"^long\.ngc: error: its planned motion takes about 0\.025 GB of temporary files; \S+/temporary has 0\.0\d+ GB free: "
                                r"choose another folder \(TMPDIR\)\n$")

@@ -76,7 +76,7 @@ py::dict description_of(const sim::run::CaseOutput& one) {
   out["computing_s"] = result.wall_time;
   out["blocks"] = one.blocks;
   out["sections"] = one.sections;
-  out["program"] = one.program;
+  out["program"] = one.program != nullptr ? one.program->all() : "";
   out["notes"] = one.notes;
   return out;
 }

@@ -55,7 +55,8 @@ sim::calibration::HeatReadings day_readings(const std::string& path, const Optio
   const sim::records::InputFile file(path);
   const std::string name = case_of(file, options);
   const sim::model::Scenario scenario = sim::input::read_resolved_scenario(
-      file.text("/inputs", "resolved"), path + ":/inputs", file.text("/inputs", "program"));
+      file.text("/inputs", "resolved"), path + ":/inputs",
+      std::make_shared<const StoredText>(file.stored_text("/inputs", "program")));
   refuse_compensated(scenario, name, path);
   const auto day = sim::run::read_day(file, "/cases/" + name + "/day");
   sim::calibration::HeatReadings out{path, day->sensors, {}};

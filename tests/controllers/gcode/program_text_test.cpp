@@ -9,6 +9,7 @@
 
 #include "controllers/gcode/interpreter.h"
 #include "plant/vocabulary/input_error.h"
+#include "plant/vocabulary/stored_text.h"
 
 namespace servomill::controllers::program_text_test {
 namespace {
@@ -31,8 +32,9 @@ std::vector<std::string> lines_of(ProgramText text) {
   return lines;
 }
 
-ProgramText shared(const std::string& text) {
-  return ProgramText::of_shared_text(std::make_shared<const std::string>(text), "p.nc");
+ProgramText shared(const std::string& text, std::size_t most_in_memory = StoredText::kMaxInMemory) {
+  return ProgramText::of_shared_text(std::make_shared<const StoredText>(text, most_in_memory),
+                                     "p.nc");
 }
 
 using Lines = std::vector<std::string>;
@@ -90,6 +92,25 @@ TEST(ProgramText, GoesBackToAnyLineOfALongFile) {
 
 TEST(ProgramText, GoesBackToAnyLineOfASharedText) {
   expect_to_go_back(shared(numbered_lines(50'000)));
+}
+
+TEST(ProgramText, GoesBackToAnyLineOfATextOnTheDisk) {
+  std::string text;
+  while (text.size() < 3 * StoredText::kPiece) text += std::string(100, ' ') + "\n";
+  const auto lines = static_cast<int>(text.size() / 101);
+  text += numbered_lines(50'000);
+  ProgramText program = shared(text, 0);
+  std::string_view line;
+  for (int n = 0; n < lines; ++n) program.next(line);
+  const ProgramText::Mark mark = program.mark();
+  for (int n = 1; n <= 50'000; ++n) {
+    ASSERT_TRUE(program.next(line));
+    ASSERT_EQ(line, "line " + std::to_string(n));
+  }
+  EXPECT_FALSE(program.next(line));
+  program.go_to(mark);
+  ASSERT_TRUE(program.next(line));
+  EXPECT_EQ(line, "line 1");
 }
 
 TEST(ProgramText, LeavesOutAByteOrderMarkOfASharedText) {

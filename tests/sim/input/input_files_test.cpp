@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "plant/vocabulary/checksum.h"
+
 namespace servomill::sim::input::input_files_test {
 namespace {
 
@@ -39,6 +41,43 @@ TEST_F(Files, AreRefusedWhenForgottenAndChanged) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(), path_ + ": error: has changed since it was first read");
+  }
+}
+
+TEST_F(Files, HoldLongProgramsOnTheDisk) {
+  std::string program = "(long)\n";
+  while (program.size() <= StoredText::kMaxInMemory) program += "G1 X1 Y2\n";
+  write("\xEF\xBB\xBF" + program);
+  InputFiles files;
+  const auto read = files.program(path_, {}, "program");
+  EXPECT_TRUE(read->is_on_disk());
+  EXPECT_EQ(read->all(), program);  // without its byte-order mark
+  EXPECT_EQ(files.program(path_, {}, "program"), read);
+  EXPECT_EQ(files.checksum(path_, {}, "program"), crc64(program));
+}
+
+TEST_F(Files, AreRefusedWhenAForgottenProgramHasChanged) {
+  InputFiles files(1);
+  const std::string other = SERVOMILL_SOURCE_DIR "/tests/cli/gallery/part.ngc";
+  files.program(path_, {}, "program");
+  files.program(other, {}, "program");
+  write("after");
+  try {
+    files.program(path_, {"scenario.toml", 3}, "program");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), path_ + ": error: has changed since it was first read");
+  }
+}
+
+TEST_F(Files, NameTheProgramThatCannotBeRead) {
+  try {
+    InputFiles().program("/nowhere/p.ngc", {"scenario.toml", 3}, "program");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "scenario.toml:3: error: program '/nowhere/p.ngc' cannot be read: No such file or "
+                 "directory");
   }
 }
 

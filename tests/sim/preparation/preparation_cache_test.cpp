@@ -137,7 +137,7 @@ std::string prepared(const model::Scenario& scenario, PreparationCache* cache) {
       all.add(in.path.length());
       all.add(in.path.piece(0).end);
       const run::CaseOutput out = run::output_of(one, {});
-      all.add(std::string_view(out.program));
+      all.add(out.program != nullptr ? out.program->all() : std::string());
       all.add(out.blocks);
     }
   } catch (const InputError& error) {

@@ -306,7 +306,7 @@ std::string expect_times(const strategies::Strategy& strategy, const std::string
   for (const auto& [line, time] : wanted) {
     EXPECT_NEAR(found.at(line), time, 1e-4 * time) << "line " << line << "\n" << program;
   }
-  return out.text;
+  return out.text->all();
 }
 
 strategies::Acting tip_correction() {

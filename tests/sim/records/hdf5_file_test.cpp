@@ -84,6 +84,30 @@ TEST_F(Hdf5File, GivesBackWhatWasWritten) {
   EXPECT_FALSE(in.has_attribute("/cases", "program"));
 }
 
+TEST_F(Hdf5File, GivesBackTextsOfAnyLength) {
+  std::string big;
+  while (big.size() < 2 * StoredText::kPiece) big += std::to_string(big.size()) + "\n";
+  big += "the end";
+  for (const std::size_t most_in_memory : {std::size_t{0}, StoredText::kMaxInMemory}) {
+    {
+      OutputFile out(path("out.h5"), true);
+      Hdf5Group inputs = out.root().group("inputs");
+      inputs.write_text("long", StoredText(big, most_in_memory));
+      inputs.write_text("short", StoredText("G1 X1\n", most_in_memory));
+      inputs.write_text("none", StoredText());
+      out.commit();
+    }
+    const InputFile in(path("out.h5"));
+    EXPECT_TRUE(in.stored_text("/inputs", "long").all() == big);
+    EXPECT_EQ(in.shape("/inputs/long"), std::vector<std::size_t>{big.size()});
+    EXPECT_EQ(in.stored_text("/inputs", "short").all(), "G1 X1\n");
+    EXPECT_EQ(in.text("/inputs", "short"), "G1 X1\n");
+    EXPECT_TRUE(in.stored_text("/inputs", "none").empty());
+    EXPECT_EQ(message([&] { in.stored_text("/inputs", "other"); }),
+              "out.h5: error: '/inputs' has no attribute 'other'");
+  }
+}
+
 TEST_F(Hdf5File, HasItsNameOnlyAfterCommit) {
   {
     OutputFile out(path("out.h5"), false);

@@ -5,7 +5,7 @@
 namespace servomill::sim::system::shared_texts_test {
 namespace {
 
-SharedTexts::Text text(const char* of) { return std::make_shared<const std::string>(of); }
+SharedTexts::Text text(const char* of) { return std::make_shared<const StoredText>(of); }
 
 TEST(SharedTexts, EqualTextsAreOne) {
   SharedTexts texts;
@@ -19,7 +19,7 @@ TEST(SharedTexts, EqualTextsAreOne) {
 TEST(SharedTexts, HoldsNone) {
   SharedTexts texts;
   auto one = text("G1 X1");
-  const std::weak_ptr<const std::string> held = texts.shared(one);
+  const std::weak_ptr<const StoredText> held = texts.shared(one);
   one.reset();
   EXPECT_TRUE(held.expired());
   const auto same = text("G1 X1");
