@@ -35,7 +35,7 @@ AxisWords words_of(const JointLayout& layout, const double* Q) { return layout.w
 
 // Each motion and where it begins, in machine coordinates.
 template <class Visit>
-void each_motion(const std::vector<Move>& moves, const AxisWords& start, Visit visit) {
+void each_motion(const MoveRange& moves, const AxisWords& start, Visit visit) {
   AxisWords from = start;
   for (const Move& move : moves) {
     if (!is_motion(move.kind)) continue;
@@ -49,7 +49,7 @@ void each_motion(const std::vector<Move>& moves, const AxisWords& start, Visit v
 struct CProgram::Parts {
   struct Motion {
     AxisWords from;
-    const Move* move;
+    Move move;
   };
   JointLayout layout;
   std::vector<Motion> motions;
@@ -65,7 +65,7 @@ struct CProgram::Parts {
       return;
     }
     const auto& [from, move] = parts.motions[motion];
-    const Joints at = parts.layout.joints(MoveCurve(from, *move).at(share));
+    const Joints at = parts.layout.joints(MoveCurve(from, move).at(share));
     std::copy_n(at.data(), kJoints, Q);
   }
 
@@ -79,7 +79,7 @@ struct CProgram::Parts {
   }
 };
 
-CProgram::CProgram(const std::vector<Move>& moves, const JointLayout& layout, const Joints& start)
+CProgram::CProgram(const MoveRange& moves, const JointLayout& layout, const Joints& start)
     : parts_(new Parts{.layout = layout,
                        .motions = {},
                        .seen = {},
@@ -88,7 +88,7 @@ CProgram::CProgram(const std::vector<Move>& moves, const JointLayout& layout, co
                        .program = {}}) {
   Parts& parts = *parts_;
   each_motion(moves, layout.words(start), [&](const AxisWords& from, const Move& move) {
-    parts.motions.push_back({from, &move});
+    parts.motions.push_back({from, move});
     servomill_move one{};
     one.size = sizeof one;
     one.kind = kind_of(move.kind);
@@ -123,29 +123,30 @@ namespace {
 class Replacing {
  public:
   Replacing(const std::vector<servomill_block>& blocks, const JointLayout& layout,
-            const Joints& start, bool displaces_rotary)
+            const Joints& start, bool displaces_rotary, const PutMove& put)
       : blocks_(blocks),
         layout_(layout),
         displaces_rotary_(displaces_rotary),
+        put_(put),
         from_(layout.words(start)),
         at_(from_) {}
 
-  std::vector<Move> run(const std::vector<Move>& moves) {
+  // @return why a block cannot be; empty if all can
+  std::string run(const MoveRange& moves) {
     for (const Move& move : moves) {
       if (!wrong_.empty()) break;
       if (is_motion(move.kind)) {
         replace(move);
       } else {
-        out_.push_back(move);
+        put_(move);
       }
     }
     if (wrong_.empty() && next_ < blocks_.size()) {
       wrong_ = fmt::format("block {} refers to motion {} after motion {}, or to a missing motion",
                            next_ + 1, blocks_[next_].move, next_ > 0 ? blocks_[next_ - 1].move : 0);
     }
-    return std::move(out_);
+    return wrong_;
   }
-  const std::string& wrong() const { return wrong_; }
 
  private:
   void replace(const Move& move) {
@@ -179,7 +180,7 @@ class Replacing {
                       move.kind == MoveKind::arc ? "arc" : "spline", move.line);
     }
     at_ = move.end_machine;
-    out_.push_back(move);
+    put_(move);
   }
 
   std::string wrong_with(const servomill_block& block, double share_before,
@@ -235,31 +236,27 @@ class Replacing {
     out.feed *= unit * block.feed_factor;
     if (out.feed_mode == FeedMode::units_per_revolution) out.value *= unit * block.feed_factor;
     at_ = end;
-    out_.push_back(std::move(out));
+    put_(out);
   }
 
   const std::vector<servomill_block>& blocks_;
   const JointLayout& layout_;
   bool displaces_rotary_;
+  const PutMove& put_;
   AxisWords from_, at_;  // programmed, with blocks
-  std::vector<Move> out_;
   std::size_t motion_ = 0, next_ = 0;
   std::string wrong_;
 };
 
 }  // namespace
 
-std::vector<Move> with_blocks(const std::vector<Move>& moves,
-                              const std::vector<servomill_block>& blocks, const JointLayout& layout,
-                              const Joints& start, bool displaces_rotary, std::string& wrong) {
+std::string put_with_blocks(const MoveRange& moves, const std::vector<servomill_block>& blocks,
+                            const JointLayout& layout, const Joints& start, bool displaces_rotary,
+                            const PutMove& put) {
   if (blocks.size() > kMaxPluginBlocks) {
-    wrong = fmt::format("adds more than {} blocks", kMaxPluginBlocks);
-    return {};
+    return fmt::format("adds more than {} blocks", kMaxPluginBlocks);
   }
-  Replacing replacing(blocks, layout, start, displaces_rotary);
-  std::vector<Move> out = replacing.run(moves);
-  wrong = replacing.wrong();
-  return out;
+  return Replacing(blocks, layout, start, displaces_rotary, put).run(moves);
 }
 
 }  // namespace servomill::strategies

@@ -308,7 +308,7 @@ class CStrategy final : public Strategy {
     return std::make_unique<CPositionLoop>(made_, period);
   }
   bool rewrites() const override { return made_->declared->rewrite != nullptr; }
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override;
+  void rewrite(const MoveRange& moves, const PutMove& put) const override;
   bool displaces_feedback() const override { return made_->declared->displacement != nullptr; }
   bool displaces_rotary() const override { return made_->declared->displaces_rotary != 0; }
   std::unique_ptr<FeedbackPart> feedback(double model_period) const override {
@@ -321,17 +321,15 @@ class CStrategy final : public Strategy {
   std::shared_ptr<const Made> made_;
 };
 
-std::vector<Move> CStrategy::rewrite(const std::vector<Move>& moves) const {
-  if (!rewrites()) return moves;
+void CStrategy::rewrite(const MoveRange& moves, const PutMove& put) const {
+  if (!rewrites()) return Strategy::rewrite(moves, put);
   const IdentifiedModel& identified = made_->identified;
+  std::vector<servomill_block> blocks;
   std::string wrong;
   try {
     CProgram program(moves, identified.layout, identified.reference);
-    const std::vector<servomill_block> blocks =
+    blocks =
         plugins_are_isolated() ? isolated_blocks_of(made_, program) : blocks_of(made_, program);
-    std::vector<Move> out = with_blocks(moves, blocks, identified.layout, identified.reference,
-                                        displaces_rotary(), wrong);
-    if (wrong.empty()) return out;
   } catch (const Interrupted&) {
     throw;
   } catch (const PluginFailed&) {
@@ -341,6 +339,11 @@ std::vector<Move> CStrategy::rewrite(const std::vector<Move>& moves) const {
   } catch (...) {
     wrong = "an exception of unknown type";
   }
+  if (wrong.empty()) {
+    wrong = put_with_blocks(moves, blocks, identified.layout, identified.reference,
+                            displaces_rotary(), put);
+  }
+  if (wrong.empty()) return;
   throw PluginFailed(fmt::format("strategy {}: rewrite: {}", made_->declared->name, wrong));
 }
 

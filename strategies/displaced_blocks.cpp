@@ -19,16 +19,16 @@
 namespace servomill::strategies {
 namespace {
 
-// Displaces one programmed move after the other and appends the blocks that result.
+// Displaces one programmed move after the other and hands out the blocks that result.
 class Rewriter {
  public:
   Rewriter(const IdentifiedMachine& identified, const BlockLimits& limits,
-           PointDisplacement& displacement, std::vector<Move>& out)
+           PointDisplacement& displacement, const PutMove& put)
       : identified_(identified),
         limits_(limits),
         displacement_(displacement),
         inverse_(nominal_inverse(identified)),
-        out_(out),
+        put_(put),
         Q_(identified.reference),
         out_at_(identified.layout.words(identified.reference)) {}
 
@@ -188,7 +188,7 @@ class Rewriter {
     out_at_ = target.words;
     s_ = block.s_end;
     t_ = target.t;
-    out_.push_back(std::move(block));
+    put_(block);
   }
 
   // A move that stands has F in degrees; displaced, X, Y and Z go where the one before left them.
@@ -214,7 +214,7 @@ class Rewriter {
   const BlockLimits& limits_;
   PointDisplacement& displacement_;
   plant::InverseKinematics inverse_;
-  std::vector<Move>& out_;
+  const PutMove& put_;
   Joints Q_;  // as programmed, where the move begins
   const Move* move_ = nullptr;
   const ProgrammedWay* way_ = nullptr;
@@ -222,9 +222,10 @@ class Rewriter {
   double s_ = 0.0, t_ = 0.0;
 };
 
-// Before the work: a program in blocks of a micrometre is larger than the memory.
-void refuse_too_many(const std::vector<Move>& moves, const BlockLimits& limits) {
-  constexpr double kMaxBlocks = 5e6;
+// Before the work: a program in blocks of a micrometre is a slip. So many blocks take some 15 GB of
+// temporary files with their plan, 0.5 GB of memory, and minutes.
+void refuse_too_many(const MoveRange& moves, const BlockLimits& limits) {
+  constexpr double kMaxBlocks = 5e7;
   double blocks = 0.0;
   for (const Move& move : moves) {
     if (move.kind != MoveKind::rapid) blocks += (move.s_end - move.s_begin) / limits.max_block;
@@ -272,21 +273,19 @@ BlockLimits block_limits_of(const Parameters& p) {
   return out;
 }
 
-std::vector<Move> displaced_blocks(const std::vector<Move>& moves,
-                                   const IdentifiedMachine& identified, const BlockLimits& limits,
-                                   PointDisplacement& displacement) {
+void put_displaced_blocks(const MoveRange& moves, const IdentifiedMachine& identified,
+                          const BlockLimits& limits, PointDisplacement& displacement,
+                          const PutMove& put) {
   refuse_too_many(moves, limits);
-  std::vector<Move> out;
-  Rewriter rewriter(identified, limits, displacement, out);
+  Rewriter rewriter(identified, limits, displacement, put);
   for (const Move& move : moves) {
     throw_if_interrupted();
     if (is_motion(move.kind)) {
       rewriter.rewrite(move);
     } else {
-      out.push_back(move);
+      put(move);
     }
   }
-  return out;
 }
 
 }  // namespace servomill::strategies

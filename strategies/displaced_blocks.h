@@ -13,16 +13,16 @@
 #include <array>
 #include <span>
 #include <stdexcept>
-#include <vector>
 
 #include "plant/geometry/reversal_memory.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
 #include "plant/vocabulary/parameters.h"
+#include "plant/vocabulary/put_move.h"
 #include "strategies/strategy.h"
 
 namespace servomill::strategies {
 
-/// A rewritten program larger than any memory.
+/// A rewritten program that takes hours and more room than most disks have.
 class TooManyBlocks : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -65,12 +65,12 @@ class PointDisplacement {
   }
 };
 
-/// The moves in displaced blocks. Rapids are displaced at their ends; X, Y and Z wait in moves of
-/// rotary axes alone, unless they are displaced, too.
+/// Hands out the moves in displaced blocks. Rapids are displaced at their ends; X, Y and Z wait in
+/// moves of rotary axes alone, unless they are displaced, too.
 /// @param identified  its nominal machine, tool tip and start
-/// @throws TooManyBlocks
-std::vector<Move> displaced_blocks(const std::vector<Move>& moves,
-                                   const IdentifiedMachine& identified, const BlockLimits& limits,
-                                   PointDisplacement& displacement);
+/// @throws TooManyBlocks before the first one
+void put_displaced_blocks(const MoveRange& moves, const IdentifiedMachine& identified,
+                          const BlockLimits& limits, PointDisplacement& displacement,
+                          const PutMove& put);
 
 }  // namespace servomill::strategies

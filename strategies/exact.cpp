@@ -37,28 +37,32 @@ class ExactStrategy final : public Strategy {
 
   bool rewrites() const override { return true; }
 
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    return with_points(moves, identified_, [&](const Joints& Q_0, const Joints& Q_1) {
-      const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, identified_.p_ST);
-      const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, identified_.p_ST);
-      if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
-        throw InputError(
-            Place{},
-            "the tool axis is reversed (180 deg): the direction of rotation is undetermined");
-      }
-      plant::LinearisedPath way = plant::linearise(
-          inverse_, identified_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
-      // the axes of the program may turn more than straight motion needs
-      if (!way.is_complete || (way.points.back().Q - Q_1).norm() > kSameJoints) {
-        throw InputError(Place{}, fmt::format("the TCP cannot follow a straight line between these "
-                                              "axis positions; it stops after {:.1f} %",
-                                              100.0 * (way.is_complete ? 1.0 : way.t)));
-      }
-      return std::move(way.points);
-    });
+  void rewrite(const MoveRange& moves, const PutMove& put) const override {
+    put_with_points(
+        moves, identified_,
+        [this](const Joints& Q_0, const Joints& Q_1) { return points_of(Q_0, Q_1); }, put);
   }
 
  private:
+  std::vector<plant::PathPoint> points_of(const Joints& Q_0, const Joints& Q_1) const {
+    const ToolPose P_0 = plant::forward(inverse_.chain(), Q_0, identified_.p_ST);
+    const ToolPose P_1 = plant::forward(inverse_.chain(), Q_1, identified_.p_ST);
+    if (angle_between(P_0.k_W, P_1.k_W) >= plant::kRoundTurn) {
+      throw InputError(
+          Place{},
+          "the tool axis is reversed (180 deg): the direction of rotation is undetermined");
+    }
+    plant::LinearisedPath way = plant::linearise(
+        inverse_, identified_.p_ST, plant::StraightToolPath(P_0, P_1), Q_0, tolerance_);
+    // the axes of the program may turn more than straight motion needs
+    if (!way.is_complete || (way.points.back().Q - Q_1).norm() > kSameJoints) {
+      throw InputError(Place{}, fmt::format("the TCP cannot follow a straight line between these "
+                                            "axis positions; it stops after {:.1f} %",
+                                            100.0 * (way.is_complete ? 1.0 : way.t)));
+    }
+    return std::move(way.points);
+  }
+
   IdentifiedMachine identified_;
   plant::ToolTolerance tolerance_;
   plant::InverseKinematics inverse_;

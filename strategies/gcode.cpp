@@ -104,9 +104,9 @@ class RewrittenProgram final : public Strategy {
         Joints(Q - params_.shift));
   }
 
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
+  void rewrite(const MoveRange& moves, const PutMove& put) const override {
     ErrorDisplacement displacement(identified_, params_);
-    return displaced_blocks(moves, identified_, params_.limits, displacement);
+    put_displaced_blocks(moves, identified_, params_.limits, displacement, put);
   }
 
  private:

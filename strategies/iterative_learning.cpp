@@ -36,9 +36,9 @@ class LearntProgram final : public Strategy {
   bool rewrites() const override { return true; }
   bool rewrites_tip_moves() const override { return true; }
   bool displaces_rotary() const override { return limits_.turns; }
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
+  void rewrite(const MoveRange& moves, const PutMove& put) const override {
     AlongPath displacement(identified_.layout, *offset_);
-    return displaced_blocks(moves, identified_, limits_, displacement);
+    put_displaced_blocks(moves, identified_, limits_, displacement, put);
   }
 
  private:

@@ -52,10 +52,10 @@ bool shifts(const AxisWords& from, const Move& move) {
 // Puts points into moves and hands out their lines, arc lengths and times.
 class Inserter {
  public:
-  Inserter(const IdentifiedMachine& identified, const PointsOfLine& points_of)
-      : identified_(identified), points_of_(points_of) {}
+  Inserter(const IdentifiedMachine& identified, const PointsOfLine& points_of, const PutMove& put)
+      : identified_(identified), points_of_(points_of), put_(put) {}
 
-  std::vector<Move> run(const std::vector<Move>& moves) {
+  void run(const MoveRange& moves) {
     at_ = identified_.layout.words(identified_.reference);
     for (const Move& move : moves) {
       throw_if_interrupted();
@@ -66,17 +66,16 @@ class Inserter {
       if (move.kind == MoveKind::feed && turns(at_, move) && shifts(at_, move)) {
         insert(move);
       } else {
-        out_.push_back(move);
+        put_(move);
       }
       if (is_motion(move.kind)) at_ = move.end_machine;
     }
-    return std::move(out_);
   }
 
  private:
   void insert(const Move& move) {
     const JointLayout& layout = identified_.layout;
-    double t = 0.0;
+    double s = move.s_begin;
     for (const plant::PathPoint& point : points(layout.joints(at_), move)) {
       throw_if_interrupted();
       Move block = move;
@@ -85,9 +84,9 @@ class Inserter {
         block.end += block.end_machine - move.end_machine;
         block.s_end = move.s_begin + point.t * (move.s_end - move.s_begin);
       }
-      block.s_begin = t > 0.0 ? out_.back().s_end : move.s_begin;
-      t = point.t;
-      out_.push_back(block);
+      block.s_begin = s;
+      s = block.s_end;
+      put_(block);
     }
   }
 
@@ -101,7 +100,7 @@ class Inserter {
 
   const IdentifiedMachine& identified_;
   const PointsOfLine& points_of_;
-  std::vector<Move> out_;
+  const PutMove& put_;
   AxisWords at_ = AxisWords::Zero();
 };
 
@@ -120,14 +119,15 @@ class ErrorModelStrategy final : public Strategy {
 
   bool rewrites() const override { return true; }
 
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    return with_points(moves, identified_, [&](const Joints& Q_0, const Joints& Q_1) {
+  void rewrite(const MoveRange& moves, const PutMove& put) const override {
+    const auto points_of = [&](const Joints& Q_0, const Joints& Q_1) {
       const plant::PostProcessedSegment segment(inverse_, identified_.p_ST, Q_0, Q_1);
       auto points = segment.compensated_points(params_.definition, params_.shape, params_.tolerance,
                                                params_.spacing, params_.frame);
       if (!points) throw InputError(Place{}, "the axes cannot reach an intermediate location");
       return *std::move(points);
-    });
+    };
+    put_with_points(moves, identified_, points_of, put);
   }
 
  private:
@@ -138,9 +138,9 @@ class ErrorModelStrategy final : public Strategy {
 
 }  // namespace
 
-std::vector<Move> with_points(const std::vector<Move>& moves, const IdentifiedMachine& identified,
-                              const PointsOfLine& points_of) {
-  return Inserter(identified, points_of).run(moves);
+void put_with_points(const MoveRange& moves, const IdentifiedMachine& identified,
+                     const PointsOfLine& points_of, const PutMove& put) {
+  Inserter(identified, points_of, put).run(moves);
 }
 
 plant::InverseKinematics nominal_inverse(const IdentifiedMachine& identified) {

@@ -24,12 +24,12 @@ namespace servomill::strategies {
 using PointsOfLine =
     std::function<std::vector<plant::PathPoint>(const Joints& Q_0, const Joints& Q_1)>;
 
-/// The moves with points put into every line that may bend. Line, arc length and duration of a
-/// move are shared out among its blocks.
+/// Hands out the moves with points put into every line that may bend. Line, arc length and duration
+/// of a move are shared out among its blocks.
 /// @throws InputError with the line (and no file) for an arc with rotary axes, and where there are
 /// no points
-std::vector<Move> with_points(const std::vector<Move>& moves, const IdentifiedMachine& identified,
-                              const PointsOfLine& points_of);
+void put_with_points(const MoveRange& moves, const IdentifiedMachine& identified,
+                     const PointsOfLine& points_of, const PutMove& put);
 
 /// The nominal machine that a strategy assumes, with its travel.
 plant::InverseKinematics nominal_inverse(const IdentifiedMachine& identified);

@@ -14,7 +14,8 @@
 #include "plant/vocabulary/added_gain.h"
 #include "plant/vocabulary/axes.h"
 #include "plant/vocabulary/joint_lanes.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/put_move.h"
 #include "plant/vocabulary/setpoint_entry.h"
 #include "strategies/residual.h"
 #include "strategies/saturation.h"
@@ -170,7 +171,11 @@ class Strategy {
 
   /// Rewrites the moves of a program; the line and arc length of the original are carried over.
   virtual bool rewrites() const { return false; }
-  virtual std::vector<Move> rewrite(const std::vector<Move>& moves) const { return moves; }
+  /// Goes through the moves in their order, as often as it needs them, and hands out the rewritten
+  /// ones in theirs: both may be more than the memory holds.
+  virtual void rewrite(const MoveRange& moves, const PutMove& put) const {
+    for (const Move& move : moves) put(move);
+  }
   /// True if it can rewrite moves under TCP control, with the tool of IdentifiedMachine::p_ST.
   virtual bool rewrites_tip_moves() const { return false; }
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
 
 #include "controllers/gcode/modal_state.h"
 #include "controllers/gcode/number_text.h"
+#include "controllers/gcode/printed_number.h"
 #include "plant/vocabulary/arc_sweep.h"
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/spline_curve.h"
@@ -20,38 +20,10 @@
 namespace servomill::controllers {
 namespace {
 
-// A coordinate on the grid of the printed decimals, counted in its smallest step.
-class Grid {
- public:
-  explicit Grid(int decimals) : decimals_(decimals), scale_(std::pow(10.0, decimals)) {}
-  double step_count(double x) const { return std::round(x * scale_); }
-  double value(double steps) const { return steps / scale_; }
-  bool is_zero(double x) const { return step_count(x) == 0.0; }
-  std::string text(double steps) const { return fixed_text(steps / scale_, decimals_); }
-
- private:
-  int decimals_;
-  double scale_;
-};
-
 std::string work_system_code(int system) {
   const auto digits = [](int number) { return std::to_string(number); };
   return system <= 6 ? "G" + digits(53 + system) : "G59." + digits(system - 6);
 }
-
-// significant_text() of a number that mostly is the one before.
-class RepeatedNumber {
- public:
-  const std::string& text(double x) {
-    if (!(x == x_)) text_ = significant_text(x);
-    x_ = x;
-    return text_;
-  }
-
- private:
-  double x_ = std::numeric_limits<double>::quiet_NaN();
-  std::string text_;
-};
 
 std::string path_code(const Move& move, RepeatedNumber& tolerance) {
   if (move.path_mode == PathMode::exact_path) return "G61";
@@ -60,35 +32,27 @@ std::string path_code(const Move& move, RepeatedNumber& tolerance) {
   return "G64 P" + tolerance.text(move.path_tolerance / mm);
 }
 
-class Printer {
+}  // namespace
+
+class ProgramPrinter::Printer {
  public:
-  explicit Printer(const PrintOptions& options)
+  Printer(const PrintOptions& options, TakeLine take)
       : options_(options),
+        take_(std::move(take)),
         linear_(options.decimals_mm),
         rotary_(options.decimals_deg),
         machine_before_(options.start) {}
 
-  PrintedProgram print(std::span<const Move> moves, std::string_view header) {
-    print_header(header);
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      index_ = static_cast<int>(i);
-      print_move(moves[i]);
-      before_ = moves[i].end;
-      // what is no motion may tell the place of the tip
-      if (is_motion(moves[i].kind)) machine_before_ = moves[i].end_machine;
-    }
-    index_ = -1;
-    if (moves.empty() || moves.back().kind != MoveKind::end) line("M30");
-    return std::move(out_);
+  void print(const Move& move) {
+    print_move(move);
+    before_ = move.end;
+    // what is no motion may tell the place of the tip
+    if (is_motion(move.kind)) machine_before_ = move.end_machine;
+    is_ended_ = move.kind == MoveKind::end;
   }
 
- private:
-  using Steps = std::array<double, kAxisWords>;
-
-  void line(std::string_view text) {
-    out_.text += text;
-    out_.text += '\n';
-    out_.move_of_line.push_back(index_);
+  void finish() {
+    if (!is_ended_) line("M30");
   }
 
   void print_header(std::string_view header) {
@@ -99,6 +63,11 @@ class Printer {
     }
     line("G21 G90 G91.1 G94 G17 G40 G80 G92.1");
   }
+
+ private:
+  using Steps = std::array<double, kAxisWords>;
+
+  void line(std::string_view text) { take_(text); }
 
   void print_move(const Move& move) {
     switch (move.kind) {
@@ -371,11 +340,11 @@ class Printer {
     if (steps_) steps_ = steps;  // else the next motion names all axes
   }
 
-  const PrintOptions& options_;
-  Grid linear_;
-  Grid rotary_;
-  PrintedProgram out_;
-  int index_ = -1;
+  const PrintOptions options_;
+  const TakeLine take_;
+  PrintedGrid linear_;
+  PrintedGrid rotary_;
+  bool is_ended_ = false;
   AxisWords before_ = AxisWords::Zero();  // end of the move before
   AxisWords machine_before_;              // end of the motion before, in the machine
   std::optional<Steps> steps_;            // what was printed for it; nullopt: name all axes
@@ -385,11 +354,30 @@ class Printer {
   int coolant_ = 0;
 };
 
-}  // namespace
+ProgramPrinter::ProgramPrinter(const PrintOptions& options, std::string_view header, TakeLine take)
+    : printer_(std::make_unique<Printer>(options, std::move(take))) {
+  printer_->print_header(header);
+}
+ProgramPrinter::~ProgramPrinter() = default;
+void ProgramPrinter::print(const Move& move) { printer_->print(move); }
+void ProgramPrinter::finish() { printer_->finish(); }
 
 PrintedProgram print_program(std::span<const Move> moves, const PrintOptions& options,
                              std::string_view header) {
-  return Printer(options).print(moves, header);
+  PrintedProgram out;
+  int index = -1;
+  ProgramPrinter printer(options, header, [&](std::string_view line) {
+    out.text += line;
+    out.text += '\n';
+    out.move_of_line.push_back(index);
+  });
+  for (const Move& move : moves) {
+    ++index;
+    printer.print(move);
+  }
+  index = -1;
+  printer.finish();
+  return out;
 }
 
 }  // namespace servomill::controllers

@@ -1,6 +1,8 @@
 /// Canonical moves back to program text.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +22,27 @@ struct PrintOptions {
   std::string axes = "XYZABC";          // axes of the machine; others are printed only if they move
   bool tcp_control = false;             // G43.4 in place of G43: `end` is the tip in the workpiece
   AxisWords start = AxisWords::Zero();  // machine coordinates before the first move; m, rad
+};
+
+/// Prints a program move after move, as print_program() does.
+class ProgramPrinter {
+ public:
+  /// Takes one line after the other, without its end.
+  using TakeLine = std::function<void(std::string_view line)>;
+
+  /// Prints the header.
+  ProgramPrinter(const PrintOptions& options, std::string_view header, TakeLine take);
+  ~ProgramPrinter();
+  ProgramPrinter(const ProgramPrinter&) = delete;
+  ProgramPrinter& operator=(const ProgramPrinter&) = delete;
+
+  void print(const Move& move);
+  /// To be called once, after the last move.
+  void finish();
+
+ private:
+  class Printer;
+  std::unique_ptr<Printer> printer_;
 };
 
 struct PrintedProgram {

@@ -258,8 +258,9 @@ std::shared_ptr<const RewrittenProgram> CasePreparation::rewritten(
   add(key, program_setup(scenario_, spec_));
   add(key, scenario_.machine.chain.layout);
   return cache_.rewritten.get(key, [&] {
+    refuse_full_temporary_folder_of_rewritten(scenario_, moves->size());
     RewrittenText written =
-        through_text(rewrite(*strategy, moves->all()),
+        through_text([&](const PutMove& put) { rewrite(*strategy, *moves, put); },
                      {scenario_.program.file, spec_.name, header_of(scenario_, spec_),
                       scenario_.machine.chain.layout, setup_of_rewritten()});
     return RewrittenProgram{moves, strategy, std::move(written.moves), std::move(written.text)};
@@ -275,11 +276,12 @@ controllers::TipMotions CasePreparation::tip_motions(
                                   options, scenario_.program.file);
 }
 
-// A strategy knows the line that it cannot rewrite, not the file.
-std::vector<Move> CasePreparation::rewrite(const strategies::Strategy& strategy,
-                                           const std::vector<Move>& moves) const {
+// A strategy knows the line that it cannot rewrite, and a printer that of a move that has no text,
+// but not the file.
+void CasePreparation::rewrite(const strategies::Strategy& strategy, const MoveList& moves,
+                              const PutMove& put) const {
   try {
-    return strategy.rewrite(moves);
+    strategy.rewrite(moves, put);
   } catch (const InputError& error) {
     const Fault& fault = error.faults().front();
     throw InputError({scenario_.program.file, fault.place.line, 0},

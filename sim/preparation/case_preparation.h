@@ -84,8 +84,8 @@ class CasePreparation {
   controllers::TipMotions tip_motions(const MoveList& moves, const InterpretedProgram& program,
                                       const controllers::JointLimits& limits,
                                       const controllers::PathOptions& options) const;
-  std::vector<Move> rewrite(const strategies::Strategy& strategy,
-                            const std::vector<Move>& moves) const;
+  void rewrite(const strategies::Strategy& strategy, const MoveList& moves,
+               const PutMove& put) const;
   PlannedMotion plan(const SharedMoves& moves, const InterpretedProgram& program,
                      const controllers::JointLimits& limits,
                      const controllers::PathOptions& options) const;

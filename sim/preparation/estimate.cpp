@@ -11,7 +11,9 @@
 
 #include "controllers/path/path_limits.h"
 #include "plant/vocabulary/lanes.h"
+#include "plant/vocabulary/move_list.h"
 #include "plant/vocabulary/scratch_file.h"
+#include "plant/vocabulary/stored_text.h"
 #include "plant/vocabulary/units.h"
 #include "sim/engine/chip_regeneration.h"
 #include "sim/engine/engaged_teeth.h"
@@ -302,20 +304,40 @@ void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estima
                                scenario.record.max_size / kGigabyte));
 }
 
-void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
-                                  std::optional<double> available) {
-  constexpr double kPlannedMove = 95.0;  // bytes, of a five-axis line (sim/records/README.md)
-  const auto in_memory = static_cast<double>(controllers::PathOptions{}.plans_in_memory);
-  const double needed = kPlannedMove * static_cast<double>(moves) - in_memory;
+namespace {
+
+void refuse_without_room(const model::Scenario& scenario, std::string_view what, double needed,
+                         std::optional<double> available) {
   if (needed <= 0.0) return;
   std::error_code unknown;
   const std::string folder = std::filesystem::temp_directory_path(unknown).string();
   if (!available && !unknown) available = room_in(folder);
   if (!available || needed <= *available) return;
   throw InputError({scenario.program.file},
-                   fmt::format("its planned motion takes about {} of temporary files; {} has {} "
-                               "free: choose another folder (TMPDIR)",
-                               in_gigabytes(needed), folder, in_gigabytes(*available)));
+                   fmt::format("its {} about {} of temporary files; {} has {} free: choose another "
+                               "folder (TMPDIR)",
+                               what, in_gigabytes(needed), folder, in_gigabytes(*available)));
+}
+
+}  // namespace
+
+void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
+                                  std::optional<double> available) {
+  constexpr double kPlannedMove = 95.0;  // bytes, of a five-axis line (sim/records/README.md)
+  const auto in_memory = static_cast<double>(controllers::PathOptions{}.plans_in_memory);
+  const double needed = kPlannedMove * static_cast<double>(moves) - in_memory;
+  refuse_without_room(scenario, "planned motion takes", needed, available);
+}
+
+void refuse_full_temporary_folder_of_rewritten(const model::Scenario& scenario, std::size_t moves,
+                                               std::optional<double> available) {
+  // bytes, of a five-axis line: its text, its move as rewritten and as read back
+  constexpr double kText = 55.0, kMove = 72.0;
+  const auto count = static_cast<double>(moves);
+  const double needed =
+      std::max(0.0, kText * count - static_cast<double>(StoredText::kMaxInMemory)) +
+      2.0 * std::max(0.0, kMove * count - static_cast<double>(MoveList::kMaxInMemory));
+  refuse_without_room(scenario, "rewritten program takes at least", needed, available);
 }
 
 }  // namespace servomill::sim::preparation

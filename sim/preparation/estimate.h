@@ -87,4 +87,10 @@ void refuse_full_disk(const model::Scenario& scenario, const RunEstimate& estima
 void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t moves,
                                   std::optional<double> available = {});
 
+/// To be called before a program is rewritten.
+/// @param moves  of the original; a strategy may make more of them, but not fewer
+/// @throws InputError if there is not so much room for the text and its moves
+void refuse_full_temporary_folder_of_rewritten(const model::Scenario& scenario, std::size_t moves,
+                                               std::optional<double> available = {});
+
 }  // namespace servomill::sim::preparation

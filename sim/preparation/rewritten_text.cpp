@@ -62,21 +62,24 @@ class ActionState {
   Action now_;
 };
 
-/// The actions of a program one after the other; none behind its end.
+/// The actions of a program one after the other, each valid until the next one; none behind its
+/// end.
 class Actions {
  public:
-  Actions(const std::vector<Move>& moves, const AxisWords& start) : moves_(moves), state_(start) {}
+  Actions(const MoveList& moves, const AxisWords& start) : at_(moves.begin()), state_(start) {}
 
   std::optional<Action> next() {
-    while (next_ < moves_.size()) {
-      if (auto action = state_.take(moves_[next_++])) return action;
+    if (is_taken_) ++at_;
+    is_taken_ = true;
+    for (; at_ != std::default_sentinel; ++at_) {
+      if (auto action = state_.take(*at_)) return action;
     }
     return std::nullopt;
   }
 
  private:
-  const std::vector<Move>& moves_;
-  std::size_t next_ = 0;
+  MoveList::Iterator at_;
+  bool is_taken_ = false;  // the move at_
   ActionState state_;
 };
 
@@ -134,7 +137,7 @@ std::optional<std::string_view> difference(const Action& wanted, const Action& r
 /// Compares actions of the text with those of the rewritten program as they come.
 class ReadBack {
  public:
-  ReadBack(const std::vector<Move>& rewritten, const RewrittenTextRequest& request)
+  ReadBack(const MoveList& rewritten, const RewrittenTextRequest& request)
       : request_(request),
         rewritten_(rewritten),
         wanted_(rewritten, request.setup.start),
@@ -146,8 +149,9 @@ class ReadBack {
     if (!read) return move;
     const auto wanted = wanted_.next();
     if (!wanted) {
-      if (move.kind == MoveKind::end) return placed(move, rewritten_.back());
-      refuse(rewritten_.back(), "the text of the rewritten program continues after its end");
+      const Move last = rewritten_[rewritten_.size() - 1];
+      if (move.kind == MoveKind::end) return placed(move, last);
+      refuse(last, "the text of the rewritten program continues after its end");
     }
     if (const auto why = difference(*wanted, *read)) refuse_text(*wanted->move, *why);
     // dwells and the end of the program, too: in the text their place is one along its own path
@@ -183,24 +187,45 @@ class ReadBack {
   }
 
   const RewrittenTextRequest& request_;
-  const std::vector<Move>& rewritten_;
+  const MoveList& rewritten_;
   Actions wanted_;
   ActionState state_;
 };
 
-}  // namespace
-
-RewrittenText through_text(const std::vector<Move>& rewritten,
-                           const RewrittenTextRequest& request) {
+controllers::PrintOptions print_options(const RewrittenTextRequest& request) {
   controllers::PrintOptions options;
   options.axes.clear();
   options.start = request.setup.start;
   for (const auto& axis : request.layout.axis) {
     if (axis) options.axes += letter(*axis);
   }
+  return options;
+}
+
+// Prints moves as they come, and keeps them.
+StoredText printed(const std::function<void(const PutMove&)>& rewrite,
+                   const RewrittenTextRequest& request, MoveList& moves) {
+  StoredText out;
+  controllers::ProgramPrinter printer(print_options(request), request.header,
+                                      [&](std::string_view line) {
+                                        out.append(line);
+                                        out.append("\n");
+                                      });
+  rewrite([&](const Move& move) {
+    printer.print(move);
+    moves.push_back(move);
+  });
+  printer.finish();
+  return out;
+}
+
+}  // namespace
+
+RewrittenText through_text(const std::function<void(const PutMove&)>& rewrite,
+                           const RewrittenTextRequest& request) {
+  MoveList rewritten;
   RewrittenText out;
-  out.text = std::make_shared<const StoredText>(
-      controllers::print_program(rewritten, options, request.header).text);
+  out.text = std::make_shared<const StoredText>(printed(rewrite, request, rewritten));
   controllers::Interpreter interpreter(
       controllers::ProgramText::of_shared_text(
           out.text,

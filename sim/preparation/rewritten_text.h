@@ -1,14 +1,14 @@
 /// Rewritten programs as the text that leaves the simulation.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "controllers/gcode/program_setup.h"
 #include "plant/vocabulary/axes.h"
-#include "plant/vocabulary/move.h"
 #include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/put_move.h"
 #include "plant/vocabulary/stored_text.h"
 
 namespace servomill::sim::preparation {
@@ -26,11 +26,12 @@ struct RewrittenTextRequest {
   controllers::ProgramSetup setup;
 };
 
-/// Writes what a strategy has made of a program, and reads it like any other. Every motion, dwell,
+/// Writes the moves that `rewrite` hands out, and reads them like any program. Every motion, dwell,
 /// tool change, stop and end must come back, in its order, with its position, feed, path mode,
 /// work system, tool length, spindle and coolant; what the text cannot say, the position on the
-/// original path, is carried over block by block.
-/// @throws InputError where it does not
-RewrittenText through_text(const std::vector<Move>& rewritten, const RewrittenTextRequest& request);
+/// original path, is carried over block by block. Neither text nor moves are in memory as a whole.
+/// @throws InputError where it does not, and what `rewrite` throws
+RewrittenText through_text(const std::function<void(const PutMove&)>& rewrite,
+                           const RewrittenTextRequest& request);
 
 }  // namespace servomill::sim::preparation

@@ -152,7 +152,7 @@ TEST(EveryStrategy, KeepsEveryProgrammedPointWithoutErrors) {
     for (const int way : {0, 1, 2, 3}) {
       const Acting acting = make_acting(entry, way % 2 == 1 ? Action::impose : Action::compensate,
                                         identified, false, way >= 2);
-      const std::vector<Move> rewritten = acting.strategy->rewrite(moves);
+      const std::vector<Move> rewritten = rewritten_moves(*acting.strategy, moves);
       auto next = rewritten.begin();
       AxisWords from = identified.layout.words(identified.reference);
       for (const Move& move : moves) {
@@ -287,7 +287,8 @@ TEST(EveryStrategy, DoesTheSameInEveryRun) {
     const auto feedback = first.strategy->feedback(kModelPeriod);
     EXPECT_EQ(played(setpoint.get(), feedback.get()), reference) << entry.name << ", a second run";
 
-    const auto once = first.strategy->rewrite(moves), twice = second.strategy->rewrite(moves);
+    const auto once = rewritten_moves(*first.strategy, moves);
+    const auto twice = rewritten_moves(*second.strategy, moves);
     ASSERT_EQ(once.size(), twice.size());
     for (std::size_t i = 0; i < once.size(); ++i) {
       EXPECT_EQ(once[i].end_machine, twice[i].end_machine) << entry.name;

@@ -61,16 +61,15 @@ servomill_block block(std::size_t move, double share, const Joints& end, double 
 }
 
 std::vector<Move> rewritten(const std::vector<servomill_block>& blocks, bool rotary = false) {
-  std::string wrong;
-  auto out = with_blocks(program(), blocks, layout(), Joints::Zero(), rotary, wrong);
-  EXPECT_EQ(wrong, "");
+  std::vector<Move> out;
+  EXPECT_EQ(put_with_blocks(program(), blocks, layout(), Joints::Zero(), rotary,
+                            [&](const Move& move) { out.push_back(move); }),
+            "");
   return out;
 }
 
 std::string wrong_with(const std::vector<servomill_block>& blocks, bool rotary = false) {
-  std::string wrong;
-  with_blocks(program(), blocks, layout(), Joints::Zero(), rotary, wrong);
-  return wrong;
+  return put_with_blocks(program(), blocks, layout(), Joints::Zero(), rotary, [](const Move&) {});
 }
 
 TEST(CProgram, ShowsTheMotions) {

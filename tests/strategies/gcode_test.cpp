@@ -46,7 +46,7 @@ std::vector<Move> rewritten(const IdentifiedMachine& identified, const std::vect
   const Entry entry = gcode_entry();
   Parameters parameters = default_parameters(entry);
   parameters.set("max_block_mm", max_block);
-  return entry.make(parameters, action, identified)->rewrite(moves);
+  return rewritten_moves(*entry.make(parameters, action, identified), moves);
 }
 
 // Machine that goes straight from block to block, with the hysteresis of its true positions.
@@ -280,8 +280,8 @@ TEST(Gcode, BringsAWaitingAxisToItsPlaceWithTheProgrammedFeed) {
   turn.end_machine[index_of(Axis::C)] = 90.0 * deg;
   turn.end = turn.end_machine;
   const Entry entry = gcode_entry();
-  const std::vector<Move> out =
-      entry.make(default_parameters(entry), Action::compensate, identified)->rewrite({turn, turn});
+  const std::vector<Move> out = rewritten_moves(
+      *entry.make(default_parameters(entry), Action::compensate, identified), {turn, turn});
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].end_machine[0], 0.0);
   EXPECT_NEAR(out[0].feed, 500.0 * deg_per_min, 1e-12);

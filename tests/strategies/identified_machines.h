@@ -46,6 +46,13 @@ inline Parameters default_parameters(const Entry& entry) {
   return out;
 }
 
+/// The moves that a strategy makes of others.
+inline std::vector<Move> rewritten_moves(const Strategy& strategy, const std::vector<Move>& moves) {
+  std::vector<Move> out;
+  strategy.rewrite(moves, [&](const Move& move) { out.push_back(move); });
+  return out;
+}
+
 /// Parts that act on a run, made once.
 struct Acting {
   std::unique_ptr<Strategy> strategy;
@@ -63,7 +70,8 @@ struct Acting {
     if (strategy->rewrites()) {
       Move move;
       move.end = move.end_machine = layout.words(Q);
-      sum += layout.joints(strategy->rewrite({move}).back().end_machine - move.end_machine);
+      sum +=
+          layout.joints(rewritten_moves(*strategy, {move}).back().end_machine - move.end_machine);
     }
     return sum;
   }

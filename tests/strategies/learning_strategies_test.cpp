@@ -171,7 +171,7 @@ TEST(Precompensation, WritesTheOffsetIntoTheProgram) {
   stand.kind = MoveKind::rapid;
   stand.s_end = 0.0;
   stand.end = stand.end_machine = AxisWords::Zero();
-  const std::vector<Move> blocks = taught->rewrite({stand, move, next});
+  const std::vector<Move> blocks = rewritten_moves(*taught, {stand, move, next});
   ASSERT_GT(blocks.size(), 3U);
   EXPECT_NEAR(layout().joints(blocks.back().end_machine)[1], 15 * um, 1e-6 * um);
   for (const Move& block : blocks) {

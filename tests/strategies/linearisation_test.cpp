@@ -61,7 +61,7 @@ std::vector<Move> rewritten(const Line& line, const char* strategy, const char* 
   if (std::string_view(strategy) != "exact") {
     parameters.set("amplitude", std::string_view(amplitude));
   }
-  return entry.make(parameters, Action::compensate, line.identified)->rewrite({line.move});
+  return rewritten_moves(*entry.make(parameters, Action::compensate, line.identified), {line.move});
 }
 
 TEST(Linearisation, HarmonicLeavesASeventeenthParabolicMuchLess) {

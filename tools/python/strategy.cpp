@@ -28,8 +28,9 @@ class PythonStrategy final : public strategies::Strategy {
   explicit PythonStrategy(Made made) : made_(std::move(made)) {}
 
   bool rewrites() const override { return made_->declared->has_rewrite; }
-  std::vector<Move> rewrite(const std::vector<Move>& moves) const override {
-    return rewritten(made_, moves);
+  void rewrite(const MoveRange& moves, const PutMove& put) const override {
+    if (!rewrites()) return Strategy::rewrite(moves, put);
+    put_rewritten(made_, moves, put);
   }
   std::unique_ptr<strategies::SetpointPart> setpoint() const override {
     if (!made_->declared->has_offset) return nullptr;

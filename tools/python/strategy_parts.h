@@ -4,9 +4,9 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <vector>
 
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/move_list.h"
+#include "plant/vocabulary/put_move.h"
 #include "strategies/strategy.h"
 #include "tools/python/strategy_setup.h"
 
@@ -20,9 +20,9 @@ std::unique_ptr<strategies::SetpointPart> offset_part(const Made& made);
 /// which is called with the readings of several runs.
 std::unique_ptr<strategies::FeedbackPart> feedback_part(const Made& made, double model_period);
 
-/// rewrite(program): the moves with the blocks that it returns in their place.
+/// rewrite(program): hands out the moves with the blocks that it returns in their place.
 /// @throws PluginFailed with what it has thrown
-std::vector<Move> rewritten(const Made& made, const std::vector<Move>& moves);
+void put_rewritten(const Made& made, const MoveRange& moves, const PutMove& put);
 
 void bind_program_view(pybind11::module_& module);
 

@@ -104,18 +104,21 @@ std::string why_no_blocks(const Made& made, const servomill_program& program) {
 
 }  // namespace
 
-std::vector<Move> rewritten(const Made& made, const std::vector<Move>& moves) {
-  if (!made->declared->has_rewrite) return moves;
+void put_rewritten(const Made& made, const MoveRange& moves, const PutMove& put) {
   const strategies::IdentifiedMachine& identified = made->identified;
-  strategies::CProgram program(moves, identified.layout, identified.reference);
-  std::string wrong = why_no_blocks(made, *program.program());
-  throw_if_interrupted();
-  if (wrong.empty()) {
-    std::vector<Move> out =
-        strategies::with_blocks(moves, program.take_blocks(), identified.layout,
-                                identified.reference, made->declared->displaces_rotary, wrong);
-    if (wrong.empty()) return out;
+  std::vector<servomill_block> blocks;
+  std::string wrong;
+  {
+    strategies::CProgram program(moves, identified.layout, identified.reference);
+    wrong = why_no_blocks(made, *program.program());
+    throw_if_interrupted();
+    blocks = program.take_blocks();
   }
+  if (wrong.empty()) {
+    wrong = strategies::put_with_blocks(moves, blocks, identified.layout, identified.reference,
+                                        made->declared->displaces_rotary, put);
+  }
+  if (wrong.empty()) return;
   throw strategies::PluginFailed("strategy " + made->declared->name + ": rewrite: " + wrong);
 }
 

@@ -160,7 +160,8 @@ struct Preparation {
   }
 
   // The blocks that LinuxCNC runs are those of every dialect.
-  std::vector<Move> moves_with(const CompensateRequest& request, const SharedOffset& offset) const {
+  void put_moves_with(const CompensateRequest& request, const SharedOffset& offset,
+                      const PutMove& put) const {
     Correction along(described.machine->chain, {}, request.axes);
     along.follow(offset);
     along.leave(request.left);
@@ -169,21 +170,21 @@ struct Preparation {
     walk.is_start_known.fill(true);
     Summary summary;
     ProgramCorrector corrector(walk, known.setup.tools, along, summary);
-    StepMoves moves(corrector);
+    StepMoves moves(corrector, put);
     controllers::Interpreter interpreter(controllers::ProgramText::of_file(request.program_file),
                                          known.setup);
     while (const auto block = interpreter.next_block()) {
       throw_if_interrupted();
       moves.write(*block);
     }
-    return std::move(moves).moves();
   }
 
   void follow_model(const CompensateRequest& request) {
     SharedOffset offset;
     servo = predict_servo(
         request, *described.machine, errors, known.setup,
-        [&](const SharedOffset& one) { return moves_with(request, one); }, offset);
+        [&](const SharedOffset& one, const PutMove& put) { put_moves_with(request, one, put); },
+        offset);
     correction.follow(offset);
   }
 

@@ -35,7 +35,7 @@ class WrittenProgram final : public strategies::Strategy {
       : written_(std::move(written)), offset_(std::move(offset)), turns_(turns) {}
   bool rewrites() const override { return true; }
   bool displaces_rotary() const override { return turns_; }
-  std::vector<Move> rewrite(const std::vector<Move>&) const override { return written_(offset_); }
+  void rewrite(const MoveRange&, const PutMove& put) const override { written_(offset_, put); }
 
  private:
   WrittenMoves written_;

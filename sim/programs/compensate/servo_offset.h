@@ -6,10 +6,9 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "plant/geometry/error_model.h"
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/put_move.h"
 #include "sim/programs/compensate/compensate.h"
 #include "sim/programs/compensate/servo_prediction.h"
 #include "strategies/path_offset.h"
@@ -25,8 +24,8 @@ namespace servomill::sim::programs {
 
 using SharedOffset = std::shared_ptr<const strategies::PathOffset>;
 
-/// Blocks of the program that is written with an offset.
-using WrittenMoves = std::function<std::vector<Move>(const SharedOffset&)>;
+/// Hands out the blocks of the program that is written with an offset.
+using WrittenMoves = std::function<void(const SharedOffset&, const PutMove&)>;
 
 /// Runs of the model, with the blocks that are written, until the largest deviation is below the
 /// tolerance or no longer falls (strategies/iterative_learning.h); the best one counts.

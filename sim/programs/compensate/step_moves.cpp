@@ -9,7 +9,7 @@ void StepMoves::write(const controllers::ExecutedBlock& block) {
     if (is_motion(move.kind)) {
       add(corrector_.next(move, block));
     } else {
-      moves_.push_back(move);
+      put_(move);
     }
   }
 }
@@ -47,7 +47,7 @@ void StepMoves::add(const Step& step) {
       out.feed = timed_feed(step, block, at);
       if (out.feed_mode == FeedMode::units_per_minute) out.feed_mode = FeedMode::inverse_time;
     }
-    moves_.push_back(out);
+    put_(out);
     at = block.end;
   }
   corrector_.arrive(step, frame.machine(at));

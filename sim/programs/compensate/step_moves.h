@@ -1,9 +1,7 @@
 /// A corrected program as moves, for a model of the machine that runs them.
 #pragma once
 
-#include <vector>
-
-#include "plant/vocabulary/move.h"
+#include "plant/vocabulary/put_move.h"
 #include "sim/programs/compensate/program_corrector.h"
 #include "sim/programs/compensate/program_writer.h"
 
@@ -14,19 +12,18 @@ namespace servomill::sim::programs {
 /// move, as TimedFeed has it; others keep the feed.
 class StepMoves final : public ProgramWriter {
  public:
-  /// @param corrector  must outlive this
-  explicit StepMoves(ProgramCorrector& corrector) : corrector_(corrector) {}
+  /// @param corrector, put  must outlive this
+  StepMoves(ProgramCorrector& corrector, const PutMove& put) : corrector_(corrector), put_(put) {}
 
   void write(const controllers::ExecutedBlock& block) override;
   std::string finish(const std::vector<std::string>&) override { return {}; }
-  std::vector<Move> moves() && { return std::move(moves_); }
 
  private:
   void add(const Step& step);
   static double timed_feed(const Step& step, const FittedBlock& block, const AxisWords& begin);
 
   ProgramCorrector& corrector_;
-  std::vector<Move> moves_;
+  const PutMove& put_;
 };
 
 }  // namespace servomill::sim::programs

@@ -87,6 +87,27 @@ TEST(Printer, WritesWhatAPersonWouldWrite) {
             (std::vector<int>{-1, -1, -1, 0, 1, 2, 3, 3, 3, 3, 4, 5, 6, 7, 8, 9}));
 }
 
+TEST(Printer, PrintsMovesAsTheyCome) {
+  const std::vector<Move> moves =
+      interpret("G0 X1 Y2\nG4 P1\nG1 Z-1 F300\nM2\n", "p.nc", usual_setup());
+  std::string text;
+  ProgramPrinter printer({.axes = "XYZ"}, "header",
+                         [&](std::string_view line) { text += std::string(line) + "\n"; });
+  EXPECT_EQ(text, "(header)\nG21 G90 G91.1 G94 G17 G40 G80 G92.1\n");
+  std::size_t lines = 0;
+  for (const Move& move : moves) {
+    printer.print(move);
+    EXPECT_GT(text.size(), lines);
+    lines = text.size();
+  }
+  printer.finish();
+  EXPECT_EQ(text.size(), lines) << "it has ended";
+  EXPECT_EQ(text, print_program(moves, {.axes = "XYZ"}, "header").text);
+  printer.print(moves.front());
+  printer.finish();
+  EXPECT_TRUE(text.ends_with("M30\n"));
+}
+
 TEST(Printer, SplinesAreNurbs) {
   const ProgramSetup setup = usual_setup();
   expect_round_trip(

@@ -183,12 +183,15 @@ void require_places(const std::vector<Move>& moves, const std::vector<Move>& rea
   }
 }
 
+RewrittenText text_of(const strategies::Strategy& strategy, const MoveRange& moves) {
+  return through_text([&](const PutMove& put) { strategy.rewrite(moves, put); },
+                      {kFile, "random", "random", shop().machine.chain.layout, shop().setup});
+}
+
 void check(const Rewriting& rewriting, const std::string& program) {
   const Shop& s = shop();
   const std::vector<Move> moves = controllers::interpret(program, kFile, s.setup);
-  const RewrittenText out =
-      through_text(rewriting.strategy->rewrite(moves),
-                   {kFile, "random", "random", s.machine.chain.layout, s.setup});
+  const RewrittenText out = text_of(*rewriting.strategy, moves);
   require_places(moves, out.moves.all());
   if (!rewriting.has_errors) require_same(moves, out.moves, rewriting.keeps_way);
 }
@@ -299,8 +302,7 @@ std::map<int, double> times_of(const std::vector<Move>& moves, const AxisWords& 
 std::string expect_times(const strategies::Strategy& strategy, const std::string& program) {
   const Shop& s = shop();
   const std::vector<Move> moves = controllers::interpret(program, kFile, s.setup);
-  const RewrittenText out = through_text(
-      strategy.rewrite(moves), {kFile, "random", "random", s.machine.chain.layout, s.setup});
+  const RewrittenText out = text_of(strategy, moves);
   const auto wanted = times_of(moves, s.setup.start, false);
   const auto found = times_of(out.moves.all(), s.setup.start, true);
   for (const auto& [line, time] : wanted) {
