@@ -142,18 +142,26 @@ const std::array<ParameterSpec, 17>& specs() {
 
 class Tables final : public SetpointPart {
  public:
-  Tables(const SetpointEntry& entry, const std::vector<GridTable>& tables)
-      : entry_(entry), tables_(tables) {}
+  Tables(const SetpointEntry& entry, const std::vector<GridTable>& tables) : entry_(entry) {
+    for (const GridTable& table : tables) {
+      if (!is_zero(table)) tables_.push_back(&table);
+    }
+  }
   SetpointEntry entry() const override { return entry_; }
   Joints offset(const Joints& Q_ref) const override {
     Joints sum = Joints::Zero();
-    for (const GridTable& table : tables_) sum.head<3>() += table.at(Q_ref);
+    for (const GridTable* table : tables_) sum.head<3>() += table->at(Q_ref);
     return sum;
   }
 
  private:
+  static bool is_zero(const GridTable& table) {
+    return std::all_of(table.value.begin(), table.value.end(),
+                       [](const Eigen::Vector3d& value) { return value.isZero(0.0); });
+  }
+
   SetpointEntry entry_;
-  const std::vector<GridTable>& tables_;
+  std::vector<const GridTable*> tables_;  // those that displace an axis somewhere
 };
 
 // The error that the tables approximate.

@@ -129,7 +129,7 @@ void CaseRun::record(Tick n) {
   // The reference of this very instant: between position periods the held one is older than
   // Q_true.
   const auto& reference = recorded_.at(nc_.periods.seconds(n));
-  Snapshot now;
+  Snapshot& now = snapshot_;
   now.time = nc_.periods.seconds(n);
   now.s = reference.s;
   now.piece = in_.pieces[reference.move];

@@ -85,6 +85,7 @@ class CaseRun {
   std::unique_ptr<HeatRun> heat_;  // nullptr: at its reference temperature
   Tick end_ = 0;
   const AxisSetpoint& set_ = setpoint_.now();
+  Snapshot snapshot_;  // of the latest row
   DemandMeter demands_;
   LoopDisplacement by_loops_;               // without feed-forward
   Joints added_velocity_ = Joints::Zero();  // by strategies, in the position period before

@@ -149,13 +149,15 @@ void CaseReader::read_machines(const config::Document& scenario) {
   std::vector<Fault> faults;
   for (std::size_t index = 0; index < out_.cases.size(); ++index) {
     const auto override = overrides_.find(index);
-    config::Document document = scenario;
     try {
       if (override != overrides_.end()) {
+        config::Document document = scenario;
         document.merge(as_machine(override->second));
         read_machine_of(index, document);
+        read_known_machines(index, document);
+      } else {
+        read_known_machines(index, scenario);
       }
-      if (known_.contains(index)) read_known_machines(index, document);
       refuse_cold_machine(out_.cases[index]);
     } catch (const InputError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
@@ -188,8 +190,10 @@ void CaseReader::read_machine_of(std::size_t index, const config::Document& with
 }
 
 void CaseReader::read_known_machines(std::size_t index, const config::Document& of_case) {
+  const auto known_machines = known_.find(index);
+  if (known_machines == known_.end()) return;
   model::CaseSpec& one = out_.cases[index];
-  for (const auto& [number, keys] : known_.at(index)) {
+  for (const auto& [number, keys] : known_machines->second) {
     const bool is_whole = keys.find("structure") != nullptr;
     config::Document document = of_case;
     if (is_whole) document = config::Document::from_text("", of_case.name());
