@@ -33,14 +33,15 @@ void DemandMeter::start(const Joints& path, const Joints& offset) {
 }
 
 const Joints& DemandMeter::ago(std::size_t steps) const {
-  return places_[(newest_ + places_.size() - steps * periods_) % places_.size()];
+  const std::size_t back = steps * periods_;
+  return places_[newest_ >= back ? newest_ - back : newest_ + places_.size() - back];
 }
 
 void DemandMeter::add(double time, const Joints& path, const Joints& offset) {
   take_larger(offset, offset_, [&](std::size_t joint, double size) {
     demands_.offset[joint] = {size, time};
   });
-  newest_ = (newest_ + 1) % places_.size();
+  newest_ = newest_ + 1 == places_.size() ? 0 : newest_ + 1;
   places_[newest_] = path + offset;
   const Joints &x0 = ago(0), &x1 = ago(1), &x2 = ago(2), &x3 = ago(3);
   const std::array<Joints, AxisDemands::kOrders> differences = {x0 - x1, x0 - 2.0 * x1 + x2,
