@@ -5,8 +5,11 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cstring>
 #include <new>
 #include <stdexcept>
+
+#include "sim/records/transpose_bytes.h"
 
 namespace servomill::sim::records {
 namespace {
@@ -24,7 +27,15 @@ T number_at(const std::uint8_t* bytes, std::size_t i, std::size_t stride, std::s
 template <typename T>
 void load(const std::uint8_t* bytes, std::size_t rows, bool is_shuffled, std::span<double> values) {
   const std::size_t stride = is_shuffled ? rows : 1, step = is_shuffled ? 1 : sizeof(T);
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  std::size_t i = 0;
+  if constexpr (sizeof(T) == sizeof(std::uint64_t)) {
+    for (std::array<std::uint64_t, 8> eight; is_shuffled && i + 8 <= values.size(); i += 8) {
+      for (std::size_t b = 0; b < 8; ++b) std::memcpy(&eight[b], bytes + b * rows + i, 8);
+      transpose_bytes(eight);
+      std::memcpy(&values[i], eight.data(), sizeof(eight));
+    }
+  }
+  for (; i < values.size(); ++i) {
     values[i] = static_cast<double>(number_at<T>(bytes, i, stride, step));
   }
 }

@@ -9,6 +9,8 @@
 #include <limits>
 #include <new>
 
+#include "sim/records/transpose_bytes.h"
+
 namespace servomill::sim::records {
 namespace {
 
@@ -29,26 +31,6 @@ void store(std::span<const double> values, std::size_t rows, T rest,
   }
 }
 
-// Pairs of rows that lie kApart from each other exchange squares of kApart x kApart bytes.
-template <std::size_t kApart>
-void exchange(std::array<std::uint64_t, 8>& rows, std::uint64_t lower) {
-#pragma GCC unroll 8
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if ((i & kApart) != 0) continue;
-    const std::uint64_t exchanged = ((rows[i] >> (8 * kApart)) ^ rows[i + kApart]) & lower;
-    rows[i + kApart] ^= exchanged;
-    rows[i] ^= exchanged << (8 * kApart);
-  }
-}
-
-// Byte b of number i becomes byte i of number b: H. S. Warren, Hacker's Delight, 2nd ed., 2013,
-// section 7-3, with bytes in place of bits.
-void transpose(std::array<std::uint64_t, 8>& rows) {
-  exchange<4>(rows, 0x00000000ffffffff);
-  exchange<2>(rows, 0x0000ffff0000ffff);
-  exchange<1>(rows, 0x00ff00ff00ff00ff);
-}
-
 // Byte b of number i goes to place b * count + i.
 template <std::size_t kSize>
 void shuffle(const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
@@ -56,7 +38,7 @@ void shuffle(const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
   if constexpr (kSize == sizeof(std::uint64_t)) {
     for (std::array<std::uint64_t, 8> eight; i + 8 <= count; i += 8) {
       std::memcpy(eight.data(), from + i * kSize, sizeof(eight));
-      transpose(eight);
+      transpose_bytes(eight);
       for (std::size_t b = 0; b < kSize; ++b) std::memcpy(to + b * count + i, &eight[b], kSize);
     }
   }
