@@ -1,9 +1,8 @@
 """Figures that tools/plot.py draws of runs and sweeps."""
 import json
 import pathlib
-import subprocess
 
-from plot_files import HERE, PLOT, SMALLEST_PNG, WithFiles, plot, plot_names, program, servomill
+from plot_files import HERE, SMALLEST_PNG, WithFiles, plot, plot_names, program, servomill
 
 import h5py
 import numpy as np
@@ -216,7 +215,7 @@ class Drawing(WithFiles):
         self.assertEqual(self.drawn(), ["side-figure6.png", "sweep-lag.png"])
 
     def test_list_names_every_figure(self):
-        done = subprocess.run([PLOT, "--list"], capture_output=True, text=True)
+        done = plot("--list")
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()],
                          ["figure6", "figure9", "figure10", "figure11", "figure12", "figure14",
                           "figure15", "figure16", "figure17", "figure18", "figure19", "probed", "part", "planes", "lag", "curves", "maps", "samples", "circular", "reversals", "nest", "ball_bar",
