@@ -21,6 +21,7 @@ LONG = ["-j1", "--set", "program.feed_override=0.0002", "--set", "record.period_
 DELAY = 2.0  # s, before anything is shown
 MAX_END = 0.5  # s, after an interrupt
 PATIENCE = 120  # s
+COMPUTED = 0.1  # s of the processor, after which a command has begun and is far from its end
 BAR = r"\[=* *\] +\d+ %"
 PROGRESS = BAR + r"|so far|[\d.]+ (s|min|h) left"
 
@@ -31,6 +32,24 @@ def sweep_of(points):
 
 
 MANY, MORE = sweep_of(8), sweep_of(24)
+
+
+def computed(process):
+    """Time of the processor that it has taken, s."""
+    with open(f"/proc/{process.pid}/stat", encoding="utf-8") as file:
+        user, system = file.read().rsplit(")", 1)[1].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
+def halt(process):
+    """Holds a command that has begun until progress would be shown: while it waits, other tests compute."""
+    begin = time.monotonic()
+    while process.poll() is None and computed(process) < COMPUTED:
+        assert time.monotonic() < begin + PATIENCE, "it does not compute"
+        time.sleep(0.02)
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(DELAY)
+    process.send_signal(signal.SIGCONT)
 
 
 class Terminal:
@@ -102,6 +121,11 @@ class Watched(unittest.TestCase):
     def start(self, *arguments, **more):
         return Terminal(*arguments, cwd=self.folder, **more)
 
+    def start_and_halt(self, *arguments, **more):
+        terminal = self.start(*arguments, **more)
+        halt(terminal.process)
+        return terminal
+
     def interrupted(self, terminal):
         """Ends it, and looks at what remains."""
         took = terminal.interrupt()
@@ -138,11 +162,11 @@ class Shown(Watched):
         self.assertIn("written to", terminal.screen())
 
     def quiet(self, *arguments, stdout=None):
-        """True if no progress was on the terminal after four seconds."""
-        terminal = self.start("sweep", SCENARIO, *MORE, *arguments, stdout=stdout)
+        """True if no progress was on the terminal after more than four seconds."""
+        terminal = self.start_and_halt("sweep", SCENARIO, *MORE, *arguments, stdout=stdout)
         if terminal.process.stdout:
             self.addCleanup(terminal.process.stdout.close)
-        end = time.monotonic() + 4.0
+        end = time.monotonic() + 2.0
         while time.monotonic() < end:
             terminal.read(0.1)
         self.assertIsNone(terminal.process.poll(), "it should take longer")
@@ -160,42 +184,43 @@ class Shown(Watched):
     def test_is_not_there_without_a_terminal(self):
         process = subprocess.Popen([SERVOMILL, "sweep", SCENARIO, *MANY], cwd=self.folder, stdin=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        threading.Timer(4.0, process.send_signal, [signal.SIGINT]).start()
+        halt(process)
+        threading.Timer(2.0, process.send_signal, [signal.SIGINT]).start()
         _, stderr = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 130)
         self.assertRegex(stderr, r"^interrupted[^\r]*$")
 
     def test_counts_points_of_a_sweep(self):
-        terminal = self.start("sweep", SCENARIO, *MANY)
+        terminal = self.start_and_halt("sweep", SCENARIO, *MANY)
         terminal.wait_for(BAR + r".*, \d of 8 points")
         self.interrupted(terminal)
 
     def test_forecasts_a_measurement_whose_low_frequencies_take_longer(self):
-        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--f-min", "0.1", "--points", "400")
+        terminal = self.start_and_halt("bode", SCENARIO, "--axis", "Y", "--loop", "velocity", "--f-min", "0.1", "--points", "400")
         terminal.wait_for(BAR + r", [\d.]+ (s|min|h) left")
         self.interrupted(terminal)
 
     def test_says_only_what_was_done_where_nothing_can_be_forecast(self):
-        terminal = self.start("bode", SCENARIO, "--axis", "Y", "--loop", "all", "--f-min", "0.1", "--points", "400")
+        terminal = self.start_and_halt("bode", SCENARIO, "--axis", "Y", "--loop", "all", "--f-min", "0.1", "--points", "400")
         said = terminal.wait_for(r"\d of 3 loops.*? so far")
         self.assertNotIn("left", said)
         self.interrupted(terminal)
 
     def test_counts_speeds_of_stability_lobes(self):
-        terminal = self.start("lobes", "--stiffness", "20 N/um", "--frequency", "500 Hz", "--damping", "0.03", "--Ktc", "800",
+        terminal = self.start_and_halt("lobes", "--stiffness", "20 N/um", "--frequency", "500 Hz", "--damping", "0.03", "--Ktc", "800",
                               "--Krc", "300", "--teeth", "4", "--points", "2000", "--speed-min", "500", "--threads", "1")
         terminal.wait_for(BAR + r".*, \d+ of 2000 speeds")
         self.interrupted(terminal)
 
     def test_counts_trial_runs_of_strategies_that_learn(self):
-        terminal = self.start("run", LEARNING, "-o", "learnt.h5")
+        terminal = self.start_and_halt("run", LEARNING, "-o", "learnt.h5")
         terminal.wait_for(r"\d+ of \d+ trial runs")
         self.interrupted(terminal)
 
     def test_counts_lines_of_a_program(self):
         with open(os.path.join(self.folder, "long.ngc"), "w", encoding="utf-8") as out:
             out.write("G21 G90\nF1000\n" + "".join(f"G1 X{n % 97} Y{n % 89}\n" for n in range(1_000_000)) + "M2\n")
-        terminal = self.start("check", "long.ngc")
+        terminal = self.start_and_halt("check", "long.ngc")
         terminal.wait_for(r"of \d+ lines")
         self.interrupted(terminal)
 
@@ -208,7 +233,7 @@ class Shown(Watched):
 
     def test_counts_lines_of_a_spectrum(self):
         self.write_noise(1_000_000)
-        terminal = self.start("response", "noise.csv", "--input", "u", "--output", "y")
+        terminal = self.start_and_halt("response", "noise.csv", "--input", "u", "--output", "y")
         terminal.wait_for(BAR + r".* of 500000 lines")
         self.interrupted(terminal)
 
@@ -217,12 +242,12 @@ class Shown(Watched):
         with open(os.path.join(self.folder, "wide.csv"), "w", encoding="utf-8") as out:
             out.write(f"time [s];{names}\n")
             out.writelines(f"{0.001 * n:.3f}{';1.5' * 40}\n" for n in range(1_000_000))
-        terminal = self.start("recording", "wide.csv")
+        terminal = self.start_and_halt("recording", "wide.csv")
         terminal.wait_for(r"of 1000001 lines")
         self.interrupted(terminal)
 
     def test_fits_on_a_line_of_the_terminal(self):
-        terminal = self.start("run", LEARNING, "-o", "learnt.h5")
+        terminal = self.start_and_halt("run", LEARNING, "-o", "learnt.h5")
         terminal.wait_for(r"trial runs")
         self.interrupted(terminal)
         for line in re.split(r"[\r\n]", terminal.seen):
