@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 
+#include "plant/vocabulary/stored_text.h"
 #include "sim/config/reader.h"
 #include "sim/input/machine_document.h"
 #include "sim/input/read_machine.h"
@@ -104,9 +105,9 @@ void run(std::string_view text) {
 
 }  // namespace servomill::fuzz
 
-namespace servomill::sim {
+namespace servomill::sim::system {
 
-// In place of that of sim/system/read_file.cpp: no file but those named above can be read.
+// In place of those of sim/system/read_file.cpp: no file but those named above can be read.
 std::string read_file(const std::string& path, const Place& at, std::string_view what,
                       std::uintmax_t /*most*/) {
   if (path == fuzz::kDocument) return std::string(fuzz::document);
@@ -116,4 +117,8 @@ std::string read_file(const std::string& path, const Place& at, std::string_view
                    fmt::format("{} '{}' cannot be read", what, path));
 }
 
-}  // namespace servomill::sim
+StoredText stored_file(const std::string& path, const Place& at, std::string_view what) {
+  return StoredText(read_file(path, at, what, kMaxBytesOfFile));
+}
+
+}  // namespace servomill::sim::system
