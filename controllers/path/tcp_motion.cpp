@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 
 #include "plant/vocabulary/interrupt.h"
@@ -285,10 +284,16 @@ const TcpMotion* TipMotions::of(std::size_t move) const {
     chords.release();
     motions.release();
   }
-  const auto all = std::views::iota(std::size_t{0}, motions.size());
-  const auto found =
-      std::ranges::lower_bound(all, move, {}, [this](std::size_t i) { return motions[i].move; });
-  return found != all.end() && motions[*found].move == move ? &motions[*found] : nullptr;
+  std::size_t first = 0, last = motions.size();
+  while (first < last) {
+    const std::size_t middle = first + (last - first) / 2;
+    if (motions[middle].move < move) {
+      first = middle + 1;
+    } else {
+      last = middle;
+    }
+  }
+  return first < motions.size() && motions[first].move == move ? &motions[first] : nullptr;
 }
 
 TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,
