@@ -87,6 +87,8 @@ CProgram::CProgram(const MoveRange& moves, const JointLayout& layout, const Join
                        .blocks = {},
                        .program = {}}) {
   Parts& parts = *parts_;
+  parts.motions.reserve(moves.size());
+  parts.seen.reserve(moves.size());
   each_motion(moves, layout.words(start), [&](const AxisWords& from, const Move& move) {
     parts.motions.push_back({from, move});
     servomill_move one{};

@@ -22,7 +22,7 @@
 
 namespace servomill::strategies {
 
-/// A rewritten program that takes hours and more room than most disks have.
+/// A rewritten program of more blocks than anybody intends.
 class TooManyBlocks : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -189,12 +189,12 @@ class Planner {
   // A move under tool control is one leg of many chords. Their inner ends lie on a curve, as the
   // points of an arc do.
   void add_tip_motion(const Move& move, std::size_t index) {
-    const TcpMotion* motion = tip_.of(index);
-    const std::span<const JointChord> chords = tip_.chords_of(*motion);
-    const Leg leg = tip_leg(move, *motion, chords);
+    const TcpMotion& motion = tip_.of(index);
+    const std::span<const JointChord> chords = tip_.chords_of(motion);
+    const Leg leg = tip_leg(move, motion, chords);
     if (leg.length == 0.0) return stand(leg);
     if (last_ && rules_.must_stop(*last_, leg)) finish_chain();
-    const double time = time_of(*motion);
+    const double time = time_of(motion);
     double from = 0.0;
     for (const JointChord& chord : chords) {
       const bool inner = &chord != &chords.back();

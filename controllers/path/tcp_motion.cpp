@@ -278,12 +278,7 @@ class Tracer {
 
 }  // namespace
 
-const TcpMotion* TipMotions::of(std::size_t move) const {
-  constexpr std::size_t kReleased = 65536;
-  if (move % kReleased == 0) {
-    chords.release();
-    motions.release();
-  }
+const TcpMotion& TipMotions::of(std::size_t move) const {
   std::size_t first = 0, last = motions.size();
   while (first < last) {
     const std::size_t middle = first + (last - first) / 2;
@@ -293,7 +288,13 @@ const TcpMotion* TipMotions::of(std::size_t move) const {
       last = middle;
     }
   }
-  return first < motions.size() && motions[first].move == move ? &motions[first] : nullptr;
+  assert(first < motions.size() && motions[first].move == move);
+  constexpr std::size_t kReleased = 65536;
+  if (first % kReleased == 0) {
+    chords.release();
+    motions.release();
+  }
+  return motions[first];
 }
 
 TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,

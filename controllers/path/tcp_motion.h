@@ -49,8 +49,8 @@ struct TipMotions {
         motions("the moves under TCP control", most_in_memory) {}
 
   /// For moves one after the other: every so many, memory of chords that were read is given back.
-  /// @return nullptr for a move without tool control
-  const TcpMotion* of(std::size_t move) const;
+  /// @pre the move is under tool control
+  const TcpMotion& of(std::size_t move) const;
   std::span<const JointChord> chords_of(const TcpMotion& motion) const {
     return chords.range(motion.first, motion.last);
   }

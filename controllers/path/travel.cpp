@@ -119,7 +119,7 @@ std::vector<Fault> travel_faults(const MoveRange& moves, const JointLayout& layo
       range = range_of(move, at, layout);
       at = layout.joints(move.end_machine);
     } else {
-      const std::span<const JointChord> chords = tip.chords_of(*tip.of(i));
+      const std::span<const JointChord> chords = tip.chords_of(tip.of(i));
       for (const JointChord& chord : chords) range.include(chord.end);
       at = chords.back().end;
     }

@@ -54,7 +54,7 @@ class InputPieces {
 
   /// Bytes of the file when it was opened.
   std::size_t size() const { return size_; }
-  /// The next piece, valid until the next call; empty behind the last one, and where why() says
+  /// The next piece, valid until the next call; empty after the last one, and where why() says
   /// that the file cannot be read.
   std::string_view next();
   /// Empty while the file can be read.

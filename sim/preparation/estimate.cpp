@@ -334,8 +334,9 @@ void refuse_full_temporary_folder_of_rewritten(const model::Scenario& scenario, 
   // bytes, of a five-axis line: its text, its move as rewritten and as read back
   constexpr double kText = 55.0, kMove = 72.0;
   const auto count = static_cast<double>(moves);
+  const double text = kText * count;
   const double needed =
-      std::max(0.0, kText * count - static_cast<double>(StoredText::kMaxInMemory)) +
+      (text > static_cast<double>(StoredText::kMaxInMemory) ? text : 0.0) +
       2.0 * std::max(0.0, kMove * count - static_cast<double>(MoveList::kMaxInMemory));
   refuse_without_room(scenario, "rewritten program takes at least", needed, available);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -231,6 +232,7 @@ RewrittenText through_text(const std::function<void(const PutMove&)>& rewrite,
           out.text,
           fmt::format("{} as rewritten for case {}", request.program_file, request.case_name)),
       request.setup);
+  assert(!rewritten.empty());
   ReadBack read_back(rewritten, request);
   while (const Move* next = interpreter.next()) out.moves.push_back(read_back.take(*next));
   read_back.end();

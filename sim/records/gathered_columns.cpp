@@ -10,7 +10,7 @@ namespace {
 // place of each other there.
 constexpr std::size_t kApart = 8;
 
-constexpr std::size_t kAhead = 16;  // rows, while which a line of the cache arrives from memory
+constexpr std::size_t kAhead = 16;  // rows: meanwhile a line of the cache arrives from memory
 
 void prefetch(const double* numbers) { __builtin_prefetch(numbers); }
 

@@ -29,7 +29,7 @@ struct Signal {
   std::size_t columns() const { return labels.empty() ? 1 : labels.size(); }
 };
 
-/// Rows that lie on a disk, read by pages: some rows of one column.
+/// Rows that are read by pages: some rows of one column.
 class ColumnPages {
  public:
   virtual ~ColumnPages() = default;
@@ -67,7 +67,7 @@ class Series {
   const std::vector<double>& data() const { return data_; }
 
   void reserve(std::size_t rows) { data_.reserve(rows * width_); }
-  /// Adds whole rows, one behind the other.
+  /// Adds whole rows, one after the other.
   void append(std::span<const double> rows) {
     assert(pages_ == nullptr && rows.size() % width_ == 0);
     data_.insert(data_.end(), rows.begin(), rows.end());

@@ -1,12 +1,10 @@
-/// Datasets of one group that grow together, row by row.
+/// Datasets of one group with the same rows.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "sim/records/hdf5_group.h"

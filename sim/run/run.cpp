@@ -68,6 +68,12 @@ void teach(const model::Scenario& scenario, std::vector<preparation::PreparedCas
   preparation::teach(scenario, cases, control.cache);
 }
 
+// The pages of its signals are in the file then.
+void hand_over(const RunControl& control, CaseOutput& output) {
+  if (control.case_done) control.case_done(output);
+  output.pages.reset();
+}
+
 RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutput> outputs) {
   RunOutput out;
   std::vector<evaluation::CaseData> data;
@@ -151,7 +157,7 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
       std::this_thread::sleep_for(kProgressPeriod);
     } else {
       if (failures[i]) std::rethrow_exception(failures[i]);
-      if (control.case_done) control.case_done(outputs[i]);
+      hand_over(control, outputs[i]);
       ++i;
     }
     double sum = 0.0;

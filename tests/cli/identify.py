@@ -200,6 +200,9 @@ class Way(in_folder.InScenarios):
 
         with h5py.File(self.path("one.h5")) as first, h5py.File(self.path("signals.h5")) as two:
             first.visititems(compare)
+            names = []
+            two.visititems(lambda name, one: names.append(name) if isinstance(one, h5py.Dataset) else None)
+            self.assertEqual(sorted(names), sorted(compared))
         self.assertIn("parameters/covariance", compared)
         self.assertIn("recording_001/simulated_feedback", compared)
 

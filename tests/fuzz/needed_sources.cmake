@@ -5,6 +5,7 @@
 
 # servomill_includes(OUT PATH): what a file of the project includes from the project.
 function(servomill_includes out path)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path})
   file(STRINGS ${PROJECT_SOURCE_DIR}/${path} lines REGEX "^#include \"")
   set(found)
   foreach(line ${lines})

@@ -56,7 +56,7 @@ struct Program {
   }
 };
 
-TEST(RewrittenMemory, DoesNotGrowWithTheProgram) {
+TEST(RewrittenMemory, IsThatOfMovesHeldCompactly) {
   constexpr std::size_t kLines = 300'000;
   // both lists with their masks, and pieces of text; arrays of the moves and whole texts take 225
   // MB

@@ -3,6 +3,7 @@
 #include "sim/run/store.h"
 
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "sim/records/input_file.h"
 #include "sim/records/series_spool.h"
 #include "sim/run/stored_run.h"
+#include "sim/system/system_error.h"
 #include "tests/sim/records/file_snapshots.h"
 #include "tests/sim/small_scenario.h"
 
@@ -140,6 +142,34 @@ TEST_F(RunFile, IsTheSameForTheSameCases) {
   }
   EXPECT_EQ(bytes(path("a.h5")), bytes(path("b.h5")));
   EXPECT_GT(bytes(path("a.h5")).size(), 1000U);
+}
+
+TEST_F(RunFile, HasEveryCompleteCaseWhereTheDiskIsFull) {
+  const std::string disk = path("disk");
+  fs::create_directory(disk);
+  if (mount("none", disk.c_str(), "tmpfs", 0, "size=128k") != 0) {
+    GTEST_SKIP() << "only root can mount a small disk";
+  }
+  std::size_t complete = 0;
+  {
+    const model::Scenario described = scenario();
+    RunStore store(disk + "/out.h5", false, described);
+    try {
+      for (; complete < kCases; ++complete) store.add(output(complete));
+    } catch (const system::SystemError& error) {
+      EXPECT_NE(std::string(error.what()).find("No space left on device"), std::string::npos);
+    }
+  }
+  EXPECT_GT(complete, 0U);
+  EXPECT_LT(complete, kCases);
+  {
+    const StoredRun run = read_run(disk + "/out.h5.partial");
+    ASSERT_GE(run.cases.size(), complete);
+    for (std::size_t i = 0; i < complete; ++i) {
+      EXPECT_EQ(run.cases[i].servo->data(), output(i).result.servo.data()) << i;
+    }
+  }
+  EXPECT_EQ(umount(disk.c_str()), 0);
 }
 
 TEST_F(RunFile, IsTheSameOfCasesThatAreEncodedBefore) {
