@@ -89,6 +89,21 @@ class Ends(unittest.TestCase):
         self.assertEqual(stderr, f"interrupted; saved in {self.partial}: 1 complete points of 2\n")
         self.assertFalse(os.path.exists(self.out))
 
+    def test_sweep_that_was_killed_at_its_first_writes_begins_anew(self):
+        sweep = ["sweep", SCENARIO, "-q", "-o", self.out, "--set", 'sweep={"program.feed_override"=[1.0,0.9]}']
+        self.assertEqual(servomill(*sweep).returncode, 0)
+        with open(self.out, "rb") as file:
+            first = file.read(2048)
+        for written in (0, 96, 2047):
+            os.remove(self.out)
+            os.remove(self.out.removesuffix(".h5") + ".csv")
+            with open(self.partial, "wb") as file:
+                file.write(first[:written])
+            again = servomill(*sweep)
+            self.assertEqual((again.returncode, again.stderr), (0, ""), f"{written} bytes")
+            self.assertTrue(os.path.exists(self.out))
+            self.assertFalse(os.path.exists(self.partial))
+
     def test_full_disk_is_a_failure_of_the_system(self):
         def only(size):
             def limit():  # as a full disk: the write fails
