@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -48,27 +47,6 @@ void add_level(std::set<SimdLevel>& levels, double number) {
   for (const SimdLevel level : kSimdLevels) {
     if (number_of_level(level) == number) levels.insert(level);
   }
-}
-
-// Returns true if a file begins with zeros: its beginning is written last.
-bool begins_empty(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 8> begin{};
-  file.read(begin.data(), begin.size());
-  return std::all_of(begin.begin(), begin.end(), [](char c) { return c == '\0'; });
-}
-
-// A table that was begun but got no row. A kill at the first writes leaves a file that ends before
-// the 2048 bytes of its first block, which HDF5 does not open.
-bool is_unborn(const std::string& path) {
-  constexpr std::uintmax_t kFirstBlock = 2048;
-  if (begins_empty(path)) return true;
-  if (!run::is_hdf5(path)) return false;
-  std::error_code ignored;
-  if (fs::file_size(path, ignored) < kFirstBlock) return true;
-  const records::InputFile file(path);
-  return file.has_attribute("/", "kind") && file.text("/", "kind") == "sweep" &&
-         (!file.has(kSweepGroup) || !file.has_attribute(kSweepGroup, "points"));
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
 #include <vector>
 
 #include "sim/input/read_scenario.h"
@@ -11,6 +14,40 @@
 #include "sim/sweep/table_columns.h"
 
 namespace servomill::sim::sweep {
+namespace {
+
+// Returns true if a file begins with zeros: its beginning is written last.
+bool begins_empty(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 8> begin{};
+  file.read(begin.data(), begin.size());
+  return std::all_of(begin.begin(), begin.end(), [](char c) { return c == '\0'; });
+}
+
+// A kill at the first writes leaves a file that ends within its first block.
+bool ends_in_first_block(const std::string& path) {
+  constexpr std::uintmax_t kFirstBlock = 2048;
+  std::error_code ignored;
+  return std::filesystem::file_size(path, ignored) < kFirstBlock;
+}
+
+bool is_table_without_rows(const records::InputFile& file) {
+  return file.has_attribute("/", "kind") && file.text("/", "kind") == "sweep" &&
+         (!file.has(kSweepGroup) || !file.has_attribute(kSweepGroup, "points"));
+}
+
+}  // namespace
+
+bool is_unborn(const std::string& path) {
+  if (begins_empty(path)) return true;
+  if (!run::is_hdf5(path)) return false;
+  try {
+    return is_table_without_rows(records::InputFile(path));
+  } catch (const InputError&) {
+    if (ends_in_first_block(path)) return true;
+    throw;
+  }
+}
 
 std::string why_other(const SweepHeader& header, const model::Scenario& base,
                       const Selection& selection) {

@@ -30,6 +30,11 @@ struct SweepHeader {
 /// @throws InputError if the file is no table of a sweep of this version
 SweepHeader read_sweep_header(const records::InputFile& file);
 
+/// True of a table that was begun but got no row. A small file that HDF5 opens is not taken for
+/// one.
+/// @throws InputError if the file is one of HDF5 that cannot be read
+bool is_unborn(const std::string& path);
+
 /// Why a file is not the table of this sweep; empty: it is.
 std::string why_other(const SweepHeader& header, const model::Scenario& base,
                       const Selection& selection);

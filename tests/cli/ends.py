@@ -9,6 +9,8 @@ import tempfile
 import time
 import unittest
 
+import h5py
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 SERVOMILL = os.path.abspath(sys.argv.pop(1))
 SCENARIO = os.path.join(HERE, "gallery", "scenario.toml")
@@ -103,6 +105,16 @@ class Ends(unittest.TestCase):
             self.assertEqual((again.returncode, again.stderr), (0, ""), f"{written} bytes")
             self.assertTrue(os.path.exists(self.out))
             self.assertFalse(os.path.exists(self.partial))
+
+    def test_sweep_does_not_overwrite_a_small_file_of_others(self):
+        with h5py.File(self.partial, "w", libver="latest") as file:
+            file.attrs["of_others"] = 1
+        before = os.stat(self.partial)
+        self.assertLess(before.st_size, 2048)
+        refused = servomill("sweep", SCENARIO, "-q", "-o", self.out, "--set", 'sweep={"program.feed_override"=[1.0,0.9]}')
+        self.assertEqual(refused.returncode, 2)
+        self.assertRegex(refused.stderr, r"out\.h5\.partial: error: ")
+        self.assertEqual(os.stat(self.partial), before)
 
     def test_full_disk_is_a_failure_of_the_system(self):
         def only(size):
