@@ -38,7 +38,7 @@ class CProgram {
 /// Hands out the moves with blocks in place of the motions that they name. Blocks carry over line,
 /// arc length and feed of their motion.
 /// @param displaces_rotary  false: rotary axes must stay on the programmed path
-/// @return why a block cannot be, which ends it; empty if all can
+/// @return why a block is refused, after which nothing is handed out; empty if none is
 std::string put_with_blocks(const MoveRange& moves, const std::vector<servomill_block>& blocks,
                             const JointLayout& layout, const Joints& start, bool displaces_rotary,
                             const PutMove& put);

@@ -279,22 +279,17 @@ class Tracer {
 }  // namespace
 
 const TcpMotion& TipMotions::of(std::size_t move) const {
-  std::size_t first = 0, last = motions.size();
-  while (first < last) {
-    const std::size_t middle = first + (last - first) / 2;
-    if (motions[middle].move < move) {
-      first = middle + 1;
-    } else {
-      last = middle;
-    }
-  }
-  assert(first < motions.size() && motions[first].move == move);
-  constexpr std::size_t kReleased = 65536;
-  if (first % kReleased == 0) {
+  const std::span<const TcpMotion> all = motions.range(0, motions.size());
+  const auto found =
+      std::lower_bound(all.begin(), all.end(), move,
+                       [](const TcpMotion& m, std::size_t index) { return m.move < index; });
+  assert(found != all.end() && found->move == move);
+  constexpr std::ptrdiff_t kReleased = 65536;
+  if ((found - all.begin()) % kReleased == 0) {
     chords.release();
     motions.release();
   }
-  return motions[first];
+  return *found;
 }
 
 TipMotions tip_motions(const MoveRange& moves, const ToolCentrePoint& machine,

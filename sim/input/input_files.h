@@ -27,7 +27,7 @@ class InputFiles {
   /// Takes a text for the file of that name, which need not be on a disk. Before it is asked for.
   void provide(const std::string& path, std::string text);
 
-  /// Takes the program of a result file, which is stored beside the resolved document.
+  /// Takes the program of a result file, which is stored next to the resolved document.
   void provide_program(std::shared_ptr<const StoredText> program) {
     provided_program_ = std::move(program);
   }

@@ -89,7 +89,7 @@ void refuse_full_temporary_folder(const model::Scenario& scenario, std::size_t m
 
 /// To be called before a program is rewritten.
 /// @param moves  of the original; a strategy may make more of them, but not fewer
-/// @throws InputError if there is not so much room for the text and its moves
+/// @throws InputError if the folder has less room than the text and its moves need
 void refuse_full_temporary_folder_of_rewritten(const model::Scenario& scenario, std::size_t moves,
                                                std::optional<double> available = {});
 

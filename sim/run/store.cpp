@@ -28,6 +28,10 @@
 namespace servomill::sim::run {
 namespace {
 
+unsigned threads_of_a_case(unsigned threads, std::size_t cases) {
+  return std::max(1U, system::thread_count(threads) / static_cast<unsigned>(cases));
+}
+
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 constexpr std::size_t kRoomOfAttributes = 8;       // as names of cases take
 
@@ -69,14 +73,6 @@ struct RunStore::Signals {
   unsigned threads_of_a_case;  // that encode, while other cases run
   records::SharedSignals shared;
 };
-
-namespace {
-
-unsigned threads_of_a_case(unsigned threads, std::size_t cases) {
-  return std::max(1U, system::thread_count(threads) / static_cast<unsigned>(cases));
-}
-
-}  // namespace
 
 RunStore::RunStore(const std::string& path, bool force, const model::Scenario& scenario,
                    unsigned threads)

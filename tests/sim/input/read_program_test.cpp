@@ -80,7 +80,8 @@ TEST_F(Program, IsRefusedWhereItIsNotUtf8) {
   EXPECT_EQ(refusal(good + "\xE2\x82"), place_of(good, good.size()) + ": error: byte 0xe2" + why);
 }
 
-// A resolved document has the checksum of a long program, which may be there or beside it.
+// A resolved document holds the checksum of a long program; the text is in the same result file or
+// in the file of the program.
 TEST_F(Program, OfAResultFileMustBeTheOneOfItsDocument) {
   const std::string text = long_program();
   const auto stored = std::make_shared<const StoredText>(text, 0);
