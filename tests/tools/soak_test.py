@@ -61,6 +61,12 @@ class Soak(unittest.TestCase):
                 kept = (self.folder / f"{name}-{first}" / "finding.txt").read_text()
                 self.assertTrue(kept.startswith(f"{name}, seed {first}\ncommands:\n"), kept)
 
+    def test_a_file_that_is_missing_is_a_finding(self):
+        commands = laws.Commands(SERVOMILL, self.folder)
+        commands.run("--version")
+        with self.assertRaisesRegex(laws.Found, r"--version\n\nwhole\.h5 cannot be read: "):
+            laws.datasets(commands, self.folder / "whole.h5")
+
     def test_a_seed_is_the_same_scenario_again(self):
         one, two = (generate.scenario(random.Random(4), self.soak.keys).text("m.toml") for _ in range(2))
         self.assertEqual(one, two)

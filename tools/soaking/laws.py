@@ -57,8 +57,8 @@ class Commands:
         raise Found("\n".join(["commands:", *self.lines, "", what]))
 
 
-def datasets(path):
-    """Every dataset of a result file by each of its names."""
+def datasets(commands, path):
+    """Every dataset of a result file by each of its names; a file that is missing or damaged is a finding."""
     out = {}
 
     def take(group, above):
@@ -68,13 +68,16 @@ def datasets(path):
             else:
                 take(one, f"{above}{name}/")
 
-    with h5py.File(path) as file:
-        take(file, "")
+    try:
+        with h5py.File(path) as file:
+            take(file, "")
+    except OSError as error:
+        commands.fail(f"{path.name} cannot be read: {error}")
     return out
 
 
 def same_bits(commands, first, second, what):
-    one, other = datasets(first), datasets(second)
+    one, other = datasets(commands, first), datasets(commands, second)
     different = set(one) ^ set(other)
     different |= {name for name in set(one) & set(other) if numpy.asarray(one[name]).tobytes() != numpy.asarray(other[name]).tobytes()}
     if different:
@@ -141,19 +144,27 @@ def killed_sweeps_go_on(rng, soak, folder):
     with open(folder / "scenario.toml", "a", encoding="utf-8") as file:
         file.write(f'\n[sweep]\n"{key}" = {values}\n')
     begin = time.monotonic()
-    commands.run("sweep", "scenario.toml", "-q", "-o", "whole.h5")
+    refused = commands.run("sweep", "scenario.toml", "-q", "-o", "whole.h5")[0] == 2
+
+    def point(value):
+        scenario.settings[key] = str(value)
+        scenario.write(folder, soak.machine)
+        return commands.run("run", "scenario.toml", "-q", "-o", "point.h5", "--force")[0]
+
+    if refused:
+        if 2 not in [point(value) for value in values]:
+            commands.fail("a sweep is refused, none of its points is")
+        return
     process = commands.start("sweep", "scenario.toml", "-q", "-o", "killed.h5")
     time.sleep(rng.uniform(0, time.monotonic() - begin))
     process.send_signal(signal.SIGKILL)
     process.communicate()
     finished = process.returncode != -signal.SIGKILL or (folder / "killed.h5").exists()
-    commands.run("sweep", "scenario.toml", "-q", "-o", "killed.h5", *(["--force"] if finished else []))
+    commands.run("sweep", "scenario.toml", "-q", "-o", "killed.h5", *(["--force"] if finished else []), allowed=(0, 1))
     same_bits(commands, folder / "whole.h5", folder / "killed.h5", "a sweep that was killed and went on")
     at = rng.randrange(len(values))
-    scenario.settings[key] = str(values[at])
-    scenario.write(folder, soak.machine)
-    commands.run("run", "scenario.toml", "-q", "-o", "point.h5", allowed=(0, 1))
-    compare_point(commands, datasets(folder / "whole.h5"), datasets(folder / "point.h5"), at)
+    point(values[at])
+    compare_point(commands, datasets(commands, folder / "whole.h5"), datasets(commands, folder / "point.h5"), at)
 
 
 def compare_point(commands, sweep, run, at):
@@ -170,7 +181,7 @@ def integrators_agree(rng, soak, folder):
     commands = Commands(soak.program, folder)
     accepted(rng, soak, commands, smooth=True)
     commands.run("run", "scenario.toml", "-q", "-o", "cvode.h5", "--set", 'machine_override.integrator="cvode"', "--set", "machine_override.solver_tolerance_nm=0.002")
-    exact, cvode = datasets(folder / "out.h5"), datasets(folder / "cvode.h5")
+    exact, cvode = datasets(commands, folder / "out.h5"), datasets(commands, folder / "cvode.h5")
     for name in exact:
         if name.endswith("/servo/true_linear"):
             apart = 1e-3 * numpy.max(numpy.abs(exact[name] - cvode[name]), initial=0.0)
