@@ -2,7 +2,7 @@
 
 # libsundials-dev is large (about 310 packages and 240 MB with what it needs): it integrates the
 # equations of the drives, as a reference or where a scenario asks for it.
-BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libdeflate-dev
+BUILD_PACKAGES=(g++ cmake ninja-build libeigen3-dev libfmt-dev libhdf5-dev libdeflate-dev zlib1g-dev
   libboost-dev libboost-program-options-dev libtomlplusplus-dev libsundials-dev libxsimd-dev
   libnanoflann-dev libmatio-dev libpugixml-dev libceres-dev libzip-dev)
 FIGURE_PACKAGES=(python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-xarray

@@ -1,14 +1,12 @@
 #include "sim/records/chunk_encoder.h"
 
-#include <libdeflate.h>
-
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
 #include <limits>
-#include <new>
 
+#include "sim/records/plane_compressor.h"
 #include "sim/records/transpose_bytes.h"
 
 namespace servomill::sim::records {
@@ -51,30 +49,9 @@ void shuffle(const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
 
 std::size_t bytes_of(Storage storage) { return storage == Storage::float64 ? 8 : 4; }
 
-struct ChunkEncoder::Deflate {
-  explicit Deflate(int level) : compressor(libdeflate_alloc_compressor(level)) {
-    if (compressor == nullptr) throw std::bad_alloc();
-  }
-  ~Deflate() { libdeflate_free_compressor(compressor); }
-  Deflate(const Deflate&) = delete;
-  Deflate& operator=(const Deflate&) = delete;
-
-  void compress(const std::vector<std::uint8_t>& bytes, std::vector<std::uint8_t>& chunk) {
-    const std::size_t most = libdeflate_zlib_compress_bound(compressor, bytes.size());
-    if (room.size() < most) room.resize(most);
-    const std::size_t size =
-        libdeflate_zlib_compress(compressor, bytes.data(), bytes.size(), room.data(), room.size());
-    assert(size > 0);
-    chunk.assign(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size));
-  }
-
-  libdeflate_compressor* compressor;
-  std::vector<std::uint8_t> room = {};  // a chunk that would be filled with zeros each time
-};
-
 ChunkEncoder::ChunkEncoder(int level) {
   assert(level >= kNoCompression && level <= kMaxCompression);
-  if (level != kNoCompression) deflate_ = std::make_unique<Deflate>(level);
+  if (level != kNoCompression) compressor_ = std::make_unique<PlaneCompressor>(level);
 }
 
 ChunkEncoder::~ChunkEncoder() = default;
@@ -84,9 +61,9 @@ void ChunkEncoder::encode(std::span<const double> values, std::size_t rows, Stor
                           std::vector<std::uint8_t>& chunk) {
   assert(values.size() <= rows);
   // a full chunk of numbers that are kept as they are is shuffled where it lies
-  const bool is_plain = deflate_ && storage == Storage::float64 && values.size() == rows;
+  const bool is_plain = compressor_ && storage == Storage::float64 && values.size() == rows;
   const auto* bytes_of_numbers = reinterpret_cast<const std::uint8_t*>(values.data());
-  std::vector<std::uint8_t>& plain = deflate_ ? plain_ : chunk;
+  std::vector<std::uint8_t>& plain = compressor_ ? plain_ : chunk;
   switch (storage) {
     case Storage::float64:
       if (!is_plain) store(values, rows, std::numeric_limits<double>::quiet_NaN(), plain);
@@ -98,14 +75,14 @@ void ChunkEncoder::encode(std::span<const double> values, std::size_t rows, Stor
       store(values, rows, std::int32_t{0}, plain);
       break;
   }
-  if (!deflate_) return;
+  if (!compressor_) return;
   shuffled_.resize(rows * bytes_of(storage));
   if (bytes_of(storage) == 8) {
     shuffle<8>(is_plain ? bytes_of_numbers : plain_.data(), rows, shuffled_.data());
   } else {
     shuffle<4>(plain_.data(), rows, shuffled_.data());
   }
-  deflate_->compress(shuffled_, chunk);
+  compressor_->compress(shuffled_, rows, chunk);
 }
 
 }  // namespace servomill::sim::records

@@ -9,6 +9,8 @@
 
 namespace servomill::sim::records {
 
+class PlaneCompressor;
+
 /// How a number is stored.
 enum class Storage : std::uint8_t { float64, float32, int32 };
 
@@ -33,8 +35,7 @@ class ChunkEncoder {
               std::vector<std::uint8_t>& chunk);
 
  private:
-  struct Deflate;
-  std::unique_ptr<Deflate> deflate_;  // null: level 0
+  std::unique_ptr<PlaneCompressor> compressor_;  // null: level 0
   std::vector<std::uint8_t> plain_, shuffled_;
 };
 
