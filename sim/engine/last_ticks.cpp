@@ -22,14 +22,16 @@ records::Series LastTicks::series(const JointLayout& layout) const {
                        {"fb", "m or rad", "position feedback", letters, "axis"},
                        {"true", "m or rad", "position of the slide or table", letters, "axis"},
                        {"current", "A", "torque-forming current", letters, "axis"}});
+  std::vector<double> row(out.width());
   const std::size_t rows = std::min(count_, kLastTicks);
   for (std::size_t n = count_ - rows; n < count_; ++n) {
     const double* from = ring_.data() + (n % kLastTicks) * kPerRow;
-    double* to = out.add_row();
+    double* to = row.data();
     *to++ = *from;
     for (std::size_t block = 0; block < 4; ++block) {
       for (const int j : present_) *to++ = from[1 + block * kJoints + static_cast<std::size_t>(j)];
     }
+    out.append(row);
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #include "sim/engine/recorded_rows.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "plant/heat/temperature.h"
@@ -91,7 +92,10 @@ void RecordedRows::choose(const RunOutputs& outputs, std::vector<Signal>& signal
   std::size_t column = 0;
   for (Signal& signal : signals) {
     const std::size_t end = column + signal.columns();
-    if (!is_of_every_row(signal.name) && !outputs.wants(signal.name)) {
+    const bool is_kept =
+        outputs.wants(signal.name) ||
+        std::find(kOfEveryRow.begin(), kOfEveryRow.end(), signal.name) != kOfEveryRow.end();
+    if (!is_kept) {
       left_out_.push_back(signal.name);
       column = end;
       continue;

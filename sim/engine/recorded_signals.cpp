@@ -144,11 +144,6 @@ void add_tool_signals(SignalParts parts, std::vector<Signal>& all) {
 
 }  // namespace
 
-bool is_of_every_row(std::string_view signal) {
-  const auto all = {"time", "s", "line", "section", "rapid"};
-  return std::find(all.begin(), all.end(), signal) != all.end();
-}
-
 bool wants_axis_signals(const RunOutputs& outputs) {
   return std::any_of(std::begin(kAxisSignals), std::end(kAxisSignals), [&](const auto& signal) {
     return outputs.wants(signal.name + std::string("_linear")) ||

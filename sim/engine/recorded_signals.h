@@ -1,6 +1,7 @@
 /// Signals of the recording of a case: names, units, what they say and to what they are rounded.
 #pragma once
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct SignalParts {
   bool windows = false;        // number of the window, and rows around it
 };
 
-/// True of those by which rows are found: every recording has them.
-bool is_of_every_row(std::string_view signal);
+/// Signals by which rows are found: every recording has them.
+inline constexpr std::array<std::string_view, 5> kOfEveryRow = {"time", "s", "line", "section",
+                                                                "rapid"};
 /// True if a signal of the axes and their loops is asked for.
 bool wants_axis_signals(const RunOutputs& outputs);
 

@@ -1,7 +1,8 @@
-#include "sim/records/gathered_columns.h"
+#include "sim/records/column_table.h"
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace servomill::sim::records {
 namespace {
@@ -10,28 +11,58 @@ namespace {
 // place of each other there.
 constexpr std::size_t kApart = 8;
 
-constexpr std::size_t kAhead = 16;  // rows: meanwhile a line of the cache arrives from memory
+constexpr std::size_t kNeighbours = 8;  // columns that share the lines of the cache in a row
 
-void prefetch(const double* numbers) { __builtin_prefetch(numbers); }
+constexpr std::size_t kFirstRoom = 64;  // rows
+
+std::size_t rounded_up(std::size_t count, std::size_t to) { return (count + to - 1) / to * to; }
 
 }  // namespace
 
-void GatheredColumns::begin(std::span<const double> rows) {
-  assert(rows.size() % width_ == 0);
-  rows_ = rows;
-  count_ = rows.size() / width_;
-  apart_ = count_ + kApart;
-  if (values_.size() < width_ * apart_) values_.resize(width_ * apart_);
+ColumnTable::ColumnTable(const ColumnTable& other) : width_(other.width_) {
+  reserve(other.rows_);
+  for (std::size_t c = 0; c < width_; ++c) {
+    const std::span<const double> from = other.column(c);
+    std::copy(from.begin(), from.end(), numbers_.get() + c * apart_);
+  }
+  rows_ = other.rows_;
 }
 
-void GatheredColumns::gather(std::size_t group) {
-  const std::size_t first = group * kNeighbours, last = std::min(first + kNeighbours, width_);
-  for (std::size_t row = 0; row < count_; ++row) {
-    const double* from = rows_.data() + row * width_;
-    if (row + kAhead < count_) prefetch(from + kAhead * width_ + first);
-    double* to = values_.data() + first * apart_ + row;
-    for (std::size_t c = first; c < last; ++c, to += apart_) *to = from[c];
+void ColumnTable::swap(ColumnTable& other) noexcept {
+  std::swap(width_, other.width_);
+  std::swap(rows_, other.rows_);
+  std::swap(room_, other.room_);
+  std::swap(apart_, other.apart_);
+  numbers_.swap(other.numbers_);
+}
+
+void ColumnTable::reserve(std::size_t rows) {
+  if (rows <= room_ || width_ == 0) return;
+  const std::size_t apart = rounded_up(rows, kApart) + kApart;
+  auto larger = std::make_unique_for_overwrite<double[]>(width_ * apart);
+  for (std::size_t c = 0; c < width_; ++c) {
+    const std::span<const double> old = column(c);
+    std::copy(old.begin(), old.end(), larger.get() + c * apart);
   }
+  numbers_ = std::move(larger);
+  room_ = rows;
+  apart_ = apart;
+}
+
+void ColumnTable::append(std::span<const double> rows) {
+  if (rows.empty()) return;
+  assert(rows.size() % width_ == 0);
+  const std::size_t count = rows.size() / width_;
+  if (rows_ + count > room_) reserve(std::max({rows_ + count, 2 * room_, kFirstRoom}));
+  for (std::size_t first = 0; first < width_; first += kNeighbours) {
+    const std::size_t last = std::min(first + kNeighbours, width_);
+    for (std::size_t row = 0; row < count; ++row) {
+      const double* from = rows.data() + row * width_;
+      double* to = numbers_.get() + first * apart_ + rows_ + row;
+      for (std::size_t c = first; c < last; ++c, to += apart_) *to = from[c];
+    }
+  }
+  rows_ += count;
 }
 
 }  // namespace servomill::sim::records

@@ -1,34 +1,44 @@
-/// Rows of numbers as columns.
+/// Rows of numbers, kept column by column.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
-#include <vector>
 
 namespace servomill::sim::records {
 
-/// Columns of rows, each one number after the other.
-class GatheredColumns {
+/// Rows come one behind the other; the numbers of a column lie one behind the other, as whoever
+/// evaluates or writes them needs them.
+class ColumnTable {
  public:
-  /// Columns that share the lines of the cache in a row: gathered together.
-  static constexpr std::size_t kNeighbours = 8;
-
-  explicit GatheredColumns(std::size_t width) : width_(width) {}
-
-  std::size_t groups() const { return (width_ + kNeighbours - 1) / kNeighbours; }
-  /// Makes room for the rows, whose groups are then gathered, by several threads if there are.
-  void begin(std::span<const double> rows);
-  void gather(std::size_t group);
-  /// @pre its group is gathered
-  std::span<const double> column(std::size_t c) const {
-    return {values_.data() + c * apart_, count_};
+  explicit ColumnTable(std::size_t width = 0) : width_(width) {}
+  ColumnTable(const ColumnTable& other);
+  ColumnTable(ColumnTable&& other) noexcept { swap(other); }
+  ColumnTable& operator=(ColumnTable other) noexcept {
+    swap(other);
+    return *this;
   }
+  ~ColumnTable() = default;
+  void swap(ColumnTable& other) noexcept;
+
+  std::size_t width() const { return width_; }
+  std::size_t rows() const { return rows_; }
+  void reserve(std::size_t rows);
+  /// Adds whole rows.
+  void append(std::span<const double> rows);
+  /// Takes all rows out, and keeps their room.
+  void clear() { rows_ = 0; }
+
+  std::span<const double> column(std::size_t c) const {
+    return {numbers_.get() + c * apart_, rows_};
+  }
+  double at(std::size_t row, std::size_t c) const { return numbers_[c * apart_ + row]; }
 
  private:
-  std::size_t width_;
-  std::span<const double> rows_;
-  std::size_t count_ = 0, apart_ = 0;  // rows; from one column to the next
-  std::vector<double> values_;
+  std::size_t width_ = 0;
+  std::size_t rows_ = 0, room_ = 0;  // rows
+  std::size_t apart_ = 0;            // from one column to the next
+  std::unique_ptr<double[]> numbers_;
 };
 
 }  // namespace servomill::sim::records

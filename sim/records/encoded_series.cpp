@@ -10,9 +10,13 @@ namespace servomill::sim::records {
 EncodedSeries::EncodedSeries(const Series& series, const PageFormat& format, unsigned threads)
     : format_(format), rows_(series.rows()), storage_(series.storage_of_columns()) {
   PageEncoder encoder(storage_, format, system::thread_count(threads));
+  std::vector<std::span<const double>> columns(series.width());
   for (std::size_t first = 0; first < rows_; first += page_rows()) {
     const std::size_t count = std::min(page_rows(), rows_ - first);
-    encoder.encode({series.row(first), count * series.width()});
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      columns[c] = series.table().column(c).subspan(first, count);
+    }
+    encoder.encode(columns);
     for (const std::size_t chunk : encoder.chunk_of_columns()) {
       chunk_of_.push_back(chunks_.size() + chunk);
     }

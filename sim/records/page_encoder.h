@@ -1,4 +1,4 @@
-/// Rows of a series as the chunks of a file.
+/// Columns of a series as the chunks of a file.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "sim/records/chunk_encoder.h"
-#include "sim/records/gathered_columns.h"
 
 namespace servomill::sim::records {
 
@@ -17,7 +16,7 @@ struct PageFormat {
   int compression = 1;  // kNoCompression to kMaxCompression
 };
 
-/// Encodes one page of rows after the other. Columns of the same numbers and storage share a chunk,
+/// Encodes one page after the other. Columns of the same numbers and storage share a chunk,
 /// which is encoded once. For one caller at a time.
 class PageEncoder {
  public:
@@ -25,11 +24,11 @@ class PageEncoder {
   /// @param threads  that encode; the chunks do not depend on it
   PageEncoder(std::vector<Storage> storage, const PageFormat& format, unsigned threads);
 
-  /// @param rows  at most as many as a chunk holds
-  void encode(std::span<const double> rows);
+  /// @param columns  numbers of each, at most as many as a chunk holds
+  void encode(std::span<const std::span<const double>> columns);
   /// The different chunks of the page.
   std::span<const std::vector<std::uint8_t>> chunks() const {
-    return std::span(chunks_).first(columns_.size());
+    return std::span(chunks_).first(first_.size());
   }
   /// Index of the chunk of each column.
   std::span<const std::size_t> chunk_of_columns() const { return chunk_of_; }
@@ -40,9 +39,9 @@ class PageEncoder {
 
   std::vector<Storage> storage_;
   std::size_t chunk_rows_;
-  GatheredColumns gathered_;
   std::vector<ChunkEncoder> encoders_;  // of each thread
-  std::vector<std::size_t> columns_;    // the first of each chunk
+  std::span<const std::span<const double>> columns_;
+  std::vector<std::size_t> first_;  // column of each chunk
   std::vector<std::size_t> chunk_of_;
   std::vector<std::vector<std::uint8_t>> chunks_;
 };

@@ -22,6 +22,15 @@ SpoolFormat format_of(const RowKeeping& keeping, std::size_t chunk_rows) {
           .page = {.chunk_rows = chunk_rows, .compression = keeping.compression}};
 }
 
+// Columns of the signals that are read.
+std::vector<bool> read_columns(const RowKeeping& keeping, const std::vector<Signal>& signals) {
+  std::vector<bool> out;
+  for (const Signal& one : signals) {
+    out.insert(out.end(), one.columns(), !keeping.read || keeping.read->contains(one.name));
+  }
+  return out;
+}
+
 }  // namespace
 
 RowKeeper::RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keeping,
@@ -46,12 +55,14 @@ RowKeeper::RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keepi
 void RowKeeper::make_room(const RowKeeping& keeping, std::size_t rows) {
   const double size = static_cast<double>(rows) * static_cast<double>(series_.width()) *
                       static_cast<double>(sizeof(double));
-  if (size > keeping.most_in_memory) {
-    spool_ =
-        std::make_shared<SeriesSpool>(series_.signals(), format_of(keeping, even_chunk_rows(rows)));
-  } else {
-    series_.reserve(rows);
+  const bool is_long = size > keeping.most_in_memory;
+  if (!is_long && !keeping.encodes) return series_.reserve(rows);
+  SpoolFormat format = format_of(keeping, even_chunk_rows(rows));
+  if (!is_long) {
+    format.most_in_memory = keeping.most_in_memory;
+    format.kept = read_columns(keeping, series_.signals());
   }
+  spool_ = std::make_shared<SeriesSpool>(series_.signals(), std::move(format));
 }
 
 void RowKeeper::add(std::span<const double> rows) {

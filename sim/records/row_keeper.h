@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,8 +20,11 @@ namespace servomill::sim::records {
 struct RowKeeping {
   std::string folder;            // of what memory is not to hold; empty: that of temporary files
   double most_in_memory = 64e6;  // bytes of the rows of a case; more go to the disk
-  int compression = 1;           // there
+  int compression = 1;           // of what is encoded
   std::optional<ThinningLimits> thinning = {};  // none: every row is kept
+  bool encodes = false;                         // rows as they come, since they go into a file
+  /// Signals whose numbers stay beside where rows are encoded, as they are read often; none: all.
+  std::optional<std::set<std::string, std::less<>>> read = {};
 };
 
 /// Rows of one case. What it holds in memory does not grow with their number, once that is large.
@@ -42,7 +47,7 @@ class RowKeeper {
   std::optional<RowThinning> thinning_;
   std::vector<double> staying_;         // of the rows that come, if they are thinned
   Series series_;                       // in memory
-  std::shared_ptr<SeriesSpool> spool_;  // or there
+  std::shared_ptr<SeriesSpool> spool_;  // or encoded, or on the disk
 };
 
 }  // namespace servomill::sim::records

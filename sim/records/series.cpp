@@ -13,6 +13,7 @@ Series::Series(std::vector<Signal> signals) : signals_(std::move(signals)) {
     channel.offset = width_;
     width_ += channel.columns();
   }
+  table_ = ColumnTable(width_);
 }
 
 Series::Series(std::vector<Signal> signals, std::shared_ptr<const ColumnPages> pages)
@@ -39,9 +40,13 @@ std::vector<Storage> Series::storage_of_columns() const {
   return out;
 }
 
-double* Series::add_row() {
-  data_.resize(data_.size() + width_, 0.0);
-  return data_.data() + data_.size() - width_;
+std::vector<double> Series::by_rows() const {
+  std::vector<double> out;
+  out.reserve(rows() * width_);
+  for (std::size_t row = 0; row < rows(); ++row) {
+    for (std::size_t c = 0; c < width_; ++c) out.push_back(at(row, c));
+  }
+  return out;
 }
 
 const Signal* Series::find(std::string_view name) const {

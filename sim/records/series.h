@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/records/chunk_encoder.h"
+#include "sim/records/column_table.h"
 
 namespace servomill::sim::records {
 
@@ -41,8 +42,7 @@ class ColumnPages {
                             std::vector<std::uint8_t>& chunk) const = 0;
 };
 
-/// A table of rows, in memory or, if there are many, on a disk. In memory, storage grows in blocks
-/// outside of what a tick does.
+/// A table of rows, in memory or, if there are many, on a disk.
 class Series {
  public:
   Series() = default;
@@ -55,26 +55,21 @@ class Series {
   const std::vector<Signal>& signals() const { return signals_; }
   std::size_t width() const { return width_; }
   std::vector<Storage> storage_of_columns() const;
-  std::size_t rows() const {
-    if (pages_ != nullptr) return pages_->rows();
-    return width_ == 0 ? 0 : data_.size() / width_;
-  }
+  std::size_t rows() const { return pages_ != nullptr ? pages_->rows() : table_.rows(); }
   /// Pages that hold the rows; nullptr: they are in memory.
   const ColumnPages* pages() const { return pages_.get(); }
   const std::shared_ptr<const ColumnPages>& shared_pages() const { return pages_; }
-  /// @pre of these two: in memory
-  const double* row(std::size_t index) const { return data_.data() + index * width_; }
-  const std::vector<double>& data() const { return data_; }
 
-  void reserve(std::size_t rows) { data_.reserve(rows * width_); }
+  /// @pre in memory, as of all members up to leave_out()
+  const ColumnTable& table() const { return table_; }
+  void reserve(std::size_t rows) { table_.reserve(rows); }
   /// Adds whole rows, one after the other.
   void append(std::span<const double> rows) {
-    assert(pages_ == nullptr && rows.size() % width_ == 0);
-    data_.insert(data_.end(), rows.begin(), rows.end());
+    assert(pages_ == nullptr);
+    table_.append(rows);
   }
-  /// A new row of zeros to be filled.
-  double* add_row();
-  void assign(std::vector<double> data) { data_ = std::move(data); }
+  /// Copy of all numbers, row after row.
+  std::vector<double> by_rows() const;
 
   /// Signals of a recording that nobody asked for: whoever looks for one throws std::logic_error.
   void leave_out(std::vector<std::string> names) { left_out_ = std::move(names); }
@@ -84,7 +79,7 @@ class Series {
   std::optional<std::size_t> column(std::string_view name, char label = '\0') const;
 
   double at(std::size_t row_index, std::size_t column_index) const {
-    if (pages_ == nullptr) return data_[row_index * width_ + column_index];
+    if (pages_ == nullptr) return table_.at(row_index, column_index);
     const Resident& page = residents_[column_index].front();
     if (row_index - page.first < page.values.size()) return page.values[row_index - page.first];
     return at_other_page(row_index, column_index);
@@ -101,7 +96,7 @@ class Series {
   std::vector<Signal> signals_;
   std::vector<std::string> left_out_;
   std::size_t width_ = 0;
-  std::vector<double> data_;
+  ColumnTable table_;
   std::shared_ptr<const ColumnPages> pages_;
   mutable std::vector<std::array<Resident, 2>> residents_;  // of each column, the latest first
 };

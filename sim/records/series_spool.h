@@ -1,16 +1,19 @@
-/// Rows of a long recording, on the disk from the moment when a page of them is full.
+/// Rows of a recording, encoded from the moment when a page of them is full.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "plant/vocabulary/scratch_file.h"
 #include "sim/records/chunk_decoder.h"
+#include "sim/records/column_table.h"
 #include "sim/records/page_encoder.h"
 #include "sim/records/series.h"
+#include "sim/system/worker_thread.h"
 
 namespace servomill::sim::records {
 
@@ -18,14 +21,17 @@ namespace servomill::sim::records {
 struct SpoolFormat {
   std::string folder;  // of its file
   PageFormat page = {};
+  double most_in_memory = 0.0;  // bytes of chunks; those that come later go to the file
+  std::vector<bool> kept = {};  // of each column: its numbers stay in memory, too; empty: of none
 };
 
 /// Rows of a chunk so that chunks are of equal length and the last one holds little that is
 /// nothing.
 std::size_t even_chunk_rows(std::size_t rows);
 
-/// Chunks are encoded as a result file holds them, so that they go there as they are. One chunk of
-/// rows is in memory, however many there are. Not for several threads.
+/// Chunks are encoded as a result file holds them, so that they go there as they are, by a thread
+/// of the spool, while further rows come. Two pages of rows are in memory, however many there are.
+/// For one thread at a time.
 class SeriesSpool final : public ColumnPages {
  public:
   /// @throws SystemError, as all members
@@ -38,34 +44,44 @@ class SeriesSpool final : public ColumnPages {
 
   /// Bytes of the chunks of all columns that are full, and the rows in them. On the disk they take
   /// less where columns are equal.
-  std::uint64_t bytes() const { return bytes_; }
-  std::size_t rows_on_disk() const { return pages_ * format_.chunk_rows; }
+  std::uint64_t bytes() const;
+  std::size_t rows_on_disk() const;
 
   /// @pre of these: finish()
   std::size_t rows() const override { return rows_; }
-  std::size_t page_rows() const override { return format_.chunk_rows; }
+  std::size_t page_rows() const override { return format_.page.chunk_rows; }
   void read(std::size_t column, std::size_t page, std::vector<double>& values) const override;
   bool read_encoded(std::size_t column, std::size_t page,
                     std::vector<std::uint8_t>& chunk) const override;
 
  private:
   struct Chunk {
-    std::uint64_t place = 0;
+    std::uint64_t place = 0;  // in the file, or among those in memory
     std::uint32_t size = 0;
+    bool is_on_disk = false;
   };
-  void write_page();
+  void hand_over();
+  void write_page(const ColumnTable& page);
+  Chunk stored(const std::vector<std::uint8_t>& chunk);
+  ScratchFile& file();
   std::size_t rows_in(std::size_t page) const;
 
-  PageFormat format_;
-  std::vector<Storage> storage_;  // of each column
-  ScratchFile file_;
+  SpoolFormat format_;
+  std::vector<Storage> storage_;   // of each column
+  std::vector<std::size_t> kept_;  // columns
   PageEncoder encoder_;
   mutable ChunkDecoder decoder_;
   mutable std::vector<std::uint8_t> encoded_;
-  std::vector<Chunk> chunks_;    // page after page, of each column
-  std::vector<double> filling_;  // rows of the page that is not full
+  ColumnTable filling_;              // page that is not full
+  ColumnTable working_;              // page that the thread encodes
+  std::optional<ScratchFile> file_;  // from the first chunk on that is written there
+  std::vector<std::vector<std::uint8_t>> in_memory_;
+  double bytes_in_memory_ = 0.0;
+  std::vector<Chunk> chunks_;                 // page after page, of each column
+  std::vector<std::vector<double>> numbers_;  // page after page, of each kept column
   std::uint64_t bytes_ = 0;
   std::size_t pages_ = 0, rows_ = 0;
+  mutable std::optional<system::WorkerThread> background_;  // last: its thread uses the others
 };
 
 }  // namespace servomill::sim::records

@@ -57,12 +57,12 @@ bool uses_plugin(const model::CaseSpec& spec) {
                      [](const model::StrategySpec& one) { return !one.entry->plugin.empty(); });
 }
 
-IsolatedCase::IsolatedCase(const preparation::PreparedCase& prepared, std::string scratch_folder)
+IsolatedCase::IsolatedCase(const preparation::PreparedCase& prepared, SignalStorage storage)
     : prepared_(prepared),
-      scratch_folder_(std::move(scratch_folder)),
+      storage_(std::move(storage)),
       progress_(in_shared_memory()),
       child_(plugins_of(prepared.spec()),
-             [this] { return simulated(prepared_, scratch_folder_, *progress_); }) {}
+             [this] { return simulated(prepared_, storage_.scratch_folder, *progress_); }) {}
 
 engine::CaseResult IsolatedCase::simulate(const engine::StopFlag& stop,
                                           std::atomic<float>& progress) {
@@ -83,7 +83,7 @@ engine::CaseResult IsolatedCase::wait(const engine::StopFlag& stop, std::atomic<
       result.outcome = engine::interrupted(0.0);
       return result;
     }
-    return read_result(child_, prepared_.inputs(scratch_folder_).keeping);
+    return read_result(child_, inputs_with(prepared_, storage_).keeping);
   } catch (const strategies::PluginFailed& failed) {
     return stopped(failed.what());
   }
@@ -93,7 +93,7 @@ engine::CaseResult IsolatedCase::wait(const engine::StopFlag& stop, std::atomic<
 engine::CaseResult IsolatedCase::stopped(std::string why) const {
   static const engine::StopFlag kNever = false;
   std::atomic<float> progress = 0.0F;
-  engine::CaseInputs inputs = prepared_.inputs(scratch_folder_);
+  engine::CaseInputs inputs = inputs_with(prepared_, storage_);
   inputs.setpoints.clear();
   inputs.feedback = nullptr;
   inputs.position_loop_terms.clear();

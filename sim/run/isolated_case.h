@@ -3,11 +3,11 @@
 
 #include <atomic>
 #include <memory>
-#include <string>
 
 #include "sim/engine/simulate.h"
 #include "sim/model/forward.h"
 #include "sim/preparation/prepared_case.h"
+#include "sim/run/run_case.h"
 #include "strategies/plugin_child.h"
 
 namespace servomill::sim::run {
@@ -20,9 +20,8 @@ bool uses_plugin(const model::CaseSpec& spec);
 /// that reason, and its recording ends where it began.
 class IsolatedCase {
  public:
-  /// @param prepared        must outlive this; uses_plugin() holds
-  /// @param scratch_folder  of recordings that are long; empty: that of temporary files
-  IsolatedCase(const preparation::PreparedCase& prepared, std::string scratch_folder);
+  /// @param prepared  must outlive this; uses_plugin() holds
+  IsolatedCase(const preparation::PreparedCase& prepared, SignalStorage storage);
 
   /// Simulates, on any thread; once.
   engine::CaseResult simulate(const engine::StopFlag& stop, std::atomic<float>& progress);
@@ -34,7 +33,7 @@ class IsolatedCase {
   engine::CaseResult stopped(std::string why) const;
 
   const preparation::PreparedCase& prepared_;
-  std::string scratch_folder_;
+  SignalStorage storage_;
   std::shared_ptr<Progress> progress_;
   strategies::PluginChild child_;
 };

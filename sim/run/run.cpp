@@ -37,6 +37,10 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt
   strategies::PluginRescue::done();
 }
 
+SignalStorage storage_of(const RunControl& control) {
+  return {control.scratch_folder, control.stores_signals};
+}
+
 // Processes for the cases with plug-ins, where these are isolated; nullptr for the others.
 std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(
     std::span<const preparation::PreparedCase> prepared, const RunControl& control) {
@@ -44,7 +48,7 @@ std::vector<std::unique_ptr<IsolatedCase>> isolated_cases(
   if (!strategies::plugins_are_isolated()) return out;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     if (!uses_plugin(prepared[i].spec())) continue;
-    out[i] = std::make_unique<IsolatedCase>(prepared[i], control.scratch_folder);
+    out[i] = std::make_unique<IsolatedCase>(prepared[i], storage_of(control));
   }
   return out;
 }
@@ -54,9 +58,8 @@ CaseOutput run_one(const preparation::PreparedCase& prepared,
                    std::unique_ptr<IsolatedCase> isolated, const RunControl& control,
                    const engine::StopFlag& stop, std::atomic<float>& progress) {
   CaseOutput out = isolated == nullptr
-                       ? run_case(prepared, stop, progress, control.scratch_folder)
+                       ? run_case(prepared, stop, progress, storage_of(control))
                        : noted_output_of(prepared, isolated->simulate(stop, progress));
-  if (control.case_ran) control.case_ran(out);
   progress = 1.0F;
   return out;
 }
@@ -66,12 +69,6 @@ void teach(const model::Scenario& scenario, std::vector<preparation::PreparedCas
   const preparation::RunEstimate takes = preparation::estimate(scenario, cases, control.threads);
   if (takes.trial_runs > 0 && control.trials_come) control.trials_come(takes);
   preparation::teach(scenario, cases, control.cache);
-}
-
-// The pages of its signals are in the file then.
-void hand_over(const RunControl& control, CaseOutput& output) {
-  if (control.case_done) control.case_done(output);
-  output.pages.reset();
 }
 
 RunOutput with_comparison(const model::Scenario& scenario, std::vector<CaseOutput> outputs) {
@@ -157,7 +154,7 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
       std::this_thread::sleep_for(kProgressPeriod);
     } else {
       if (failures[i]) std::rethrow_exception(failures[i]);
-      hand_over(control, outputs[i]);
+      if (control.case_done) control.case_done(outputs[i]);
       ++i;
     }
     double sum = 0.0;

@@ -34,8 +34,7 @@ struct RunControl {
   std::function<void(const preparation::RunEstimate&)> trials_come;
   // every fault of the input is found, and what the run takes is known; called once
   std::function<void(const preparation::RunEstimate&)> prepared;
-  // called from the thread that has run the case, for several cases at a time
-  std::function<void(CaseOutput&)> case_ran;
+  bool stores_signals = false;  // in a file: they are encoded while a case runs
   std::function<void(const CaseOutput&)>
       case_done;  // called from one thread, in order of the cases
 };

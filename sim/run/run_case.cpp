@@ -2,8 +2,10 @@
 
 #include <utility>
 
+#include "sim/engine/recorded_signals.h"
 #include "sim/engine/simulate.h"
 #include "sim/evaluation/cutter_path.h"
+#include "sim/evaluation/outputs_read.h"
 #include "sim/evaluation/spindle_quantities.h"
 #include "sim/model/machine_test.h"
 #include "sim/model/scenario.h"
@@ -97,9 +99,21 @@ CaseOutput noted_output_of(const preparation::PreparedCase& prepared, engine::Ca
   return out;
 }
 
+engine::CaseInputs inputs_with(const preparation::PreparedCase& prepared,
+                               const SignalStorage& storage) {
+  engine::CaseInputs out = prepared.inputs(storage.scratch_folder);
+  if (!storage.is_encoded) return out;
+  out.keeping.encodes = true;
+  out.keeping.read = evaluation::outputs_read_by(prepared.parts().scenario.quantities).signals;
+  if (out.keeping.read) {
+    out.keeping.read->insert(engine::kOfEveryRow.begin(), engine::kOfEveryRow.end());
+  }
+  return out;
+}
+
 CaseOutput run_case(const preparation::PreparedCase& prepared, const engine::StopFlag& stop,
-                    std::atomic<float>& progress, const std::string& scratch_folder) {
-  engine::CaseInputs given = prepared.inputs(scratch_folder);
+                    std::atomic<float>& progress, const SignalStorage& storage) {
+  engine::CaseInputs given = inputs_with(prepared, storage);
   CaseOutput out = noted_output_of(prepared, engine::simulate(given, stop, progress));
   progress = 1.0F;
   return out;

@@ -19,9 +19,9 @@
 namespace servomill::sim::model {
 struct UncertainErrors;
 }  // namespace servomill::sim::model
-namespace servomill::sim::records {
-class ColumnPages;
-}  // namespace servomill::sim::records
+namespace servomill::sim::engine {
+struct CaseInputs;
+}  // namespace servomill::sim::engine
 namespace servomill::sim::preparation {
 class PreparedCase;
 }  // namespace servomill::sim::preparation
@@ -57,7 +57,6 @@ struct CaseOutput {
   std::vector<evaluation::AxisDemand> demands;           // of all its axes
   std::vector<std::shared_ptr<const TestResult>> tests;  // of the machine; or it stopped
   std::shared_ptr<const DayCourse> day;                  // likewise; or none
-  std::shared_ptr<const records::ColumnPages> pages;  // servo signals as a file holds them; or none
   evaluation::CaseData data() const;
 };
 
@@ -67,9 +66,18 @@ CaseOutput output_of(const preparation::PreparedCase& prepared, engine::CaseResu
 /// output_of() with all notes of sim/run/case_warnings.h.
 CaseOutput noted_output_of(const preparation::PreparedCase& prepared, engine::CaseResult result);
 
+/// How the signals of a case are kept.
+struct SignalStorage {
+  std::string scratch_folder;  // of recordings that are long; empty: that of temporary files
+  bool is_encoded = false;     // for a file
+};
+
+/// Inputs of a case whose signals are kept so.
+engine::CaseInputs inputs_with(const preparation::PreparedCase& prepared,
+                               const SignalStorage& storage);
+
 /// Runs a case on this thread: noted_output_of() of its simulation.
-/// @param scratch_folder  of recordings that are long; empty: that of temporary files
 CaseOutput run_case(const preparation::PreparedCase& prepared, const engine::StopFlag& stop,
-                    std::atomic<float>& progress, const std::string& scratch_folder = {});
+                    std::atomic<float>& progress, const SignalStorage& storage = {});
 
 }  // namespace servomill::sim::run

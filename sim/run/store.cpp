@@ -28,10 +28,6 @@
 namespace servomill::sim::run {
 namespace {
 
-unsigned threads_of_a_case(unsigned threads, std::size_t cases) {
-  return std::max(1U, system::thread_count(threads) / static_cast<unsigned>(cases));
-}
-
 constexpr const char* kUnfinished = "unfinished";  // group of a case until it is complete
 constexpr std::size_t kRoomOfAttributes = 8;       // as names of cases take
 
@@ -70,7 +66,6 @@ void write_inputs(records::Hdf5Group& root, const model::Scenario& scenario, std
 // Form of the signals, and those of the complete cases.
 struct RunStore::Signals {
   SeriesFormat format;
-  unsigned threads_of_a_case;  // that encode, while other cases run
   records::SharedSignals shared;
 };
 
@@ -82,7 +77,6 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
           Signals{{{scenario.record_period, scenario.machine.nc.periods.base},
                    scenario.record.compression,
                    threads},
-                  threads_of_a_case(threads, scenario.cases.size()),
                   {}})) {
   records::Hdf5Group root = file_.root();
   write_inputs(root, scenario, "run", "cases");
@@ -101,12 +95,6 @@ RunStore::RunStore(const std::string& path, bool force, const model::Scenario& s
 RunStore::RunStore(RunStore&&) noexcept = default;
 RunStore::~RunStore() = default;
 
-void RunStore::encode(CaseOutput& one) const {
-  SeriesFormat format = signals_->format;
-  format.threads = signals_->threads_of_a_case;
-  one.pages = encoded_pages(one.result.servo, format);
-}
-
 void RunStore::add(const CaseOutput& one) {
   records::Hdf5Group root = file_.root();
   const std::string unfinished = fmt::format("{}/{}", kUnfinished, one.name);
@@ -114,7 +102,7 @@ void RunStore::add(const CaseOutput& one) {
   records::make_nexus_group(group, "NXsubentry", "servo");
   write_chain(group, one.chain);
   const SeriesFormat& format = signals_->format;
-  const auto pages = one.pages != nullptr ? one.pages : encoded_pages(one.result.servo, format);
+  const auto pages = encoded_pages(one.result.servo, format);
   const records::SeriesLayout servo =
       write_series(group.group("servo"), one.result.servo, *pages, format, signals_->shared);
   if (const records::Series& ticks = one.result.last_ticks; ticks.rows() > 0) {

@@ -37,9 +37,6 @@ class RunStore {
            unsigned threads = 0);
   RunStore(RunStore&&) noexcept;
   ~RunStore();
-  /// Encodes the signals of a case, as add() does with one that comes without. For any number of
-  /// threads.
-  void encode(CaseOutput& one) const;
   void add(const CaseOutput& one);
   /// Writes the comparison and gives the file its final name.
   void commit(const std::vector<evaluation::ComparisonRow>& comparison);

@@ -93,12 +93,14 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
   for (const records::Signal& signal : signals)
     columns.push_back(file->values(group + "/" + signal.name));
   series->reserve(rows);
+  std::vector<double> values(series->width());
   for (std::size_t row = 0; row < rows; ++row) {
-    double* to = series->add_row();
+    double* to = values.data();
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const std::size_t width = series->signals()[c].columns();
       to = std::copy_n(columns[c].data() + row * width, width, to);
     }
+    series->append(values);
   }
   return series;
 }

@@ -56,7 +56,7 @@ const records::Series& series(records::Storage storage) {
     signals.push_back({"signal" + std::to_string(c), "mm", "signal", "", "", 0, storage});
   }
   records::Series& out = all.emplace(storage, signals).first->second;
-  out.assign(swinging_rows());
+  out.append(swinging_rows());
   return out;
 }
 

@@ -83,7 +83,7 @@ TEST(EncoderNoise, IsThatOfItsSeedForAnyNumberOfThreads) {
     control.threads = threads;
     std::vector<std::vector<double>> out;
     for (const run::CaseOutput& one : run::run_scenario(noisy(seed), control).cases) {
-      out.push_back(one.result.servo.data());
+      out.push_back(one.result.servo.by_rows());
     }
     return out;
   };

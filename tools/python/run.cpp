@@ -48,13 +48,11 @@ sim::run::RunOutput run_scenario(const LoadedScenario& loaded, const Target& tar
   control.threads = threads;
   control.stop = &interrupt_wanted;
   control.scratch_folder = scratch_folder(path);
+  control.stores_signals = !path.empty();
   control.prepared = [&](const sim::preparation::RunEstimate& takes) {
     if (path.empty()) return;
     sim::preparation::refuse_full_disk(loaded.scenario, takes, control.scratch_folder);
     store.emplace(path, target.force, loaded.scenario, threads);
-  };
-  control.case_ran = [&](sim::run::CaseOutput& one) {
-    if (store) store->encode(one);
   };
   control.case_done = [&](const sim::run::CaseOutput& one) {
     if (store) store->add(one);

@@ -41,11 +41,17 @@ py::array Signals::view(const sim::records::Signal& signal) const {
   constexpr auto kSize = static_cast<py::ssize_t>(sizeof(double));
   const Sizes shape = shape_of(rows(), signal);
   if (rows() == 0) return py::array_t<double>(shape);
-  Sizes strides = {static_cast<py::ssize_t>(series_->width()) * kSize};
-  if (shape.size() > 1) strides.push_back(kSize);
+  const sim::records::ColumnTable& table = series_->table();
+  const double* first = table.column(signal.offset).data();
+  Sizes strides = {kSize};
+  if (shape.size() > 1) {
+    const bool is_alone = signal.columns() == 1;
+    const auto apart = is_alone ? 0 : table.column(signal.offset + 1).data() - first;
+    strides.push_back(static_cast<py::ssize_t>(apart) * kSize);
+  }
   using Owner = std::shared_ptr<const sim::records::Series>;
   const py::capsule owner(new Owner(series_), [](void* held) { delete static_cast<Owner*>(held); });
-  return py::array_t<double>(shape, strides, series_->row(0) + signal.offset, owner);
+  return py::array_t<double>(shape, strides, first, owner);
 }
 
 py::array Signals::copy(const sim::records::Signal& signal) const {

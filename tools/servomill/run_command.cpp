@@ -91,9 +91,9 @@ int run_command(const Arguments& arguments) {
   control.threads = thread_count(options);
   control.stop = &stop;
   control.scratch_folder = std::filesystem::absolute(path).parent_path().string();
+  control.stores_signals = true;
   KeptCases kept(sim::model::case_names(scenario));
   const KeptWhenInterrupted when_interrupted([&kept] { return kept.said(); });
-  control.case_ran = [&](sim::run::CaseOutput& one) { store->encode(one); };
   control.case_done = [&](const sim::run::CaseOutput& one) {
     store->add(one);
     kept.add(one);

@@ -128,10 +128,10 @@ TEST(BedRun, is_the_same_alone_and_beside_others) {
   const std::vector<CaseResult> results = simulate(together, never, progress);
   for (std::size_t n = 0; n < prepared.size(); ++n) {
     const run::CaseOutput alone = run_named_case(scenario, prepared[n].spec().name);
-    EXPECT_EQ(results[n].servo.data(), alone.result.servo.data()) << prepared[n].spec().name;
+    EXPECT_EQ(results[n].servo.by_rows(), alone.result.servo.by_rows()) << prepared[n].spec().name;
   }
-  EXPECT_EQ(results[0].servo.data(), results[2].servo.data());
-  EXPECT_NE(results[0].servo.data(), results[1].servo.data());
+  EXPECT_EQ(results[0].servo.by_rows(), results[2].servo.by_rows());
+  EXPECT_NE(results[0].servo.by_rows(), results[1].servo.by_rows());
 }
 
 TEST(BedRun, that_is_heavy_and_stiff_is_that_of_a_fixed_bed) {

@@ -108,8 +108,8 @@ TEST(Cutting, force_grows_with_wear_and_with_the_length_that_was_cut) {
 TEST(Cutting, is_felt_by_no_one_in_air) {
   const model::Scenario without = small_scenario(kSlot, kTool + one_case("air"));
   const model::Scenario with = cutting_scenario(kSlot, one_case("air", "cutting = false\n"));
-  EXPECT_EQ(run_named_case(without, "air").result.servo.data(),
-            run_named_case(with, "air").result.servo.data());
+  EXPECT_EQ(run_named_case(without, "air").result.servo.by_rows(),
+            run_named_case(with, "air").result.servo.by_rows());
 }
 
 // Only one of the two cases has a force to record.
@@ -330,7 +330,7 @@ TEST(Cutting, gives_the_same_bits_alone_and_beside_other_cases) {
                                   one_case("worn", "wear = 2.0\n"));
   const run::RunOutput together = run::run_scenario(scenario, {});
   for (const run::CaseOutput& one : together.cases) {
-    EXPECT_EQ(one.result.servo.data(), run_named_case(scenario, one.name).result.servo.data())
+    EXPECT_EQ(one.result.servo.by_rows(), run_named_case(scenario, one.name).result.servo.by_rows())
         << one.name;
   }
 }

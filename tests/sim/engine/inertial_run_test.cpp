@@ -255,8 +255,8 @@ TEST(InertialRun, comes_back_from_its_file_beside_a_rigid_case) {
   EXPECT_FALSE(back.cases[0].servo->column("inertial_deflection", 'X').has_value());
   EXPECT_TRUE(back.cases[1].servo->column("inertial_deflection", 'X').has_value());
   const auto both = run::run_scenario(scenario, {});
-  EXPECT_EQ(both.cases[1].result.servo.data(),
-            run_named_case(scenario, "bent").result.servo.data());
+  EXPECT_EQ(both.cases[1].result.servo.by_rows(),
+            run_named_case(scenario, "bent").result.servo.by_rows());
 }
 
 }  // namespace

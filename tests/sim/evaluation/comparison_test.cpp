@@ -28,7 +28,7 @@ records::Series series_of(const std::vector<Row>& rows) {
                        {"tool_deviation", "um", "", "XYZ", "xyz"},
                        {"contour_error", "um", "", "", ""}});
   for (const Row& row : rows) {
-    double* to = out.add_row();
+    std::vector<double> to(out.width());
     const auto put = [&](const char* name, char label, double value) {
       to[out.column(name, label).value()] = value;
     };
@@ -41,6 +41,7 @@ records::Series series_of(const std::vector<Row>& rows) {
     put("following_error_linear", 'Y', row.following);
     put("tool_deviation", 'Y', row.deviation);
     put("contour_error", '\0', row.contour);
+    out.append(to);
   }
   return out;
 }

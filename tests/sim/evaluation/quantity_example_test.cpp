@@ -19,12 +19,13 @@ records::Series series_of(const std::vector<Row>& rows, const char* signal = "to
   records::Series out(
       {{"section", "1", "", "", ""}, {"rapid", "1", "", "", ""}, {signal, "um", "", "XYZ", "xyz"}});
   for (const Row& row : rows) {
-    double* to = out.add_row();
+    std::vector<double> to(out.width());
     to[out.column("section", '\0').value()] = row.section;
     to[out.column("rapid", '\0').value()] = row.rapid;
     to[out.column(signal, 'X').value()] = row.x;
     to[out.column(signal, 'Y').value()] = row.y;
     to[out.column(signal, 'Z').value()] = 1e6;  // does not count
+    out.append(to);
   }
   return out;
 }

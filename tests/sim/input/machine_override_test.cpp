@@ -62,7 +62,7 @@ TEST(MachineOverride, IsTheMachineThatTheCaseRunsOn) {
               0.002 * 1200.0);
   const run::CaseOutput with = run_named_case(scenario, "first"),
                         without = run_named_case(alone, "first");
-  EXPECT_EQ(with.result.servo.data(), without.result.servo.data());
+  EXPECT_EQ(with.result.servo.by_rows(), without.result.servo.by_rows());
 }
 
 // Limits of the axes are those of the case, when the motion is planned and when the travel is

@@ -270,7 +270,7 @@ TEST(Store, KeepsSinglePrecisionAndComparesAgainAsTheRunDid) {
   EXPECT_EQ(evaluation::format_table(evaluation::compare(stored.quantities, stored.cases)),
             evaluation::format_table(output.comparison));
   for (std::size_t i = 0; i < stored.cases.size(); ++i) {
-    EXPECT_EQ(stored.cases[i].servo->data(), output.cases[i].result.servo.data());
+    EXPECT_EQ(stored.cases[i].servo->by_rows(), output.cases[i].result.servo.by_rows());
   }
   fs::remove(path);
 }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "plant/vocabulary/units.h"
 #include "sim/model/scenario.h"
@@ -117,10 +119,12 @@ TEST(CircularSections, HaveNoNumberWhereTheMachineDidNotFollow) {
         .value;
   };
   EXPECT_FALSE(std::isnan(value()));
-  std::vector<double> data = output.result.servo.data();
+  std::vector<double> data = output.result.servo.by_rows();
   const std::size_t x = output.result.servo.column("tool_position_true", 'X').value();
   for (std::size_t i = x; i < data.size(); i += output.result.servo.width()) data[i] += 10.0;
-  output.result.servo.assign(data);
+  records::Series moved(output.result.servo.signals());
+  moved.append(data);
+  output.result.servo = std::move(moved);
   EXPECT_TRUE(std::isnan(value())) << "10 mm beside the circle";
 }
 

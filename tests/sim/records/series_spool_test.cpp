@@ -36,9 +36,8 @@ std::vector<double> rows() {
 
 std::string folder() { return testing::TempDir(); }
 
-Series spooled(int compression, const std::vector<double>& rows) {
-  auto spool =
-      std::make_shared<SeriesSpool>(signals(), SpoolFormat{folder(), {kChunkRows, compression}});
+Series spooled(const SpoolFormat& format, const std::vector<double>& rows) {
+  auto spool = std::make_shared<SeriesSpool>(signals(), format);
   // in portions that do not fit the chunks
   const std::span<const double> all(rows);
   const std::size_t portion = 6 * 37;
@@ -47,6 +46,10 @@ Series spooled(int compression, const std::vector<double>& rows) {
   }
   spool->finish();
   return {signals(), std::move(spool)};
+}
+
+Series spooled(int compression, const std::vector<double>& rows) {
+  return spooled({folder(), {kChunkRows, compression}}, rows);
 }
 
 void expect_equal(const Series& series, const std::vector<double>& wanted) {
@@ -64,6 +67,35 @@ TEST(SeriesSpool, GivesItsRowsBackBitForBit) {
     SCOPED_TRACE(compression);
     expect_equal(spooled(compression, wanted), wanted);
   }
+}
+
+TEST(SeriesSpool, HasTheSameChunksAndNumbersWhereverTheyAre) {
+  const std::vector<double> wanted = rows();
+  const Series on_disk = spooled(1, wanted);
+  const std::vector<bool> none, some = {false, true, false, true, true, false}, all(6, true);
+  for (const double most_in_memory : {1.0, 4000.0, 1e6}) {  // bytes: nothing, some chunks, all
+    for (const std::vector<bool>& kept : {none, some, all}) {
+      const Series one = spooled({folder(), {kChunkRows, 1}, most_in_memory, kept}, wanted);
+      expect_equal(one, wanted);
+      std::vector<std::uint8_t> chunk, other;
+      for (std::size_t page = 0; page * kChunkRows < kRows; ++page) {
+        for (std::size_t c = 0; c < one.width(); ++c) {
+          ASSERT_TRUE(one.pages()->read_encoded(c, page, chunk));
+          ASSERT_TRUE(on_disk.pages()->read_encoded(c, page, other));
+          ASSERT_EQ(chunk, other) << page << ", " << c;
+        }
+      }
+    }
+  }
+}
+
+TEST(SeriesSpool, NeedsNoFileForWhatItHoldsInMemory) {
+  const std::vector<double> wanted = rows();
+  expect_equal(spooled({"/nowhere/at/all", {kChunkRows, 1}, 1e6}, wanted), wanted);
+}
+
+TEST(SeriesSpool, SaysThatItCannotWriteWhereItsMemoryIsFull) {
+  EXPECT_THROW(spooled({"/nowhere/at/all", {kChunkRows, 1}, 1000.0}, rows()), system::SystemError);
 }
 
 TEST(SeriesSpool, IsReadInAnyOrder) {

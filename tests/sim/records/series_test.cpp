@@ -19,12 +19,12 @@ TEST(Series, KeepsItsSignalsInTheirOrder) {
   EXPECT_EQ(series.column("p", 'A'), std::nullopt);
   EXPECT_EQ(series.column("q"), std::nullopt);
   EXPECT_EQ(series.find("q"), nullptr);
-  series.add_row()[4] = 7.0;
-  series.add_row()[0] = 1.0;
+  series.append(std::vector{0.0, 0.0, 0.0, 0.0, 7.0, 1.0, 0.0, 0.0, 0.0, 0.0});
   EXPECT_EQ(series.rows(), 2U);
   EXPECT_EQ(series.at(0, 4), 7.0);
   EXPECT_EQ(series.at(1, 4), 0.0);
-  EXPECT_EQ(series.row(1)[0], 1.0);
+  EXPECT_EQ(series.at(1, 0), 1.0);
+  EXPECT_EQ(series.by_rows(), (std::vector<double>{0, 0, 0, 0, 7, 1, 0, 0, 0, 0}));
 }
 
 }  // namespace

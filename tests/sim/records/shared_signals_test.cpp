@@ -41,13 +41,14 @@ std::vector<Signal> signals() {
 Series series(const std::function<void(std::size_t row, double* values)>& change = {}) {
   Series out(signals());
   for (std::size_t n = 0; n < kRows; ++n) {
-    double* row = out.add_row();
+    std::vector<double> row(out.width());
     const double t = 0.001 * static_cast<double>(n);
     row[0] = t;
     row[1] = row[2] = 7.0;
     for (std::size_t c = 3; c < kError; ++c) row[c] = std::sin(t + static_cast<double>(c % 2));
     row[kError] = std::cos(t);
-    if (change) change(n, row);
+    if (change) change(n, row.data());
+    out.append(row);
   }
   return out;
 }
@@ -197,7 +198,7 @@ TEST_F(SharedSignalsTest, AreThoseOfRowsOnTheDisk) {
   const Series rows = series(last_bit_of(kVelocityY));
   auto spool = std::make_shared<SeriesSpool>(
       rows.signals(), SpoolFormat{testing::TempDir(), {kChunkRows, layout().compression}});
-  spool->append(rows.data());
+  spool->append(rows.by_rows());
   spool->finish();
   const SeriesLayout on_disk = found(Series(rows.signals(), spool)), in_memory = found(rows);
   EXPECT_EQ(on_disk.index_same_as, in_memory.index_same_as);
@@ -226,7 +227,7 @@ TEST_F(SharedSignalsTest, ReadAsTheyWereUnderEachName) {
       for (std::size_t c = 0; c < signal.columns(); ++c) {
         const std::vector<double> values = in.column(name, c, 0, kRows);
         for (std::size_t n = 0; n < kRows; ++n) {
-          EXPECT_EQ(values[n], written[i].row(n)[signal.offset + c]) << name << ", row " << n;
+          EXPECT_EQ(values[n], written[i].at(n, signal.offset + c)) << name << ", row " << n;
         }
       }
     }

@@ -51,8 +51,28 @@ TEST(RunScenario, GivesTheSameBitsForAnyNumberOfThreads) {
       EXPECT_TRUE(a.program == nullptr || *a.program == *b.program) << a.name;
       EXPECT_TRUE(a.result.outcome.finished) << a.name << ": " << a.result.outcome.reason;
       EXPECT_GT(a.result.servo.rows(), 500U) << a.name;
-      EXPECT_EQ(a.result.servo.data(), b.result.servo.data()) << a.name << ", threads " << threads;
+      EXPECT_EQ(a.result.servo.by_rows(), b.result.servo.by_rows())
+          << a.name << ", threads " << threads;
     }
+  }
+}
+
+// Signals for a file are encoded while a case runs; those that quantities read stay beside.
+TEST(RunScenario, GivesTheSameBitsWhereSignalsAreStored) {
+  const RunOutput plain = run_with(all_strategies(), 2);
+  RunControl control;
+  control.stores_signals = true;
+  const RunOutput stored = run_scenario(all_strategies(), control);
+  ASSERT_EQ(stored.cases.size(), plain.cases.size());
+  for (std::size_t i = 0; i < plain.cases.size(); ++i) {
+    const records::Series &one = plain.cases[i].result.servo, &other = stored.cases[i].result.servo;
+    EXPECT_EQ(one.pages(), nullptr);
+    EXPECT_NE(other.pages(), nullptr);
+    EXPECT_EQ(other.by_rows(), one.by_rows()) << plain.cases[i].name;
+  }
+  ASSERT_EQ(stored.comparison.size(), plain.comparison.size());
+  for (std::size_t i = 0; i < plain.comparison.size(); ++i) {
+    EXPECT_EQ(stored.comparison[i].value, plain.comparison[i].value) << i;
   }
 }
 
@@ -82,7 +102,7 @@ TEST(RunScenario, StopsTheCaseThatDivergesAndNoOther) {
     EXPECT_TRUE(std::isfinite(out.comparison[i].value));
   }
   EXPECT_TRUE(std::isnan(out.comparison[1].value));
-  EXPECT_EQ(out.cases[0].result.servo.data(), out.cases[2].result.servo.data());
+  EXPECT_EQ(out.cases[0].result.servo.by_rows(), out.cases[2].result.servo.by_rows());
 }
 
 // Gains far beyond the limit, as an experiment: stops with axis and time, and what happened in the

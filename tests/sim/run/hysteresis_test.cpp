@@ -148,9 +148,9 @@ TEST(Hysteresis, GivesTheSameBitsInLockstepAsAlone) {
   const std::vector<engine::CaseResult> results = engine::simulate(together, never, progress);
   for (std::size_t n = 0; n < prepared.size(); ++n) {
     const CaseOutput alone = run_named_case(scenario, prepared[n].spec().name);
-    EXPECT_EQ(results[n].servo.data(), alone.result.servo.data()) << prepared[n].spec().name;
+    EXPECT_EQ(results[n].servo.by_rows(), alone.result.servo.by_rows()) << prepared[n].spec().name;
   }
-  EXPECT_NE(results[0].servo.data(), results[1].servo.data());
+  EXPECT_NE(results[0].servo.by_rows(), results[1].servo.by_rows());
 }
 
 // A series of a machine without jumps: from row to row the error changes by less than its

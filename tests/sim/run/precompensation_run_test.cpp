@@ -370,14 +370,14 @@ TEST(Precompensation, GivesTheSameBitsForAnyNumberOfThreads) {
   };
   const RunOutput reference = run(1);
   ASSERT_EQ(reference.cases.size(), 3U);
-  EXPECT_NE(reference.cases[0].result.servo.data(), reference.cases[1].result.servo.data());
+  EXPECT_NE(reference.cases[0].result.servo.by_rows(), reference.cases[1].result.servo.by_rows());
   for (const unsigned threads : {1U, 2U}) {
     const RunOutput again = run(threads);
     for (std::size_t k = 0; k < again.cases.size(); ++k) {
       const auto &text = again.cases[k].program, &wanted = reference.cases[k].program;
       ASSERT_EQ(text != nullptr, wanted != nullptr);
       EXPECT_TRUE(text == nullptr || *text == *wanted);
-      EXPECT_EQ(again.cases[k].result.servo.data(), reference.cases[k].result.servo.data())
+      EXPECT_EQ(again.cases[k].result.servo.by_rows(), reference.cases[k].result.servo.by_rows())
           << again.cases[k].name << ", threads " << threads;
     }
   }

@@ -17,11 +17,9 @@ records::Series series_of(const std::vector<Row>& rows, bool has_windows) {
   if (has_windows) signals.push_back({"window", "1", "window", "", ""});
   records::Series series(signals);
   for (const Row& row : rows) {
-    double* to = series.add_row();
-    to[0] = row.time;
-    to[1] = row.s;
-    to[2] = row.section;
-    if (has_windows) to[3] = row.window;
+    std::vector<double> values = {row.time, row.s, row.section};
+    if (has_windows) values.push_back(row.window);
+    series.append(values);
   }
   return series;
 }

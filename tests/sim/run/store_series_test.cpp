@@ -23,7 +23,7 @@ namespace {
 
 records::Series series_at(const std::vector<double>& times) {
   records::Series series({{"time", "s", "time", "", ""}, {"s", "mm", "arc length", "", ""}});
-  for (const double time : times) *series.add_row() = time;
+  for (const double time : times) series.append(std::vector{time, 0.0});
   return series;
 }
 

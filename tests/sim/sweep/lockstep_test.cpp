@@ -85,8 +85,8 @@ void expect_same(const run::BatchResult& one, const run::BatchResult& other, std
   EXPECT_EQ(other.reason, one.reason);
   ASSERT_EQ(other.cases->size(), 1U);
   const engine::CaseResult &a = one.cases->at(0).result, &b = other.cases->at(0).result;
-  EXPECT_TRUE(same_bits(a.servo.data(), b.servo.data())) << "run " << place;
-  EXPECT_TRUE(same_bits(a.last_ticks.data(), b.last_ticks.data())) << "run " << place;
+  EXPECT_TRUE(same_bits(a.servo.by_rows(), b.servo.by_rows())) << "run " << place;
+  EXPECT_TRUE(same_bits(a.last_ticks.by_rows(), b.last_ticks.by_rows())) << "run " << place;
 }
 
 class Lockstep : public testing::TestWithParam<std::string> {};
@@ -133,7 +133,7 @@ TEST(Lockstep, HasOddRunsThatAreOdd) {
   const auto series = [&](const std::string& name) -> const records::Series& {
     return odd.at(name).cases->at(0).result.servo;
   };
-  const auto& last = odd.at("overflows").cases->at(0).result.last_ticks.data();
+  const std::vector<double> last = odd.at("overflows").cases->at(0).result.last_ticks.by_rows();
   EXPECT_TRUE(std::any_of(last.begin(), last.end(), [](double x) { return !std::isfinite(x); }));
   EXPECT_EQ(odd.at("faults").status, run::PointStatus::stopped);
   EXPECT_NE(odd.at("faults").reason.find("following error beyond 0.001 mm"), std::string::npos);
