@@ -43,6 +43,8 @@ def program(rng, moves=12):
                 words.append(f"C{rng.uniform(-40, 40):.3f}")
             if words:
                 lines.append(" ".join([rng.choice(["G1", "G1", "G1", "G0"]), *words]))
+    if not any(re.match(r"G[013] ", line) for line in lines):  # no control runs what moves no axis
+        lines.append(f"G1 X{rng.uniform(1, 30):.4f}")
     return "\n".join([*lines, "M2", "%", ""])
 
 
