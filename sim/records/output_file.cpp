@@ -7,8 +7,10 @@
 
 #include <cassert>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "plant/vocabulary/input_error.h"
@@ -23,10 +25,29 @@ namespace {
 
 std::string system_reason() { return std::strerror(errno); }
 
+// True where the user has it that the library locks its files in any case; nobody else can then.
+bool library_locks() {
+  const char* const said = std::getenv("HDF5_USE_FILE_LOCKING");
+  return said != nullptr && said != std::string_view("FALSE") && said != std::string_view("0");
+}
+
+// The lock of the library would be gone before the file has its name.
+system::WriteLock locked(const std::string& path, system::WriteLock::File file) {
+  return library_locks() ? system::WriteLock() : system::WriteLock(path, file);
+}
+
 // The library would cut the file before it finds it locked.
 void refuse_to_cut_locked(const std::string& path) {
   if (system::writer_of(path) != system::Writer::alive) return;
   throw system::SystemError(path, "cannot be created", "another process writes it");
+}
+
+Hdf5Handle access_of_writer() {
+  Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
+  // closing the file closes what was taken from it
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  H5Pset_file_locking(access.get(), false, true);
+  return access;
 }
 
 }  // namespace
@@ -38,36 +59,38 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   const Hdf5Lock lock;
   prepare_hdf5();
   const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
-  const Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
-  // closing the file closes what was taken from it; the oldest format has no "open" mark that would
-  // make the file of a killed run unreadable
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  if (force_) refuse_to_cut_locked(partial_path_);
-  const unsigned flag = force_ ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
+  // the oldest format has no "open" mark that would make the file of a killed run unreadable
+  const Hdf5Handle access = access_of_writer();
+  using enum system::WriteLock::File;
+  if (force_ && library_locks()) refuse_to_cut_locked(partial_path_);
+  lock_ = locked(partial_path_, force_ ? replaced : created);
+  const unsigned flag = force_ || !library_locks() ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = std::make_unique<Hdf5Handle>(
       H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
   if (file_->get() < 0)
     throw system::SystemError(partial_path_, "cannot be created", hdf5_reason());
 }
 
-OutputFile::OutputFile(std::string path, bool force, std::unique_ptr<Hdf5Handle> file)
+OutputFile::OutputFile(std::string path, bool force, system::WriteLock lock,
+                       std::unique_ptr<Hdf5Handle> file)
     : path_(std::move(path)),
       partial_path_(path_ + ".partial"),
       force_(force),
+      lock_(std::move(lock)),
       file_(std::move(file)) {}
 
 OutputFile OutputFile::resumed(std::string path, bool force) {
   const Hdf5Lock lock;
   prepare_hdf5();
-  const Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  const std::string partial = path + ".partial";
+  system::WriteLock own = locked(partial, system::WriteLock::File::resumed);
   auto file = std::make_unique<Hdf5Handle>(
-      H5Fopen((path + ".partial").c_str(), H5F_ACC_RDWR, access.get()));
+      H5Fopen(partial.c_str(), H5F_ACC_RDWR, access_of_writer().get()));
   if (file->get() < 0) {
-    refuse_if_locked(path + ".partial");
-    throw InputError({path + ".partial"}, fmt::format("cannot be opened: {}", hdf5_reason()));
+    refuse_if_locked(partial);
+    throw InputError({partial}, fmt::format("cannot be opened: {}", hdf5_reason()));
   }
-  return {std::move(path), force, std::move(file)};
+  return {std::move(path), force, std::move(own), std::move(file)};
 }
 
 OutputFile OutputFile::reopened(std::string path) {
@@ -101,6 +124,7 @@ Hdf5Group OutputFile::root() {
 }
 
 void OutputFile::commit() {
+  const system::WriteLock until_named = std::move(lock_);
   const Hdf5Lock lock;
   assert(file_->get() >= 0);
   written(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL), file_->get());

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "sim/system/write_lock.h"
+
 namespace servomill::sim::system {
 class TemporaryFile;
 }  // namespace servomill::sim::system
@@ -47,11 +49,13 @@ class OutputFile {
   void commit();
 
  private:
-  OutputFile(std::string path, bool force, std::unique_ptr<Hdf5Handle> file);
+  OutputFile(std::string path, bool force, system::WriteLock lock,
+             std::unique_ptr<Hdf5Handle> file);
 
   std::string path_;
   std::string partial_path_;
   bool force_;
+  system::WriteLock lock_;
   std::unique_ptr<system::TemporaryFile> temporary_;  // where nothing stays without a commit
   std::unique_ptr<Hdf5Handle> file_;                  // closed before that one is removed
 };

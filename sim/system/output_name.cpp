@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,6 +17,7 @@
 #include "plant/vocabulary/input_error.h"
 #include "plant/vocabulary/user_file.h"
 #include "sim/system/system_error.h"
+#include "sim/system/write_lock.h"
 
 namespace servomill::sim::system {
 namespace {
@@ -175,17 +175,6 @@ void give_name(const std::string& complete, const std::string& target, Existing 
   }
   if (std::rename(complete.c_str(), target.c_str()) == 0) return;
   throw SystemError(target, "cannot be created", std::strerror(errno));
-}
-
-Writer writer_of(const std::string& partial) {
-  const int descriptor = ::open(partial.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return Writer::unknown;
-  Writer writer = Writer::none;
-  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0) {
-    writer = errno == EWOULDBLOCK ? Writer::alive : Writer::unknown;
-  }
-  ::close(descriptor);
-  return writer;
 }
 
 void refuse_partial(const std::string& partial) {

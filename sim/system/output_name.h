@@ -53,10 +53,6 @@ void refuse_same_output(const std::string& path, const std::string& other, const
 /// @throws InputError if it may not be replaced, SystemError
 void give_name(const std::string& complete, const std::string& target, Existing existing);
 
-/// Process that writes a partial file now, as its lock tells.
-enum class Writer : std::uint8_t { none, alive, unknown };
-Writer writer_of(const std::string& partial);
-
 /// @throws InputError if a partial file is there, and says what is known of its writer; SystemError
 ///     while another process writes it
 void refuse_partial(const std::string& partial);

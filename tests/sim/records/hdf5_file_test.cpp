@@ -2,15 +2,19 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <thread>
+#include <vector>
 
 #include "plant/vocabulary/input_error.h"
 #include "sim/records/hdf5_group.h"
 #include "sim/records/input_file.h"
 #include "sim/records/output_file.h"
 #include "sim/system/system_error.h"
+#include "sim/system/write_lock.h"
 
 namespace servomill::sim::records::hdf5_file_test {
 namespace {
@@ -156,6 +160,24 @@ TEST_F(Hdf5File, IsNotOverwrittenIfItAppearsDuringTheRun) {
   EXPECT_EQ(message([&] { out.commit(); }), "out.h5: error: exists; use --force to overwrite");
   EXPECT_EQ(fs::file_size(path("out.h5")), 8u);
   EXPECT_TRUE(InputFile(path("out.h5.partial")).has("/"));
+}
+
+// Another process that may overwrite it would cut it while it is closed and waits for the disk.
+TEST_F(Hdf5File, IsLockedUntilItHasItsName) {
+  OutputFile out(path("out.h5"), false);
+  out.root().list("numbers", std::vector<double>(1 << 20, 0.1), {"1", "numbers"});
+  std::atomic<bool> is_free = false;
+  {
+    const std::jthread other([&](const std::stop_token& stop) {
+      while (!stop.stop_requested() && !is_free) {
+        const bool is_unlocked = system::writer_of(path("out.h5.partial")) == system::Writer::none;
+        is_free = is_unlocked && fs::exists(path("out.h5.partial"));
+      }
+    });
+    out.commit();
+  }
+  EXPECT_FALSE(is_free);
+  EXPECT_EQ(system::writer_of(path("out.h5")), system::Writer::none);
 }
 
 TEST_F(Hdf5File, SaysWhyItCannotBeMade) {
