@@ -74,9 +74,9 @@ double compression_of(const model::Scenario& scenario) {
   return scenario.record.compression == records::kNoCompression ? 1.0 : kUsualCompression;
 }
 
-// Rows of short cases are held, of long ones a chunk while they run and pages while they are
-// compared; where the path of a cutter counts, so many places of it as are held at once, where that
-// of a ball does, all.
+// Rows of short cases are held, as numbers and encoded for the file, of long ones two pages while
+// they run and pages while they are compared; where the path of a cutter counts, so many places of
+// it as are held at once, where that of a ball does, all.
 double memory_of(const model::Scenario& scenario, std::span<const double> recorded, double row,
                  unsigned threads) {
   constexpr double kCaseRuns = 25e6, kCaseIsCompared = 8e6;
@@ -92,7 +92,8 @@ double memory_of(const model::Scenario& scenario, std::span<const double> record
   for (const double motion : recorded) {
     const double rows = motion / period;
     longest = std::max(longest, rows);
-    sum += rows * row > keeping.most_in_memory ? kCaseIsCompared : rows * row;
+    const bool is_short = rows * row <= keeping.most_in_memory;
+    sum += is_short ? rows * row * (1.0 + 1.0 / compression_of(scenario)) : kCaseIsCompared;
   }
   const double at_once =
       std::min<double>(system::thread_count(threads), static_cast<double>(recorded.size()));

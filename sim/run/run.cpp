@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include "plant/vocabulary/progress.h"
@@ -15,6 +13,7 @@
 #include "sim/model/scenario.h"
 #include "sim/preparation/prepare_cases.h"
 #include "sim/preparation/stability_check.h"
+#include "sim/run/case_pool.h"
 #include "sim/run/isolated_case.h"
 #include "sim/run/run_case.h"
 #include "sim/run/run_output.h"
@@ -29,10 +28,10 @@ constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt
 
 // Should a plug-in not return, what else is complete is kept.
 [[noreturn]] void keep_others(const RunControl& control, const std::vector<CaseOutput>& outputs,
-                              const std::vector<std::atomic<bool>>& done,
-                              const std::vector<std::exception_ptr>& failures, std::size_t first) {
+                              const CasePool& pool, std::size_t first) {
   for (std::size_t i = first; i < outputs.size(); ++i) {
-    if (done[i] && !failures[i] && control.case_done) control.case_done(outputs[i]);
+    const bool is_complete = pool.has_ended(i) && !pool.failure(i);
+    if (is_complete && control.case_done) control.case_done(outputs[i]);
   }
   strategies::PluginRescue::done();
 }
@@ -117,51 +116,28 @@ RunOutput run_scenario(const model::Scenario& scenario, const RunControl& contro
   if (control.prepared)
     control.prepared(preparation::estimate(scenario, prepared, control.threads));
 
-  const std::size_t count = prepared.size();  // independent: any thread may run any of them
+  const std::size_t count = prepared.size();
   // before there are threads that hold locks
   std::vector<std::unique_ptr<IsolatedCase>> isolated = isolated_cases(prepared, control);
   std::vector<CaseOutput> outputs(count);
   std::vector<std::atomic<float>> progress(count);
-  std::vector<std::atomic<bool>> done(count);
-  std::vector<std::exception_ptr> failures(count);
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        outputs[i] = run_one(prepared[i], std::move(isolated[i]), control, stop, progress[i]);
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
-      done[i] = true;
-    }
-  };
-  const unsigned threads = system::thread_count(control.threads);
   const strategies::PluginRescue rescue;  // before a plug-in can fail
-  std::vector<std::jthread> pool;
-  for (unsigned t = 0; t < std::min<std::size_t>(threads, count); ++t) pool.emplace_back(work);
-
-  // should the result not be writable, no further case begins
-  struct NoMore {
-    std::atomic<std::size_t>& next;
-    std::size_t count;
-    ~NoMore() { next = count; }
-  };
-  const NoMore no_more{next, count};
+  CasePool pool(count, system::thread_count(control.threads), [&](std::size_t i) {
+    outputs[i] = run_one(prepared[i], std::move(isolated[i]), control, stop, progress[i]);
+  });
   Stage stage("", static_cast<double>(count));
   for (std::size_t i = 0; i < count;) {
-    if (!done[i]) {
-      if (strategies::PluginRescue::is_wanted()) keep_others(control, outputs, done, failures, i);
-      std::this_thread::sleep_for(kProgressPeriod);
-    } else {
-      if (failures[i]) std::rethrow_exception(failures[i]);
+    if (pool.wait(i, kProgressPeriod)) {
+      if (pool.failure(i)) std::rethrow_exception(pool.failure(i));
       if (control.case_done) control.case_done(outputs[i]);
       ++i;
+    } else if (strategies::PluginRescue::is_wanted()) {
+      keep_others(control, outputs, pool, i);
     }
     double sum = 0.0;
     for (const auto& share : progress) sum += share;
     stage.reach(sum);
   }
-  pool.clear();
 
   RunOutput out = with_comparison(scenario, std::move(outputs));
   out.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
