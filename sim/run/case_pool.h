@@ -26,7 +26,7 @@ class CasePool {
   /// Waits until the case has ended, at most so long; returns whether it has.
   bool wait(std::size_t index, std::chrono::milliseconds most);
   bool has_ended(std::size_t index) const;
-  /// What the case threw; nullptr: nothing. @pre has_ended(index)
+  /// Exception that ended the case; nullptr: none. @pre has_ended(index)
   const std::exception_ptr& failure(std::size_t index) const { return failures_[index]; }
 
  private:
