@@ -25,15 +25,18 @@ namespace {
 
 std::string system_reason() { return std::strerror(errno); }
 
-// True where the user has it that the library locks its files in any case; nobody else can then.
-bool library_locks() {
+// True if the library itself locks the file: the environment makes it, whatever the access list
+// says, or the file system lets nobody else do so.
+bool library_locks(const std::string& path) {
   const char* const said = std::getenv("HDF5_USE_FILE_LOCKING");
-  return said != nullptr && said != std::string_view("FALSE") && said != std::string_view("0");
+  const std::string_view use = said != nullptr ? said : "";
+  if (use == "FALSE" || use == "0") return false;
+  return use == "TRUE" || use == "1" || use == "BEST_EFFORT" || system::locks_bind_writers(path);
 }
 
 // The lock of the library would be gone before the file has its name.
 system::WriteLock locked(const std::string& path, system::WriteLock::File file) {
-  return library_locks() ? system::WriteLock() : system::WriteLock(path, file);
+  return library_locks(path) ? system::WriteLock() : system::WriteLock(path, file);
 }
 
 // The library would cut the file before it finds it locked.
@@ -42,11 +45,11 @@ void refuse_to_cut_locked(const std::string& path) {
   throw system::SystemError(path, "cannot be created", "another process writes it");
 }
 
-Hdf5Handle access_of_writer() {
+Hdf5Handle access_of_writer(const std::string& path) {
   Hdf5Handle access = hdf5_handle(H5Pcreate(H5P_FILE_ACCESS));
   // closing the file closes what was taken from it
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  H5Pset_file_locking(access.get(), false, true);
+  H5Pset_file_locking(access.get(), library_locks(path), true);
   return access;
 }
 
@@ -60,11 +63,11 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   prepare_hdf5();
   const Hdf5Handle creation = group_creation(H5P_FILE_CREATE);
   // the oldest format has no "open" mark that would make the file of a killed run unreadable
-  const Hdf5Handle access = access_of_writer();
+  const Hdf5Handle access = access_of_writer(partial_path_);
   using enum system::WriteLock::File;
-  if (force_ && library_locks()) refuse_to_cut_locked(partial_path_);
+  if (force_ && library_locks(partial_path_)) refuse_to_cut_locked(partial_path_);
   lock_ = locked(partial_path_, force_ ? replaced : created);
-  const unsigned flag = force_ || !library_locks() ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
+  const unsigned flag = force_ || !library_locks(partial_path_) ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
   file_ = std::make_unique<Hdf5Handle>(
       H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
   if (file_->get() < 0)
@@ -80,12 +83,16 @@ OutputFile::OutputFile(std::string path, bool force, system::WriteLock lock,
       file_(std::move(file)) {}
 
 OutputFile OutputFile::resumed(std::string path, bool force) {
+  system::WriteLock own = locked(path + ".partial", system::WriteLock::File::resumed);
+  return opened(std::move(path), force, std::move(own));
+}
+
+OutputFile OutputFile::opened(std::string path, bool force, system::WriteLock own) {
   const Hdf5Lock lock;
   prepare_hdf5();
   const std::string partial = path + ".partial";
-  system::WriteLock own = locked(partial, system::WriteLock::File::resumed);
   auto file = std::make_unique<Hdf5Handle>(
-      H5Fopen(partial.c_str(), H5F_ACC_RDWR, access_of_writer().get()));
+      H5Fopen(partial.c_str(), H5F_ACC_RDWR, access_of_writer(partial).get()));
   if (file->get() < 0) {
     refuse_if_locked(partial);
     throw InputError({partial}, fmt::format("cannot be opened: {}", hdf5_reason()));
@@ -94,6 +101,7 @@ OutputFile OutputFile::resumed(std::string path, bool force) {
 }
 
 OutputFile OutputFile::reopened(std::string path) {
+  system::WriteLock own = locked(path, system::WriteLock::File::resumed);
   const std::string partial = path + ".partial";
   // a link does not replace what another run has left or still writes
   if (::link(path.c_str(), partial.c_str()) != 0) {
@@ -107,7 +115,7 @@ OutputFile OutputFile::reopened(std::string path) {
     ::unlink(partial.c_str());
     throw system::SystemError(path, "cannot be renamed", reason);
   }
-  return resumed(std::move(path), false);
+  return opened(std::move(path), false, std::move(own));
 }
 
 OutputFile::OutputFile(OutputFile&&) noexcept = default;

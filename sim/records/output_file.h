@@ -49,6 +49,7 @@ class OutputFile {
   void commit();
 
  private:
+  static OutputFile opened(std::string path, bool force, system::WriteLock own);
   OutputFile(std::string path, bool force, system::WriteLock lock,
              std::unique_ptr<Hdf5Handle> file);
 

@@ -15,8 +15,8 @@ class WriteLock {
   enum class File : std::uint8_t { created, replaced, resumed };
 
   WriteLock() = default;
-  /// Creates the file if it is not there; one that is there keeps its contents. A file that does
-  /// not open to go on with it, or on a file system without locks, is not locked.
+  /// Creates the file if it is not there; one that is there keeps its contents. A file to be
+  /// resumed that cannot be opened is not locked, nor is one on a file system without locks.
   /// @throws SystemError if it cannot be created, or while another process writes it
   WriteLock(const std::string& path, File file);
   WriteLock(WriteLock&& other) noexcept;
@@ -28,6 +28,10 @@ class WriteLock {
 
   int descriptor_ = -1;
 };
+
+/// True if a lock keeps this process itself from writing the file, but through the descriptor that
+/// has the lock (SMB; flock(2), "CIFS details").
+bool locks_bind_writers(const std::string& path);
 
 /// Process that writes a partial file now, as its lock tells.
 enum class Writer : std::uint8_t { none, alive, unknown };

@@ -162,6 +162,17 @@ TEST_F(Hdf5File, IsNotOverwrittenIfItAppearsDuringTheRun) {
   EXPECT_TRUE(InputFile(path("out.h5.partial")).has("/"));
 }
 
+TEST_F(Hdf5File, IsLockedByTheLibraryOrByItsWriter) {
+  for (const char* const use : {"TRUE", "BEST_EFFORT", "FALSE", "on", ""}) {
+    setenv("HDF5_USE_FILE_LOCKING", use, 1);
+    const OutputFile out(path("out.h5"), true);
+    EXPECT_EQ(system::writer_of(path("out.h5.partial")), system::Writer::alive) << use;
+    EXPECT_EQ(message([&] { OutputFile(path("out.h5"), true); }),
+              "out.h5.partial: error: cannot be created: another process writes it");
+  }
+  unsetenv("HDF5_USE_FILE_LOCKING");
+}
+
 // Another process that may overwrite it would cut it while it is closed and waits for the disk.
 TEST_F(Hdf5File, IsLockedUntilItHasItsName) {
   OutputFile out(path("out.h5"), false);

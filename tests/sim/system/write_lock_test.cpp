@@ -74,6 +74,11 @@ TEST_F(WriteLocks, LeaveWhatIsInTheFile) {
   EXPECT_EQ(read, "kept");
 }
 
+TEST_F(WriteLocks, BindNoWriterOnADiskOfItsOwn) {
+  EXPECT_FALSE(locks_bind_writers(path("out")));
+  EXPECT_FALSE(locks_bind_writers("out"));
+}
+
 TEST_F(WriteLocks, AreNoneOfWhatDoesNotOpen) {
   EXPECT_EQ(message(resumed), "");
   EXPECT_FALSE(std::filesystem::exists(path("out")));
