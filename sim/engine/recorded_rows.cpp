@@ -13,6 +13,15 @@ namespace servomill::sim::engine {
 
 using records::Signal;
 
+namespace {
+
+records::RowKeeping kept_with(records::RowKeeping keeping, const RunOutputs& outputs) {
+  keeping.encodes_beside = outputs.makes_rows_beside;
+  return keeping;
+}
+
+}  // namespace
+
 RecordedRows::RecordedRows(const model::MachineSettings& machine,
                            const plant::VolumetricModel& machine_errors,
                            const plant::VolumetricModel* imposed, const ProgramPath& path,
@@ -32,7 +41,7 @@ RecordedRows::RecordedRows(const model::MachineSettings& machine,
       teeth_(teeth),
       bends_(!machine.inertial_compliances.empty()),
       has_bed_(stands_on_bed(machine)),
-      keeping_(std::move(keeping)),
+      keeping_(kept_with(std::move(keeping), outputs)),
       oriented_(oriented),
       windows_(windows),
       wants_axes_(wants_axis_signals(outputs)),

@@ -7,15 +7,15 @@
 namespace servomill::sim::records {
 namespace {
 
-// Columns begin on different lines of the cache: a power of two apart, all of them would take the
-// place of each other there.
-constexpr std::size_t kApart = 8;
+// Columns begin an odd number of lines of the cache apart: a power of two apart, all of them would
+// map to the same set of lines.
+constexpr std::size_t kLine = 8;  // numbers
 
 constexpr std::size_t kNeighbours = 8;  // columns that share the lines of the cache in a row
 
 constexpr std::size_t kFirstRoom = 64;  // rows
 
-std::size_t rounded_up(std::size_t count, std::size_t to) { return (count + to - 1) / to * to; }
+std::size_t apart_for(std::size_t rows) { return ((rows + kLine - 1) / kLine | 1) * kLine; }
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void ColumnTable::swap(ColumnTable& other) noexcept {
 
 void ColumnTable::reserve(std::size_t rows) {
   if (rows <= room_ || width_ == 0) return;
-  const std::size_t apart = rounded_up(rows, kApart) + kApart;
+  const std::size_t apart = apart_for(rows);
   auto larger = std::make_unique_for_overwrite<double[]>(width_ * apart);
   for (std::size_t c = 0; c < width_; ++c) {
     const std::span<const double> old = column(c);

@@ -34,14 +34,14 @@ class PageEncoder {
   std::span<const std::size_t> chunk_of_columns() const { return chunk_of_; }
 
  private:
-  std::size_t chunk_of(std::size_t column);
-  void encode_columns(unsigned threads);
+  using Columns = std::span<const std::span<const double>>;
+  std::size_t chunk_of(Columns columns, std::size_t column);
+  void encode_first(Columns columns, unsigned threads);
 
   std::vector<Storage> storage_;
   std::size_t chunk_rows_;
   std::vector<ChunkEncoder> encoders_;  // of each thread
-  std::span<const std::span<const double>> columns_;
-  std::vector<std::size_t> first_;  // column of each chunk
+  std::vector<std::size_t> first_;      // column of each chunk
   std::vector<std::size_t> chunk_of_;
   std::vector<std::vector<std::uint8_t>> chunks_;
 };

@@ -86,12 +86,12 @@ void PlaneCompressor::put_deflated(Bytes bytes) {
   const std::size_t size = libdeflate_deflate_compress(
       static_cast<libdeflate_compressor*>(compressor_.get()), bytes.data(), bytes.size(),
       room_.data() + size_, room_.size() - size_);
-  assert(size > 0);
+  if (size == 0) throw std::logic_error("a chunk grows beyond what libdeflate names as its bound");
   size_ += size;
 }
 
 void PlaneCompressor::put(Bytes bytes) {
-  assert(size_ + bytes.size() <= room_.size());
+  if (size_ + bytes.size() > room_.size()) throw std::logic_error("a chunk grows beyond its room");
   std::copy(bytes.begin(), bytes.end(), room_.begin() + static_cast<std::ptrdiff_t>(size_));
   size_ += bytes.size();
 }

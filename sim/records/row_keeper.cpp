@@ -19,7 +19,8 @@ std::size_t rows_within(const ThinningLimits& limits, const Series& series) {
 SpoolFormat format_of(const RowKeeping& keeping, std::size_t chunk_rows) {
   const std::string& folder = keeping.folder;
   return {.folder = folder.empty() ? std::filesystem::temp_directory_path().string() : folder,
-          .page = {.chunk_rows = chunk_rows, .compression = keeping.compression}};
+          .page = {.chunk_rows = chunk_rows, .compression = keeping.compression},
+          .encodes_beside = keeping.encodes_beside};
 }
 
 // Columns of the signals that are read.
@@ -45,8 +46,10 @@ RowKeeper::RowKeeper(const std::vector<Signal>& signals, const RowKeeping& keepi
       make_room(keeping, rows / limits.every + 1);
       return;
     }
-    spool_ = std::make_shared<SeriesSpool>(series_.signals(),
-                                           format_of(keeping, rows_within(limits, series_)));
+    // its size is asked for after every block of rows
+    SpoolFormat format = format_of(keeping, rows_within(limits, series_));
+    format.encodes_beside = false;
+    spool_ = std::make_shared<SeriesSpool>(series_.signals(), std::move(format));
     return;
   }
   make_room(keeping, rows);
@@ -70,7 +73,7 @@ void RowKeeper::add(std::span<const double> rows) {
   staying_.clear();
   thinning_->add(rows, staying_);
   keep(staying_);
-  if (spool_ != nullptr) thinning_->account(spool_->bytes(), spool_->rows_on_disk());
+  if (spool_ != nullptr) thinning_->account(spool_->bytes(), spool_->rows_encoded());
 }
 
 void RowKeeper::keep(std::span<const double> rows) {

@@ -23,6 +23,7 @@ struct RowKeeping {
   int compression = 1;           // of what is encoded
   std::optional<ThinningLimits> thinning = {};  // none: every row is kept
   bool encodes = false;                         // rows as they come, since they go into a file
+  bool encodes_beside = true;  // these, and those that go to the disk: in a thread of their own
   /// Signals whose numbers stay beside where rows are encoded, as they are read often; none: all.
   std::optional<std::set<std::string, std::less<>>> read = {};
 };

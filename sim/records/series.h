@@ -42,7 +42,7 @@ class ColumnPages {
                             std::vector<std::uint8_t>& chunk) const = 0;
 };
 
-/// A table of rows, in memory or, if there are many, on a disk.
+/// A table of rows: in memory as numbers, encoded in memory or, if there are many, on a disk.
 class Series {
  public:
   Series() = default;
@@ -60,7 +60,7 @@ class Series {
   const ColumnPages* pages() const { return pages_.get(); }
   const std::shared_ptr<const ColumnPages>& shared_pages() const { return pages_; }
 
-  /// @pre in memory, as of all members up to leave_out()
+  /// @pre of these three: in memory as numbers
   const ColumnTable& table() const { return table_; }
   void reserve(std::size_t rows) { table_.reserve(rows); }
   /// Adds whole rows, one after the other.

@@ -15,7 +15,6 @@ std::size_t even_chunk_rows(std::size_t rows) {
 SeriesSpool::SeriesSpool(const std::vector<Signal>& signals, SpoolFormat format)
     : format_(std::move(format)),
       storage_(Series(signals).storage_of_columns()),
-      encoder_(storage_, format_.page, 1),
       filling_(storage_.size()),
       working_(storage_.size()) {
   for (std::size_t c = 0; c < format_.kept.size(); ++c) {
@@ -23,7 +22,8 @@ SeriesSpool::SeriesSpool(const std::vector<Signal>& signals, SpoolFormat format)
   }
   if (format_.most_in_memory <= 0.0) file();
   filling_.reserve(page_rows());
-  background_.emplace();
+  encoder_.emplace(storage_, format_.page, 1);
+  if (format_.encodes_beside) background_.emplace();
 }
 
 void SeriesSpool::append(std::span<const double> rows) {
@@ -38,6 +38,10 @@ void SeriesSpool::append(std::span<const double> rows) {
 }
 
 void SeriesSpool::hand_over() {
+  if (!background_) {
+    write_page(filling_);
+    return filling_.clear();
+  }
   background_->wait();
   std::swap(filling_, working_);
   filling_.clear();
@@ -46,19 +50,25 @@ void SeriesSpool::hand_over() {
 }
 
 void SeriesSpool::finish() {
-  background_->wait();
+  if (background_) background_->wait();
   background_.reset();
+  if (pages_ == 0 && filling_.rows() > 0) {  // fewer rows came than were expected
+    format_.page.chunk_rows = filling_.rows();
+    encoder_.emplace(storage_, format_.page, 1);
+  }
   if (filling_.rows() > 0) write_page(filling_);
   filling_ = working_ = ColumnTable();
+  encoder_.reset();
 }
 
 void SeriesSpool::write_page(const ColumnTable& page) {
   std::vector<std::span<const double>> columns;
   for (std::size_t c = 0; c < storage_.size(); ++c) columns.push_back(page.column(c));
-  encoder_.encode(columns);
+  encoder_->encode(columns);
   std::vector<Chunk> written;
-  for (const std::vector<std::uint8_t>& chunk : encoder_.chunks()) written.push_back(stored(chunk));
-  for (const std::size_t chunk : encoder_.chunk_of_columns()) {
+  for (const std::vector<std::uint8_t>& chunk : encoder_->chunks())
+    written.push_back(stored(chunk));
+  for (const std::size_t chunk : encoder_->chunk_of_columns()) {
     chunks_.push_back(written[chunk]);
     bytes_ += written[chunk].size;
   }
@@ -69,8 +79,8 @@ void SeriesSpool::write_page(const ColumnTable& page) {
 
 SeriesSpool::Chunk SeriesSpool::stored(const std::vector<std::uint8_t>& chunk) {
   const auto size = static_cast<std::uint32_t>(chunk.size());
-  bytes_in_memory_ += size;
-  if (bytes_in_memory_ > format_.most_in_memory) return {file().append(chunk), size, true};
+  bytes_stored_ += size;
+  if (bytes_stored_ > format_.most_in_memory) return {file().append(chunk), size, true};
   in_memory_.push_back(chunk);
   return {in_memory_.size() - 1, size, false};
 }
@@ -85,7 +95,7 @@ std::uint64_t SeriesSpool::bytes() const {
   return bytes_;
 }
 
-std::size_t SeriesSpool::rows_on_disk() const {
+std::size_t SeriesSpool::rows_encoded() const {
   if (background_) background_->wait();
   return pages_ * page_rows();
 }

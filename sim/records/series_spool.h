@@ -22,6 +22,7 @@ struct SpoolFormat {
   std::string folder;  // of its file
   PageFormat page = {};
   double most_in_memory = 0.0;  // bytes of chunks; those that come later go to the file
+  bool encodes_beside = true;   // in a thread of its own
   std::vector<bool> kept = {};  // of each column: its numbers stay in memory, too; empty: of none
 };
 
@@ -29,9 +30,9 @@ struct SpoolFormat {
 /// nothing.
 std::size_t even_chunk_rows(std::size_t rows);
 
-/// Chunks are encoded as a result file holds them, so that they go there as they are, by a thread
-/// of the spool, while further rows come. Two pages of rows are in memory, however many there are.
-/// For one thread at a time.
+/// Chunks are encoded as a result file holds them, so that they go there as they are, while further
+/// rows come. Of those that are in the file, two pages of rows are in memory, however many there
+/// are. For one thread at a time.
 class SeriesSpool final : public ColumnPages {
  public:
   /// @throws SystemError, as all members
@@ -45,7 +46,7 @@ class SeriesSpool final : public ColumnPages {
   /// Bytes of the chunks of all columns that are full, and the rows in them. On the disk they take
   /// less where columns are equal.
   std::uint64_t bytes() const;
-  std::size_t rows_on_disk() const;
+  std::size_t rows_encoded() const;
 
   /// @pre of these: finish()
   std::size_t rows() const override { return rows_; }
@@ -67,16 +68,16 @@ class SeriesSpool final : public ColumnPages {
   std::size_t rows_in(std::size_t page) const;
 
   SpoolFormat format_;
-  std::vector<Storage> storage_;   // of each column
-  std::vector<std::size_t> kept_;  // columns
-  PageEncoder encoder_;
+  std::vector<Storage> storage_;        // of each column
+  std::vector<std::size_t> kept_;       // columns
+  std::optional<PageEncoder> encoder_;  // until finish()
   mutable ChunkDecoder decoder_;
   mutable std::vector<std::uint8_t> encoded_;
   ColumnTable filling_;              // page that is not full
   ColumnTable working_;              // page that the thread encodes
   std::optional<ScratchFile> file_;  // from the first chunk on that is written there
   std::vector<std::vector<std::uint8_t>> in_memory_;
-  double bytes_in_memory_ = 0.0;
+  double bytes_stored_ = 0.0;                 // here and there
   std::vector<Chunk> chunks_;                 // page after page, of each column
   std::vector<std::vector<double>> numbers_;  // page after page, of each kept column
   std::uint64_t bytes_ = 0;

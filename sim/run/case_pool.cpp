@@ -7,8 +7,13 @@ namespace servomill::sim::run {
 
 CasePool::CasePool(std::size_t count, unsigned threads, std::function<void(std::size_t)> run_case)
     : run_case_(std::move(run_case)), ended_(count), failures_(count) {
-  for (std::size_t t = 0; t < std::min<std::size_t>(threads, count); ++t) {
-    threads_.emplace_back([this] { work(); });
+  try {
+    for (std::size_t t = 0; t < std::min<std::size_t>(threads, count); ++t) {
+      threads_.emplace_back([this] { work(); });
+    }
+  } catch (...) {  // those that there are wait for no further case
+    next_ = count;
+    throw;
   }
 }
 
@@ -25,7 +30,7 @@ void CasePool::work() {
       const std::scoped_lock lock(mutex_);
       ended_[i] = true;
     }
-    one_has_ended_.notify_one();
+    one_has_ended_.notify_all();
   }
 }
 

@@ -124,6 +124,7 @@ engine::CaseResult read_result(PluginChild& from, records::RowKeeping keeping) {
   axis = from.read<char>();
   time = from.read<double>();
   result.servo = read_series(from, keeping);
+  keeping.encodes = false;
   result.last_ticks = read_series(from, keeping);
   result.saturations.resize(from.read<std::size_t>());
   for (strategies::Saturation& one : result.saturations) one = from.read<strategies::Saturation>();

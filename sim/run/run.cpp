@@ -24,7 +24,7 @@
 namespace servomill::sim::run {
 namespace {
 
-constexpr auto kProgressPeriod = std::chrono::milliseconds(20);  // an interrupt waits for it, too
+constexpr auto kProgressPeriod = std::chrono::milliseconds(20);
 
 // Should a plug-in not return, what else is complete is kept.
 [[noreturn]] void keep_others(const RunControl& control, const std::vector<CaseOutput>& outputs,

@@ -104,10 +104,15 @@ engine::CaseInputs inputs_with(const preparation::PreparedCase& prepared,
   engine::CaseInputs out = prepared.inputs(storage.scratch_folder);
   if (!storage.is_encoded) return out;
   out.keeping.encodes = true;
-  out.keeping.read = evaluation::outputs_read_by(prepared.parts().scenario.quantities).signals;
-  if (out.keeping.read) {
-    out.keeping.read->insert(engine::kOfEveryRow.begin(), engine::kOfEveryRow.end());
-  }
+  const model::Scenario& scenario = prepared.parts().scenario;
+  // others than quantities read signals, too, and thinned rows have further ones
+  const bool reads_all = !scenario.probes.empty() || !scenario.tests.empty() || scenario.day ||
+                         out.keeping.thinning.has_value();
+  if (reads_all) return out;
+  out.keeping.read = evaluation::outputs_read_by(scenario.quantities).signals;
+  if (!out.keeping.read) return out;
+  out.keeping.read->insert(engine::kOfEveryRow.begin(), engine::kOfEveryRow.end());
+  out.keeping.read->insert({"window", "in_window"});
   return out;
 }
 

@@ -23,7 +23,6 @@
 #include "sim/run/store_series.h"
 #include "sim/run/store_tests.h"
 #include "sim/run/touch_record.h"
-#include "sim/system/worker_thread.h"
 
 namespace servomill::sim::run {
 namespace {

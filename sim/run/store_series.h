@@ -18,8 +18,8 @@ struct SeriesFormat {
 /// @pre  the series has time
 bool has_even_times(const records::Series& series, const records::EvenSteps& steps);
 
-/// Pages of a series as a result file holds them: its own, if it is on the disk, or those that its
-/// rows are encoded in here.
+/// Pages of a series as a result file holds them: its own, if it has some, or those that its rows
+/// are encoded in here.
 std::shared_ptr<const records::ColumnPages> encoded_pages(const records::Series& series,
                                                           const SeriesFormat& format);
 

@@ -79,6 +79,17 @@ StoredSignals signals_of(const records::InputFile& file, const std::string& grou
   return out;
 }
 
+// Rows from `first` to before `end`, of signals one behind the other.
+void copy_rows(const std::vector<std::vector<double>>& of_signals, const records::Series& series,
+               std::size_t first, std::size_t end, double* to) {
+  for (std::size_t row = first; row < end; ++row) {
+    for (std::size_t n = 0; n < of_signals.size(); ++n) {
+      const std::size_t width = series.signals()[n].columns();
+      to = std::copy_n(of_signals[n].data() + row * width, width, to);
+    }
+  }
+}
+
 // Columns of one group read back; of long recordings when they are asked for.
 std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records::InputFile>& file,
                                              const std::string& group) {
@@ -93,13 +104,12 @@ std::unique_ptr<records::Series> read_series(const std::shared_ptr<const records
   for (const records::Signal& signal : signals)
     columns.push_back(file->values(group + "/" + signal.name));
   series->reserve(rows);
-  std::vector<double> values(series->width());
-  for (std::size_t row = 0; row < rows; ++row) {
-    double* to = values.data();
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const std::size_t width = series->signals()[c].columns();
-      to = std::copy_n(columns[c].data() + row * width, width, to);
-    }
+  constexpr std::size_t kRowsAtOnce = 256;
+  std::vector<double> values;
+  for (std::size_t first = 0; first < rows; first += kRowsAtOnce) {
+    const std::size_t end = std::min(first + kRowsAtOnce, rows);
+    values.resize((end - first) * series->width());
+    copy_rows(columns, *series, first, end, values.data());
     series->append(values);
   }
   return series;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "sim/records/encoded_series.h"
 #include "sim/records/output_file.h"
+#include "sim/records/series_spool.h"
 #include "sim/records/series_writer.h"
 
 namespace servomill::sim {
@@ -48,15 +48,11 @@ std::vector<double> swinging_rows() {
   return all;
 }
 
-const records::Series& series(records::Storage storage) {
-  static std::map<records::Storage, records::Series> all;
-  if (const auto made = all.find(storage); made != all.end()) return made->second;
-  std::vector<records::Signal> signals = {{"time", "s", "time", "", ""}};
+std::vector<records::Signal> signals(records::Storage storage) {
+  std::vector<records::Signal> out = {{"time", "s", "time", "", ""}};
   for (std::size_t c = 1; c < kSignals; ++c) {
-    signals.push_back({"signal" + std::to_string(c), "mm", "signal", "", "", 0, storage});
+    out.push_back({"signal" + std::to_string(c), "mm", "signal", "", "", 0, storage});
   }
-  records::Series& out = all.emplace(storage, signals).first->second;
-  out.append(swinging_rows());
   return out;
 }
 
@@ -70,7 +66,8 @@ records::SeriesLayout layout(int compression, records::Storage storage) {
 }
 
 void BM_Write(benchmark::State& state, int compression, records::Storage storage) {
-  const records::Series& rows = series(storage);
+  static const std::vector<double> kNumbers = swinging_rows();
+  constexpr std::size_t kBlock = 1024 * kSignals;  // as rows come from a recorder
   const std::string path = std::filesystem::temp_directory_path() / "servomill_recorder_bench.h5";
   double process = 0.0, wall = 0.0;
   for (auto _ : state) {
@@ -78,8 +75,14 @@ void BM_Write(benchmark::State& state, int compression, records::Storage storage
     process -= seconds(CLOCK_PROCESS_CPUTIME_ID);
     wall -= seconds(CLOCK_MONOTONIC);
     const records::SeriesLayout wanted = layout(compression, storage);
-    records::write_pages(file.root().group("servo"), wanted,
-                         records::EncodedSeries(rows, {wanted.chunk_rows, compression}, 0));
+    records::SeriesSpool spool(
+        signals(storage),
+        {.folder = "", .page = {wanted.chunk_rows, compression}, .most_in_memory = 1e9});
+    for (std::size_t first = 0; first < kNumbers.size(); first += kBlock) {
+      spool.append(std::span(kNumbers).subspan(first, kBlock));
+    }
+    spool.finish();
+    records::write_pages(file.root().group("servo"), wanted, spool);
     process += seconds(CLOCK_PROCESS_CPUTIME_ID);
     wall += seconds(CLOCK_MONOTONIC);
   }

@@ -11,7 +11,7 @@
 namespace servomill::python {
 
 /// The signals of a recording by name, in the units of the result file (sim/records/README.md).
-/// Arrays of a recording in memory are views of it that keep it alive; pages on the disk are read.
+/// Arrays of a recording in memory are views of it that keep it alive; those of pages are copies.
 class Signals {
  public:
   /// @param series  which shares the ownership of all that it belongs to

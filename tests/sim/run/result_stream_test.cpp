@@ -71,8 +71,10 @@ void expect_same(const records::Series& one, const records::Series& other) {
 // Rows in memory or on the disk, on either side.
 TEST(ResultStream, KeepsEveryBit) {
   const records::RowKeeping in_memory, on_disk = {.folder = "", .most_in_memory = 0.0};
+  records::RowKeeping encoded;
+  encoded.encodes = true;
   for (const records::RowKeeping& there : {in_memory, on_disk}) {
-    for (const records::RowKeeping& here : {in_memory, on_disk}) {
+    for (const records::RowKeeping& here : {in_memory, on_disk, encoded}) {
       for (const std::size_t rows : {1UL, 1024UL, 20001UL}) {
         const auto result = std::make_shared<engine::CaseResult>();
         result->outcome = {false, false, "axis Y: following error beyond 10 mm", 'Y', 1.25};
@@ -95,8 +97,9 @@ TEST(ResultStream, KeepsEveryBit) {
         EXPECT_TRUE(got.saturations[0].of_rate);
         EXPECT_EQ(got.saturations[0].first, 0.2);
         expect_same(result->servo, got.servo);
-        EXPECT_EQ(got.servo.pages() != nullptr, here.most_in_memory == 0.0);
+        EXPECT_EQ(got.servo.pages() != nullptr, here.most_in_memory == 0.0 || here.encodes);
         expect_same(result->last_ticks, got.last_ticks);
+        EXPECT_EQ(got.last_ticks.pages() != nullptr, here.most_in_memory == 0.0);
       }
     }
   }
