@@ -37,8 +37,8 @@ model::Scenario all_strategies() {
 }
 
 bool same_bits(const std::vector<double>& one, const std::vector<double>& other) {
-  return one.size() == other.size() &&
-         std::memcmp(one.data(), other.data(), one.size() * sizeof(double)) == 0;
+  if (one.size() != other.size()) return false;
+  return one.empty() || std::memcmp(one.data(), other.data(), one.size() * sizeof(double)) == 0;
 }
 
 RunOutput run_with(const model::Scenario& scenario, unsigned threads) {

@@ -77,7 +77,8 @@ std::map<std::size_t, run::BatchResult> run(const std::vector<model::Scenario>& 
 
 // Bit for bit, NaN included.
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 void expect_same(const run::BatchResult& one, const run::BatchResult& other, std::size_t place) {
