@@ -6,6 +6,7 @@ import re
 
 AXES = "XYZBC"
 SLOW = {"integrator"}  # CVODE: a law of its own
+LARGEST = {"settle_ms": 1e4}  # it may be an hour, which no command is waited for
 NUMBER = re.compile(r"[<>]=? ?([-+\d.e]+)")
 
 
@@ -89,6 +90,10 @@ def keys_of(printed):
 
 def number(rng, key):
     """Mostly within the range, near the default; sometimes at its ends, sometimes beyond them."""
+    return min(any_number(rng, key), LARGEST.get(key.key, math.inf))
+
+
+def any_number(rng, key):
     ends = [float(end) for end in NUMBER.findall(key.range)]
     numbers = re.findall(r"^-?[\d.e+-]+$", key.default or "")
     usual = float(numbers[0]) if numbers else 1.0
