@@ -7,8 +7,7 @@
 
 namespace servomill::sim::records {
 
-/// Rows come one behind the other; the numbers of a column lie one behind the other, as whoever
-/// evaluates or writes them needs them.
+/// Rows are appended; the numbers of a column are contiguous, as evaluation and file need them.
 class ColumnTable {
  public:
   explicit ColumnTable(std::size_t width = 0) : width_(width) {}
@@ -26,7 +25,7 @@ class ColumnTable {
   void reserve(std::size_t rows);
   /// Adds whole rows.
   void append(std::span<const double> rows);
-  /// Takes all rows out, and keeps their room.
+  /// Removes all rows; their storage is reused.
   void clear() { rows_ = 0; }
 
   std::span<const double> column(std::size_t c) const {

@@ -34,7 +34,7 @@ bool library_locks(const std::string& path) {
   return use == "TRUE" || use == "1" || use == "BEST_EFFORT" || system::locks_bind_writers(path);
 }
 
-// The lock of the library would be gone before the file has its name.
+// The library releases its lock before the file has its name.
 system::WriteLock locked(const std::string& path, system::WriteLock::File file) {
   return library_locks(path) ? system::WriteLock() : system::WriteLock(path, file);
 }
@@ -65,9 +65,11 @@ OutputFile::OutputFile(std::string path, bool force) : path_(std::move(path)), f
   // the oldest format has no "open" mark that would make the file of a killed run unreadable
   const Hdf5Handle access = access_of_writer(partial_path_);
   using enum system::WriteLock::File;
-  if (force_ && library_locks(partial_path_)) refuse_to_cut_locked(partial_path_);
+  if (force_) refuse_to_cut_locked(partial_path_);
   lock_ = locked(partial_path_, force_ ? replaced : created);
-  const unsigned flag = force_ || !library_locks(partial_path_) ? H5F_ACC_TRUNC : H5F_ACC_EXCL;
+  // a lock of our own has created the file
+  const bool is_new = !force_ && library_locks(partial_path_);
+  const unsigned flag = is_new ? H5F_ACC_EXCL : H5F_ACC_TRUNC;
   file_ = std::make_unique<Hdf5Handle>(
       H5Fcreate(partial_path_.c_str(), flag, creation.get(), access.get()));
   if (file_->get() < 0)

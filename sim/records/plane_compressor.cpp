@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 2> kHeader = {0x78, 0x01};  // RFC 1950, 2.2: window of 32 KiB
 constexpr std::array<std::uint8_t, 5> kLastBlock = {1, 0, 0, 0xff, 0xff};  // stored, empty
-constexpr std::size_t kOverhead = 64;  // bytes, more than header, checksum and heads of blocks take
+constexpr std::size_t kOverhead = 64;  // bytes, more than header, checksum and block headers take
 
 // Bytes of the planes at the beginning that are equal to the first byte.
 std::size_t equal_planes(std::span<const std::uint8_t> bytes, std::size_t plane) {
@@ -48,8 +48,8 @@ std::vector<std::uint8_t> deflated_constant(std::uint8_t value, std::size_t coun
 
 }  // namespace
 
-void PlaneCompressor::FreeCompressor::operator()(void* compressor) const {
-  libdeflate_free_compressor(static_cast<libdeflate_compressor*>(compressor));
+void PlaneCompressor::FreeCompressor::operator()(libdeflate_compressor* compressor) const {
+  libdeflate_free_compressor(compressor);
 }
 
 PlaneCompressor::PlaneCompressor(int level) : compressor_(libdeflate_alloc_compressor(level)) {
@@ -58,8 +58,8 @@ PlaneCompressor::PlaneCompressor(int level) : compressor_(libdeflate_alloc_compr
 
 void PlaneCompressor::compress(Bytes bytes, std::size_t plane, std::vector<std::uint8_t>& stream) {
   assert(plane > 0 && bytes.size() % plane == 0);
-  auto* compressor = static_cast<libdeflate_compressor*>(compressor_.get());
-  const std::size_t most = libdeflate_deflate_compress_bound(compressor, bytes.size()) + kOverhead;
+  const std::size_t most =
+      libdeflate_deflate_compress_bound(compressor_.get(), bytes.size()) + kOverhead;
   if (room_.size() < most) room_.resize(most);
   size_ = 0;
   put(kHeader);
@@ -84,8 +84,7 @@ void PlaneCompressor::put_constant(std::uint8_t value, std::size_t count) {
 
 void PlaneCompressor::put_deflated(Bytes bytes) {
   const std::size_t size = libdeflate_deflate_compress(
-      static_cast<libdeflate_compressor*>(compressor_.get()), bytes.data(), bytes.size(),
-      room_.data() + size_, room_.size() - size_);
+      compressor_.get(), bytes.data(), bytes.size(), room_.data() + size_, room_.size() - size_);
   if (size == 0) throw std::logic_error("a chunk grows beyond what libdeflate names as its bound");
   size_ += size;
 }

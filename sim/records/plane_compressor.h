@@ -9,12 +9,13 @@
 #include <utility>
 #include <vector>
 
+struct libdeflate_compressor;
+
 namespace servomill::sim::records {
 
 /// Makes zlib streams (RFC 1950) of planes: the bytes of one place of all numbers. The first planes
-/// hold the lowest bytes, which are zero where numbers are rounded; the compressor of everything
-/// else would take a third of its time for them. The same bytes give the same stream. Not for
-/// several threads.
+/// hold the lowest bytes, which are zero where numbers are rounded: they are compressed once and
+/// the result is reused. The same bytes give the same stream. Not for several threads.
 class PlaneCompressor {
  public:
   /// @param level  1 to 9
@@ -27,17 +28,16 @@ class PlaneCompressor {
  private:
   using Bytes = std::span<const std::uint8_t>;
   struct FreeCompressor {
-    void operator()(void* compressor) const;
+    void operator()(libdeflate_compressor* compressor) const;
   };
 
   void put_constant(std::uint8_t value, std::size_t count);
   void put_deflated(Bytes bytes);
   void put(Bytes bytes);
 
-  std::unique_ptr<void, FreeCompressor> compressor_;
-  std::vector<std::uint8_t>
-      room_;              // larger than a stream, which would be filled with zeros each time
-  std::size_t size_ = 0;  // of what stands in it
+  std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor_;
+  std::vector<std::uint8_t> room_;  // for any stream; a new one would be filled with zeros
+  std::size_t size_ = 0;            // bytes of the stream in it
   std::map<std::pair<std::uint8_t, std::size_t>, std::vector<std::uint8_t>> constants_;
 };
 

@@ -13,8 +13,8 @@
 
 namespace servomill::sim::run {
 
-/// Cases do not depend on each other: any thread may run any of them. When the pool goes, no
-/// further case begins, and those that run are waited for.
+/// Cases are independent: any thread may run any of them. The destructor waits for those that run;
+/// no further case begins.
 class CasePool {
  public:
   /// @param run_case  called once for each index below `count`, by several threads
